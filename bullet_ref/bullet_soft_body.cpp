@@ -1,0 +1,3 @@
+#include <BulletSoftBody/btSoftBody.h>
+
+#include "core/model/solver.hpp"

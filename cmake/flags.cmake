@@ -1,0 +1,30 @@
+# What every target of ours is compiled with. Bit-identical results across compilers and SIMD widths rest on
+# -ffp-contract=off; assertions stay alive, so NDEBUG is never defined.
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1")
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+add_library(taut_flags INTERFACE)
+target_compile_features(taut_flags INTERFACE cxx_std_20)
+target_include_directories(taut_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(taut_flags INTERFACE
+  -ffp-contract=off -fno-math-errno
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wno-missing-field-initializers)
+if(TAUT_WERROR)
+  target_compile_options(taut_flags INTERFACE -Werror)
+endif()
+if(TAUT_SANITIZE)
+  target_compile_options(taut_flags INTERFACE
+    -fsanitize=address,undefined,float-divide-by-zero -fno-sanitize-recover=all -fno-omit-frame-pointer
+    -D_GLIBCXX_ASSERTIONS)
+  target_link_options(taut_flags INTERFACE -fsanitize=address,undefined)
+endif()

@@ -1,0 +1,100 @@
+#include "core/model/collider.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut {
+
+namespace {
+
+template <class... F>
+struct Overload : F... {
+  using F::operator()...;
+};
+
+Surface surface_of(const Plane& plane, const Vec3& p) {
+  return {plane.normal.dot(p) - plane.offset, plane.normal};
+}
+
+Surface surface_of(const Ball& ball, const Vec3& p) {
+  const Vec3 out = p - ball.center;
+  const double distance = out.norm();
+  if (distance == 0) return {-ball.radius, Vec3::UnitY()};
+  return {distance - ball.radius, out / distance};
+}
+
+Surface surface_of(const Box& box, const Vec3& p) {
+  const Vec3 local = box.rotation.conjugate() * (p - box.center);
+  const Vec3 excess = local.cwiseAbs() - box.half_extents;
+  const auto sign = [&](int axis) { return local[axis] < 0 ? -1.0 : 1.0; };
+  Vec3 normal = Vec3::Zero();
+  double distance = 0;
+  if (excess.maxCoeff() > 0) {  // outside: towards the nearest point of a face, edge or corner
+    for (int axis = 0; axis < 3; ++axis) normal[axis] = sign(axis) * std::max(0.0, excess[axis]);
+    distance = normal.norm();
+    normal /= distance;
+  } else {  // inside: out through the nearest face
+    int axis = 0;
+    distance = excess.maxCoeff(&axis);
+    normal[axis] = sign(axis);
+  }
+  return {distance, box.rotation * normal};
+}
+
+}  // namespace
+
+std::string_view type_name(const Shape& shape) {
+  return std::visit(Overload{[](const Plane&) { return std::string_view("plane"); },
+                             [](const Ball&) { return std::string_view("ball"); },
+                             [](const Box&) { return std::string_view("box"); }},
+                    shape);
+}
+
+Vec3 Motion::displacement(double t) const {
+  Vec3 d = velocity * t;
+  if (path.empty()) return d;
+  const auto next = std::upper_bound(path.begin(), path.end(), t,
+                                     [](double time, const Key& key) { return time < key.t; });
+  if (next == path.begin()) return d + path.front().displacement;
+  if (next == path.end()) return d + path.back().displacement;
+  const Key &a = *(next - 1), &b = *next;
+  return d + a.displacement + (t - a.t) / (b.t - a.t) * (b.displacement - a.displacement);
+}
+
+Eigen::Quaterniond Motion::rotation(double t) const {
+  const double rate = spin.norm();
+  if (rate == 0) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(rate * t, spin / rate));
+}
+
+Vec3 Motion::moved(const Vec3& start, double t) const {
+  if (spin.isZero(0)) return start + displacement(t);
+  return pivot + rotation(t) * (start - pivot) + displacement(t);
+}
+
+Shape shape_at(const Collider& collider, double t) {
+  const Motion& motion = collider.motion;
+  if (motion.at_rest()) return collider.shape;
+  return std::visit(Overload{[&](Plane plane) -> Shape {
+                               const Vec3 on = motion.moved(plane.offset * plane.normal, t);
+                               plane.normal = motion.rotation(t) * plane.normal;
+                               plane.offset = plane.normal.dot(on);
+                               return plane;
+                             },
+                             [&](Ball ball) -> Shape {
+                               ball.center = motion.moved(ball.center, t);
+                               return ball;
+                             },
+                             [&](Box box) -> Shape {
+                               box.center = motion.moved(box.center, t);
+                               box.rotation = motion.rotation(t) * box.rotation;
+                               return box;
+                             }},
+                    collider.shape);
+}
+
+Surface surface(const Shape& shape, const Vec3& p) {
+  return std::visit([&](const auto& s) { return surface_of(s, p); }, shape);
+}
+
+}  // namespace taut

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/model/vec3.hpp"
+
+namespace taut {
+
+/// Solid below the plane { x : normal . x = offset }.
+struct Plane {
+  Vec3 normal = Vec3::UnitY();  ///< unit, points out of the solid
+  double offset = 0;            ///< m
+};
+
+struct Ball {
+  Vec3 center = Vec3::Zero();  ///< m
+  double radius = 0;           ///< m, > 0
+};
+
+struct Box {
+  Vec3 center = Vec3::Zero();        ///< m
+  Vec3 half_extents = Vec3::Zero();  ///< m, > 0 each, along the box's own axes
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< box axes -> world
+};
+
+using Shape = std::variant<Plane, Ball, Box>;
+std::string_view type_name(const Shape&);
+
+/// A prescribed rigid motion: known in advance, never influenced by the cloth. Displacement is
+/// velocity * t plus the path, linear between its keys and constant before the first and after the
+/// last; rotation is by spin * t about pivot. All zero and empty: at rest.
+struct Motion {
+  struct Key {
+    double t = 0;                      ///< s, strictly increasing
+    Vec3 displacement = Vec3::Zero();  ///< m from the starting place
+  };
+  Vec3 velocity = Vec3::Zero();  ///< m/s
+  Vec3 spin = Vec3::Zero();      ///< rad/s about the world axis through pivot
+  Vec3 pivot = Vec3::Zero();     ///< m
+  std::vector<Key> path;
+
+  bool at_rest() const { return velocity.isZero(0) && spin.isZero(0) && path.empty(); }
+  Vec3 displacement(double t) const;            ///< m at time t [s]
+  Eigen::Quaterniond rotation(double t) const;  ///< at time t [s]
+  Vec3 moved(const Vec3& start,
+             double t) const;  ///< where the point that starts at `start` is at time t
+};
+
+/// A rigid obstacle.
+struct Collider {
+  Shape shape;  ///< at t = 0
+  Motion motion;
+  double friction = 0;  ///< Coulomb coefficient, >= 0
+};
+
+/// Shape at time t [s].
+Shape shape_at(const Collider&, double t);
+
+/// Distance from p to the surface, negative inside, and its gradient: both exact, also inside a box
+/// and past its edges and corners. Where the gradient is not unique (a ball's centre, a box's
+/// medial axis) one of the valid ones is given, always the same.
+struct Surface {
+  double distance = 0;  ///< m
+  Vec3 normal = Vec3::UnitY();
+};
+Surface surface(const Shape&, const Vec3& p);
+
+}  // namespace taut

@@ -1,0 +1,54 @@
+#include "core/model/input_error.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace taut {
+
+namespace {
+
+std::string join(const std::vector<Diagnostic>& diagnostics) {
+  std::string all;
+  for (const Diagnostic& d : diagnostics) all += (all.empty() ? "" : "\n") + d.text();
+  return all;
+}
+
+/// Levenshtein's edit distance.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0u);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, substitute}));
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string Diagnostic::text() const {
+  if (file.empty()) return message;
+  std::string place = file + ":";
+  if (line > 0) place += std::to_string(line) + ":" + std::to_string(column) + ":";
+  return place + " " + message;
+}
+
+InputError::InputError(std::vector<Diagnostic> diagnostics)
+    : std::runtime_error(join(diagnostics)), diagnostics_(std::move(diagnostics)) {}
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string* best = nullptr;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates)
+    if (const std::size_t d = edit_distance(word, candidate); d < least) {
+      least = d;
+      best = &candidate;
+    }
+  return best ? "; did you mean '" + *best + "'?" : "";
+}
+
+}  // namespace taut

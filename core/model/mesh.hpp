@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/model/vec3.hpp"
+
+namespace taut {
+
+using Triangle = std::array<int, 3>;
+
+/// Vertices of a regular sheet: (i, j) is vertex j * nu + i.
+///
+///     (0,0) --u--> (nu-1, 0)      pins of a hanging sheet are usually (0, 0) and (nu-1, 0)
+///       |
+///       v
+///     (0, nv-1)
+struct Grid {
+  int nu = 0;
+  int nv = 0;
+  int index(int i, int j) const { return j * nu + i; }
+  int size() const { return nu * nv; }
+};
+
+/// The material: shape at rest, connectivity and mass. Fixes the vertex order for every solver.
+struct Mesh {
+  std::vector<Vec3> rest;           ///< [n] m
+  std::vector<Triangle> triangles;  ///< vertex triples; wind, face contact and pictures use them
+  std::vector<double> mass;         ///< [n] kg, > 0, pinned vertices included
+  std::optional<Grid> grid;         ///< set if the vertices form a regular sheet
+
+  int size() const { return static_cast<int>(rest.size()); }
+};
+
+/// The three spring families of the report (Provot 1995; Lander 1999).
+enum class Family { structural, shear, bend };
+inline constexpr std::array kFamilies{Family::structural, Family::shear, Family::bend};
+std::string_view to_string(Family);
+
+/// Keeps vertices a and b at distance rest [m].
+struct Link {
+  int a = 0;
+  int b = 0;
+  double rest = 0;
+  Family family = Family::structural;
+};
+
+/// How a sheet's mass is divided among its vertices.
+enum class Lumping {
+  area,  ///< a quarter of each quad (half of each segment of a chain): edges weigh half
+  equal  ///< the same for every vertex
+};
+
+/// A rectangular sheet of nu x nv vertices, flat at rest: vertex (i, j) lies at
+/// origin + i/(nu-1) * width * u + j/(nv-1) * height * v. One column (nu = 1) is a chain.
+struct SheetShape {
+  int nu = 0, nv = 0;            ///< >= 1 each, at least two vertices in all
+  double width = 0, height = 0;  ///< m along u and v
+  Vec3 origin = Vec3::Zero();    ///< m
+  Vec3 u = Vec3::UnitX();        ///< unit
+  Vec3 v = -Vec3::UnitY();       ///< unit
+  double mass = 0;               ///< kg in all
+  Lumping lumping = Lumping::area;
+};
+
+/// Quads are split along alternating diagonals, so that no direction is preferred.
+Mesh make_sheet(const SheetShape&);
+
+/// Which links to derive from a mesh.
+struct LinkChoice {
+  bool structural = true;
+  bool shear = false;
+  bool bend = false;
+};
+
+/// Links of a grid, in the order in which Gauss-Seidel visits them: families one after the other;
+/// within a family vertex by vertex in row order, first along u, then along v (shear: down-right,
+/// then down-left; bend: every second vertex). So a chain's links run from its first vertex to its
+/// last.
+std::vector<Link> grid_links(const Mesh&, const LinkChoice&);
+
+}  // namespace taut

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace taut {
+
+/// A parameter of a solver: its name, range, default and one line of help.
+struct ParamSpec {
+  enum class Kind { integer, real, choice };
+  std::string_view name;
+  Kind kind = Kind::real;
+  std::string_view unit;           ///< "" if it has none
+  std::string_view default_value;  ///< as typed
+  double min = 0, max = 0;         ///< inclusive; numbers only
+  std::string_view choices;        ///< "exact|sqrt-free"; choices only
+  std::string_view help;           ///< one line
+};
+
+/// Validated values of all parameters of one solver.
+class Params {
+ public:
+  Params() = default;
+  /// `text` is "key=value,key=value" or empty. Throws InputError that names `owner`, the key, what
+  /// was given and what is allowed.
+  Params(std::string_view owner, std::span<const ParamSpec>, std::string_view text);
+
+  int integer(std::string_view name) const;
+  double real(std::string_view name) const;
+  std::string_view choice(std::string_view name) const;
+  bool is(std::string_view name, std::string_view value) const { return choice(name) == value; }
+
+  /// "key=value,..." in declared order: all of them, or only those that differ from their defaults.
+  std::string canonical() const { return text(false); }
+  std::string brief() const { return text(true); }
+  /// The value as text, in canonical form.
+  std::string_view value(std::string_view name) const;
+  std::span<const ParamSpec> specs() const { return specs_; }
+
+ private:
+  std::string text(bool only_changed) const;
+  std::size_t find(std::string_view name) const;
+  std::span<const ParamSpec> specs_;
+  std::vector<std::string> values_;  ///< canonical text
+};
+
+}  // namespace taut

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/collider.hpp"
+#include "core/model/mesh.hpp"
+
+namespace taut {
+
+/// A step boundary: all that solvers, metrics and the renderer share. Mesh order, whole cloth.
+struct State {
+  std::vector<Vec3> x;  ///< [n] m
+  std::vector<Vec3> v;  ///< [n] m/s
+};
+
+/// Air that moves past the cloth, with the report's face law (section 3): F = c (n . d) n.
+struct Wind {
+  enum class Law {
+    relative,  ///< d = wind velocity - face velocity, F per m^2: c (n . d) n A; has a terminal
+               ///< speed
+    literal    ///< d = wind velocity alone, as printed; accelerates without end
+  };
+  Vec3 velocity = Vec3::Zero();  ///< m/s
+  double strength =
+      0;  ///< c [N s/m^3]; n is the unit normal, A the face's area; each corner takes F/3
+  Law law = Law::relative;
+};
+
+/// The cloth collides with itself: every particle is a ball of this radius (report, section 4.2.4).
+struct SelfCollision {
+  double radius = 0;  ///< m
+};
+
+/// Pins that move together along a prescribed motion.
+struct PinMotion {
+  std::vector<int> vertices;  ///< each of them in Scene::pins
+  Motion motion;              ///< of the place where the vertex starts
+};
+
+/// What to simulate: plain data in SI units, no behaviour. Every solver receives this same object.
+/// An empty vector or disengaged optional means that the effect is absent, and an absent effect
+/// costs neither memory nor time (tests/absent_is_free_test.cpp).
+struct Scene {
+  std::string name;     ///< file stem; a label, not part of the content
+  std::string summary;  ///< one sentence; a label, not part of the content
+  Mesh mesh;
+  State start;                         ///< may differ from the rest shape
+  std::vector<int> pins;               ///< sorted, unique: vertices that no solver may integrate
+  std::vector<PinMotion> pin_motions;  ///< empty: pins stay where they start
+  std::vector<Link> links;             ///< Gauss-Seidel order, families contiguous
+  std::vector<Collider> colliders;
+  std::optional<Wind> wind;
+  std::optional<SelfCollision> self_collision;
+  Vec3 gravity{0, -9.81, 0};  ///< m/s^2
+  double damping = 0;         ///< 1/s: a free particle's velocity decays as exp(-damping t)
+  double thickness = 0;       ///< m: cloth keeps this distance from colliders
+  double dt = 0;              ///< s, exact in binary32 so that every solver has the same
+  int steps = 0;              ///< duration / dt, rounded up
+
+  double duration() const { return dt * steps; }  ///< s
+};
+
+/// Inverse masses [n] in 1/kg; 0 for pinned vertices.
+std::vector<double> inverse_masses(const Scene&);
+
+/// A unit of length for the scene [m]: the diagonal of the rest shape's bounding box.
+double extent(const Scene&);
+
+/// Where pin `vertex` has to be at time t [s]. Precondition: vertex is pinned.
+Vec3 pin_position(const Scene&, int vertex, double t);
+
+/// The content of a scene as bytes: equal exactly when the scenes are the same simulation.
+std::string content(const Scene&);
+
+}  // namespace taut

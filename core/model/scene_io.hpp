@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/model/scene.hpp"
+
+namespace taut {
+
+/// Reads a scene file (TOML; every key is described in experiments/scenes/README.md).
+/// `overrides` are TOML assignments with dotted keys that replace values of the file before it is
+/// judged, such as "cloth.grid=[16, 16]" or "time.dt=\"1/120\"". Throws InputError with every
+/// diagnostic at once: unreadable or malformed file, unknown, duplicate or missing keys, wrong
+/// types, non-finite or out-of-range numbers, pins outside the cloth.
+Scene load_scene(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
+
+/// A number or a fraction such as "1/64"; throws InputError. Used for dt on the command line too.
+double parse_number(const std::string&);
+
+}  // namespace taut

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/model/params.hpp"
+#include "core/model/scene.hpp"
+
+namespace taut {
+
+/// One pass of a step: what it works on, how often, and what it holds.
+struct PassCost {
+  std::string pass;         ///< "verlet", "structural", "wind", ...
+  std::size_t items = 0;    ///< particles, links, faces, contacts that one application visits
+  std::size_t repeats = 1;  ///< applications in one step: sweeps times substeps
+  std::size_t bytes = 0;    ///< memory that exists because of this pass
+  bool projections =
+      false;  ///< items are constraint projections, the work unit of every comparison
+};
+
+/// Advances one cloth. Built from a Scene; owns no clock, draws no unseeded random numbers, does no
+/// I/O.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual void load(const State&) = 0;         ///< start or restart here (untimed)
+  virtual void step(double t, double dt) = 0;  ///< advance [t, t + dt]: the only timed call
+  virtual void store(State&) const = 0;        ///< copy out (untimed); step() leaves no debt behind
+  virtual std::vector<PassCost> plan() const = 0;  ///< the passes of one step, in order
+};
+
+/// A line of the fairness panel: what the solver makes of a setting ("time step", "1/64 s, as
+/// binary32").
+using Effective = std::vector<std::pair<std::string, std::string>>;
+
+/// How a solver introduces itself: one per file, found by its TAUT_SOLVER line.
+struct SolverEntry {
+  std::string_view name;
+  std::string_view summary;           ///< one sentence
+  std::string_view source;            ///< paper or library, with version
+  std::span<const ParamSpec> params;  ///< drives the command line, the documentation and the errors
+  std::unique_ptr<Solver> (*make)(const Scene&, const Params&);
+  /// Why it would misread this scene, a sentence each; empty: it can.
+  std::vector<std::string> (*cannot)(const Scene&, const Params&);
+  Effective (*effective)(const Scene&, const Params&);
+};
+
+/// Constraint projections in one step: sum of items x repeats over the passes that project.
+std::size_t projections_per_step(const Solver&);
+
+/// All solvers of this program, sorted by name (generated; see cmake/registry.cmake).
+std::span<const SolverEntry* const> solvers();
+
+/// Throws InputError with a suggestion if there is no such solver.
+const SolverEntry& find_solver(std::string_view name);
+
+/// "name" or "name:key=value,..."; every parameter gets its value or its default. Throws
+/// InputError.
+struct SolverChoice {
+  const SolverEntry* entry = nullptr;
+  Params params;
+  /// "name:key=value,...": every parameter spelt out in declared order; equal choices, equal text.
+  std::string canonical() const;
+  /// The same, but only the parameters that differ from their defaults: for people.
+  std::string brief() const;
+};
+SolverChoice parse_solver(std::string_view text);
+
+}  // namespace taut
+
+/// Defines the entry under the name by which the generated registry finds it:
+///     TAUT_SOLVER(jakobsen) = {.name = "jakobsen", ...};
+#define TAUT_SOLVER(id)                 \
+  namespace taut {                      \
+  extern const SolverEntry solver_##id; \
+  }                                     \
+  const taut::SolverEntry taut::solver_##id

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/model/solver.hpp"
+#include "core/solver/particles.hpp"
+
+namespace taut {
+
+/// One effect of a scene with the data it needs. It exists only if the scene has the effect: no
+/// flag is tested inside the loop, and an absent effect owns no memory.
+template <class Real>
+class Pass {
+ public:
+  virtual ~Pass() = default;
+  /// For the step [t, t + dt].
+  virtual void apply(Particles<Real>&, double t, double dt) = 0;
+  /// Of one application; the solver sets `repeats`.
+  virtual PassCost cost() const = 0;
+};
+
+}  // namespace taut

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/model/solver.hpp"
+
+namespace taut {
+
+/// How a case ended. A numerical failure is a result, never an exception and never a gap.
+struct Status {
+  enum class Kind {
+    // results, kept
+    ok,           ///< ran to the end
+    exploded,     ///< non-finite, or kinetic energy above ten times the available potential drop
+    unsettled,    ///< ran to the end, still moving after five theoretical settling times
+    unsupported,  ///< the solver says that it would misread the scene
+    // failures, kept and re-runnable
+    timeout,
+    oom,
+    crash,
+    error,
+    // never stored
+    interrupted
+  };
+  Kind kind = Kind::ok;
+  std::string reason;  ///< "nonfinite", "energy", "box", "SIGSEGV", what cannot() said, ...
+  int step = -1;       ///< where it happened; -1: not known or not applicable
+  int vertex = -1;     ///< the first vertex concerned; -1: not known or not applicable
+
+  bool is_result() const { return kind <= Kind::unsupported; }
+};
+std::string_view to_string(Status::Kind);
+Status::Kind status_kind(std::string_view);  ///< throws InputError
+
+/// What is to be run: names and settings, no content. Solver in canonical form
+/// (SolverChoice::canonical()).
+struct CaseSpec {
+  std::string scene;  ///< name of a shipped scene, or a path
+  std::vector<std::string>
+      overrides;       ///< "cloth.grid=[16, 16]", applied before the scene is judged
+  std::string solver;  ///< "jakobsen:iterations=8,..."
+};
+
+/// A case that was run: one line of every table. Everything that metrics, plots, reports and checks
+/// need.
+struct Record {
+  std::string
+      key;  ///< SHA-256 over content, solver, implementation, parameters and metrics version; hex
+  std::string id;  ///< for people, unique in a study: "hang dt=1/64 jakobsen:iterations=8"
+  CaseSpec spec;
+  std::string scene;                          ///< its name
+  std::string solver;                         ///< the entry's name
+  std::map<std::string, std::string> params;  ///< all of the solver's
+  double dt = 0;                              ///< s
+  int steps = 0;
+  int vertices = 0, links = 0;
+  Status status;
+  std::map<std::string, double> values;  ///< by metric value name; NaN: no meaning here
+  std::size_t projections = 0;           ///< per step
+  std::vector<PassCost> plan;
+  Effective effective;
+  std::string digest;  ///< SHA-256 of the final state's bits
+};
+
+}  // namespace taut

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/model/scene.hpp"
+
+namespace taut {
+
+/// One step boundary as a metric sees it: the scene's time and the state, never the solver that
+/// made it.
+struct Moment {
+  int step = 0;  ///< 0: the start
+  double t = 0;  ///< s
+  const State& state;
+};
+
+/// A number that a metric yields.
+struct ValueSpec {
+  std::string_view name;   ///< "stretch.rms"; unique over all metrics
+  std::string_view unit;   ///< "1" if dimensionless
+  std::string_view help;   ///< its definition, one sentence
+  bool in_series = false;  ///< also meaningful at each moment: recorded over time as well
+};
+
+/// Watches one run. `observe` sees every step boundary in order, the start included, and must be
+/// cheap or choose its own moments; `finish` is called once and gives the values in the entry's
+/// order. A value that has no meaning for this run is NaN (stored as null, drawn as absent).
+class Metric {
+ public:
+  virtual ~Metric() = default;
+  virtual void observe(const Moment&) = 0;
+  virtual std::vector<double> finish() = 0;
+  /// The values of this very moment, for series; same order, NaN where `in_series` is false.
+  virtual std::vector<double> now(const Moment&) const = 0;
+};
+
+/// How a metric introduces itself: one per file, found by its TAUT_METRIC line.
+struct MetricEntry {
+  std::string_view name;     ///< "stretch"
+  std::string_view summary;  ///< one sentence
+  std::string_view source;   ///< definition: paper, closed form
+  std::span<const ValueSpec> values;
+  /// nullptr if the scene lacks what is measured (penetration without colliders).
+  std::unique_ptr<Metric> (*make)(const Scene&);
+};
+
+/// All metrics of this program, sorted by name (generated; see cmake/registry.cmake).
+std::span<const MetricEntry* const> metrics();
+
+}  // namespace taut
+
+#define TAUT_METRIC(id)                 \
+  namespace taut {                      \
+  extern const MetricEntry metric_##id; \
+  }                                     \
+  const taut::MetricEntry taut::metric_##id
