@@ -47,6 +47,10 @@ struct SolverEntry {
   /// Why it would misread this scene, a sentence each; empty: it can.
   std::vector<std::string> (*cannot)(const Scene&, const Params&);
   Effective (*effective)(const Scene&, const Params&);
+  /// Which program can run this choice: "taut", "taut-f32", or "" for either. Null: either.
+  /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
+  /// other one, make() throws InputError.
+  std::string_view (*program)(const Params&) = nullptr;
 };
 
 /// Constraint projections in one step: sum of items x repeats over the passes that project.

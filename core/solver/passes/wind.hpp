@@ -2,21 +2,16 @@
 
 #include <vector>
 
+#include "core/model/wind.hpp"
 #include "core/solver/pass.hpp"
 
 namespace taut {
 
-/// The report's wind on every face, F = c (n . d) n (section 3): n the unit normal, scaled by the
-/// face's area, a third to each corner; d is the wind past the face, or, in the literal law, the
-/// wind itself.
+/// The report's wind on every face (core/model/wind.hpp).
 template <class Real>
 class WindPass final : public Pass<Real> {
  public:
-  WindPass(const Wind& wind, std::vector<Triangle> faces)
-      : velocity_(wind.velocity),
-        strength_(wind.strength),
-        relative_(wind.law == Wind::Law::relative),
-        faces_(std::move(faces)) {}
+  WindPass(const Wind& wind, std::vector<Triangle> faces) : wind_(wind), faces_(std::move(faces)) {}
 
   void apply(Particles<Real>& p, double, double dt) override {
     const auto at = [](const Vec4<Real>& x) { return Vec3(x.x, x.y, x.z); };
@@ -24,14 +19,9 @@ class WindPass final : public Pass<Real> {
       const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b),
                  ic = static_cast<std::size_t>(c);
       const Vec3 xa = at(p.x[ia]), xb = at(p.x[ib]), xc = at(p.x[ic]);
-      const Vec3 twice_area = (xb - xa).cross(xc - xa);
-      const double norm = twice_area.norm();
-      if (norm == 0) continue;
-      Vec3 d = velocity_;
-      if (relative_)
-        d -= (xa - at(p.previous[ia]) + xb - at(p.previous[ib]) + xc - at(p.previous[ic])) /
-             (3 * dt);
-      const Vec3 corner = strength_ * twice_area.dot(d) / (6 * norm) * twice_area;
+      const Vec3 moved =
+          xa - at(p.previous[ia]) + xb - at(p.previous[ib]) + xc - at(p.previous[ic]);
+      const Vec3 corner = wind_on_corner(wind_, xa, xb, xc, moved / (3 * dt));
       for (const std::size_t i : {ia, ib, ic}) {
         const double w = p.x[i].w;
         p.a[i].x += static_cast<Real>(w * corner.x());
@@ -46,9 +36,7 @@ class WindPass final : public Pass<Real> {
   }
 
  private:
-  Vec3 velocity_;
-  double strength_;
-  bool relative_;
+  Wind wind_;
   std::vector<Triangle> faces_;
 };
 
