@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace taut {
+
+/// An estimate with its confidence interval.
+struct Interval {
+  double low = 0;
+  double mid = 0;
+  double high = 0;
+  bool contains(double value) const { return low <= value && value <= high; }
+};
+
+double median(std::span<const double>);  ///< NaN if empty
+
+/// Median with a percentile-bootstrap confidence interval (Efron & Tibshirani 1993, section 13.3),
+/// 2000 resamples, seeded: the same samples give the same interval. One sample gives an interval of
+/// no width.
+Interval bootstrap_median(std::span<const double> samples, double confidence = 0.95,
+                          std::uint64_t seed = 1);
+
+/// Cost of A over cost of B from samples taken in the order A B B A, A B B A, ...: a and b hold two
+/// samples of each block, in order. A linear drift of the machine's speed cancels inside a block;
+/// the interval is over blocks.
+Interval interleaved_ratio(std::span<const double> a, std::span<const double> b,
+                           double confidence = 0.95, std::uint64_t seed = 1);
+
+/// What a ratio of costs A / B allows us to say.
+enum class Judgement {
+  same,      ///< no difference that the gates let through
+  faster,    ///< A costs less
+  slower,    ///< A costs more
+  too_noisy  ///< the A/A control itself strays further than the tolerance: nothing can be said
+};
+
+/// A difference is declared only if the interval excludes 1, AND the change exceeds the tolerance
+/// (0.05: five per cent), AND it exceeds what comparing A with itself showed in the same session.
+Judgement judge(const Interval& ratio, const Interval& control, double tolerance);
+
+/// y = a x^slope through positive points by least squares in logarithms, with the slope's standard
+/// error.
+struct PowerLaw {
+  double factor = 0;
+  double slope = 0;
+  double slope_error = 0;
+};
+PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
+
+}  // namespace taut
