@@ -19,7 +19,7 @@ experiments/truths  | (core/(model|reference)|experiments/(metrics|lab|truths))/
 # what is included | files that may include it
 owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/.*\.cpp
-toml\+\+                | ^(core/model/scene_io|experiments/lab/[a-z_]+)\.cpp
+toml\+\+                | ^(core/model/document|experiments/lab/[a-z_]+)\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods) | ^core/reference/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp
 openssl/                | ^experiments/lab/.*\.cpp
