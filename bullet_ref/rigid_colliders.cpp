@@ -1,0 +1,133 @@
+#include "bullet_ref/rigid_colliders.hpp"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "bullet_ref/convert.hpp"
+
+namespace taut {
+
+namespace {
+
+/// Half extents of a plane's slab [m]: wide enough for every scene, and so thick that no cloth gets
+/// to its far side; its solid side is -y. Larger slabs gain nothing and cost GJK digits in float.
+constexpr double kSlabWidth = 50, kSlabDepth = 5;
+
+struct Pose {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Vec3 origin = Vec3::Zero();
+};
+
+Pose slab_pose(const Plane& plane, const Vec3& above) {
+  const Vec3 top = above - (plane.normal.dot(above) - plane.offset) * plane.normal;
+  return {Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), plane.normal),
+          top - kSlabDepth * plane.normal};
+}
+
+Pose pose_at_start(const Shape& shape, const Vec3& above) {
+  if (const auto* plane = std::get_if<Plane>(&shape)) return slab_pose(*plane, above);
+  if (const auto* ball = std::get_if<Ball>(&shape))
+    return {Eigen::Quaterniond::Identity(), ball->center};
+  const Box& box = std::get<Box>(shape);
+  return {box.rotation, box.center};
+}
+
+std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
+  if (const auto* ball = std::get_if<Ball>(&shape))
+    return std::make_unique<btSphereShape>(static_cast<btScalar>(ball->radius));
+  const auto* box = std::get_if<Box>(&shape);
+  const Vec3 half = box ? box->half_extents : Vec3(kSlabWidth, kSlabDepth, kSlabWidth);
+  auto made = std::make_unique<btBoxShape>(to_bullet(half));
+  made->setMargin(0);  // the default rounds a box by 0.04 m
+  return made;
+}
+
+Vec3 middle(const std::vector<Vec3>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) box.extend(p);
+  return box.center();
+}
+
+}  // namespace
+
+struct RigidColliders::Body {
+  Body(const Collider& collider, const Vec3& above)
+      : start(pose_at_start(collider.shape, above)),
+        motion(collider.motion),
+        is_plane(std::holds_alternative<Plane>(collider.shape)),
+        shape(make_shape(collider.shape)),
+        rigid(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, shape.get())) {
+    rigid.setFriction(static_cast<btScalar>(collider.friction));
+    rigid.setRestitution(0);
+    if (!motion.at_rest()) {
+      rigid.setCollisionFlags(rigid.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+      rigid.setActivationState(DISABLE_DEACTIVATION);
+    }
+    rigid.setWorldTransform(at(0));
+    rigid.setInterpolationWorldTransform(at(0));
+  }
+
+  btTransform at(double t) const {
+    return to_bullet(motion.rotation(t) * start.rotation, motion.moved(start.origin, t));
+  }
+
+  Pose start;
+  Motion motion;
+  bool is_plane;
+  std::unique_ptr<btCollisionShape> shape;
+  btRigidBody rigid;
+};
+
+RigidColliders::RigidColliders(const Scene& scene, btDiscreteDynamicsWorld& world) : world_(world) {
+  for (const Collider& collider : scene.colliders) {
+    bodies_.push_back(std::make_unique<Body>(collider, middle(scene.start.x)));
+    world_.addRigidBody(&bodies_.back()->rigid);
+  }
+}
+
+RigidColliders::~RigidColliders() {
+  for (const auto& body : bodies_) world_.removeRigidBody(&body->rigid);
+}
+
+void RigidColliders::move(double from, double to) {
+  for (const auto& body : bodies_) {
+    if (body->motion.at_rest()) continue;
+    body->rigid.setInterpolationWorldTransform(body->at(from));
+    body->rigid.setWorldTransform(body->at(to));
+  }
+}
+
+std::size_t RigidColliders::bytes() const {
+  return bodies_.size() * (sizeof(Body) + sizeof(btBoxShape));
+}
+
+std::vector<Collider> RigidColliders::read_back(double t) const {
+  std::vector<Collider> colliders;
+  for (const auto& body : bodies_) {
+    const btTransform& now = body->rigid.getWorldTransform();
+    const btQuaternion q = now.getRotation();
+    const Eigen::Quaterniond turned = body->motion.rotation(t).conjugate();
+    const Eigen::Quaterniond rotation = turned * Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z());
+    const Vec3& pivot = body->motion.pivot;
+    const Vec3 moved = from_bullet(now.getOrigin()) - body->motion.displacement(t);
+    const Vec3 origin = pivot + turned * (moved - pivot);
+    Collider collider{.motion = body->motion, .friction = body->rigid.getFriction()};
+    if (const auto* ball = dynamic_cast<const btSphereShape*>(body->shape.get())) {
+      collider.shape = Ball{origin, ball->getRadius()};
+    } else {
+      const auto& box = dynamic_cast<const btBoxShape&>(*body->shape);
+      const Vec3 half = from_bullet(box.getHalfExtentsWithMargin());
+      const Vec3 normal = rotation * Vec3::UnitY();
+      if (body->is_plane)
+        collider.shape = Plane{normal, normal.dot(origin) + half.y()};
+      else
+        collider.shape = Box{origin, half, rotation};
+    }
+    colliders.push_back(std::move(collider));
+  }
+  return colliders;
+}
+
+}  // namespace taut

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/model/scene.hpp"
+
+class btCollisionShape;
+class btDiscreteDynamicsWorld;
+class btRigidBody;
+
+namespace taut {
+
+/// A scene's colliders as Bullet's rigid bodies, in the scene's order: a ball as btSphereShape, a
+/// box as btBoxShape, a plane as the top of a btBoxShape slab (btStaticPlaneShape tunnels and lets
+/// the cloth rest 0.10 m too high). All have shape margin 0. Bodies that move are kinematic.
+class RigidColliders {
+ public:
+  /// Adds the bodies to the world, which must outlive this object. Slabs are centred below the
+  /// middle of the scene's start.
+  RigidColliders(const Scene&, btDiscreteDynamicsWorld&);
+  ~RigidColliders();
+  RigidColliders(const RigidColliders&) = delete;
+  RigidColliders& operator=(const RigidColliders&) = delete;
+
+  /// Places the moving bodies where they are at time to [s]; Bullet takes their velocity from where
+  /// they were at time from.
+  void move(double from, double to);
+
+  bool empty() const { return bodies_.empty(); }
+  /// Bytes of bodies and shapes.
+  std::size_t bytes() const;
+
+  /// What Bullet holds: shapes and friction from the bodies as they stand at time t [s] with the
+  /// motion up to then taken back; the motions themselves are this object's, for Bullet knows none.
+  std::vector<Collider> read_back(double t) const;
+
+ private:
+  struct Body;
+  btDiscreteDynamicsWorld& world_;
+  std::vector<std::unique_ptr<Body>> bodies_;
+};
+
+}  // namespace taut
