@@ -1,0 +1,166 @@
+// btSoftBody against rigid colliders: every collider is where the scene puts it, at every time, and
+// the cloth keeps the distance that Bullet's contact rule leaves: thickness + g h^2 on a plane.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+
+namespace taut {
+namespace {
+
+constexpr double kThickness = 0.02;  // m
+
+/// A sheet of half a metre on (or just above) a collider's top; u and v span it.
+Scene sheet_above(const Collider& collider, const Vec3& middle, const Vec3& u, const Vec3& v) {
+  Scene scene;
+  scene.mesh = make_sheet({.nu = 11,
+                           .nv = 11,
+                           .width = 0.5,
+                           .height = 0.5,
+                           .origin = middle - 0.25 * (u + v),
+                           .u = u,
+                           .v = v,
+                           .mass = 0.2});
+  scene.links = grid_links(scene.mesh, {.structural = true, .shear = true});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
+  scene.colliders = {collider};
+  scene.thickness = kThickness;
+  scene.dt = static_cast<float>(1 / 60.0);
+  scene.steps = 180;
+  return scene;
+}
+
+struct Range {
+  double least, most;  ///< m, over all vertices
+};
+
+Range distances(const Solver& solver, const Scene& scene, double t) {
+  State state;
+  solver.store(state);
+  Range range{1e9, -1e9};
+  for (const Vec3& x : state.x) {
+    const double d = surface(shape_at(scene.colliders[0], t), x).distance;
+    range = {std::min(range.least, d), std::max(range.most, d)};
+  }
+  return range;
+}
+
+/// Distances from the surface at the end of the scene.
+Range settle(const Scene& scene, const std::string& text) {
+  const SolverChoice choice = parse_solver(text);
+  EXPECT_EQ(choice.entry->cannot(scene, choice.params), std::vector<std::string>{});
+  const auto solver = choice.entry->make(scene, choice.params);
+  solver->load(scene.start);
+  for (int n = 0; n < scene.steps; ++n) solver->step(n * scene.dt, scene.dt);
+  return distances(*solver, scene, scene.duration());
+}
+
+/// Axes along a plane: level, and down the slope.
+std::pair<Vec3, Vec3> axes(const Vec3& normal) {
+  const Vec3 level = normal.cross(Vec3::UnitY()).normalized();
+  return {level, normal.cross(level)};
+}
+
+TEST(BulletContact, OnAPlaneTheClothRestsAtThicknessPlusTheFallOfOneStep) {
+  Scene scene =
+      sheet_above({.shape = Plane{Vec3::UnitY(), 0.3}}, {0, 0.33, 0}, Vec3::UnitX(), Vec3::UnitZ());
+  scene.steps = 600;
+  for (const char* order : {"contacts-first", "links-first"})
+    for (const int substeps : {1, 3}) {
+      const double h = scene.dt / substeps;
+      const Range d = settle(scene, std::string("bullet:iterations=10,order=") + order +
+                                        ",substeps=" + std::to_string(substeps));
+      EXPECT_NEAR(d.least, kThickness + 9.81 * h * h, 1e-5) << order << substeps;
+      EXPECT_NEAR(d.most, kThickness + 9.81 * h * h, 1e-5) << order << substeps;
+    }
+}
+
+TEST(BulletContact, AnInclineHoldsTheClothIfFrictionDoesAndAtTheSameDistance) {
+  const double slope = std::numbers::pi / 6;
+  const Vec3 normal(std::sin(slope), std::cos(slope), 0);
+  const auto [u, v] = axes(normal);
+  const Scene scene =
+      sheet_above({.shape = Plane{normal, -2}, .friction = 1}, -1.97 * normal, u, v);
+  const Range d = settle(scene, "bullet:iterations=10");
+  const double rest = kThickness + 9.81 * std::cos(slope) * scene.dt * scene.dt;
+  EXPECT_NEAR(d.least, rest, 1e-4);
+  EXPECT_NEAR(d.most, rest, 1e-4);
+}
+
+TEST(BulletContact, AMovingPlaneCarriesTheCloth) {
+  Scene scene = sheet_above(
+      {.shape = Plane{Vec3::UnitY(), 0}, .motion = {.velocity = {0, 0.4, 0}}, .friction = 1},
+      {0, 0.03, 0}, Vec3::UnitX(), Vec3::UnitZ());
+  const Range d = settle(scene, "bullet:iterations=10");
+  EXPECT_GT(d.least, kThickness);
+  EXPECT_LT(d.most, kThickness + 2 * 9.81 * scene.dt * scene.dt);
+}
+
+TEST(BulletContact, AFloorThatTiltsAboutAFarPivotStaysUnderTheCloth) {
+  Scene scene = sheet_above({.shape = Plane{Vec3::UnitY(), 0},
+                             .motion = {.spin = {0, 0, 0.1}, .pivot = {-2, 0, 0}},
+                             .friction = 1},
+                            {0, 0.03, 0}, Vec3::UnitX(), Vec3::UnitZ());
+  const Range d = settle(scene, "bullet:iterations=10");
+  EXPECT_GT(d.least, kThickness - 1e-3);
+  EXPECT_LT(d.most, kThickness + 2 * 9.81 * scene.dt * scene.dt);
+}
+
+TEST(BulletContact, AFinerDistanceFieldLetsTheClothLessIntoABall) {
+  const Scene scene = sheet_above({.shape = Ball{{0, 0, 0}, 0.3}, .friction = 1}, {0, 0.33, 0},
+                                  Vec3::UnitX(), Vec3::UnitZ());
+  const double coarse = settle(scene, "bullet:iterations=10,voxel=0.25").least;
+  const double fine = settle(scene, "bullet:iterations=10,voxel=0.05").least;
+  EXPECT_LT(coarse, fine - 0.01);
+  EXPECT_GT(fine, 0);
+}
+
+TEST(BulletContact, RestartingGivesTheSameBits) {
+  const Scene scene =
+      sheet_above({.shape = Ball{{0, 0, 0}, 0.3}}, {0, 0.33, 0}, Vec3::UnitX(), Vec3::UnitZ());
+  const SolverChoice choice = parse_solver("bullet");
+  const auto solver = choice.entry->make(scene, choice.params);
+  State first, second;
+  for (State* state : {&first, &second}) {
+    solver->load(scene.start);
+    for (int n = 0; n < 60; ++n) solver->step(n * scene.dt, scene.dt);
+    solver->store(*state);
+  }
+  EXPECT_EQ(first.x, second.x);
+  EXPECT_EQ(first.v, second.v);
+}
+
+TEST(BulletLimits, SaysWhatItWouldMisread) {
+  Scene scene = sheet_above({.shape = Ball{{0, 0, 0}, 0.3}, .friction = 0.5}, {0, 0.33, 0},
+                            Vec3::UnitX(), Vec3::UnitZ());
+  const auto reasons = [&](const char* text) {
+    const SolverChoice choice = parse_solver(text);
+    return choice.entry->cannot(scene, choice.params).size();
+  };
+  EXPECT_EQ(reasons("bullet"), 0u);
+  EXPECT_EQ(reasons("bullet:friction=refuse"), 1u);
+  scene.colliders[0].friction = 1.5;
+  EXPECT_EQ(reasons("bullet"), 1u);
+  scene.colliders.clear();
+  scene.self_collision = SelfCollision{0.01};
+  EXPECT_EQ(reasons("bullet"), 1u);
+  scene.self_collision.reset();
+  scene.damping = 1;
+  EXPECT_EQ(reasons("bullet:iterations=0"), 1u);
+}
+
+TEST(BulletLimits, EachPrecisionHasItsProgram) {
+  const Scene scene = sheet_above({.shape = Plane{}}, {0, 0.33, 0}, Vec3::UnitX(), Vec3::UnitZ());
+  const SolverChoice in_double = parse_solver("bullet:precision=double");
+  const SolverChoice in_float = parse_solver("bullet:precision=float");
+  EXPECT_EQ(in_double.entry->program(in_double.params), "taut");
+  EXPECT_EQ(in_float.entry->program(in_float.params), "taut-f32");
+  EXPECT_THROW(in_float.entry->make(scene, in_float.params), InputError);
+}
+
+}  // namespace
+}  // namespace taut
