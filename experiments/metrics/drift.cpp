@@ -1,4 +1,4 @@
-#include "experiments/metrics/metric.hpp"
+#include "experiments/metrics/summary.hpp"
 
 namespace taut {
 
@@ -6,21 +6,22 @@ namespace {
 
 constexpr ValueSpec kValues[] = {
     {"drift.max", "m",
-     "largest distance of the centre of mass from its start (pinned vertices included)"},
+     "largest distance of the centre of mass from its start over the run (pinned vertices "
+     "included)"},
+    {"drift.mean", "m", "its distance from its start, mean over the last second", true},
 };
 
 class Drift final : public Metric {
  public:
-  explicit Drift(const Scene& scene) : mass_(scene.mesh.mass) {}
+  explicit Drift(const Scene& scene) : mass_(scene.mesh.mass), end_(scene) {}
 
   void observe(const Moment& m) override {
-    const Vec3 c = center(m.state);
-    if (m.step == 0) start_ = c;
-    max_ = std::max(max_, (c - start_).norm());
+    if (m.step == 0) start_ = center(m.state);
+    distance_.add(m.step, end_.contains(m.step), (center(m.state) - start_).norm());
   }
-  std::vector<double> finish() override { return {max_}; }
+  std::vector<double> finish() override { return {distance_.peak(), distance_.mean()}; }
   std::vector<double> now(const Moment& m) const override {
-    return {(center(m.state) - start_).norm()};
+    return {Summary::kNone, (center(m.state) - start_).norm()};
   }
 
  private:
@@ -31,8 +32,9 @@ class Drift final : public Metric {
     return sum / total;
   }
   std::vector<double> mass_;
+  LastSecond end_;
   Vec3 start_ = Vec3::Zero();
-  double max_ = 0;
+  Summary distance_;
 };
 
 }  // namespace

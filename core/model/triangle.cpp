@@ -1,0 +1,144 @@
+#include "core/model/triangle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut {
+
+namespace {
+
+Vec3 at(const Corners& t, const Vec3& weights) {
+  return weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
+}
+
+/// Share of b in the point of segment a..b that is nearest to p.
+double nearest_share(const Vec3& a, const Vec3& b, const Vec3& p) {
+  const Vec3 along = b - a;
+  const double length2 = along.squaredNorm();
+  return length2 > 0 ? std::clamp(along.dot(p - a) / length2, 0.0, 1.0) : 0.0;
+}
+
+/// Six times the volume of the tetrahedron; positive if d lies above the triangle abc.
+double orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return (b - a).cross(c - a).dot(d - a);
+}
+
+/// True if the segment pq passes through the inside of the triangle.
+bool pierces(const Vec3& p, const Vec3& q, const Corners& t) {
+  const double below = orientation(t[0], t[1], t[2], p), above = orientation(t[0], t[1], t[2], q);
+  if (!(below * above < 0)) return false;
+  const double u = orientation(p, q, t[0], t[1]), v = orientation(p, q, t[1], t[2]),
+               w = orientation(p, q, t[2], t[0]);
+  return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+}
+
+/// Depths below the six faces of a box, each linear over the triangle: [face][corner].
+using Depths = std::array<Vec3, 6>;
+
+double depth_at(const Depths& depths, const Vec3& weights) {
+  double least = depths[0].dot(weights);
+  for (std::size_t f = 1; f < depths.size(); ++f) least = std::min(least, depths[f].dot(weights));
+  return least;
+}
+
+/// Calls visit(weights) at every place where the maximum of the least depth can be.
+template <class Visit>
+void candidates(const Depths& d, const Visit& visit) {
+  for (int corner = 0; corner < 3; ++corner) visit(Vec3::Unit(corner));
+  for (std::size_t f = 0; f < d.size(); ++f)
+    for (std::size_t g = f + 1; g < d.size(); ++g) {
+      const Vec3 fg = d[f] - d[g];
+      for (int a = 0; a < 3; ++a) {  // on the edge from corner a to the next
+        const int b = (a + 1) % 3;
+        if (!(fg[a] * fg[b] < 0)) continue;
+        Vec3 weights = Vec3::Zero();
+        weights[b] = fg[a] / (fg[a] - fg[b]);
+        weights[a] = 1 - weights[b];
+        visit(weights);
+      }
+      for (std::size_t h = g + 1; h < d.size(); ++h) {  // inside: fg . w = fh . w = 0
+        const Vec3 w = fg.cross(d[f] - d[h]);
+        const double sum = w.sum();
+        if (sum == 0) continue;
+        const Vec3 weights = w / sum;
+        if (weights.minCoeff() >= 0) visit(weights);
+      }
+    }
+}
+
+}  // namespace
+
+TrianglePoint closest_point(const Corners& t, const Vec3& p) {
+  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double twice_area2 = normal.squaredNorm();
+  if (twice_area2 > 0) {
+    const Vec3 weights =
+        Vec3(normal.dot((t[2] - t[1]).cross(p - t[1])), normal.dot((t[0] - t[2]).cross(p - t[2])),
+             normal.dot((t[1] - t[0]).cross(p - t[0]))) /
+        twice_area2;
+    if (weights.minCoeff() >= 0) return {at(t, weights), weights};
+  }
+  TrianglePoint best;
+  double least = -1;
+  for (int a = 0; a < 3; ++a) {
+    const int b = (a + 1) % 3;
+    const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
+    Vec3 weights = Vec3::Zero();
+    weights[b] = nearest_share(t[ia], t[ib], p);
+    weights[a] = 1 - weights[b];
+    const Vec3 point = at(t, weights);
+    const double distance2 = (point - p).squaredNorm();
+    if (least >= 0 && distance2 >= least) continue;
+    least = distance2, best = {point, weights};
+  }
+  return best;
+}
+
+Deepest deepest_in(const Ball& ball, const Corners& t) {
+  const TrianglePoint nearest = closest_point(t, ball.center);
+  return {ball.radius - (nearest.position - ball.center).norm(), nearest};
+}
+
+Deepest deepest_in(const Box& box, const Corners& t, double at_least) {
+  Depths depths;
+  double bound = at_least;
+  Deepest best{-box.half_extents.norm(), {t[0], Vec3::UnitX()}};
+  std::array<Vec3, 3> local;
+  for (std::size_t c = 0; c < 3; ++c) local[c] = box.rotation.conjugate() * (t[c] - box.center);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<Eigen::Index>(axis);
+    const Vec3 along(local[0][k], local[1][k], local[2][k]);
+    const Vec3 half = Vec3::Constant(box.half_extents[k]);
+    depths[2 * axis] = half - along, depths[2 * axis + 1] = half + along;
+  }
+  double ceiling = depths[0].maxCoeff();
+  for (const Vec3& d : depths) ceiling = std::min(ceiling, d.maxCoeff());
+  if (ceiling <= bound) return {bound, best.at};
+  const auto improve = [&](const Vec3& weights) {
+    const double depth = depth_at(depths, weights);
+    if (depth > best.depth) best = {depth, {Vec3::Zero(), weights}};
+  };
+  for (int corner = 0; corner < 3; ++corner) improve(Vec3::Unit(corner));
+  if (best.depth < ceiling) candidates(depths, improve);
+  best.at.position = at(t, best.at.weights);
+  return best;
+}
+
+double enclosing_radius(const Corners& t) {
+  std::array<double, 3> edge2{(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(),
+                              (t[0] - t[2]).squaredNorm()};
+  std::sort(edge2.begin(), edge2.end());
+  const double twice_area = (t[1] - t[0]).cross(t[2] - t[0]).norm();
+  if (edge2[2] >= edge2[0] + edge2[1] || twice_area == 0) return std::sqrt(edge2[2]) / 2;
+  return std::sqrt(edge2[0] * edge2[1] * edge2[2]) / (2 * twice_area);
+}
+
+bool cross(const Corners& s, const Corners& t) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t b = (a + 1) % 3;
+    if (pierces(s[a], s[b], t) || pierces(t[a], t[b], s)) return true;
+  }
+  return false;
+}
+
+}  // namespace taut

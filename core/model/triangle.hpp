@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+
+#include "core/model/collider.hpp"
+
+namespace taut {
+
+/// The corners of one face of the cloth [m].
+using Corners = std::array<Vec3, 3>;
+
+/// A point of a triangle: position and barycentric coordinates (non-negative, sum 1).
+struct TrianglePoint {
+  Vec3 position = Vec3::Zero();  ///< m
+  Vec3 weights = Vec3::Zero();
+};
+
+/// The point of a triangle that is nearest to p. Exact; degenerate triangles are segments or
+/// points.
+TrianglePoint closest_point(const Corners&, const Vec3& p);
+
+/// A point of a triangle and how far below a collider's surface it is; depth <= 0: outside.
+struct Deepest {
+  double depth = 0;  ///< m
+  TrianglePoint at;
+};
+
+/// The deepest point of a triangle inside a ball. Exact: the point nearest to the centre.
+Deepest deepest_in(const Ball&, const Corners&);
+
+/// The deepest point of a triangle inside a box, exact. Depth is the least of six linear functions,
+/// so its maximum lies at a corner of the triangle, on an edge where two of them are equal, or
+/// inside where three are. A triangle that misses the box gets a depth <= 0 that says no more than
+/// that. Costs a few hundred operations unless `at_least` rejects it: a triangle that provably is
+/// no deeper may be reported as depth = at_least with the weights of its first corner.
+Deepest deepest_in(const Box&, const Corners&, double at_least = 0);
+
+/// Radius of the smallest ball around a triangle [m]: the circumscribed circle's, or half the
+/// longest edge of an obtuse one.
+double enclosing_radius(const Corners&);
+
+/// True if the triangles cross: an edge of one passes through the inside of the other. Touching and
+/// overlap within one plane do not count.
+bool cross(const Corners&, const Corners&);
+
+}  // namespace taut

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/mesh.hpp"
+
+namespace taut {
+
+/// Pairs of faces that cross each other and share no vertex, ascending. Sorts the faces along the
+/// longest side of their bounding box, so that only those that overlap there are compared.
+std::vector<std::array<int, 2>> crossings(const std::vector<Triangle>&, const std::vector<Vec3>& x);
+
+/// The least of (distance - min(2 radius, distance at rest)) over all pairs of vertices [m], at
+/// most 0: how far the balls of the given radius [m] overlap more than they do at rest.
+double least_gap(const std::vector<Vec3>& x, const std::vector<Vec3>& rest, double radius);
+
+}  // namespace taut

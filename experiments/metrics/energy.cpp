@@ -1,0 +1,67 @@
+#include "experiments/metrics/summary.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr ValueSpec kValues[] = {
+    {"energy.mean", "1",
+     "(kinetic + potential energy)/(m g L), potential energy 0 at the start, mean over the last "
+     "second; L is the diagonal of the rest shape's bounding box",
+     true},
+    {"energy.kinetic", "1", "its kinetic part, mean over the last second", true},
+    {"energy.peak", "1", "largest (kinetic + potential energy)/(m g L) over the run"},
+};
+
+class Energy final : public Metric {
+ public:
+  explicit Energy(const Scene& scene)
+      : mass_(scene.mesh.mass), start_(scene.start.x), gravity_(scene.gravity), end_(scene) {
+    double total = 0;
+    for (const double m : mass_) total += m;
+    unit_ = total * gravity_.norm() * extent(scene);
+  }
+
+  void observe(const Moment& m) override {
+    const auto [kinetic, total] = measure(m.state);
+    kinetic_.add(m.step, end_.contains(m.step), kinetic);
+    total_.add(m.step, end_.contains(m.step), total);
+  }
+  std::vector<double> finish() override { return {total_.mean(), kinetic_.mean(), total_.peak()}; }
+  std::vector<double> now(const Moment& m) const override {
+    const auto [kinetic, total] = measure(m.state);
+    return {total, kinetic, Summary::kNone};
+  }
+
+ private:
+  struct Energies {
+    double kinetic = 0, total = 0;  ///< in units of m g L
+  };
+  Energies measure(const State& state) const {
+    double kinetic = 0, potential = 0;
+    for (std::size_t i = 0; i < mass_.size(); ++i) {
+      kinetic += mass_[i] * state.v[i].squaredNorm() / 2;
+      potential -= mass_[i] * gravity_.dot(state.x[i] - start_[i]);
+    }
+    return {kinetic / unit_, (kinetic + potential) / unit_};
+  }
+
+  std::vector<double> mass_;
+  std::vector<Vec3> start_;
+  Vec3 gravity_;
+  LastSecond end_;
+  double unit_ = 0;  ///< m g L [J]
+  Summary kinetic_, total_;
+};
+
+}  // namespace
+}  // namespace taut
+
+TAUT_METRIC(energy) = {.name = "energy",
+                       .summary = "Mechanical energy; relaxation dissipates it legitimately",
+                       .source = "sum of m v^2/2 - m g . (x - x_start) over vertices",
+                       .values = taut::kValues,
+                       .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
+                         if (scene.gravity.isZero(0)) return nullptr;
+                         return std::make_unique<taut::Energy>(scene);
+                       }};

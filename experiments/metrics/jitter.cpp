@@ -1,0 +1,50 @@
+#include "experiments/metrics/free_vertices.hpp"
+#include "experiments/metrics/summary.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr ValueSpec kValues[] = {
+    {"jitter.rms", "m/s", "speed of the free vertices, RMS over vertices and the last second",
+     true},
+    {"jitter.max", "m/s", "largest speed of a free vertex in the last second", true},
+};
+
+class Jitter final : public Metric {
+ public:
+  explicit Jitter(const Scene& scene) : free_(free_vertices(scene)), end_(scene) {}
+
+  void observe(const Moment& m) override {
+    if (!end_.contains(m.step)) return;
+    square_.add(m.step, true, mean_square_speed(m.state, free_));
+    fastest_.add(m.step, true, fastest(m.state));
+  }
+  std::vector<double> finish() override { return {std::sqrt(square_.mean()), fastest_.max()}; }
+  std::vector<double> now(const Moment& m) const override {
+    return {std::sqrt(mean_square_speed(m.state, free_)), fastest(m.state)};
+  }
+
+ private:
+  double fastest(const State& state) const {
+    double square = 0;
+    for (const std::size_t i : free_) square = std::max(square, state.v[i].squaredNorm());
+    return std::sqrt(square);
+  }
+  std::vector<std::size_t> free_;
+  LastSecond end_;
+  Summary square_, fastest_;
+};
+
+}  // namespace
+}  // namespace taut
+
+TAUT_METRIC(jitter) = {
+    .name = "jitter",
+    .summary = "Motion that is left in the last second: noise, if it should rest",
+    .source = "RMS speed",
+    .values = taut::kValues,
+    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
+      if (taut::free_vertices(scene).empty()) return nullptr;
+      return std::make_unique<taut::Jitter>(scene);
+    }};

@@ -1,0 +1,139 @@
+#include <array>
+
+#include "experiments/metrics/free_vertices.hpp"
+#include "experiments/metrics/summary.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr ValueSpec kValues[] = {
+    {"penetration.max", "m",
+     "largest depth of a free vertex below a collider's surface, thickness not counted, in the "
+     "last second",
+     true},
+    {"penetration.peak", "m", "the same over the run"},
+    {"penetration.mean", "m",
+     "mean depth of the vertices that are below a surface, mean over the last second"},
+    {"penetration.plane.max", "m", "penetration.max of planes alone", true},
+    {"penetration.plane.peak", "m", "penetration.peak of planes alone"},
+    {"penetration.plane.mean", "m", "penetration.mean of planes alone"},
+    {"penetration.ball.max", "m", "penetration.max of balls alone", true},
+    {"penetration.ball.peak", "m", "penetration.peak of balls alone"},
+    {"penetration.ball.mean", "m", "penetration.mean of balls alone"},
+    {"penetration.box.max", "m", "penetration.max of boxes alone", true},
+    {"penetration.box.peak", "m", "penetration.peak of boxes alone"},
+    {"penetration.box.mean", "m", "penetration.mean of boxes alone"},
+    {"penetration.share", "1",
+     "share of the free vertices that are below a surface, mean over the last second", true},
+    {"penetration.gap", "m",
+     "least distance of a free vertex to a collider minus the scene's thickness, mean over the "
+     "last second: positive where the cloth hovers, negative where it eats into the thickness",
+     true},
+};
+
+constexpr std::size_t kKinds = std::variant_size_v<Shape>;  // order of Shape's alternatives
+
+/// Vertices below the surfaces of one kind at one moment.
+struct Depths {
+  double max = 0, sum = 0;
+  int count = 0;
+  void add(double depth) {
+    if (!(depth > 0)) return;
+    max = std::max(max, depth), sum += depth, ++count;
+  }
+  double mean() const { return count > 0 ? sum / count : 0; }
+};
+
+class Penetration final : public Metric {
+ public:
+  explicit Penetration(const Scene& scene)
+      : colliders_(scene.colliders),
+        thickness_(scene.thickness),
+        free_(free_vertices(scene)),
+        end_(scene) {
+    for (const Collider& c : colliders_) exists_[c.shape.index()] = true;
+  }
+
+  void observe(const Moment& m) override {
+    const bool at_end = end_.contains(m.step);
+    const Contact contact = measure(m);
+    const auto add = [&](Kind& kind, const Depths& d) {
+      kind.max.add(m.step, at_end, d.max), kind.mean.add(m.step, at_end, d.mean());
+    };
+    add(any_, contact.any);
+    for (std::size_t k = 0; k < kKinds; ++k)
+      if (exists_[k]) add(kinds_[k], contact.kinds[k]);
+    share_.add(m.step, at_end, share(contact));
+    gap_.add(m.step, at_end, contact.least - thickness_);
+  }
+
+  std::vector<double> finish() override {
+    std::vector<double> values{any_.max.max(), any_.max.peak(), any_.mean.mean()};
+    for (const Kind& k : kinds_)
+      values.insert(values.end(), {k.max.max(), k.max.peak(), k.mean.mean()});
+    values.insert(values.end(), {share_.mean(), gap_.mean()});
+    return values;
+  }
+
+  std::vector<double> now(const Moment& m) const override {
+    constexpr double none = Summary::kNone;
+    const Contact contact = measure(m);
+    std::vector<double> values{contact.any.max, none, none};
+    for (std::size_t k = 0; k < kKinds; ++k)
+      values.insert(values.end(), {exists_[k] ? contact.kinds[k].max : none, none, none});
+    values.insert(values.end(), {share(contact), contact.least - thickness_});
+    return values;
+  }
+
+ private:
+  struct Contact {
+    Depths any;  ///< the deepest collider of each vertex
+    std::array<Depths, kKinds> kinds;
+    double least = std::numeric_limits<double>::infinity();  ///< m, signed distance
+  };
+  Contact measure(const Moment& m) const {
+    Contact contact;
+    std::vector<double> nearest(free_.size(), std::numeric_limits<double>::infinity());
+    for (const Collider& collider : colliders_) {
+      const Shape shape = shape_at(collider, m.t);
+      Depths& kind = contact.kinds[shape.index()];
+      for (std::size_t k = 0; k < free_.size(); ++k) {
+        const double distance = surface(shape, m.state.x[free_[k]]).distance;
+        kind.add(-distance);
+        nearest[k] = std::min(nearest[k], distance);
+      }
+    }
+    for (const double distance : nearest) {
+      contact.any.add(-distance);
+      contact.least = std::min(contact.least, distance);
+    }
+    return contact;
+  }
+  double share(const Contact& c) const { return c.any.count / static_cast<double>(free_.size()); }
+
+  struct Kind {
+    Summary max, mean;
+  };
+  std::vector<Collider> colliders_;
+  double thickness_;
+  std::vector<std::size_t> free_;
+  LastSecond end_;
+  std::array<bool, kKinds> exists_{};
+  Kind any_;
+  std::array<Kind, kKinds> kinds_;
+  Summary share_, gap_;
+};
+
+}  // namespace
+}  // namespace taut
+
+TAUT_METRIC(penetration) = {
+    .name = "penetration",
+    .summary = "How deep vertices are in colliders after the last pass of the step",
+    .source = "max(0, -signed distance), exact for plane, ball and box",
+    .values = taut::kValues,
+    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
+      if (scene.colliders.empty() || taut::free_vertices(scene).empty()) return nullptr;
+      return std::make_unique<taut::Penetration>(scene);
+    }};

@@ -1,0 +1,64 @@
+#include "experiments/metrics/crossings.hpp"
+#include "experiments/metrics/summary.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr ValueSpec kValues[] = {
+    {"self.crossings", "1", "pairs of faces that cross and share no vertex, at the end", true},
+    {"self.crossings.max", "1", "the same, largest of ten moments of the last second"},
+    {"self.crossings.peak", "1", "the same, largest of those and twenty moments of the run"},
+    {"self.gap", "m",
+     "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
+     "overlap of the particles' balls, worst of ten moments of the last second",
+     true},
+};
+
+class SelfIntersection final : public Metric {
+ public:
+  explicit SelfIntersection(const Scene& scene)
+      : faces_(scene.mesh.triangles),
+        rest_(scene.mesh.rest),
+        radius_(scene.self_collision->radius),
+        steps_(scene.steps),
+        end_(scene) {}
+
+  void observe(const Moment& m) override {
+    const bool at_end = end_.samples(m.step);
+    if (!at_end && m.step % std::max(1, steps_ / 20) != 0) return;
+    const auto count = static_cast<double>(crossings(faces_, m.state.x).size());
+    count_.add(m.step, at_end, count);
+    if (m.step == steps_) final_ = count;
+    if (at_end) overlap_.add(m.step, true, -least_gap(m.state.x, rest_, radius_));
+  }
+  std::vector<double> finish() override {
+    return {final_, count_.max(), count_.peak(), 0 - overlap_.max()};
+  }
+  std::vector<double> now(const Moment& m) const override {
+    return {static_cast<double>(crossings(faces_, m.state.x).size()), Summary::kNone,
+            Summary::kNone, least_gap(m.state.x, rest_, radius_)};
+  }
+
+ private:
+  std::vector<Triangle> faces_;
+  std::vector<Vec3> rest_;
+  double radius_;
+  int steps_;
+  LastSecond end_;
+  double final_ = Summary::kNone;
+  Summary count_, overlap_;
+};
+
+}  // namespace
+}  // namespace taut
+
+TAUT_METRIC(self_intersection) = {
+    .name = "self_intersection",
+    .summary = "Whether the cloth passes through itself",
+    .source = "triangle pairs by orientation tests",
+    .values = taut::kValues,
+    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
+      if (!scene.self_collision) return nullptr;
+      return std::make_unique<taut::SelfIntersection>(scene);
+    }};

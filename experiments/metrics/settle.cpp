@@ -1,0 +1,44 @@
+#include "experiments/metrics/free_vertices.hpp"
+#include "experiments/metrics/summary.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr ValueSpec kValues[] = {
+    {"settle.time", "s",
+     "last time at which the RMS speed of the free vertices exceeds 1e-3 sqrt(g L); the duration "
+     "if it still does at the end; L is the diagonal of the rest shape's bounding box"},
+};
+
+class Settle final : public Metric {
+ public:
+  explicit Settle(const Scene& scene)
+      : free_(free_vertices(scene)),
+        threshold_square_(1e-6 * scene.gravity.norm() * extent(scene)) {}
+
+  void observe(const Moment& m) override {
+    if (m.step == 0) return;  // the speed of the start is the scene's, often 0 by construction
+    if (!(mean_square_speed(m.state, free_) <= threshold_square_)) last_ = m.t;
+  }
+  std::vector<double> finish() override { return {last_}; }
+  std::vector<double> now(const Moment&) const override { return {Summary::kNone}; }
+
+ private:
+  std::vector<std::size_t> free_;
+  double threshold_square_;  ///< m^2/s^2
+  double last_ = 0;          ///< s
+};
+
+}  // namespace
+}  // namespace taut
+
+TAUT_METRIC(settle) = {.name = "settle",
+                       .summary = "When the cloth comes to rest",
+                       .source = "compare 8 N^2 dt/(pi^2 k) of k Gauss-Seidel sweeps on N links",
+                       .values = taut::kValues,
+                       .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
+                         if (scene.gravity.isZero(0) || taut::free_vertices(scene).empty())
+                           return nullptr;
+                         return std::make_unique<taut::Settle>(scene);
+                       }};

@@ -1,0 +1,165 @@
+#include <array>
+
+#include "experiments/metrics/summary.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr ValueSpec kValues[] = {
+    {"stretch.rms", "1",
+     "strain (d - r)/r of the structural and shear links, RMS over links and the last second",
+     true},
+    {"stretch.max", "1", "largest stretch of a structural or shear link in the last second", true},
+    {"stretch.p95", "1",
+     "95th percentile of |strain| of those links, mean of ten moments of the last second"},
+    {"stretch.peak", "1", "largest stretch of a structural or shear link over the run"},
+    {"compression.max", "1", "largest shortening of those links in the last second", true},
+    {"compression.peak", "1", "largest shortening of those links over the run"},
+    {"structural.rms", "1", "strain of the structural links, RMS over the last second", true},
+    {"structural.max", "1", "their largest stretch in the last second", true},
+    {"structural.p95", "1", "95th percentile of their |strain|, mean of ten moments"},
+    {"structural.compression", "1", "their largest shortening in the last second"},
+    {"shear.rms", "1", "strain of the shear links, RMS over the last second", true},
+    {"shear.max", "1", "their largest stretch in the last second", true},
+    {"shear.p95", "1", "95th percentile of their |strain|, mean of ten moments"},
+    {"shear.compression", "1", "their largest shortening in the last second"},
+    {"bend.rms", "1", "strain of the bend links, RMS over the last second", true},
+    {"bend.max", "1", "their largest stretch in the last second", true},
+    {"bend.p95", "1", "95th percentile of their |strain|, mean of ten moments"},
+    {"bend.compression", "1", "their largest shortening in the last second"},
+};
+
+/// A group of links at one moment.
+struct Strain {
+  double square = 0;   ///< sum of e^2
+  double tension = 0;  ///< max of e, at least 0
+  double shortening = 0;
+  std::size_t count = 0;
+
+  void add(double e) {
+    square += e * e, ++count;
+    tension = std::max(tension, e), shortening = std::max(shortening, -e);
+  }
+  void add(const Strain& s) {
+    square += s.square, count += s.count;
+    tension = std::max(tension, s.tension), shortening = std::max(shortening, s.shortening);
+  }
+  double mean_square() const {
+    return count > 0 ? square / static_cast<double>(count) : Summary::kNone;
+  }
+};
+
+/// A group of links over the run.
+struct Group {
+  bool exists = false;
+  Summary square, tension, shortening, p95;
+  std::vector<double> magnitudes;  ///< scratch
+
+  void add(int step, bool at_end, const Strain& s) {
+    if (!exists) return;
+    square.add(step, at_end, s.mean_square());
+    tension.add(step, at_end, s.tension), shortening.add(step, at_end, s.shortening);
+  }
+  /// Nearest rank: the smallest magnitude that at least 95 % of the links do not exceed.
+  void sample(int step) {
+    if (!exists) return;
+    const auto rank = (magnitudes.size() * 95 + 99) / 100 - 1;
+    const auto nth = magnitudes.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(magnitudes.begin(), nth, magnitudes.end());
+    p95.add(step, true, *nth);
+    magnitudes.clear();
+  }
+  double rms() const { return std::sqrt(square.mean()); }
+};
+
+class Stretch final : public Metric {
+ public:
+  Stretch(const Scene& scene, std::vector<Link> links) : links_(std::move(links)), end_(scene) {
+    for (const Link& link : links_) family(link).exists = true;
+    in_plane_.exists = families_[0].exists || families_[1].exists;
+  }
+
+  void observe(const Moment& m) override {
+    const bool at_end = end_.contains(m.step), sampled = end_.samples(m.step);
+    std::array<Strain, kFamilies.size()> strains;
+    for (const Link& link : links_) {
+      const double e = strain(link, m.state);
+      strains[index(link)].add(e);
+      if (!sampled) continue;
+      family(link).magnitudes.push_back(std::abs(e));
+      if (link.family != Family::bend) in_plane_.magnitudes.push_back(std::abs(e));
+    }
+    for (std::size_t f = 0; f < strains.size(); ++f) families_[f].add(m.step, at_end, strains[f]);
+    in_plane_.add(m.step, at_end, in_plane(strains));
+    if (!sampled) return;
+    for (Group& group : families_) group.sample(m.step);
+    in_plane_.sample(m.step);
+  }
+
+  std::vector<double> finish() override {
+    const Group& s = in_plane_;
+    std::vector<double> values{s.rms(),          s.tension.max(),    s.p95.mean(),
+                               s.tension.peak(), s.shortening.max(), s.shortening.peak()};
+    for (const Group& f : families_)
+      values.insert(values.end(), {f.rms(), f.tension.max(), f.p95.mean(), f.shortening.max()});
+    return values;
+  }
+
+  std::vector<double> now(const Moment& m) const override {
+    constexpr double none = Summary::kNone;
+    std::array<Strain, kFamilies.size()> strains;
+    for (const Link& link : links_) strains[index(link)].add(strain(link, m.state));
+    const auto rms = [](const Strain& s) { return std::sqrt(s.mean_square()); };
+    const auto max = [](const Strain& s) { return s.count > 0 ? s.tension : none; };
+    const Strain all = in_plane(strains);
+    std::vector<double> values{
+        rms(all), max(all), none, none, all.count > 0 ? all.shortening : none, none};
+    for (const Strain& s : strains) values.insert(values.end(), {rms(s), max(s), none, none});
+    return values;
+  }
+
+ private:
+  static std::size_t index(const Link& link) { return static_cast<std::size_t>(link.family); }
+  static double strain(const Link& l, const State& state) {
+    const Vec3& a = state.x[static_cast<std::size_t>(l.a)];
+    const Vec3& b = state.x[static_cast<std::size_t>(l.b)];
+    return ((b - a).norm() - l.rest) / l.rest;
+  }
+  /// A bend link shortens when the cloth folds, which is no strain of the cloth: left out.
+  static Strain in_plane(const std::array<Strain, kFamilies.size()>& strains) {
+    Strain sum = strains[static_cast<std::size_t>(Family::structural)];
+    sum.add(strains[static_cast<std::size_t>(Family::shear)]);
+    return sum;
+  }
+  Group& family(const Link& link) { return families_[index(link)]; }
+
+  std::vector<Link> links_;
+  LastSecond end_;
+  std::array<Group, kFamilies.size()> families_;
+  Group in_plane_;
+};
+
+/// The links that a solver can change: not those between two pins.
+std::vector<Link> movable_links(const Scene& scene) {
+  const auto pinned = [&](int i) {
+    return std::binary_search(scene.pins.begin(), scene.pins.end(), i);
+  };
+  std::vector<Link> links;
+  for (const Link& link : scene.links)
+    if (!pinned(link.a) || !pinned(link.b)) links.push_back(link);
+  return links;
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_METRIC(stretch) = {.name = "stretch",
+                        .summary = "How far the links are from their rest lengths, by family",
+                        .source = "engineering strain (d - r)/r; links between two pins left out",
+                        .values = taut::kValues,
+                        .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
+                          auto links = taut::movable_links(scene);
+                          if (links.empty()) return nullptr;
+                          return std::make_unique<taut::Stretch>(scene, std::move(links));
+                        }};

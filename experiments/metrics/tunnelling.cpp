@@ -1,0 +1,183 @@
+#include <array>
+
+#include "experiments/metrics/free_vertices.hpp"
+#include "experiments/metrics/summary.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr ValueSpec kValues[] = {
+    {"tunnelling.count", "1",
+     "free vertices that end on the other side of a ball or box: in through one side and out "
+     "through the opposite one, even within one step",
+     true},
+    {"tunnelling.share", "1", "the same as a share of the free vertices"},
+    {"tunnelling.events", "1", "passages through a ball or box over the run, returns included"},
+};
+
+/// Where a straight path enters and leaves a solid, as outward unit normals.
+struct Passage {
+  bool hit = false;
+  double in_at = 0, out_at = 1;  ///< shares of the path
+  Vec3 in = Vec3::Zero(), out = Vec3::Zero();
+};
+
+/// A solid at the origin of its own frame, in which it does not move.
+struct Solid {
+  double radius = 0;                 ///< > 0: a ball
+  Vec3 half_extents = Vec3::Zero();  ///< else a box
+
+  bool contains(const Vec3& p) const {
+    if (radius > 0) return p.squaredNorm() < radius * radius;
+    return (p.cwiseAbs() - half_extents).maxCoeff() < 0;
+  }
+  Vec3 nearest_normal(const Vec3& p) const {
+    const Shape shape =
+        radius > 0 ? Shape(Ball{.radius = radius}) : Shape(Box{.half_extents = half_extents});
+    return surface(shape, p).normal;
+  }
+  Passage pass(const Vec3& a, const Vec3& b) const { return radius > 0 ? ball(a, b) : box(a, b); }
+
+ private:
+  Passage ball(const Vec3& a, const Vec3& b) const {
+    const Vec3 d = b - a;
+    const double dd = d.squaredNorm(), ad = a.dot(d),
+                 discriminant = ad * ad - dd * (a.squaredNorm() - radius * radius);
+    if (dd == 0 || discriminant <= 0) return {};
+    const double root = std::sqrt(discriminant);
+    Passage p{true, (-ad - root) / dd, (-ad + root) / dd, {}, {}};
+    p.in = (a + p.in_at * d) / radius, p.out = (a + p.out_at * d) / radius;
+    return p;
+  }
+  Passage box(const Vec3& a, const Vec3& b) const {
+    Passage p{true, -Summary::kInfinity, Summary::kInfinity, {}, {}};
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const double d = b[axis] - a[axis], h = half_extents[axis];
+      if (d == 0) {
+        if (std::abs(a[axis]) >= h) return {};
+        continue;
+      }
+      const double side = d > 0 ? 1 : -1;
+      const double in = (-side * h - a[axis]) / d, out = (side * h - a[axis]) / d;
+      if (in > p.in_at) p.in_at = in, p.in = -side * Vec3::Unit(axis);
+      if (out < p.out_at) p.out_at = out, p.out = side * Vec3::Unit(axis);
+    }
+    p.hit = p.in_at < p.out_at && std::isfinite(p.in_at);
+    return p;
+  }
+};
+
+/// Follows every free vertex past one collider and remembers by which side it came in.
+class Watch {
+ public:
+  Watch(Collider collider, std::size_t vertices)
+      : collider_(std::move(collider)),
+        last_(vertices),
+        in_(vertices),
+        inside_(vertices),
+        through_(vertices) {
+    if (const Ball* ball = std::get_if<Ball>(&collider_.shape)) solid_.radius = ball->radius;
+    if (const Box* box = std::get_if<Box>(&collider_.shape))
+      solid_.half_extents = box->half_extents;
+  }
+
+  void place(double t) {
+    const Shape shape = shape_at(collider_, t);
+    if (const Ball* ball = std::get_if<Ball>(&shape)) center_ = ball->center;
+    if (const Box* box = std::get_if<Box>(&shape)) {
+      center_ = box->center;
+      to_local_ = box->rotation.conjugate().toRotationMatrix();
+    }
+  }
+  void start(std::size_t k, const Vec3& world) {
+    last_[k] = local(world);
+    inside_[k] = solid_.contains(last_[k]);
+    in_[k] = solid_.nearest_normal(last_[k]);
+  }
+  /// True if the vertex comes out on another side than that by which it went in.
+  bool move(std::size_t k, const Vec3& world) {
+    const Vec3 from = last_[k], to = local(world);
+    last_[k] = to;
+    const Passage path = solid_.pass(from, to);
+    const bool was_inside = inside_[k];
+    if (!was_inside) {
+      if (!path.hit || path.in_at < 0 || path.in_at > 1) return false;
+      in_[k] = path.in;
+    }
+    inside_[k] = solid_.contains(to);
+    if (inside_[k]) return false;
+    const bool crossed_out = path.hit && path.out_at >= 0 && path.out_at <= 1;
+    const Vec3 out = crossed_out ? path.out : solid_.nearest_normal(to);
+    if (in_[k].dot(out) >= 0) return false;
+    through_[k] = !through_[k];
+    return true;
+  }
+  bool through(std::size_t k) const { return through_[k]; }
+
+ private:
+  Vec3 local(const Vec3& world) const { return to_local_ * (world - center_); }
+  Collider collider_;
+  Solid solid_;
+  Vec3 center_ = Vec3::Zero();
+  Eigen::Matrix3d to_local_ = Eigen::Matrix3d::Identity();
+  std::vector<Vec3> last_, in_;  ///< [free vertices], in the solid's frame
+  std::vector<bool> inside_, through_;
+};
+
+class Tunnelling final : public Metric {
+ public:
+  explicit Tunnelling(const Scene& scene) : free_(free_vertices(scene)) {
+    for (const Collider& c : scene.colliders)
+      if (!std::holds_alternative<Plane>(c.shape)) watches_.emplace_back(c, free_.size());
+  }
+
+  void observe(const Moment& m) override {
+    for (Watch& watch : watches_) {
+      watch.place(m.t);
+      for (std::size_t k = 0; k < free_.size(); ++k) {
+        const Vec3& x = m.state.x[free_[k]];
+        if (m.step == 0)
+          watch.start(k, x);
+        else if (watch.move(k, x))
+          ++events_;
+      }
+    }
+  }
+  std::vector<double> finish() override {
+    return {count(), count() / static_cast<double>(free_.size()), static_cast<double>(events_)};
+  }
+  std::vector<double> now(const Moment&) const override {
+    return {count(), Summary::kNone, Summary::kNone};
+  }
+
+ private:
+  double count() const {
+    int count = 0;
+    for (std::size_t k = 0; k < free_.size(); ++k)
+      count += std::any_of(watches_.begin(), watches_.end(),
+                           [k](const Watch& w) { return w.through(k); });
+    return count;
+  }
+  std::vector<std::size_t> free_;
+  std::vector<Watch> watches_;
+  int events_ = 0;
+};
+
+}  // namespace
+}  // namespace taut
+
+TAUT_METRIC(tunnelling) = {
+    .name = "tunnelling",
+    .summary = "Vertices that pass through a ball or box",
+    .source = "swept side labels in the collider's frame; a plane's solid has no other side",
+    .values = taut::kValues,
+    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
+      const auto solid = [](const taut::Collider& c) {
+        return !std::holds_alternative<taut::Plane>(c.shape);
+      };
+      if (std::none_of(scene.colliders.begin(), scene.colliders.end(), solid) ||
+          taut::free_vertices(scene).empty())
+        return nullptr;
+      return std::make_unique<taut::Tunnelling>(scene);
+    }};

@@ -1,0 +1,162 @@
+// Triangles against points, balls, boxes and each other: exact forms against brute force.
+#include "core/model/triangle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "experiments/metrics/crossings.hpp"
+
+namespace taut {
+namespace {
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double number(double low, double high) {
+    return std::uniform_real_distribution<>(low, high)(engine_);
+  }
+  Vec3 point(double size) {
+    return {number(-size, size), number(-size, size), number(-size, size)};
+  }
+  Corners corners(double size) { return {point(size), point(size), point(size)}; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// The best value of f over a fine subdivision of the triangle.
+template <class F>
+double brute_force_max(const Corners& t, const F& f, int cuts = 120) {
+  double best = -1e300;
+  for (int i = 0; i <= cuts; ++i)
+    for (int j = 0; i + j <= cuts; ++j)
+      best = std::max(best, f((i * t[0] + j * t[1] + (cuts - i - j) * t[2]) / cuts));
+  return best;
+}
+
+TEST(Triangle, NearestPointBeatsSubdivisionAndIsOnTheTriangle) {
+  Random random(1);
+  for (int k = 0; k < 60; ++k) {
+    const Corners t = random.corners(1);
+    const Vec3 p = random.point(1.5);
+    const TrianglePoint nearest = closest_point(t, p);
+    EXPECT_NEAR(nearest.weights.sum(), 1, 1e-12);
+    EXPECT_GE(nearest.weights.minCoeff(), 0);
+    const double distance = (nearest.position - p).norm();
+    const double brute = -brute_force_max(t, [&](const Vec3& q) { return -(q - p).norm(); });
+    EXPECT_LE(distance, brute + 1e-12);
+    EXPECT_NEAR(distance, brute, 3.5 / 120);
+  }
+}
+
+TEST(Triangle, DegeneratedToASegmentOrAPointStillHasANearestPoint) {
+  const Vec3 a(0, 0, 0), b(2, 0, 0), m(1, 0, 0), p(0.5, 1, 0);
+  EXPECT_NEAR((closest_point({a, b, m}, p).position - Vec3(0.5, 0, 0)).norm(), 0, 1e-15);
+  EXPECT_NEAR((closest_point({a, a, a}, p).position - a).norm(), 0, 1e-15);
+}
+
+TEST(Triangle, DepthInABallIsThatOfSubdivision) {
+  Random random(2);
+  for (int k = 0; k < 60; ++k) {
+    const Corners t = random.corners(1);
+    const Ball ball{random.point(0.3), 0.7};
+    const double brute =
+        brute_force_max(t, [&](const Vec3& q) { return -surface(ball, q).distance; });
+    const double exact = deepest_in(ball, t).depth;
+    EXPECT_GE(exact, brute - 1e-12);
+    EXPECT_NEAR(exact, brute, 3.5 / 120);
+  }
+}
+
+TEST(Triangle, DepthInABoxIsThatOfSubdivision) {
+  Random random(3);
+  int inside = 0;
+  for (int k = 0; k < 100; ++k) {
+    const Corners t = random.corners(1);
+    Box box{random.point(0.3), {0.3, 0.5, 0.4}};
+    box.rotation = Eigen::AngleAxisd(random.number(0, 3), random.point(1).normalized());
+    const double brute =
+        brute_force_max(t, [&](const Vec3& q) { return -surface(box, q).distance; });
+    const Deepest exact = deepest_in(box, t);
+    if (brute <= 0) continue;
+    ++inside;
+    EXPECT_GE(exact.depth, brute - 1e-12);
+    EXPECT_NEAR(exact.depth, brute, 3.5 / 120);
+    EXPECT_NEAR(-surface(box, exact.at.position).distance, exact.depth, 1e-12);
+  }
+  EXPECT_GT(inside, 40);
+}
+
+TEST(Triangle, ABoxCornerPokesThroughAFaceWhoseVerticesAreAllOutside) {
+  const Box box{{0, 0, 0}, {1, 1, 1}};
+  const double h = 2.7;  // the plane x + y + z = h cuts the corner (1, 1, 1) off, 0.3 below it
+  const Corners t{Vec3(h, 0, 0), Vec3(0, h, 0), Vec3(0, 0, h)};
+  EXPECT_NEAR(deepest_in(box, t).depth, 0.1, 1e-12);  // at (0.9, 0.9, 0.9)
+}
+
+TEST(Triangle, ARejectedTriangleIsReallyNoDeeper) {
+  Random random(4);
+  for (int k = 0; k < 200; ++k) {
+    const Corners t = random.corners(1);
+    const Box box{random.point(0.3), {0.3, 0.5, 0.4}};
+    const double exact = deepest_in(box, t).depth, bound = random.number(0, 0.3);
+    EXPECT_NEAR(std::max(bound, deepest_in(box, t, bound).depth), std::max(bound, exact), 1e-15);
+  }
+}
+
+TEST(Triangle, EnclosingRadiusOfKnownTriangles) {
+  const Vec3 o(0, 0, 0), x(3, 0, 0), y(0, 4, 0);
+  EXPECT_NEAR(enclosing_radius({o, x, y}), 2.5, 1e-15);                      // right
+  EXPECT_NEAR(enclosing_radius({o, x, Vec3(1.5, 0.1, 0)}), 1.5, 1e-15);      // obtuse
+  EXPECT_NEAR(enclosing_radius({o, x, Vec3(1.5, 1.5 * std::sqrt(3.0), 0)}),  // equilateral
+              std::sqrt(3.0), 1e-12);
+}
+
+TEST(Triangle, CrossesAnotherIffAnEdgePiercesIt) {
+  const Corners flat{Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
+  const auto spike = [](double z) { return Corners{Vec3(1, 1, z), Vec3(1, 1, 2), Vec3(2, 1, 2)}; };
+  EXPECT_TRUE(cross(flat, spike(-0.1)));
+  EXPECT_TRUE(cross(spike(-0.1), flat));
+  EXPECT_FALSE(cross(flat, spike(0.1)));
+  EXPECT_FALSE(cross(flat, spike(0)));  // touches
+  EXPECT_FALSE(cross(flat, flat));
+}
+
+TEST(Crossings, OfATangleAreThoseOfAllPairs) {
+  Random random(5);
+  const Mesh mesh = make_sheet({.nu = 9, .nv = 9, .width = 1, .height = 1, .mass = 1});
+  std::vector<Vec3> x = mesh.rest;
+  for (Vec3& p : x) p += random.point(0.3);
+  const auto& faces = mesh.triangles;
+  std::vector<std::array<int, 2>> brute;
+  const auto corners = [&](const Triangle& t) {
+    return Corners{x[static_cast<std::size_t>(t[0])], x[static_cast<std::size_t>(t[1])],
+                   x[static_cast<std::size_t>(t[2])]};
+  };
+  for (std::size_t s = 0; s < faces.size(); ++s)
+    for (std::size_t t = s + 1; t < faces.size(); ++t) {
+      const bool neighbours = std::any_of(faces[s].begin(), faces[s].end(), [&](int i) {
+        return std::find(faces[t].begin(), faces[t].end(), i) != faces[t].end();
+      });
+      if (!neighbours && cross(corners(faces[s]), corners(faces[t])))
+        brute.push_back({static_cast<int>(s), static_cast<int>(t)});
+    }
+  EXPECT_GT(brute.size(), 50u);
+  EXPECT_EQ(crossings(faces, x), brute);
+}
+
+TEST(Crossings, LeastGapIsThatOfAllPairs) {
+  Random random(6);
+  std::vector<Vec3> rest(40), x(40);
+  for (Vec3& p : rest) p = random.point(0.5);
+  for (Vec3& p : x) p = random.point(0.5);
+  double brute = 0;
+  for (std::size_t a = 0; a < x.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      brute = std::min(brute, (x[a] - x[b]).norm() - std::min(0.3, (rest[a] - rest[b]).norm()));
+  EXPECT_DOUBLE_EQ(least_gap(x, rest, 0.15), brute);
+}
+
+}  // namespace
+}  // namespace taut
