@@ -1,157 +1,137 @@
 #include <cmath>
+#include <memory>
 
 #include "core/model/solver.hpp"
+#include "core/solver/jakobsen_params.hpp"
+#include "core/solver/order.hpp"
 #include "core/solver/passes/collide.hpp"
+#include "core/solver/passes/jacobi.hpp"
 #include "core/solver/passes/links.hpp"
 #include "core/solver/passes/wind.hpp"
+#include "core/solver/pins.hpp"
 
 namespace taut {
 
 namespace {
-
-using Kind = ParamSpec::Kind;
-constexpr ParamSpec kParams[] = {
-    {.name = "iterations",
-     .kind = Kind::integer,
-     .default_value = "3",
-     .min = 0,
-     .max = 1e6,
-     .help = "relaxation sweeps per substep; the report finds that 3 suffice"},
-    {.name = "substeps",
-     .kind = Kind::integer,
-     .default_value = "1",
-     .min = 1,
-     .max = 1e6,
-     .help = "each step is this many steps of dt / substeps"},
-    {.name = "projection",
-     .kind = Kind::choice,
-     .default_value = "sqrt-free",
-     .choices = "exact|sqrt-free",
-     .help = "exact distance, or its first-order Taylor form without a square root"},
-    {.name = "precision",
-     .kind = Kind::choice,
-     .default_value = "float",
-     .choices = "float|double",
-     .help = "scalar type of the simulation"},
-};
 
 /// Thomas Jakobsen, Advanced Character Physics (GDC 2001).
 template <class Real>
 class Jakobsen final : public Solver {
  public:
   Jakobsen(const Scene& scene, const Params& params)
-      : scene_(scene),
-        iterations_(params.integer("iterations")),
-        substeps_(params.integer("substeps")) {
-    if (scene.wind)
-      forces_.push_back(std::make_unique<WindPass<Real>>(*scene.wind, scene.mesh.triangles));
+      : iterations_(params.integer("iterations")),
+        substeps_(params.integer("substeps")),
+        h_(scene.dt / substeps_),
+        gravity_(scene.gravity),
+        damping_(scene.damping),
+        pins_(scene),
+        p_(Layout::packed(scene.start.x.size())) {
+    const std::vector<double> w = inverse_masses(scene);
+    p_.w.assign(w.begin(), w.end());
+    p_.x = p_.previous = Points<Real>(p_.layout);
+    add_forces(scene);
     if (params.is("projection", "exact"))
-      add_links<Projection::exact>();
+      add_links<Projection::exact>(scene, w, params);
     else
-      add_links<Projection::sqrt_free>();
+      add_links<Projection::sqrt_free>(scene, w, params);
     for (const Collider& collider : scene.colliders)
       constraints_.push_back(
-          std::make_unique<CollidePass<Real>>(collider, scene.thickness, scene.start.x.size()));
+          std::make_unique<CollidePass<Real>>(collider, scene.thickness, p_.size()));
   }
 
-  void load(const State& state) override {
-    const std::vector<double> w = inverse_masses(scene_);
-    const std::size_t n = w.size();
-    p_.x.resize(n), p_.previous.resize(n), p_.a.resize(n);
-    const double h = scene_.dt / substeps_;
-    for (std::size_t i = 0; i < n; ++i) {
-      p_.x[i] = vec4(state.x[i], w[i]);
-      p_.previous[i] = vec4(state.x[i] - h * state.v[i], 0);
+  /// The published TimeStep(), substeps times with dt / substeps.
+  void step(double t, double dt) override {
+    const double h = dt / substeps_;
+    for (int s = 0; s < substeps_; ++s, t += h) {
+      for (auto& force : forces_) force->apply(p_, t, h);  // AccumulateForces
+      verlet(h);                                           // Verlet
+      pins_.place(p_, t + h);
+      for (int k = 0; k < iterations_; ++k)  // SatisfyConstraints
+        for (auto& constraint : constraints_) constraint->apply(p_, t, h);
     }
   }
 
-  void step(double t, double dt) override {
-    const double h = dt / substeps_;
-    for (int s = 0; s < substeps_; ++s) substep(t + s * h, h);
+  void load(const State& state) override {
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+      const Vec3 previous = p_.w[i] == 0 ? state.x[i] : Vec3(state.x[i] - h_ * state.v[i]);
+      p_.x.set(i, state.x[i].template cast<Real>());
+      p_.previous.set(i, previous.template cast<Real>());
+    }
   }
 
   void store(State& state) const override {
-    const double h = scene_.dt / substeps_;
     state.x.resize(p_.size()), state.v.resize(p_.size());
     for (std::size_t i = 0; i < p_.size(); ++i) {
-      const auto &x = p_.x[i], &q = p_.previous[i];
-      state.x[i] = {x.x, x.y, x.z};
-      state.v[i] = Vec3(x.x - q.x, x.y - q.y, x.z - q.z) / h;
+      state.x[i] = p_.x[i].template cast<double>();
+      state.v[i] = (p_.x[i] - p_.previous[i]).template cast<double>() / h_;
     }
   }
 
   std::vector<PassCost> plan() const override {
-    const auto n = scene_.start.x.size();
     std::vector<PassCost> costs;
-    const auto add = [&](PassCost cost, int repeats) {
-      cost.repeats = static_cast<std::size_t>(repeats);
-      costs.push_back(std::move(cost));
+    const auto add = [&](std::vector<PassCost> lines, int repeats) {
+      for (PassCost& line : lines) {
+        line.repeats = static_cast<std::size_t>(repeats);
+        costs.push_back(std::move(line));
+      }
     };
+    const std::size_t bytes = p_.x.bytes() + p_.previous.bytes() + p_.a.bytes() +
+                              p_.w.size() * sizeof(Real) + p_.layout->bytes();
     for (const auto& force : forces_) add(force->cost(), substeps_);
-    add({.pass = "verlet", .items = n, .bytes = 3 * n * sizeof(Vec4<Real>)}, substeps_);
+    add({{.pass = "verlet", .items = p_.size(), .bytes = bytes}}, substeps_);
+    if (!pins_.empty())
+      add({{.pass = "pins", .items = pins_.size(), .bytes = pins_.bytes()}}, substeps_);
     for (const auto& constraint : constraints_) add(constraint->cost(), substeps_ * iterations_);
     return costs;
   }
 
  private:
-  /// The published TimeStep().
-  void substep(double t, double dt) {
-    accumulate_gravity();
-    for (auto& force : forces_) force->apply(p_, t, dt);
-    verlet(t, dt);
-    for (int k = 0; k < iterations_; ++k)
-      for (auto& constraint : constraints_) constraint->apply(p_, t, dt);
-  }
-
-  void accumulate_gravity() {
-    const Vec4<Real> g = vec4(scene_.gravity, 0);
-    for (auto& a : p_.a) a = g;
-  }
-
-  /// x* = 2 x - x' + a dt^2, with the velocity x - x' damped; pins follow the scene.
-  void verlet(double t, double dt) {
-    const Real keep = static_cast<Real>(std::exp(-scene_.damping * dt)),
-               dt2 = static_cast<Real>(dt * dt);
+  /// x* = x + (x - x') + a dt^2, the velocity x - x' damped.
+  void verlet(double dt) {
+    using Point = typename Points<Real>::Point;
+    const Real keep = static_cast<Real>(std::exp(-damping_ * dt));
+    const Real dt2 = static_cast<Real>(dt * dt);
+    const Point g = gravity_.cast<Real>() * dt2;
     for (std::size_t i = 0; i < p_.size(); ++i) {
-      auto &x = p_.x[i], &q = p_.previous[i];
-      const auto now = x;
-      if (x.w != 0) {
-        x.x += keep * (x.x - q.x) + p_.a[i].x * dt2;
-        x.y += keep * (x.y - q.y) + p_.a[i].y * dt2;
-        x.z += keep * (x.z - q.z) + p_.a[i].z * dt2;
+      const Point x = p_.x[i];
+      Point moved = x + keep * (x - p_.previous[i]) + g;
+      if (!p_.a.empty()) {
+        moved += p_.a[i] * dt2;
+        p_.a.set(i, Point::Zero());
       }
-      q = now;
+      p_.x.set(i, moved);
+      p_.previous.set(i, x);
     }
-    if (scene_.pin_motions.empty()) return;
-    for (const int pin : scene_.pins) {
-      auto& x = p_.x[static_cast<std::size_t>(pin)];
-      x = vec4(pin_position(scene_, pin, t + dt), 0);
-    }
+  }
+
+  void add_forces(const Scene& scene) {
+    if (!scene.wind) return;
+    forces_.push_back(std::make_unique<WindPass<Real>>(*scene.wind, scene.mesh.triangles));
+    p_.a = Points<Real>(p_.layout);
   }
 
   template <Projection kind>
-  void add_links() {
-    for (const Family family : kFamilies) {
-      std::vector<Link> links;
-      const std::vector<double> w = inverse_masses(scene_);
-      for (const Link& l : scene_.links)
-        if (l.family == family &&
-            w[static_cast<std::size_t>(l.a)] + w[static_cast<std::size_t>(l.b)] > 0)
-          links.push_back(l);
-      if (!links.empty())
-        constraints_.push_back(std::make_unique<LinkPass<Real, kind>>(
-            std::string(to_string(family)), std::move(links)));
-    }
+  void add_links(const Scene& scene, std::span<const double> w, const Params& params) {
+    const std::vector<Link> links = ordered(scene.links, scene.mesh, order_of(params),
+                                            static_cast<std::uint32_t>(params.integer("seed")));
+    std::vector<Stick<Real>> sticks =
+        make_sticks<Real>(links, w, firmness(params, h_, iterations_));
+    if (sticks.empty()) return;
+    auto costs = family_costs(links, w, sticks.size() * sizeof sticks[0]);
+    if (const auto jacobi = jacobi_of(params))
+      constraints_.push_back(std::make_unique<JacobiPass<Real, kind>>(*jacobi, std::move(sticks),
+                                                                      std::move(costs), p_.layout));
+    else
+      constraints_.push_back(
+          std::make_unique<LinkPass<Real, kind>>(std::move(sticks), std::move(costs)));
   }
 
-  static Vec4<Real> vec4(const Vec3& v, double w) {
-    return {static_cast<Real>(v.x()), static_cast<Real>(v.y()), static_cast<Real>(v.z()),
-            static_cast<Real>(w)};
-  }
-
-  Scene scene_;
   int iterations_;
   int substeps_;
+  double h_;  ///< s, of a substep
+  Vec3 gravity_;
+  double damping_;
+  Pins pins_;
   Particles<Real> p_;
   std::vector<std::unique_ptr<Pass<Real>>> forces_;
   std::vector<std::unique_ptr<Pass<Real>>> constraints_;
@@ -167,10 +147,6 @@ std::vector<std::string> cannot(const Scene& scene, const Params&) {
   return {};
 }
 
-Effective effective(const Scene&, const Params& params) {
-  return {{"precision", std::string(params.choice("precision"))}, {"link order", "the scene's"}};
-}
-
 }  // namespace
 }  // namespace taut
 
@@ -178,7 +154,7 @@ TAUT_SOLVER(jakobsen) = {
     .name = "jakobsen",
     .summary = "Verlet integration with relaxation of stiff distance constraints",
     .source = "Jakobsen, Advanced Character Physics, GDC 2001",
-    .params = taut::kParams,
+    .params = taut::kJakobsenParams,
     .make = taut::make,
     .cannot = taut::cannot,
-    .effective = taut::effective};
+    .effective = taut::jakobsen_effective};

@@ -1,23 +1,103 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
 #include <vector>
+
+#include "core/model/vec3.hpp"
 
 namespace taut {
 
-/// x, y, z and, in positions, the inverse mass w [1/kg] (0: pinned).
+/// Where in an array the coordinates of each particle are: x at slot(i), y and z each stride()
+/// further. A sweep chooses the layout that suits it; everything else uses Points and does not
+/// care.
+class Layout {
+ public:
+  /// x y z 0 | x y z 0 | ...; two spare points at the end, which no particle owns.
+  static Layout packed(std::size_t n) {
+    Layout layout;
+    layout.size_ = n, layout.length_ = 4 * (n + 2);
+    return layout;
+  }
+  /// Any injective table of slots within `length` numbers.
+  static Layout table(std::vector<std::uint32_t> slots, std::size_t stride, std::size_t length) {
+    Layout layout;
+    layout.size_ = slots.size(), layout.stride_ = stride, layout.length_ = length;
+    layout.slots_ = std::move(slots);
+    return layout;
+  }
+
+  std::size_t size() const { return size_; }      ///< particles
+  std::size_t length() const { return length_; }  ///< numbers in the array
+  std::size_t stride() const { return stride_; }
+  std::size_t slot(std::size_t i) const { return slots_.empty() ? 4 * i : slots_[i]; }
+  std::size_t bytes() const { return slots_.size() * sizeof slots_[0]; }
+
+ private:
+  std::size_t size_ = 0, stride_ = 1, length_ = 0;
+  std::vector<std::uint32_t> slots_;  ///< empty: packed
+};
+
+/// Allocates at cache-line boundaries, as the widest lanes need.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kAlign{64};
+  CacheLineAllocator() = default;
+  template <class U>
+  CacheLineAllocator(const CacheLineAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kAlign)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, kAlign); }
+  bool operator==(const CacheLineAllocator&) const { return true; }
+};
+
+/// One point or vector per particle.
 template <class Real>
-struct alignas(4 * sizeof(Real)) Vec4 {
-  Real x, y, z, w;
+class Points {
+ public:
+  using Point = Eigen::Matrix<Real, 3, 1>;
+
+  Points() = default;  ///< none: the effect that would need them is absent
+  explicit Points(std::shared_ptr<const Layout> layout)
+      : layout_(std::move(layout)), values_(layout_->length(), Real(0)) {}
+
+  bool empty() const { return values_.empty(); }
+  Point operator[](std::size_t i) const {
+    const Real* r = values_.data() + layout_->slot(i);
+    const std::size_t s = layout_->stride();
+    return {r[0], r[s], r[2 * s]};
+  }
+  void set(std::size_t i, const Point& p) {
+    Real* r = values_.data() + layout_->slot(i);
+    const std::size_t s = layout_->stride();
+    r[0] = p.x(), r[s] = p.y(), r[2 * s] = p.z();
+  }
+  void add(std::size_t i, const Point& p) { set(i, (*this)[i] + p); }
+
+  Real* data() { return values_.data(); }
+  const Real* data() const { return values_.data(); }
+  std::size_t bytes() const { return values_.size() * sizeof(Real); }
+
+ private:
+  std::shared_ptr<const Layout> layout_;
+  std::vector<Real, CacheLineAllocator<Real>> values_;
 };
 
 /// The cloth as Jakobsen keeps it: no velocities, only where each particle is and where it was.
 template <class Real>
 struct Particles {
-  std::vector<Vec4<Real>> x;         ///< position [m] and inverse mass
-  std::vector<Vec4<Real>> previous;  ///< position one step ago [m]
-  std::vector<Vec4<Real>> a;         ///< acceleration of this step [m/s^2]
-  std::size_t size() const { return x.size(); }
+  using Point = typename Points<Real>::Point;
+
+  explicit Particles(Layout how = {}) : layout(std::make_shared<const Layout>(std::move(how))) {}
+
+  std::shared_ptr<const Layout> layout;
+  Points<Real> x;         ///< positions [m]
+  Points<Real> previous;  ///< positions one step ago [m]
+  Points<Real> a;         ///< accelerations besides gravity [m/s^2]; empty if no force acts
+  std::vector<Real> w;    ///< [n] inverse masses [1/kg]; 0: pinned
+  std::size_t size() const { return layout->size(); }
 };
 
 }  // namespace taut

@@ -13,8 +13,8 @@ class Pass {
   virtual ~Pass() = default;
   /// For the step [t, t + dt].
   virtual void apply(Particles<Real>&, double t, double dt) = 0;
-  /// Of one application; the solver sets `repeats`.
-  virtual PassCost cost() const = 0;
+  /// Of one application, a line for each thing it does; the solver sets `repeats`.
+  virtual std::vector<PassCost> cost() const = 0;
 };
 
 }  // namespace taut

@@ -13,20 +13,19 @@ class CollidePass final : public Pass<Real> {
 
   void apply(Particles<Real>& p, double t, double dt) override {
     const Shape shape = shape_at(collider_, t + dt);
-    for (Vec4<Real>& x : p.x) {
-      if (x.w == 0) continue;
-      const Surface s = surface(shape, {x.x, x.y, x.z});
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (p.w[i] == 0) continue;
+      const Surface s = surface(shape, p.x[i].template cast<double>());
       if (s.distance >= thickness_) continue;
       const Vec3 out = (thickness_ - s.distance) * s.normal;
-      x.x += static_cast<Real>(out.x()), x.y += static_cast<Real>(out.y()),
-          x.z += static_cast<Real>(out.z());
+      p.x.add(i, out.cast<Real>());
     }
   }
 
-  PassCost cost() const override {
-    return {.pass = "collide " + std::string(type_name(collider_.shape)),
-            .items = particles_,
-            .bytes = sizeof(*this)};
+  std::vector<PassCost> cost() const override {
+    return {{.pass = "collide " + std::string(type_name(collider_.shape)),
+             .items = particles_,
+             .bytes = sizeof(*this)}};
   }
 
  private:

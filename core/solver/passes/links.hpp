@@ -1,51 +1,55 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/solver/distance.hpp"
 #include "core/solver/pass.hpp"
+#include "core/solver/stick.hpp"
 
 namespace taut {
 
-/// One Gauss-Seidel sweep over the links of a family, in the order in which the scene lists them.
+/// A cost line for each family that has links; their memory is shared out evenly.
+inline std::vector<PassCost> family_costs(std::span<const Link> links, std::span<const double> w,
+                                          std::size_t bytes) {
+  std::array<std::size_t, kFamilies.size()> items{};
+  std::size_t all = 0;
+  for (const Link& link : links)
+    if (moves(link, w)) ++items[static_cast<std::size_t>(link.family)], ++all;
+  std::vector<PassCost> costs;
+  for (const Family family : kFamilies)
+    if (const std::size_t n = items[static_cast<std::size_t>(family)]; n > 0)
+      costs.push_back({.pass = std::string(to_string(family)),
+                       .items = n,
+                       .bytes = bytes * n / all,
+                       .projections = true});
+  return costs;
+}
+
+/// One Gauss-Seidel sweep over the links, one after the other.
 template <class Real, Projection kind>
 class LinkPass final : public Pass<Real> {
  public:
-  LinkPass(std::string name, std::vector<Link> links) : name_(std::move(name)) {
-    links_.reserve(links.size());
-    for (const Link& l : links) {
-      const Real rest = static_cast<Real>(l.rest);
-      links_.push_back({l.a, l.b, rest, rest * rest});
-    }
-  }
+  LinkPass(std::vector<Stick<Real>> sticks, std::vector<PassCost> costs)
+      : sticks_(std::move(sticks)), costs_(std::move(costs)) {}
 
   void apply(Particles<Real>& p, double, double) override {
-    for (const Stick& stick : links_) {
-      Vec4<Real>&x1 = p.x[static_cast<std::size_t>(stick.a)],
-      &x2 = p.x[static_cast<std::size_t>(stick.b)];
-      const Real dx = x2.x - x1.x, dy = x2.y - x1.y, dz = x2.z - x1.z;
-      const Real f =
-          excess<kind>(dx * dx + dy * dy + dz * dz, stick.rest, stick.rest2) / (x1.w + x2.w);
-      const Real f1 = x1.w * f, f2 = x2.w * f;
-      x1.x += f1 * dx, x1.y += f1 * dy, x1.z += f1 * dz;
-      x2.x -= f2 * dx, x2.y -= f2 * dy, x2.z -= f2 * dz;
+    Real* const x = p.x.data();
+    for (const Stick<Real>& stick : sticks_) {
+      Real* const a = x + 4 * stick.a;
+      Real* const b = x + 4 * stick.b;
+      Triple<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
+      project_distance<kind>(x1, x2, stick.rest, stick.share_a, stick.share_b);
+      a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
+      b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
     }
   }
 
-  PassCost cost() const override {
-    return {.pass = name_,
-            .items = links_.size(),
-            .bytes = links_.size() * sizeof(Stick),
-            .projections = true};
-  }
+  std::vector<PassCost> cost() const override { return costs_; }
 
  private:
-  struct Stick {
-    int a, b;
-    Real rest, rest2;
-  };
-  std::string name_;
-  std::vector<Stick> links_;
+  std::vector<Stick<Real>> sticks_;
+  std::vector<PassCost> costs_;
 };
 
 }  // namespace taut

@@ -1,0 +1,113 @@
+#include "core/solver/jakobsen_params.hpp"
+
+#include <limits>
+
+namespace taut {
+
+namespace {
+
+using Kind = ParamSpec::Kind;
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+constexpr ParamSpec kSpecs[] = {
+    {.name = "iterations",
+     .kind = Kind::integer,
+     .default_value = "3",
+     .min = 0,
+     .max = 1e6,
+     .help = "relaxation sweeps per substep; the report finds that 3 suffice"},
+    {.name = "substeps",
+     .kind = Kind::integer,
+     .default_value = "1",
+     .min = 1,
+     .max = 1e6,
+     .help = "each step is this many steps of dt / substeps"},
+    {.name = "projection",
+     .kind = Kind::choice,
+     .default_value = "sqrt-free",
+     .choices = "exact|sqrt-free",
+     .help = "exact distance, or its first-order Taylor form without a square root"},
+    {.name = "method",
+     .kind = Kind::choice,
+     .default_value = "gauss-seidel",
+     .choices = "gauss-seidel|jacobi|jacobi-averaged|jacobi-underrelaxed",
+     .help = "links one after the other, or all at once: summed, averaged, or divided by the "
+             "largest number of links at a vertex"},
+    {.name = "order",
+     .kind = Kind::choice,
+     .default_value = "mesh",
+     .choices = "mesh|coloured|reversed|random",
+     .help = "in which Gauss-Seidel visits the links; mesh is the scene's own order"},
+    {.name = "seed",
+     .kind = Kind::integer,
+     .default_value = "1",
+     .min = 0,
+     .max = 2147483647,
+     .help = "of order=random"},
+    {.name = "omega",
+     .kind = Kind::real,
+     .default_value = "1",
+     .min = 0,
+     .max = 2,
+     .help = "relaxation factor: below 1 under-, above 1 over-relaxed"},
+    {.name = "structural_stiffness",
+     .kind = Kind::real,
+     .unit = "N/m",
+     .default_value = "inf",
+     .min = 0,
+     .max = kInf,
+     .help = "of a structural link, whatever the time step and the sweeps; inf: a stick"},
+    {.name = "shear_stiffness",
+     .kind = Kind::real,
+     .unit = "N/m",
+     .default_value = "inf",
+     .min = 0,
+     .max = kInf,
+     .help = "of a shear link"},
+    {.name = "bend_stiffness",
+     .kind = Kind::real,
+     .unit = "N/m",
+     .default_value = "inf",
+     .min = 0,
+     .max = kInf,
+     .help = "of a bend link"},
+    {.name = "precision",
+     .kind = Kind::choice,
+     .default_value = "float",
+     .choices = "float|double",
+     .help = "scalar type of the simulation"},
+};
+
+}  // namespace
+
+const std::span<const ParamSpec> kJakobsenParams = kSpecs;
+
+Order order_of(const Params& params) {
+  if (params.is("order", "coloured")) return Order::coloured;
+  if (params.is("order", "reversed")) return Order::reversed;
+  if (params.is("order", "random")) return Order::random;
+  return Order::mesh;
+}
+
+std::optional<Jacobi> jacobi_of(const Params& params) {
+  if (params.is("method", "jacobi")) return Jacobi::plain;
+  if (params.is("method", "jacobi-averaged")) return Jacobi::averaged;
+  if (params.is("method", "jacobi-underrelaxed")) return Jacobi::under;
+  return {};
+}
+
+Firmness firmness(const Params& params, double substep, int iterations) {
+  return {.stiffness = {params.real("structural_stiffness"), params.real("shear_stiffness"),
+                        params.real("bend_stiffness")},
+          .omega = params.real("omega"),
+          .substep = substep,
+          .iterations = iterations};
+}
+
+Effective jakobsen_effective(const Scene&, const Params& params) {
+  return {{"precision", std::string(params.choice("precision"))},
+          {"link order",
+           params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))}};
+}
+
+}  // namespace taut

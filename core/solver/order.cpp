@@ -1,0 +1,140 @@
+#include "core/solver/order.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <random>
+
+namespace taut {
+
+namespace {
+
+constexpr int kTileSide = 32;                         ///< grid vertices
+constexpr int kTileVertices = kTileSide * kTileSide;  ///< 16 KiB of packed float positions
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Vertices that a vertex has links to, as ranges of one array.
+struct Neighbours {
+  std::vector<int> first, vertex;
+  Neighbours(std::span<const Link> links, int n) : first(at(n) + 1), vertex(2 * links.size()) {
+    for (const Link& link : links) ++first[at(link.a) + 1], ++first[at(link.b) + 1];
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<int> end(first.begin(), first.end() - 1);
+    for (const Link& link : links) {
+      vertex[at(end[at(link.a)]++)] = link.b;
+      vertex[at(end[at(link.b)]++)] = link.a;
+    }
+  }
+  std::span<const int> of(int v) const {
+    return {vertex.data() + first[at(v)], vertex.data() + first[at(v) + 1]};
+  }
+};
+
+/// Tile of each vertex: squares of a grid; runs of a breadth-first walk on any other mesh.
+std::vector<int> tiles_of(std::span<const Link> links, const Mesh& mesh) {
+  std::vector<int> tile(at(mesh.size()), -1);
+  if (mesh.grid) {
+    const int across = (mesh.grid->nu + kTileSide - 1) / kTileSide;
+    for (int v = 0; v < mesh.size(); ++v)
+      tile[at(v)] = v / mesh.grid->nu / kTileSide * across + v % mesh.grid->nu / kTileSide;
+    return tile;
+  }
+  const Neighbours neighbours(links, mesh.size());
+  std::vector<int> queue;
+  queue.reserve(tile.size());
+  for (int start = 0, next = 0; start < mesh.size(); ++start) {
+    if (tile[at(start)] >= 0) continue;
+    tile[at(start)] = static_cast<int>(queue.size()) / kTileVertices;
+    queue.push_back(start);
+    for (; next < static_cast<int>(queue.size()); ++next)
+      for (const int v : neighbours.of(queue[at(next)]))
+        if (tile[at(v)] < 0) {
+          tile[at(v)] = static_cast<int>(queue.size()) / kTileVertices;
+          queue.push_back(v);
+        }
+  }
+  return tile;
+}
+
+/// Greedy: each colour takes every remaining link that touches none of its vertices.
+void colour_family(std::vector<Link> links, std::vector<int>& stamp, int& now, Tile& tile) {
+  while (!links.empty()) {
+    ++now;
+    Colour colour;
+    std::erase_if(links, [&](const Link& link) {
+      int &a = stamp[at(link.a)], &b = stamp[at(link.b)];
+      if (a == now || b == now) return false;
+      a = b = now;
+      colour.push_back(link);
+      return true;
+    });
+    tile.push_back(std::move(colour));
+  }
+}
+
+/// Greedy too: each phase takes every remaining tile that touches none of its vertices.
+std::vector<Phase> phases(std::vector<Tile> tiles, std::size_t vertices) {
+  std::vector<Phase> all;
+  std::vector<int> phase_of_vertex(vertices, -1);
+  std::vector<bool> taken(tiles.size());
+  for (std::size_t left = tiles.size(); left > 0;) {
+    const int now = static_cast<int>(all.size());
+    Phase& phase = all.emplace_back();
+    for (std::size_t t = 0; t < tiles.size(); ++t) {
+      if (taken[t]) continue;
+      const auto touches = [&](const auto& does) {
+        for (const Colour& c : tiles[t])
+          for (const Link& link : c)
+            if (does(phase_of_vertex[at(link.a)]) || does(phase_of_vertex[at(link.b)])) return true;
+        return false;
+      };
+      if (touches([&](int p) { return p == now; })) continue;
+      touches([&](int& p) { return p = now, false; });
+      phase.push_back(std::move(tiles[t]));
+      taken[t] = true, --left;
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<Phase> colour(std::span<const Link> links, const Mesh& mesh) {
+  const std::vector<int> tile_of = tiles_of(links, mesh);
+  const int count = mesh.size() == 0 ? 0 : *std::max_element(tile_of.begin(), tile_of.end()) + 1;
+  std::vector<std::array<std::vector<Link>, kFamilies.size()>> sorted(at(count));
+  for (const Link& link : links)
+    sorted[at(tile_of[at(link.a)])][static_cast<std::size_t>(link.family)].push_back(link);
+  std::vector<int> stamp(at(mesh.size()), 0);
+  int now = 0;
+  std::vector<Tile> tiles;
+  for (auto& families : sorted) {
+    Tile tile;
+    for (auto& family : families) colour_family(std::move(family), stamp, now, tile);
+    if (!tile.empty()) tiles.push_back(std::move(tile));
+  }
+  return phases(std::move(tiles), at(mesh.size()));
+}
+
+std::vector<Link> flatten(const std::vector<Phase>& phases) {
+  std::vector<Link> links;
+  for (const Phase& phase : phases)
+    for (const Tile& tile : phase)
+      for (const Colour& colour : tile) links.insert(links.end(), colour.begin(), colour.end());
+  return links;
+}
+
+std::vector<Link> ordered(std::span<const Link> links, const Mesh& mesh, Order order,
+                          std::uint32_t seed) {
+  if (order == Order::coloured) return flatten(colour(links, mesh));
+  std::vector<Link> list(links.begin(), links.end());
+  if (order == Order::reversed) std::reverse(list.begin(), list.end());
+  if (order == Order::random) {
+    // Fisher-Yates by hand: std::shuffle differs between standard libraries
+    std::mt19937 random(seed);
+    for (std::size_t i = list.size(); i > 1; --i) std::swap(list[i - 1], list[random() % i]);
+  }
+  return list;
+}
+
+}  // namespace taut

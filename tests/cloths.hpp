@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/model/solver.hpp"
+
+namespace taut {
+
+/// A sheet of nu x nv vertices, 1 m wide, flat and at rest, all three families, pinned by its two
+/// upper corners; dt = 1/64 s.
+inline Scene hanging_sheet(int nu, int nv, const LinkChoice& families = {true, true, true},
+                           Lumping lumping = Lumping::area) {
+  Scene scene;
+  scene.name = "hang";
+  const double height = nu > 1 ? (nv - 1.0) / (nu - 1) : 1;
+  scene.mesh = make_sheet(
+      {.nu = nu, .nv = nv, .width = 1, .height = height, .mass = 0.2, .lumping = lumping});
+  const auto n = static_cast<std::size_t>(scene.mesh.size());
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(n, Vec3::Zero())};
+  scene.links = grid_links(scene.mesh, families);
+  scene.pins = nu > 1 ? std::vector{0, nu - 1} : std::vector{0};
+  scene.dt = 1.0 / 64;
+  scene.steps = 64;
+  return scene;
+}
+
+/// Pushes every vertex off its place by up to `amount` [m]: a fixed pattern without symmetry.
+inline Scene crumpled(Scene scene, double amount) {
+  for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
+    const double k = static_cast<double>(i);
+    const Vec3 wave(std::sin(3.1 * k), std::sin(1.7 * k + 1), std::sin(2.3 * k + 2));
+    if (!std::binary_search(scene.pins.begin(), scene.pins.end(), static_cast<int>(i)))
+      scene.start.x[i] += amount * wave;
+  }
+  return scene;
+}
+
+inline State simulate(const Scene& scene, const std::string& solver, int steps) {
+  const SolverChoice choice = parse_solver(solver);
+  const auto instance = choice.entry->make(scene, choice.params);
+  instance->load(scene.start);
+  for (int n = 0; n < steps; ++n) instance->step(n * scene.dt, scene.dt);
+  State state;
+  instance->store(state);
+  return state;
+}
+
+inline double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
+  return most;
+}
+
+}  // namespace taut
