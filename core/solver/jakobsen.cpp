@@ -53,7 +53,7 @@ class Jakobsen final : public Solver {
 
   void load(const State& state) override {
     for (std::size_t i = 0; i < p_.size(); ++i) {
-      const Vec3 previous = p_.w[i] == 0 ? state.x[i] : Vec3(state.x[i] - h_ * state.v[i]);
+      const Vec3 previous = state.x[i] - h_ * state.v[i];
       p_.x.set(i, state.x[i].template cast<Real>());
       p_.previous.set(i, previous.template cast<Real>());
     }
