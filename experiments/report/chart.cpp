@@ -1,0 +1,345 @@
+#include "experiments/report/chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/palette.hpp"
+
+namespace taut::report {
+
+namespace {
+
+constexpr double kLabelGap = 16;  ///< px between the labels at the ends of curves
+constexpr double kStripRow = 15;  ///< px for each curve with failures
+
+std::string quoted(std::string_view colour) { return "'" + std::string(colour) + "'"; }
+std::string paint(std::string_view name) { return quoted(neutral(name).light); }
+
+bool failed(const Point& p) {
+  const auto kind = p.record->status.kind;
+  return kind != Status::Kind::ok && kind != Status::Kind::unsettled;
+}
+
+std::size_t failing_curves(const Chart& chart) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      chart.curves, [](const Curve& c) { return std::ranges::any_of(c.points, failed); }));
+}
+
+PlotArea layout(const Chart& chart) {
+  double widest = 0;
+  for (const Curve& curve : chart.curves) widest = std::max(widest, text_width(curve.label));
+  const double right = std::min(widest + 22, chart.width * 0.42);
+  const double strip = static_cast<double>(failing_curves(chart)) * kStripRow;
+  return {68,
+          chart.width - right,
+          (chart.title.empty() ? 14 : 48) + strip,
+          chart.height - 54.0,
+          chart.x.low,
+          chart.x.high};
+}
+
+/// Positions in the script: the last measured point of a curve, in px from the top.
+double end_height(const Chart& chart, const PlotArea& area, const Curve& curve) {
+  double y = 0.5;
+  for (const Point& p : curve.points)
+    if (p.measured()) y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));
+  return area.bottom - y * (area.bottom - area.top);
+}
+
+std::string screen(double x, double y, const Chart& chart) {
+  return "screen " + exact(std::round(x * 1e5 / chart.width) / 1e5) + "," +
+         exact(std::round((chart.height - y) * 1e5 / chart.height) / 1e5);
+}
+
+/// Placed by hand: gnuplot would put the title of y where long tick labels push it out of the
+/// picture.
+std::string axis_titles(const Chart& chart, const PlotArea& area) {
+  const std::string style = " tc rgb " + paint("muted") + " font ',12'\n";
+  return "set label " + gnuplot_string(chart.x.quantity.label()) + " at " +
+         screen((area.left + area.right) / 2, area.bottom + 40, chart) + " center" + style +
+         "set label " + gnuplot_string(chart.y.quantity.label()) + " at " +
+         screen(14, (area.top + area.bottom) / 2, chart) + " center rotate by 90" + style;
+}
+
+std::string end_labels(const Chart& chart, const PlotArea& area) {
+  std::vector<double> at;
+  for (const Curve& curve : chart.curves) at.push_back(end_height(chart, area, curve));
+  at = spread_labels(at, kLabelGap, area.top + 4, area.bottom - 4);
+  std::string out;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    out += "set label " + gnuplot_string(chart.curves[i].label) + " at " +
+           screen(area.right + 10, at[i], chart) + " left tc rgb " +
+           quoted(solver_style(chart.curves[i].solver).colour.light) + " font ',12'\n";
+  return out;
+}
+
+/// One row of glyphs above the plot for each curve with failures, in its colour.
+std::string failure_strip(const Chart& chart, const PlotArea& area) {
+  std::string out;
+  double y = area.top - static_cast<double>(failing_curves(chart)) * kStripRow + kStripRow / 2 - 3;
+  for (const Curve& curve : chart.curves) {
+    if (std::ranges::none_of(curve.points, failed)) continue;
+    const std::string colour = quoted(solver_style(curve.solver).colour.light);
+    out += "set label 'failed' at " + screen(area.left - 8, y, chart) + " right tc rgb " +
+           paint("muted") + " font ',11'\n";
+    for (const Point& p : curve.points) {
+      if (!failed(p)) continue;
+      // A failed case may lack its measured abscissa (CPU time): then its glyph stands at the edge.
+      const double t = std::isfinite(p.x) ? chart.x.position(p.x * chart.x.quantity.scale) : 1;
+      out += "set label " + gnuplot_string(status_style(p.record->status.kind).glyph) + " at " +
+             screen(area.left + t * (area.right - area.left), y, chart) + " center tc rgb " +
+             colour + " font ',13'\n";
+    }
+    y += kStripRow;
+  }
+  return out;
+}
+
+std::string slope_text(double slope) {
+  return slope == std::round(slope) ? significant(slope, 1) : significant(slope, 2);
+}
+
+/// y = c x^slope through a point below the lowest curve's beginning, and its label along it.
+struct SlopeLine {
+  std::string commands, plot;
+};
+SlopeLine slope_line(const Chart& chart, const PlotArea& area) {
+  double c = std::numeric_limits<double>::infinity();
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points)
+      if (p.measured() && p.y > 0 && p.x > 0)
+        c = std::min(
+            c, p.y * chart.y.quantity.scale / std::pow(p.x * chart.x.quantity.scale, *chart.slope));
+  if (!std::isfinite(c)) return {};
+  c *= 0.62;
+  // The label hangs below the line, where the line is about a third on its way through the plot.
+  const double low = chart.x.low, high = chart.x.high;
+  const auto pixel = [&](double x) {
+    const double y = c * std::pow(x, *chart.slope);
+    const double ty = std::log(y / chart.y.low) / std::log(chart.y.high / chart.y.low);
+    return std::pair(area.left + chart.x.position(x) * (area.right - area.left),
+                     area.bottom - ty * (area.bottom - area.top));
+  };
+  double x = low * std::pow(high / low, 0.35);
+  while (x > low * 1.05 && pixel(x).second > area.bottom - 40) x /= 1.1;
+  const auto [x0, y0] = pixel(x);
+  const auto [x1, y1] = pixel(x * 1.01);
+  const double angle = std::atan2(y0 - y1, x1 - x0);
+  SlopeLine line;
+  line.commands = "set label 'theory: slope " + slope_text(*chart.slope) + "' at " +
+                  screen(x0 + 11 * std::sin(angle), y0 + 11 * std::cos(angle), chart) +
+                  " center rotate by " + exact(std::round(angle * 180 / std::numbers::pi)) +
+                  " tc rgb " + paint("muted") + " font ',11'\n";
+  line.plot = exact(c) + "*x**(" + exact(*chart.slope) + ") with lines dt (7,6) lw 1.2 lc rgb " +
+              paint("axis") + " notitle";
+  return line;
+}
+
+std::string csv_row(const std::string& label, const Point& p) {
+  const Record& r = *p.record;
+  return csv_field(label) + "," + csv_field(r.solver) + "," + exact(p.x) + "," + exact(p.y) + "," +
+         exact(p.along) + "," + std::string(to_string(r.status.kind)) + "," +
+         csv_field(r.status.reason) + "," + csv_field(r.id) + "\n";
+}
+
+std::string make_csv(const Chart& chart) {
+  std::string out = "curve,solver,x,y,along,status,reason,case\n";
+  for (const Curve& curve : chart.curves) {
+    if (&curve != &chart.curves.front()) out += "\n\n";
+    for (const Point& p : curve.points) out += csv_row(curve.label, p);
+  }
+  if (!chart.stair) return out;
+  out += "\n\n";
+  for (const Point& p : pareto_front(chart.curves)) out += csv_row("Pareto front", p);
+  return out;
+}
+
+/// The plot elements: stair, theory, then each curve with its line, markers and zeros.
+std::string plot_commands(const Chart& chart, const std::string& slope) {
+  const std::string sx = exact(chart.x.quantity.scale);
+  const std::string sy = exact(chart.y.quantity.scale);
+  const std::string floor = exact(chart.y.low * (chart.y.log ? 1.12 : 1));
+  const std::string zero = chart.y.log ? "($4 <= 0 ? " + floor + " : $4*" + sy + ")" : "$4*" + sy;
+  std::string out = "measured(s) = s eq 'ok' || s eq 'unsettled'\nplot 1/0 notitle";
+  if (chart.stair && !pareto_front(chart.curves).empty())
+    out += ", \\\n  '@CSV@' index " + std::to_string(chart.curves.size()) + " using ($3*" + sx +
+           "):" + zero + " with steps lw 7 lc rgb " + paint("stair") + " notitle";
+  if (!slope.empty()) out += ", \\\n  " + slope;
+  for (std::size_t i = 0; i < chart.curves.size(); ++i) {
+    const Curve& curve = chart.curves[i];
+    if (std::ranges::none_of(curve.points, &Point::measured)) continue;
+    const SolverStyle style = solver_style(curve.solver, curve.variant);
+    const std::string source =
+        ", \\\n  '@CSV@' index " + std::to_string(i) + " using ($3*" + sx + "):";
+    const std::string colour = " lc rgb " + quoted(style.colour.light);
+    const std::string dash = style.dash.empty() ? "" : " dt " + std::string(style.dash);
+    const auto where = [&](const std::string& condition, const std::string& value) {
+      return "(" + condition + " ? " + value + " : 1/0)";
+    };
+    out += source + where("measured(strcol(6))", zero) + " with lines lw 2.2" + dash + colour +
+           " notitle";
+    if (!chart.markers) continue;
+    const auto points = [&](const std::string& condition, const std::string& value, int marker,
+                            double size) {
+      out += source + where(condition, value) + " with points pt " + std::to_string(marker) +
+             " ps " + exact(size * style.marker_size) + colour + " notitle";
+    };
+    const std::string positive = chart.y.log ? " && $4 > 0" : "";
+    points("strcol(6) eq 'ok'" + positive, zero, style.marker, 0.55);
+    points("strcol(6) eq 'unsettled'" + positive, zero, style.hollow, 0.75);
+    if (chart.y.log) points("measured(strcol(6)) && $4 <= 0", floor, 10, 0.9);
+  }
+  return out + "\n";
+}
+
+std::string point_names(const Chart& chart, const PlotArea& area) {
+  std::string out;
+  for (const Curve& curve : chart.curves) {
+    std::vector<const Point*> points;
+    for (const Point& p : curve.points)
+      if (p.measured() && std::isfinite(p.along)) points.push_back(&p);
+    for (std::size_t i = 0; i<points.size(); i += points.size()> 4 ? 2 : 1) {
+      const Point& p = *points[i];
+      const double x = chart.x.position(p.x * chart.x.quantity.scale);
+      const double y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));
+      out += "set label " + gnuplot_string(significant(p.along, 3)) + " at " +
+             screen(area.left + x * (area.right - area.left) + 7,
+                    area.bottom - y * (area.bottom - area.top) - 9, chart) +
+             " center tc rgb " + quoted(solver_style(curve.solver).colour.light) + " font ',10'\n";
+    }
+  }
+  return out;
+}
+
+Table make_table(const Chart& chart) {
+  const Quantity &x = chart.x.quantity, &y = chart.y.quantity;
+  Table table{{"solver", x.title, y.title, "status"}, {}};
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points) {
+      std::string status(to_string(p.record->status.kind));
+      if (!p.record->status.reason.empty()) status += ": " + p.record->status.reason;
+      table.rows.push_back({curve.label, x.text(p.x, 4), y.text(p.y, 3), status});
+    }
+  return table;
+}
+
+std::string describe(const Chart& chart) {
+  std::string out = chart.y.quantity.title + " over " + chart.x.quantity.title + ". ";
+  for (const Curve& curve : chart.curves) {
+    const auto first = std::ranges::find_if(curve.points, &Point::measured);
+    out += curve.label + ": ";
+    if (first == curve.points.end()) {
+      out += "no measured case. ";
+      continue;
+    }
+    const auto last = std::find_if(curve.points.rbegin(), curve.points.rend(),
+                                   [](const Point& p) { return p.measured(); });
+    const auto failures = std::ranges::count_if(curve.points, failed);
+    out += chart.y.quantity.text(first->y) + " at " + chart.x.quantity.text(first->x, 3) + ", " +
+           chart.y.quantity.text(last->y) + " at " + chart.x.quantity.text(last->x, 3);
+    out += failures > 0 ? ", " + std::to_string(failures) + " failed. " : ". ";
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Point> pareto_front(const std::vector<Curve>& curves) {
+  std::vector<Point> all;
+  for (const Curve& curve : curves)
+    for (const Point& p : curve.points)
+      if (p.measured()) all.push_back(p);
+  std::ranges::stable_sort(all, {}, [](const Point& p) { return std::pair(p.x, p.y); });
+  std::vector<Point> front;
+  for (const Point& p : all)
+    if (front.empty() || p.y < front.back().y) front.push_back(p);
+  return front;
+}
+
+std::vector<double> spread_labels(std::vector<double> at, double gap, double low, double high) {
+  if (at.size() < 2) return at;
+  std::vector<std::size_t> order(at.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return at[i]; });
+  gap = std::min(gap, std::max(1.0, (high - low) / static_cast<double>(at.size() - 1)));
+  // Equal shares of each overlap, over and over; a handful of labels settles within a few sweeps.
+  for (int sweep = 0; sweep < 200; ++sweep)
+    for (std::size_t k = 0; k + 1 < order.size(); ++k) {
+      double &a = at[order[k]], &b = at[order[k + 1]];
+      const double overlap = gap - (b - a);
+      if (overlap > 0) a -= overlap / 2, b += overlap / 2;
+      a = std::max(a, low + static_cast<double>(k) * gap);
+      b = std::min(b, high - static_cast<double>(order.size() - 2 - k) * gap);
+    }
+  return at;
+}
+
+double text_width(const std::string& utf8) {
+  const auto letters = std::ranges::count_if(
+      utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+  return static_cast<double>(letters) * 7.1;
+}
+
+std::string script_preamble(const std::string& title, const PlotArea& area, int width, int height) {
+  const auto share = [](double px, int of) { return exact(std::round(px * 1e5 / of) / 1e5); };
+  std::string out = "set encoding utf8\nset datafile separator ','\nset key off\n";
+  out += "set lmargin at screen " + share(area.left, width) + "\nset rmargin at screen " +
+         share(area.right, width) + "\nset tmargin at screen " + share(height - area.top, height) +
+         "\nset bmargin at screen " + share(height - area.bottom, height) + "\n";
+  out += "set border 3 lw 1 lc rgb " + paint("axis") + "\nset tics nomirror out scale 0.4,0.2\n";
+  if (!title.empty())
+    out += "set label " + gnuplot_string(title) + " at screen " + share(area.left, width) +
+           ",screen " + share(height - 20, height) + " left tc rgb " + paint("ink") +
+           " font ',15'\n";
+  return out;
+}
+
+std::string script_ticks(const std::string& which, const Axis& axis) {
+  std::string out = "set " + which + "tics (";
+  for (const auto& [at, text] : axis.ticks)
+    out += gnuplot_string(text) + " " + exact(at) + (text.empty() ? " 1, " : ", ");
+  out.resize(out.size() - (axis.ticks.empty() ? 0 : 2));
+  out += ") textcolor rgb " + paint("muted") + " font ',12'\nset " + which + "range [" +
+         exact(axis.low) + ":" + exact(axis.high) + "]\n";
+  if (axis.log) out += "set logscale " + which + "\n";
+  return out + "set grid " + which + "tics lw 1 lt 1 lc rgb " + paint("grid") + "\n";
+}
+
+Chart curves_chart(const FigureSpec& spec, std::span<const Record> records) {
+  Chart chart{spec.title, spec.width, spec.height, {}, {}, {}, spec.slope};
+  chart.curves = make_curves(records, spec.x, spec.y, spec.along);
+  const Quantity qx = quantity(spec.x), qy = quantity(spec.y);
+  std::vector<double> xs, ys;
+  bool any = false;
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points) {
+      xs.push_back(p.x * qx.scale);
+      if (p.measured()) ys.push_back(p.y * qy.scale);
+      any = any || (std::isfinite(p.x) && (p.measured() || failed(p)));
+    }
+  if (!any) throw InputError("no case has both '" + spec.x + "' and '" + spec.y + "'");
+  chart.x = spec.x == spec.along ? sweep_axis(qx, xs) : fit_axis(qx, xs, true);
+  chart.y = fit_axis(qy, ys, true);
+  return chart;
+}
+
+Drawing draw_chart(const Chart& chart) {
+  Drawing drawing{"", make_csv(chart), describe(chart), make_table(chart), layout(chart)};
+  const PlotArea& area = drawing.area;
+  SlopeLine slope;
+  if (chart.slope && chart.y.log) slope = slope_line(chart, area);
+  drawing.script = script_preamble(chart.title, area, chart.width, chart.height) +
+                   script_ticks("x", chart.x) + script_ticks("y", chart.y) +
+                   axis_titles(chart, area) + end_labels(chart, area) + failure_strip(chart, area) +
+                   slope.commands;
+  if (chart.name_points) drawing.script += point_names(chart, area);
+  drawing.script += plot_commands(chart, slope.plot);
+  return drawing;
+}
+
+}  // namespace taut::report

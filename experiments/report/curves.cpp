@@ -1,0 +1,107 @@
+#include "experiments/report/curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "experiments/report/axis.hpp"
+#include "experiments/report/palette.hpp"
+
+namespace taut::report {
+
+namespace {
+
+/// Everything that tells two cases of one solver apart, by name.
+std::map<std::string, std::string> settings(const Record& record, const std::string& along) {
+  std::map<std::string, std::string> all = record.params;
+  all["dt"] = quantity("dt").text(record.dt, 3);
+  all["scene"] = record.scene;
+  for (const std::string& text : record.spec.overrides)
+    if (!text.starts_with("time.dt"))
+      if (const auto equals = text.find('='); equals != std::string::npos)
+        all[text.substr(0, equals)] = text.substr(equals + 1);
+  all.erase(along);
+  return all;
+}
+
+bool is_number(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789.+-e/") == std::string::npos;
+}
+
+}  // namespace
+
+bool Point::measured() const {
+  const auto kind = record->status.kind;
+  return (kind == Status::Kind::ok || kind == Status::Kind::unsettled) && std::isfinite(x) &&
+         std::isfinite(y);
+}
+
+std::vector<Curve> make_curves(std::span<const Record> records, const std::string& x,
+                               const std::string& y, const std::string& along) {
+  using Settings = std::map<std::string, std::string>;
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> seen;
+  for (const Record& record : records)
+    for (const auto& [key, value] : settings(record, along))
+      seen[{key == "dt" || key == "scene" ? "" : record.solver, key}].insert(value);
+  const auto varies = [&](const Record& record, const std::string& key) {
+    return seen[{key == "dt" || key == "scene" ? "" : record.solver, key}].size() > 1;
+  };
+  std::vector<Curve> curves;
+  std::map<std::pair<std::string, Settings>, std::size_t> index;
+  std::map<std::string, int> variants;
+  for (const Record& record : records) {
+    const Settings all = settings(record, along);
+    const auto [where, fresh] = index.try_emplace({record.solver, all}, curves.size());
+    if (fresh) {
+      Curve curve{solver_title(record.solver), record.solver, variants[record.solver]++, {}};
+      for (const auto& [key, value] : all)
+        if (varies(record, key))
+          curve.label += " " + (is_number(value) ? key + "=" + value : value);
+      curves.push_back(std::move(curve));
+    }
+    curves[where->second].points.push_back(
+        {value_of(record, x), value_of(record, y), value_of(record, along), &record});
+  }
+  for (Curve& curve : curves)
+    std::ranges::stable_sort(curve.points, {}, [](const Point& p) {
+      return std::isnan(p.along) ? std::numeric_limits<double>::infinity() : p.along;
+    });
+  // Our solver first, then by name: later curves are drawn above earlier ones, everywhere alike.
+  std::ranges::stable_sort(
+      curves, {}, [](const Curve& c) { return std::pair(c.solver != "jakobsen", c.solver); });
+  return curves;
+}
+
+Slice most_common(std::span<const Record> records, const std::string& setting, double preferred) {
+  std::map<double, int> counts;
+  for (const Record& record : records)
+    if (const double value = value_of(record, setting); std::isfinite(value)) ++counts[value];
+  if (counts.empty())
+    return {{records.begin(), records.end()}, std::numeric_limits<double>::quiet_NaN()};
+  const auto badness = [&](double value) { return std::abs(std::log(value / preferred)); };
+  const auto best = std::ranges::max_element(counts, [&](const auto& a, const auto& b) {
+    return std::pair(a.second, -badness(a.first)) < std::pair(b.second, -badness(b.first));
+  });
+  Slice slice{{}, best->first};
+  for (const Record& record : records) {
+    const double value = value_of(record, setting);
+    if (value == slice.value || std::isnan(value)) slice.records.push_back(record);
+  }
+  return slice;
+}
+
+double fitted_slope(const Curve& curve, double from) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const Point& p : curve.points) {
+    if (!p.measured() || p.x < from || p.x <= 0 || p.y <= 0) continue;
+    const double u = std::log(p.x), v = std::log(p.y);
+    n += 1, sx += u, sy += v, sxx += u * u, sxy += u * v;
+  }
+  const double spread = n * sxx - sx * sx;
+  if (n < 3 || spread <= 0) return std::numeric_limits<double>::quiet_NaN();
+  return (n * sxy - sx * sy) / spread;
+}
+
+}  // namespace taut::report

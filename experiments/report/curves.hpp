@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiments/lab/record.hpp"
+
+namespace taut::report {
+
+/// One case on a curve, in SI units.
+struct Point {
+  double x = 0, y = 0;
+  double along = 0;  ///< the swept setting that orders the curve
+  const Record* record = nullptr;
+
+  /// It has a value that may be compared; everything else is drawn as a glyph.
+  bool measured() const;
+};
+
+/// One solver with one choice of its settings, ordered along the swept setting.
+struct Curve {
+  std::string label;   ///< "Jakobsen sqrt-free"
+  std::string solver;  ///< the entry's name
+  int variant = 0;     ///< counts the curves of one solver in a figure
+  std::vector<Point> points;
+};
+
+/// Groups records into curves of y over x: those that differ in nothing but `along` ("iterations",
+/// "dt", ...) share a curve. Labels name only the settings that vary among the records.
+std::vector<Curve> make_curves(std::span<const Record>, const std::string& x, const std::string& y,
+                               const std::string& along);
+
+/// The records at the value of `setting` which most of them share (ties: nearest to `preferred`),
+/// with that value in SI units; all records and NaN if none has the setting.
+struct Slice {
+  std::vector<Record> records;
+  double value = 0;
+};
+Slice most_common(std::span<const Record>, const std::string& setting, double preferred);
+
+/// Fitted exponent p of y ~ x^p over the measured, positive points with x >= from; NaN with fewer
+/// than three.
+double fitted_slope(const Curve&, double from);
+
+}  // namespace taut::report

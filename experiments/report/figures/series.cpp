@@ -1,0 +1,44 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/chart.hpp"
+
+namespace taut::report {
+
+namespace {
+
+/// Every curve shares one record that stands for "measured": moments have no status of their own.
+Drawing draw(const FigureSpec& spec, const FigureData& data) {
+  static const Record moment;
+  Chart chart{spec.title, spec.width, spec.height, {}, {}, {}, {}, false, false, false};
+  std::vector<double> ts, ys;
+  const Quantity y = quantity(spec.y);
+  for (const TimeSeries& series : data.series) {
+    if (series.value != spec.y) continue;
+    const auto same = std::ranges::count(chart.curves, series.solver, &Curve::solver);
+    Curve curve{series.label, series.solver, static_cast<int>(same), {}};
+    for (std::size_t i = 0; i < std::min(series.t.size(), series.y.size()); ++i) {
+      curve.points.push_back({series.t[i], series.y[i], series.t[i], &moment});
+      ts.push_back(series.t[i]);
+      ys.push_back(series.y[i] * y.scale);
+    }
+    chart.curves.push_back(std::move(curve));
+  }
+  if (ts.empty()) throw InputError("no series of '" + spec.y + "' was recorded");
+  chart.x = fit_axis(quantity("t"), ts, false);
+  chart.x.high = *std::ranges::max_element(ts);
+  std::erase_if(chart.x.ticks, [&](const auto& tick) { return tick.first > chart.x.high; });
+  chart.y = fit_axis(y, ys, false);
+  return draw_chart(chart);
+}
+
+}  // namespace
+}  // namespace taut::report
+
+TAUT_FIGURE(series) = {.name = "series",
+                       .summary = "A value over simulated time",
+                       .x = "t",
+                       .y = "stretch.rms",
+                       .along = "t",
+                       .draw = taut::report::draw};

@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/chart.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/palette.hpp"
+
+namespace taut::report {
+
+namespace {
+
+constexpr double kGap = 0.045;  ///< between cells, in cells
+
+/// One solver's map: a case for each (column, row).
+struct Panel {
+  std::string label, solver;
+  std::map<std::pair<std::size_t, std::size_t>, const Record*> cells;
+};
+
+struct Map {
+  std::vector<double> columns, rows;  ///< SI values, ascending
+  std::vector<Panel> panels;
+};
+
+/// "worst" of two cases in one cell, so that nothing hides behind a success.
+bool worse(const Record& a, const Record& b) { return a.status.kind > b.status.kind; }
+
+Map make_map(const FigureSpec& spec, std::span<const Record> records) {
+  std::set<double> columns, rows;
+  for (const Record& r : records)
+    if (const double x = value_of(r, spec.x), y = value_of(r, spec.y);
+        std::isfinite(x) && std::isfinite(y))
+      columns.insert(x), rows.insert(y);
+  Map map{{columns.begin(), columns.end()}, {rows.begin(), rows.end()}, {}};
+  const auto index = [](const std::vector<double>& all, double value) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(all, value) - all.begin());
+  };
+  // Curves that share a solver and its settings, whatever the two swept ones are, are one panel.
+  std::vector<Record> flat(records.begin(), records.end());
+  for (Record& r : flat) r.dt = 1;
+  const std::string setting = spec.x == "dt" ? spec.y : spec.x;
+  for (const Curve& curve : make_curves(flat, spec.x, spec.y, setting)) {
+    Panel panel{curve.label, curve.solver, {}};
+    for (const Point& p : curve.points) {
+      const Record& r = records[static_cast<std::size_t>(p.record - flat.data())];
+      const double x = value_of(r, spec.x), y = value_of(r, spec.y);
+      if (!std::isfinite(x) || !std::isfinite(y)) continue;
+      const Record*& cell = panel.cells[{index(map.columns, x), index(map.rows, y)}];
+      if (cell == nullptr || worse(r, *cell)) cell = &r;
+    }
+    if (!panel.cells.empty()) map.panels.push_back(std::move(panel));
+  }
+  if (map.panels.empty())
+    throw InputError("no case has both '" + spec.x + "' and '" + spec.y + "'");
+  return map;
+}
+
+std::string make_csv(const Map& map) {
+  std::string out = "panel,column,row,x,y,status,reason,case\n";
+  for (const Panel& panel : map.panels) {
+    if (&panel != &map.panels.front()) out += "\n\n";
+    for (const auto& [at, record] : panel.cells)
+      out += csv_field(panel.label) + "," + std::to_string(at.first) + "," +
+             std::to_string(at.second) + "," + exact(map.columns[at.first]) + "," +
+             exact(map.rows[at.second]) + "," + std::string(to_string(record->status.kind)) + "," +
+             csv_field(record->status.reason) + "," + csv_field(record->id) + "\n";
+  }
+  return out;
+}
+
+std::string tick_text(const Quantity& q, double si) {
+  const double shown = si * q.scale;
+  return shown == std::round(shown) && shown < 1e5 ? exact(shown) : significant(shown, 2);
+}
+
+std::string index_ticks(const std::string& which, const Quantity& q, const std::vector<double>& at,
+                        double room) {
+  const auto stride = static_cast<std::size_t>(
+      std::max(1.0, std::ceil(static_cast<double>(at.size()) * 34 / std::max(room, 34.0))));
+  std::string out = "set " + which + "tics scale 0 (";
+  for (std::size_t i = 0; i < at.size(); i += stride)
+    out += (i > 0 ? ", " : "") + gnuplot_string(tick_text(q, at[i])) + " " + std::to_string(i);
+  return out + ") textcolor rgb '" + std::string(neutral("muted").light) + "' font ',12'\nset " +
+         which + "range [-0.5:" + exact(static_cast<double>(at.size()) - 0.5) + "]\nset " + which +
+         "label " + gnuplot_string(q.label()) + " textcolor rgb '" +
+         std::string(neutral("muted").light) + "' font ',12'\n";
+}
+
+std::set<Status::Kind> kinds_in(const Map& map) {
+  std::set<Status::Kind> kinds;
+  for (const Panel& panel : map.panels)
+    for (const auto& [at, record] : panel.cells) kinds.insert(record->status.kind);
+  return kinds;
+}
+
+std::string plot_panel(const Map& map, std::size_t index) {
+  std::string out = "plot ";
+  bool first = true;
+  for (const Status::Kind kind : kinds_in(map)) {
+    const StatusStyle style = status_style(kind);
+    const std::string name(to_string(kind));
+    const std::string source = std::string(first ? "" : ", \\\n  ") + "'@CSV@' index " +
+                               std::to_string(index) + " using (strcol(6) eq '" + name +
+                               "' ? $2 : 1/0):3:";
+    first = false;
+    const double half = 0.5 - kGap;
+    out += source + "(" + exact(half) + "):(" + exact(half) +
+           ") with boxxyerror fs solid 1 noborder lc rgb '" + std::string(style.colour.light) +
+           "' notitle";
+    if (!style.glyph.empty())
+      out += ", \\\n  '@CSV@' index " + std::to_string(index) + " using (strcol(6) eq '" + name +
+             "' ? $2 : 1/0):3:(" + gnuplot_string(style.glyph) + ") with labels center tc rgb '" +
+             std::string(style.ink.light) + "' font ',13' notitle";
+  }
+  return out + "\n";
+}
+
+/// A square and a word for each class that occurs.
+std::string legend(const Map& map, const FigureSpec& spec, double y) {
+  std::string out;
+  double x = 64;
+  int tag = 0;
+  for (const Status::Kind kind : kinds_in(map)) {
+    const StatusStyle style = status_style(kind);
+    std::string text(to_string(kind));
+    if (!style.glyph.empty()) text += " " + std::string(style.glyph);
+    const auto sx = [&](double px) { return exact(px / spec.width); };
+    const auto sy = [&](double px) { return exact((spec.height - px) / spec.height); };
+    out += "set object " + std::to_string(++tag) + " rect from screen " + sx(x) + ",screen " +
+           sy(y + 6) + " to screen " + sx(x + 12) + ",screen " + sy(y - 6) +
+           " fs solid 1 noborder fc rgb '" + std::string(style.colour.light) + "'\nset label " +
+           gnuplot_string(text) + " at screen " + sx(x + 18) + ",screen " + sy(y) +
+           " left tc rgb '" + std::string(neutral("muted").light) + "' font ',12'\n";
+    x += 18 + text_width(text) + 16;
+  }
+  return out;
+}
+
+std::string make_script(const Map& map, const FigureSpec& spec, const PlotArea& whole) {
+  const double count = static_cast<double>(map.panels.size());
+  const double pitch = (whole.right - whole.left + 56) / count;
+  std::string out = script_preamble(spec.title, whole, spec.width, spec.height) +
+                    "unset border\nset multiplot\n" +
+                    legend(map, spec, spec.title.empty() ? 12 : 46);
+  for (std::size_t i = 0; i < map.panels.size(); ++i) {
+    const double left = whole.left + static_cast<double>(i) * pitch, right = left + pitch - 56;
+    const Panel& panel = map.panels[i];
+    out += "set lmargin at screen " + exact(left / spec.width) + "\nset rmargin at screen " +
+           exact(right / spec.width) + "\nset label 100 " + gnuplot_string(panel.label) +
+           " at graph 0,graph 1 offset 0,0.9 left tc rgb '" +
+           std::string(solver_style(panel.solver).colour.light) + "' font ',13'\n" +
+           index_ticks("x", quantity(spec.x), map.columns, right - left) +
+           index_ticks("y", quantity(spec.y), map.rows, (whole.bottom - whole.top) * 1.6);
+    if (i > 0) out += "set ylabel ''\n";
+    out += plot_panel(map, i);
+    if (i == 0)
+      out += "unset title\n" + std::string("unset for [k=1:90] label k\n") +
+             "unset for [k=1:90] object k\n";
+  }
+  return out + "unset multiplot\n";
+}
+
+Drawing draw(const FigureSpec& spec, const FigureData& data) {
+  const Map map = make_map(spec, data.records);
+  Drawing drawing;
+  drawing.area = {64,
+                  spec.width - 12.0,
+                  spec.title.empty() ? 48.0 : 86.0,
+                  spec.height - 50.0,
+                  0,
+                  static_cast<double>(map.columns.size())};
+  drawing.csv = make_csv(map);
+  drawing.script = make_script(map, spec, drawing.area);
+  const Quantity qx = quantity(spec.x), qy = quantity(spec.y);
+  drawing.table.header = {"solver", qx.title, qy.title, "status"};
+  drawing.description = "Outcome for each " + qx.title + " and " + qy.title + ". ";
+  for (const Panel& panel : map.panels) {
+    std::map<Status::Kind, int> counts;
+    for (const auto& [at, record] : panel.cells) {
+      ++counts[record->status.kind];
+      std::string status(to_string(record->status.kind));
+      if (!record->status.reason.empty()) status += ": " + record->status.reason;
+      drawing.table.rows.push_back({panel.label, qx.text(map.columns[at.first], 3),
+                                    qy.text(map.rows[at.second], 4), status});
+    }
+    drawing.description += panel.label + ":";
+    for (const auto& [kind, n] : counts)
+      drawing.description += " " + std::to_string(n) + " " + std::string(to_string(kind)) + ",";
+    drawing.description.back() = '.';
+    drawing.description += ' ';
+  }
+  return drawing;
+}
+
+}  // namespace
+}  // namespace taut::report
+
+TAUT_FIGURE(stability) = {
+    .name = "stability",
+    .summary = "Which time steps and sweeps survive: a cell and a glyph for each outcome",
+    .x = "dt",
+    .y = "iterations",
+    .along = "",
+    .draw = taut::report::draw};

@@ -1,0 +1,23 @@
+#include "experiments/report/chart.hpp"
+
+namespace taut::report {
+
+namespace {
+
+Drawing draw(const FigureSpec& spec, const FigureData& data) {
+  Chart chart = curves_chart(spec, data.records);
+  chart.stair = true;
+  chart.name_points = true;
+  return draw_chart(chart);
+}
+
+}  // namespace
+}  // namespace taut::report
+
+TAUT_FIGURE(work_precision) = {
+    .name = "work-precision",
+    .summary = "An error over what it cost (any value on either axis), with the Pareto front",
+    .x = "projections",
+    .y = "stretch.rms",
+    .along = "iterations",
+    .draw = taut::report::draw};

@@ -1,0 +1,134 @@
+#include "experiments/report/format.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace taut::report {
+
+namespace {
+
+std::string print(const char* format, int precision, double value) {
+  std::array<char, 400> text{};
+  const int size = std::snprintf(text.data(), text.size(), format, precision, value);
+  return {text.data(), static_cast<std::size_t>(std::max(0, size))};
+}
+
+}  // namespace
+
+std::string significant(double value, int digits) {
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
+  if (value == 0) return "0";
+  const double magnitude = std::abs(value);
+  // Rounded first, so that 9.96 with two digits becomes "10" and not "10.0".
+  const std::string rounded = print("%.*e", digits - 1, magnitude);
+  const int exponent = std::stoi(rounded.substr(rounded.find('e') + 1));
+  std::string text;
+  if (exponent < -4 || exponent > 5)
+    text = print("%.*g", digits, magnitude);
+  else
+    text = print("%.*f", std::max(0, digits - 1 - exponent), magnitude);
+  return (value < 0 ? "−" : "") + text;
+}
+
+std::string exact(double value) {
+  if (std::isnan(value)) return "";
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+std::string ratio(double value) { return significant(value, 2); }
+
+std::string escape_html(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t')
+          out += "\xEF\xBF\xBD";
+        else
+          out += c;
+    }
+  return out;
+}
+
+std::string csv_field(std::string_view text) {
+  std::string line(text);
+  std::ranges::replace_if(
+      line, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  if (line.find_first_of(",\"") == std::string::npos) return line;
+  std::string out = "\"";
+  for (const char c : line) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+std::string gnuplot_string(std::string_view text) {
+  // gnuplot 5.4 ends '''x' after two quotes, and backquotes inside "..." run commands: whatever is
+  // not plain goes in octal.
+  std::string out;
+  bool escaped = false;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20) {
+      out += ' ';
+    } else if (std::string_view("'\"\\`@$").find(c) != std::string_view::npos) {
+      for (const unsigned shift : {6U, 3U, 0U})
+        out += shift == 6U ? std::string("\\") + static_cast<char>('0' + (code >> 6U))
+                           : std::string(1, static_cast<char>('0' + (code >> shift & 7U)));
+      escaped = true;
+    } else {
+      out += c;
+    }
+  }
+  return escaped ? '"' + out + '"' : "'" + out + "'";
+}
+
+std::string base64(std::string_view bytes) {
+  static constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
+  }
+  return out;
+}
+
+std::string slug(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '.';
+    if (plain)
+      out += c;
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
+  }
+  while (!out.empty() && (out.back() == '-' || out.back() == '.')) out.pop_back();
+  return out.empty() ? "x" : out;
+}
+
+}  // namespace taut::report

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace taut::report {
+
+/// Fewest digits that carry `digits` significant ones, no exponent between 1e-4 and 1e6:
+/// 0.01234 -> "0.012", 22.04 -> "22". NaN and infinities give "–" and "∞".
+std::string significant(double value, int digits = 2);
+/// Every bit, shortest form: for data files. NaN gives "".
+std::string exact(double value);
+/// A ratio for prose: "3.3", "12", "150".
+std::string ratio(double value);
+
+std::string escape_html(std::string_view);  ///< & < > " '; control characters become U+FFFD
+std::string csv_field(
+    std::string_view);  ///< quoted if it must be; one line always, as gnuplot wants
+std::string gnuplot_string(std::string_view);  ///< a literal that no text can leave; one line
+std::string base64(std::string_view bytes);
+/// Letters, digits, '-' and '.' only: safe as a file name and as an HTML id.
+std::string slug(std::string_view);
+
+}  // namespace taut::report
