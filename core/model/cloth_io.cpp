@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/model/mesh_io.hpp"
+#include "core/model/motion_io.hpp"
+
 namespace taut {
 
 namespace {
@@ -13,6 +16,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 std::size_t at(int vertex) { return static_cast<std::size_t>(vertex); }
 
 std::optional<Grid> read_grid(Section& cloth) {
+  if (!cloth.find("grid")) cloth.missing("grid");
   const auto counts = cloth.numbers("grid", 2, {1, kMaxVertices});
   if (!counts) return std::nullopt;
   for (const double count : *counts)
@@ -47,6 +51,11 @@ bool read_size(Section& cloth, SheetShape& shape) {
                "puts vertices on top of each other; sides must be greater than 0 (links "
                "need 1e-9 m at least)");
   return false;
+}
+
+Lumping read_lumping(Section& cloth) {
+  const std::string name = cloth.choice("lumping", {"area", "equal"}, "area");
+  return name == "area" ? Lumping::area : Lumping::equal;
 }
 
 /// Total mass [kg], from `mass` or `area_density`; `area` [m^2].
@@ -111,24 +120,53 @@ void start_sheet(Section& cloth, const SheetShape& shape, Scene& scene) {
       x = shape.origin + Eigen::AngleAxisd(tilt, shape.u) * (x - shape.origin);
 }
 
-bool read_sheet(Section& cloth, Scene& scene) {
+bool read_sheet(Section& cloth, const LinkChoice& links, Scene& scene) {
   SheetShape shape;
   shape.origin = cloth.vec3("origin", kFar, Vec3::Zero());
   shape.u = cloth.direction("u", Vec3::UnitX());
   shape.v = cloth.direction("v", -Vec3::UnitY());
-  shape.lumping =
-      cloth.choice("lumping", {"area", "equal"}, "area") == "area" ? Lumping::area : Lumping::equal;
+  shape.lumping = read_lumping(cloth);
   const double sine = shape.u.cross(shape.v).norm();
   if (sine < 1e-3) cloth.report("v", "must not be parallel to 'u'");
   const auto grid = read_grid(cloth);
   if (grid) shape.nu = grid->nu, shape.nv = grid->nv;
   const bool sized = read_size(cloth, shape);
-  const auto mass = read_mass(cloth, sized ? shape.width * shape.height * sine : 1);
+  const auto mass = read_mass(cloth, grid && sized ? shape.width * shape.height * sine : 1);
   if (!grid || !sized || !mass || sine < 1e-3) return false;
   shape.mass = *mass;
   scene.mesh = make_sheet(shape);
+  scene.links = grid_links(scene.mesh, links);
   scene.start.x = scene.mesh.rest;
   start_sheet(cloth, shape, scene);
+  return true;
+}
+
+/// The surface in an OBJ file, scaled, turned and moved. False and the file's own errors if it is
+/// none.
+bool read_surface(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
+                  Scene& scene) {
+  const double scale = cloth.number("scale", {1e-6, 1e6}, 1);
+  const Eigen::Quaterniond rotation = read_rotation(cloth);
+  const Vec3 origin = cloth.vec3("origin", kFar, Vec3::Zero());
+  const Lumping lumping = read_lumping(cloth);
+  const auto name = cloth.string("mesh");
+  Polygons surface;
+  try {
+    if (name) surface = read_obj(folder / *name);
+  } catch (const InputError& error) {
+    cloth.judge().report(error.diagnostics());
+  }
+  for (Vec3& x : surface.vertices) {
+    x = origin + rotation * (scale * x);
+    if (x.cwiseAbs().maxCoeff() <= kFar) continue;
+    cloth.report("mesh", "reaches farther than " + shortest(kFar) + " m from the origin");
+    return false;
+  }
+  const auto mass = read_mass(cloth, surface.faces.empty() ? 1 : area(surface));
+  if (!mass || surface.faces.empty()) return false;
+  scene.mesh = make_mesh(surface, *mass, lumping);
+  scene.links = mesh_links(surface, links);
+  scene.start.x = scene.mesh.rest;
   return true;
 }
 
@@ -157,20 +195,27 @@ void read_placed(Section& cloth, Scene& scene) {
   }
 }
 
+/// Keys that mean nothing for this kind of cloth; they are named here so that the message can say
+/// why.
+void refuse(Section& cloth, const std::vector<std::string>& keys, const std::string& why) {
+  for (const std::string& key : keys)
+    if (cloth.find(key)) cloth.report(key, why);
+}
+
 }  // namespace
 
-bool read_cloth(Section& cloth, const std::filesystem::path&, Scene& scene) {
-  if (!cloth.find("grid")) {
-    cloth.missing("grid");
-    for (const char* key : {"size", "origin", "u", "v", "mass", "area_density", "lumping", "span",
-                            "tilt", "pins", "placed", "velocity", "thickness"})
-      cloth.find(key);
-    return false;
-  }
+bool read_cloth(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
+                Scene& scene) {
+  const bool surface = cloth.find("mesh");
+  if (surface)
+    refuse(cloth, {"grid", "size", "u", "v", "span", "tilt"}, "belongs to a grid, not to a mesh");
+  else
+    refuse(cloth, {"scale", "rotation"}, "belongs to a mesh, not to a grid");
   scene.thickness = cloth.number("thickness", Range::non_negative(kFar), 0);
   const Vec3 velocity = cloth.vec3("velocity", kFar, Vec3::Zero());
-  const bool built = read_sheet(cloth, scene);
-  for (const char* key : {"span", "tilt", "pins", "placed"}) cloth.find(key);
+  const bool built =
+      surface ? read_surface(cloth, folder, links, scene) : read_sheet(cloth, links, scene);
+  for (const char* key : {"span", "tilt", "pins", "placed"}) cloth.find(key);  // known in any case
   if (!built) return false;
   scene.start.v.assign(scene.start.x.size(), velocity);
   scene.pins = read_vertices(cloth, "pins", scene.mesh);

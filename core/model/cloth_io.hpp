@@ -13,9 +13,9 @@ namespace taut {
 /// Largest coordinate, size or displacement that a scene may hold [m].
 inline constexpr double kFar = 1e6;
 
-/// Reads [cloth]: mesh, start and pins of the scene. Reports what is wrong; false if there is no
-/// mesh to go on with.
-bool read_cloth(Section&, const std::filesystem::path& folder, Scene&);
+/// Reads [cloth]: mesh, links, start, pins and thickness of the scene; a mesh file is relative to
+/// `folder`. Reports what is wrong; false if there is no mesh to go on with.
+bool read_cloth(Section&, const std::filesystem::path& folder, const LinkChoice&, Scene&);
 
 /// The vertices that a value names: a vertex number, a pair [i, j], the name of an edge or corner
 /// of a grid ("top", "bottom-left"), a box {min, max} around rest positions, or an array of these.

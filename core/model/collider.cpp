@@ -11,6 +11,8 @@ template <class... F>
 struct Overload : F... {
   using F::operator()...;
 };
+template <class... F>
+Overload(F...) -> Overload<F...>;  // clang 14 deduces no aggregates
 
 Surface surface_of(const Plane& plane, const Vec3& p) {
   return {plane.normal.dot(p) - plane.offset, plane.normal};

@@ -40,32 +40,6 @@ Motion read_motion(Section& section, const Vec3& pivot) {
   return motion;
 }
 
-/// { axis = [0, 0, 1], angle = 45 } with the angle in degrees, or a quaternion [w, x, y, z].
-Eigen::Quaterniond read_rotation(Section& section) {
-  const Value* value = section.find("rotation");
-  if (!value) return Eigen::Quaterniond::Identity();
-  if (value->is_array()) {
-    const auto q = section.numbers("rotation", 4, Range::within(1e6));
-    if (!q) return Eigen::Quaterniond::Identity();
-    const Eigen::Quaterniond rotation((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
-    if (rotation.norm() > 1e-6) return rotation.normalized();
-    section.report("rotation", "must not be zero");
-    return Eigen::Quaterniond::Identity();
-  }
-  if (!value->is_table()) {
-    section.report("rotation",
-                   "must be { axis, angle } or a quaternion [w, x, y, z], not " + describe(*value));
-    return Eigen::Quaterniond::Identity();
-  }
-  Section rotation(section.judge(), *value, "'rotation' in " + section.name());
-  for (const char* key : {"axis", "angle"})
-    if (!rotation.find(key)) rotation.missing(key);
-  const Vec3 axis = rotation.direction("axis", Vec3::UnitY());
-  const double angle = rotation.number("angle", Range::within(360), 0);
-  rotation.finish();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle * kDegree, axis));
-}
-
 Collider read_collider(Section& section) {
   Collider collider;
   if (!section.find("type")) section.missing("type");
@@ -108,6 +82,31 @@ Vec3 initial_velocity(const Motion& motion, const Vec3& x) {
 }
 
 }  // namespace
+
+Eigen::Quaterniond read_rotation(Section& section) {
+  const Value* value = section.find("rotation");
+  if (!value) return Eigen::Quaterniond::Identity();
+  if (value->is_array()) {
+    const auto q = section.numbers("rotation", 4, Range::within(1e6));
+    if (!q) return Eigen::Quaterniond::Identity();
+    const Eigen::Quaterniond rotation((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
+    if (rotation.norm() > 1e-6) return rotation.normalized();
+    section.report("rotation", "must not be zero");
+    return Eigen::Quaterniond::Identity();
+  }
+  if (!value->is_table()) {
+    section.report("rotation",
+                   "must be { axis, angle } or a quaternion [w, x, y, z], not " + describe(*value));
+    return Eigen::Quaterniond::Identity();
+  }
+  Section rotation(section.judge(), *value, "'rotation' in " + section.name());
+  for (const char* key : {"axis", "angle"})
+    if (!rotation.find(key)) rotation.missing(key);
+  const Vec3 axis = rotation.direction("axis", Vec3::UnitY());
+  const double angle = rotation.number("angle", Range::within(360), 0);
+  rotation.finish();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle * kDegree, axis));
+}
 
 void read_colliders(Section& root, Scene& scene) {
   for (const Value* item : root.tables("collider")) {

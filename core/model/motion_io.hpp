@@ -5,6 +5,10 @@
 
 namespace taut {
 
+/// Reads 'rotation': { axis = [0, 0, 1], angle = 45 } with the angle in degrees, or a quaternion
+/// [w, x, y, z] of any length but zero. Absent: the identity.
+Eigen::Quaterniond read_rotation(Section&);
+
 /// Reads every [[collider]].
 void read_colliders(Section& root, Scene&);
 

@@ -68,10 +68,12 @@ void read_time(Section& time, Scene& scene) {
   scene.steps = std::max(1, static_cast<int>(steps));
 }
 
+constexpr double kShortestLink = 1e-9;  ///< m
+
 /// What no single key is to blame for.
 void judge_whole(Section& root, Judge& judge, const Scene& scene) {
   for (const Link& link : scene.links)
-    if (!(link.rest > 0)) {
+    if (!(link.rest >= kShortestLink)) {
       judge.report(root.place("cloth"), "vertices " + std::to_string(link.a) + " and " +
                                             std::to_string(link.b) +
                                             " coincide: their link has no length");
@@ -81,10 +83,7 @@ void judge_whole(Section& root, Judge& judge, const Scene& scene) {
     judge.report(root.place("wind"), "[wind] acts on faces, and this cloth has none");
 }
 
-}  // namespace
-
-Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
-  const Document document = read_document(path, overrides);
+Scene scene_of(const Document& document, const std::filesystem::path& path) {
   Judge judge(document);
   Section root(judge, document.root, "the scene");
   Scene scene;
@@ -92,12 +91,11 @@ Scene load_scene(const std::filesystem::path& path, const std::vector<std::strin
   scene.summary = root.string("summary").value_or("");
 
   if (!root.find("cloth")) root.missing("cloth");
-  Section cloth(judge, part(root, "cloth"), "[cloth]");
-  const bool built = root.table("cloth") && read_cloth(cloth, path.parent_path(), scene);
-  cloth.finish();
   Section links(judge, part(root, "links"), "[links]");
   const LinkChoice choice = read_links(links);
-  if (built) scene.links = grid_links(scene.mesh, choice);
+  Section cloth(judge, part(root, "cloth"), "[cloth]");
+  const bool built = root.table("cloth") && read_cloth(cloth, path.parent_path(), choice, scene);
+  if (root.table("cloth")) cloth.finish();
   Section forces(judge, part(root, "forces"), "[forces]");
   read_forces(forces, scene);
   if (const Value* table = root.table("wind")) {
@@ -116,6 +114,17 @@ Scene load_scene(const std::filesystem::path& path, const std::vector<std::strin
   if (built) judge_whole(root, judge, scene);
   judge.verdict();
   return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  return scene_of(read_document(path, overrides), path);
+}
+
+Scene parse_scene(const std::filesystem::path& file, const std::string& text,
+                  const std::vector<std::string>& overrides) {
+  return scene_of(parse_document(file.string(), text, overrides), file);
 }
 
 }  // namespace taut

@@ -15,6 +15,11 @@ namespace taut {
 /// types, non-finite or out-of-range numbers, pins outside the cloth.
 Scene load_scene(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
 
+/// The same for text that is already in memory; `file` names it in messages, and a mesh is looked
+/// for beside it.
+Scene parse_scene(const std::filesystem::path& file, const std::string& text,
+                  const std::vector<std::string>& overrides = {});
+
 /// A number or a fraction such as "1/64"; throws InputError. Used for dt on the command line too.
 double parse_number(const std::string&);
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/model/mesh.hpp"
+
+namespace taut {
+
+/// A surface of polygons, as a modelling program writes it.
+struct Polygons {
+  std::string file;                     ///< as the user named it
+  std::vector<Vec3> vertices;           ///< [n]
+  std::vector<std::vector<int>> faces;  ///< vertices of each face in order round it, three or more
+  std::vector<int> vertex_lines;        ///< [n] where each vertex stands in the file
+  std::vector<int> face_lines;          ///< the same of each face
+};
+
+/// Reads the `v` and `f` lines of a Wavefront OBJ file; comments, normals, texture coordinates,
+/// groups and materials are skipped. Throws InputError with file and line of everything that is
+/// malformed, and of everything that no cloth can be made of: faces that name a vertex which is not
+/// there, name one twice or have no area; edges of more than two faces; vertices without a face;
+/// vertices that coincide.
+Polygons read_obj(const std::filesystem::path&);
+
+/// The same for text that is already in memory; `file` is for the messages.
+Polygons parse_obj(const std::string& file, const std::string& text);
+
+/// Area of the surface [m^2] if the vertices are in m.
+double area(const Polygons&);
+
+/// The cloth of `mass` kg. Faces are cut into triangles: quads along their shorter diagonal, larger
+/// ones as a fan. Lumping::area gives each face's mass to its vertices by the thirds of its
+/// triangles, averaged over the fans from each of its vertices, so that no diagonal is preferred (a
+/// parallelogram gives a quarter to each corner, as in make_sheet).
+Mesh make_mesh(const Polygons&, double mass, Lumping);
+
+/// Links of any surface, families one after the other, sorted by their vertices within each:
+/// structural along the edges; shear along both diagonals of the quads; bend across every inner
+/// edge, between the vertices that come before and after each of its ends in the two faces (for two
+/// triangles: their opposite vertices). No pair is linked twice. A regular sheet of quads gets the
+/// links of grid_links.
+std::vector<Link> mesh_links(const Polygons&, const LinkChoice&);
+
+}  // namespace taut
