@@ -1,0 +1,125 @@
+#include "core/reference/closed_forms.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "core/model/mesh.hpp"
+
+namespace taut::reference {
+
+namespace {
+
+using std::numbers::pi;
+
+/// Nodes of the Gauss-Laguerre rule: eigenvalues of the Jacobi matrix of the Laguerre polynomials.
+Eigen::VectorXd laguerre_roots(int n) {
+  Eigen::VectorXd diagonal(n), beside(n - 1);
+  for (int i = 0; i < n; ++i) diagonal[i] = 2 * i + 1;
+  for (int i = 0; i + 1 < n; ++i) beside[i] = i + 1;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues();
+}
+
+}  // namespace
+
+double pendulum_period(double length, double g, double amplitude) {
+  double a = 1, b = std::cos(amplitude / 2);
+  for (int i = 0; i < 64 && std::abs(a - b) > 1e-16 * a; ++i) {
+    const double mean = (a + b) / 2;
+    b = std::sqrt(a * b);
+    a = mean;
+  }
+  return 2 * pi * std::sqrt(length / g) / a;
+}
+
+std::array<Vec3, 2> double_pendulum(std::array<double, 2> angles, double t, int steps) {
+  constexpr double g = 9.81;
+  using Y = Eigen::Array4d;  // both angles, both angular velocities
+  const auto rate = [](const Y& y) -> Y {
+    const double d = y[0] - y[1], s = std::sin(d), c = std::cos(d);
+    // 2 a1 + c a2 = -s w2^2 - 2 g sin(th1);  c a1 + a2 = s w1^2 - g sin(th2)
+    const double p = -s * y[3] * y[3] - 2 * g * std::sin(y[0]);
+    const double q = s * y[2] * y[2] - g * std::sin(y[1]);
+    const double det = 2 - c * c;
+    return {y[2], y[3], (p - c * q) / det, (2 * q - c * p) / det};
+  };
+  Y y(angles[0], angles[1], 0, 0);
+  const double h = t / steps;
+  for (int n = 0; n < steps; ++n) {
+    const Y k1 = rate(y), k2 = rate(y + h / 2 * k1), k3 = rate(y + h / 2 * k2),
+            k4 = rate(y + h * k3);
+    y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  const Vec3 first(std::sin(y[0]), -std::cos(y[0]), 0);
+  return {first, first + Vec3(std::sin(y[1]), -std::cos(y[1]), 0)};
+}
+
+double stick_next_angle(double phi) { return std::atan2(std::sin(phi), 2 - std::cos(phi)); }
+
+std::vector<double> hanging_chain_frequencies(int n, double length, double g) {
+  const Eigen::VectorXd xi = laguerre_roots(n);
+  std::vector<double> w;
+  for (const double root : xi) w.push_back(std::sqrt(g * n / length * root));
+  return w;
+}
+
+std::vector<double> hanging_chain_mode(int n, int mode) {
+  const double xi = laguerre_roots(n)[mode - 1];
+  std::vector<double> shape;  // L_0, L_1, ..., L_{n-1}: from the free end upwards
+  for (int i = 0; i < n; ++i) shape.push_back(std::laguerre(static_cast<unsigned>(i), xi));
+  std::reverse(shape.begin(), shape.end());
+  double largest = 0;
+  for (const double s : shape) largest = std::max(largest, std::abs(s));
+  for (double& s : shape) s /= largest;
+  return shape;
+}
+
+double hanging_rope_frequency(int mode, double length, double g) {
+  double j = (mode - 0.25) * pi;  // McMahon's first term
+  for (int i = 0; i < 20; ++i) j += std::cyl_bessel_j(0, j) / std::cyl_bessel_j(1, j);
+  return j / 2 * std::sqrt(g / length);
+}
+
+std::vector<double> spring_chain_frequencies(int n, double stiffness, double mass) {
+  std::vector<double> w;
+  for (int j = 1; j <= n; ++j)
+    w.push_back(2 * std::sqrt(stiffness / mass) * std::sin((2 * j - 1) * pi / (2.0 * (2 * n + 1))));
+  return w;
+}
+
+double spring_grid_eigenvalue(int nu, bool shear, bool bend) {
+  const double side = nu - 1;
+  const Mesh mesh = make_sheet({.nu = nu, .nv = nu, .width = side, .height = side, .mass = 1});
+  const std::vector<Link> links = grid_links(mesh, {.shear = shear, .bend = bend});
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  std::vector<Vec3> u(at(mesh.size())), next;
+  for (std::size_t i = 0; i < u.size(); ++i)  // in the plane, no symmetry of the grid
+    u[i] = {std::sin(1.0 + 7.0 * static_cast<double>(i)),
+            std::cos(2.0 + 3.0 * static_cast<double>(i)), 0};
+  double value = 0, before = -1;
+  for (int n = 0; n < 100000 && std::abs(value - before) > 1e-10 * value; ++n) {
+    next.assign(u.size(), Vec3::Zero());
+    for (const Link& l : links) {
+      const Vec3 n12 = (mesh.rest[at(l.b)] - mesh.rest[at(l.a)]).normalized();
+      const Vec3 pull = n12.dot(u[at(l.b)] - u[at(l.a)]) * n12;
+      next[at(l.a)] -= pull, next[at(l.b)] += pull;
+    }
+    double square = 0;
+    for (const Vec3& v : next) square += v.squaredNorm();
+    before = value;
+    value = std::sqrt(square);
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] = next[i] / value;
+  }
+  return value;
+}
+
+double capstan_ratio(double mu, double wrap, double link) {
+  const double t = mu * std::tan(link / 2);
+  return std::pow((1 + t) / (1 - t), wrap / link);
+}
+
+}  // namespace taut::reference

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/model/vec3.hpp"
+
+/// Truths as code: closed forms, discrete identities and converged references that no solver of
+/// the testbed takes part in. SI units throughout.
+namespace taut::reference {
+
+/// Period [s] of a pendulum of `length` [m] under g [m/s^2] released at rest at `amplitude` [rad]
+/// in (0, pi): 2 pi sqrt(L/g) / AGM(1, cos(amplitude/2)) (Gauss).
+double pendulum_period(double length, double g, double amplitude);
+
+/// Time [s] at which that pendulum first passes its lowest point: a quarter of the period.
+inline double pendulum_quarter(double length, double g, double amplitude) {
+  return pendulum_period(length, g, amplitude) / 4;
+}
+
+/// Positions [m] of the two unit masses of a double pendulum (both links 1 m, g = 9.81 m/s^2), the
+/// first hung from the origin, angles [rad] from the downward vertical, from rest, after t [s].
+/// Classical Runge-Kutta on the Lagrangian equations, `steps` of equal size: error ~ steps^-4.
+std::array<Vec3, 2> double_pendulum(std::array<double, 2> angles, double t, int steps = 20000);
+
+/// Angle per step [rad] of a stick that turns freely about a pivot, one step after an angle per
+/// step phi, under Verlet with converged projection: tan(phi') = sin(phi) / (2 - cos(phi)).
+double stick_next_angle(double phi);
+
+/// Angular frequencies [rad/s], ascending, of small swings of n equal masses hung on links of
+/// length/n: sqrt(g/l xi), xi the roots of the Laguerre polynomial L_n (D. Bernoulli 1733).
+std::vector<double> hanging_chain_frequencies(int n, double length, double g);
+
+/// Shape of mode `mode` (1 = lowest) of that chain: L_i(xi) of the i-th mass counted from the free
+/// end, listed from the top, scaled to a largest value of 1. [n]
+std::vector<double> hanging_chain_mode(int n, int mode);
+
+/// The continuum limit of hanging_chain_frequencies for mode = 1, 2, ...: (j_0m / 2) sqrt(g/L).
+double hanging_rope_frequency(int mode, double length, double g);
+
+/// Angular frequencies [rad/s], ascending, of n masses m [kg] on springs K [N/m], one end fixed
+/// and the other free: 2 sqrt(K/m) sin((2j-1) pi / (2(2n+1))).
+std::vector<double> spring_chain_frequencies(int n, double stiffness, double mass);
+
+/// Largest eigenvalue times m/k of a flat nu x nu grid of equal masses and springs of equal
+/// stiffness, free at its edges, for motion in its plane: explicit integrators without damping are
+/// stable while dt < 2 sqrt(m/k) / sqrt(this). Power iteration to about 1e-6.
+double spring_grid_eigenvalue(int nu, bool shear, bool bend);
+
+/// Ratio of the tensions at both ends of a rope of links that turns by `wrap` [rad] in equal steps
+/// of `link` [rad] over a rough cylinder, on the verge of slipping: each node balances
+/// (T2 - T1) cos(link/2) = mu (T1 + T2) sin(link/2). Tends to exp(mu wrap) in second order.
+double capstan_ratio(double mu, double wrap, double link);
+
+}  // namespace taut::reference

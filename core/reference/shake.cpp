@@ -1,0 +1,216 @@
+#include "core/reference/shake.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/model/wind.hpp"
+
+namespace taut::reference {
+
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+using Vector = Eigen::VectorXd;
+using Triplet = Eigen::Triplet<double>;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+std::vector<Vec3> wind_forces(const Scene& scene, const std::vector<Vec3>& x,
+                              const std::vector<Vec3>& v) {
+  std::vector<Vec3> f(x.size(), Vec3::Zero());
+  if (!scene.wind) return f;
+  for (const auto& [a, b, c] : scene.mesh.triangles) {
+    const Vec3 corner = wind_on_corner(*scene.wind, x[at(a)], x[at(b)], x[at(c)],
+                                       (v[at(a)] + v[at(b)] + v[at(c)]) / 3);
+    for (const int i : {a, b, c}) f[at(i)] += corner;
+  }
+  return f;
+}
+
+}  // namespace
+
+struct Shake::Impl {
+  Scene scene;
+  double dt;
+  int n = 0;  ///< steps taken
+  std::vector<double> w;
+  std::vector<Link> links;
+  std::vector<Vec3> x, previous, before_previous;
+  Eigen::SimplicialLDLT<Matrix> ldlt;
+  bool analysed = false;
+
+  Impl(const Scene& s, double h) : scene(s), dt(h), w(inverse_masses(s)), x(s.start.x) {
+    for (const Link& l : s.links)
+      if (w[at(l.a)] + w[at(l.b)] > 0) links.push_back(l);
+  }
+
+  /// J M^-1 J^T at x, J the gradients d of (|d|^2 - r^2)/2: links that share a vertex couple.
+  bool factor() {
+    std::vector<std::vector<std::pair<int, double>>> beside(x.size());  // link, sign at the vertex
+    for (int j = 0; j < static_cast<int>(links.size()); ++j) {
+      beside[at(links[at(j)].a)].emplace_back(j, -1.0);
+      beside[at(links[at(j)].b)].emplace_back(j, 1.0);
+    }
+    std::vector<Triplet> entries;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (const auto& [p, sp] : beside[i])
+        for (const auto& [q, sq] : beside[i])
+          if (w[i] > 0 && p >= q)
+            entries.emplace_back(p, q, w[i] * sp * sq * delta(x, p).dot(delta(x, q)));
+    const int m = static_cast<int>(links.size());
+    Matrix a(m, m);
+    a.setFromTriplets(entries.begin(), entries.end());
+    if (!analysed) ldlt.analyzePattern(a);
+    analysed = true;
+    ldlt.factorize(a);
+    return ldlt.info() == Eigen::Success &&
+           ldlt.vectorD().minCoeff() > 1e-12 * ldlt.vectorD().maxCoeff();
+  }
+
+  Vec3 delta(const std::vector<Vec3>& y, int j) const {
+    return y[at(links[at(j)].b)] - y[at(links[at(j)].a)];
+  }
+
+  /// Corrects y along the directions at x until every link has its length.
+  bool project(std::vector<Vec3>& y) {
+    if (links.empty()) return true;
+    if (!factor()) return false;
+    const int m = static_cast<int>(links.size());
+    Vector violation(m);
+    double before = 1e300;
+    for (int iteration = 0; iteration < 200; ++iteration) {
+      double worst = 0;
+      for (int j = 0; j < m; ++j) {
+        const double r = links[at(j)].rest;
+        violation[j] = (delta(y, j).squaredNorm() - r * r) / 2;
+        worst = std::max(worst, std::abs(violation[j]) / (r * r));
+      }
+      if (worst < 1e-15 || (worst < 1e-13 && worst >= before)) return true;  // rounding
+      if (!(worst < 1e3)) return false;
+      before = worst;
+      const Vector lambda = ldlt.solve(violation);
+      for (int j = 0; j < m; ++j) {
+        const Vec3 d = lambda[j] * delta(x, j);
+        const Link& l = links[at(j)];
+        y[at(l.a)] += w[at(l.a)] * d;
+        y[at(l.b)] -= w[at(l.b)] * d;
+      }
+    }
+    return false;
+  }
+
+  /// Velocity at x from the past alone, of order 2 as soon as there are two steps behind.
+  std::vector<Vec3> velocity_now() const {
+    if (n == 0) return scene.start.v;
+    std::vector<Vec3> v(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+      v[i] = n == 1 ? Vec3(2 * (x[i] - previous[i]) / dt - scene.start.v[i])
+                    : Vec3((3 * x[i] - 4 * previous[i] + before_previous[i]) / (2 * dt));
+    return v;
+  }
+
+  bool step() {
+    const std::vector<Vec3> v = velocity_now(), f = wind_forces(scene, x, v);
+    const double half = scene.damping * dt / 2;
+    std::vector<Vec3> y = x;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (w[i] == 0) {
+        y[i] = pin_position(scene, static_cast<int>(i), (n + 1) * dt);
+        continue;
+      }
+      const Vec3 a = scene.gravity + w[i] * f[i];
+      if (n == 0)  // x_1 = x_0 + v dt + (a - damping v) dt^2/2: order 2 from the start
+        y[i] += dt * v[i] + dt * dt / 2 * (a - scene.damping * v[i]);
+      else
+        y[i] += ((1 - half) * (x[i] - previous[i]) + dt * dt * a) / (1 + half);
+    }
+    if (!project(y)) return false;
+    before_previous = std::exchange(previous, std::exchange(x, std::move(y)));
+    ++n;
+    return true;
+  }
+};
+
+Shake::Shake(const Scene& scene, double dt) : impl_(std::make_unique<Impl>(scene, dt)) {}
+Shake::~Shake() = default;
+bool Shake::step() { return impl_->step(); }
+double Shake::time() const { return impl_->n * impl_->dt; }
+State Shake::state() const { return {impl_->x, impl_->velocity_now()}; }
+
+std::vector<std::string> refuse_dynamic(const Scene& scene) {
+  std::vector<std::string> reasons;
+  const auto refuse = [&](bool it, const char* why) {
+    if (it) reasons.emplace_back(why);
+  };
+  refuse(!scene.colliders.empty(), "contact: impacts have no unique limit");
+  refuse(scene.self_collision.has_value(), "self-collision: impacts have no unique limit");
+  refuse(std::any_of(scene.links.begin(), scene.links.end(),
+                     [](const Link& l) { return l.family != Family::structural; }),
+         "rigid shear or bending links lock: J M^-1 J^T is singular in the plane");
+  const std::vector<double> w = inverse_masses(scene);
+  for (const Link& l : scene.links) {
+    const double d = (scene.start.x[at(l.b)] - scene.start.x[at(l.a)]).norm();
+    if (w[at(l.a)] + w[at(l.b)] > 0 && std::abs(d - l.rest) > 1e-6 * l.rest) {
+      refuse(true, "a slack or stretched start is ill-posed: start on the constraints");
+      break;
+    }
+  }
+  return reasons;
+}
+
+namespace {
+
+/// States at the times; empty if a projection failed.
+std::vector<State> run(const Scene& scene, const std::vector<double>& times, double dt) {
+  Shake shake(scene, dt);
+  std::vector<State> states;
+  for (const double t : times) {
+    while (shake.time() < t - dt / 2)
+      if (!shake.step()) return {};
+    states.push_back(shake.state());
+  }
+  return states;
+}
+
+State extrapolate(const State& coarse, const State& fine) {
+  State s = fine;
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    s.x[i] += (fine.x[i] - coarse.x[i]) / 3;
+    s.v[i] += (fine.v[i] - coarse.v[i]) / 3;
+  }
+  return s;
+}
+
+}  // namespace
+
+Trajectory converged_motion(const Scene& scene, const std::vector<double>& times, double dt) {
+  Trajectory m;
+  if (const auto reasons = refuse_dynamic(scene); !reasons.empty()) {
+    m.reason = reasons.front();
+    return m;
+  }
+  std::vector<State> runs[3];
+  for (int r = 0; r < 3; ++r) {
+    runs[r] = run(scene, times, dt / (1 << r));
+    if (runs[r].empty()) {
+      m.reason =
+          "the projection does not converge: the constraints are redundant or dt is too long";
+      return m;
+    }
+  }
+  m.unique = true;
+  m.derivation = "SHAKE at dt, dt/2 and dt/4, Richardson-extrapolated";
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const State coarse = extrapolate(runs[0][k], runs[1][k]);
+    m.states.push_back(extrapolate(runs[1][k], runs[2][k]));
+    double worst = 0;
+    for (std::size_t i = 0; i < coarse.x.size(); ++i)
+      worst = std::max(worst, (coarse.x[i] - m.states.back().x[i]).norm());
+    m.floor.push_back(worst);
+  }
+  return m;
+}
+
+}  // namespace taut::reference

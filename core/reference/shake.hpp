@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/model/scene.hpp"
+
+namespace taut::reference {
+
+/// A cloth of rods in motion at chosen times, converged.
+struct Trajectory {
+  bool unique = false;  ///< false: no truth; nothing below but `reason` has a meaning
+  std::string reason;
+  std::string derivation;
+  std::vector<State> states;  ///< at each of the times asked for
+  std::vector<double> floor;  ///< [times] m, largest vertex error, by self-convergence
+};
+
+/// Why the motion of this scene has no unique limit dt -> 0, one sentence each; empty: it has.
+std::vector<std::string> refuse_dynamic(const Scene&);
+
+/// Advances a scene of rods in double by SHAKE (Ryckaert, Ciccotti, Berendsen 1977): Verlet, then
+/// corrections along the links' directions at the step's start until every link has its length;
+/// J M^-1 J^T is factored once per step (sparse LDLT), chord Newton to rounding. Damping and wind
+/// are taken with centred velocities, so the whole has order 2 in dt.
+class Shake {
+ public:
+  Shake(const Scene&, double dt);  ///< dt [s], < sqrt(2 l/(n^2 g)) for n links of length l in line
+  ~Shake();
+
+  bool step();          ///< false: the projection did not converge (dt too long, or a slack start)
+  State state() const;  ///< x [m]; v [m/s], centred: order 2
+  double time() const;  ///< s
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// States at `times` [s, ascending, > 0], each a multiple of dt: Richardson-extrapolated from dt
+/// and dt/2. The floor is the distance between that and the same from dt/2 and dt/4.
+Trajectory converged_motion(const Scene&, const std::vector<double>& times, double dt);
+
+}  // namespace taut::reference

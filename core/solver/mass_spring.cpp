@@ -1,0 +1,238 @@
+// The report's section 3, before any constraint: F = -k x - c v on springs, integrated explicitly.
+//
+//     explicit-euler     x' = x + v dt;   v' = v + a(x, v) dt              the report's two lines
+//     symplectic-euler   v' = v + a dt;   x' = x + v' dt
+//     verlet             x* = 2x - x' + a dt^2                             v = (x - x')/dt
+//
+// Stable without drag while dt < 2/w, w^2 the largest eigenvalue of K/M (symplectic Euler and
+// Verlet; explicit Euler never is). Drag taken at the lagged velocity shrinks that limit to
+// (2/w)(sqrt(1 + zeta^2) - zeta); Verlet's `drag-at=central` restores it.
+#include <cmath>
+#include <string>
+
+#include "core/model/solver.hpp"
+#include "core/solver/external_forces.hpp"
+
+namespace taut {
+
+namespace {
+
+using Kind = ParamSpec::Kind;
+constexpr ParamSpec kParams[] = {
+    {.name = "integrator",
+     .kind = Kind::choice,
+     .default_value = "verlet",
+     .choices = "explicit-euler|symplectic-euler|verlet",
+     .help = "how the particles move; explicit-euler is the report's first pair of lines"},
+    {.name = "structural",
+     .unit = "N/m",
+     .default_value = "50",
+     .min = 0,
+     .max = 1e12,
+     .help = "spring constant of structural links; 0: no spring"},
+    {.name = "shear",
+     .unit = "N/m",
+     .default_value = "50",
+     .min = 0,
+     .max = 1e12,
+     .help = "spring constant of shear links; 0: no spring"},
+    {.name = "bend",
+     .unit = "N/m",
+     .default_value = "5",
+     .min = 0,
+     .max = 1e12,
+     .help = "spring constant of bend links; 0: no spring"},
+    {.name = "drag",
+     .unit = "N s/m",
+     .default_value = "0",
+     .min = 0,
+     .max = 1e9,
+     .help = "c of F = -c v on every particle, beside the scene's own damping"},
+    {.name = "drag-at",
+     .kind = Kind::choice,
+     .default_value = "lagged",
+     .choices = "lagged|central",
+     .help = "velocity that drag sees: (x_n - x_n-1)/dt, or, verlet only, (x_n+1 - x_n-1)/2dt"},
+    {.name = "substeps",
+     .kind = Kind::integer,
+     .default_value = "32",
+     .min = 1,
+     .max = 1e6,
+     .help = "each step is this many steps of dt / substeps"},
+    {.name = "precision",
+     .kind = Kind::choice,
+     .default_value = "float",
+     .choices = "float|double",
+     .help = "scalar type of the simulation"},
+};
+
+struct Springs {
+  Family family;
+  double stiffness;  ///< N/m
+  std::vector<Link> links;
+};
+
+double stiffness(const Params& params, Family family) { return params.real(to_string(family)); }
+
+template <class Real>
+class MassSpring final : public Solver {
+ public:
+  using V = Vec3Of<Real>;
+
+  MassSpring(const Scene& scene, const Params& params)
+      : scene_(scene),
+        substeps_(params.integer("substeps")),
+        drag_(params.real("drag")),
+        central_(params.is("drag-at", "central")),
+        integrate_(params.is("integrator", "explicit-euler")     ? &MassSpring::explicit_euler
+                   : params.is("integrator", "symplectic-euler") ? &MassSpring::symplectic_euler
+                                                                 : &MassSpring::verlet) {
+    const std::vector<double> w = inverse_masses(scene);
+    for (const double wi : w) w_.push_back(static_cast<Real>(wi));
+    for (const Family family : kFamilies) {
+      Springs springs{family, stiffness(params, family), {}};
+      if (springs.stiffness == 0) continue;
+      for (const Link& l : scene.links)
+        if (l.family == family && (w_[at(l.a)] > 0 || w_[at(l.b)] > 0)) springs.links.push_back(l);
+      if (!springs.links.empty()) springs_.push_back(std::move(springs));
+    }
+  }
+
+  void load(const State& state) override {
+    const std::size_t n = state.x.size();
+    x_.resize(n), v_.resize(n), a_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      x_[i] = state.x[i].template cast<Real>();
+      v_[i] = state.v[i].template cast<Real>();
+    }
+  }
+
+  void step(double t, double dt) override {
+    const double h = dt / substeps_;
+    for (int s = 0; s < substeps_; ++s) {
+      accumulate_forces();
+      const Real keep = static_cast<Real>(std::exp(-scene_.damping * h));
+      for (std::size_t i = 0; i < x_.size(); ++i)
+        if (w_[i] != 0)
+          (this->*integrate_)(i, static_cast<Real>(h), keep);
+        else
+          v_[i].setZero();
+      move_pins(t + (s + 1) * h, h);
+    }
+  }
+
+  void store(State& state) const override {
+    state.x.resize(x_.size()), state.v.resize(x_.size());
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      state.x[i] = x_[i].template cast<double>();
+      state.v[i] = v_[i].template cast<double>();
+    }
+  }
+
+  std::vector<PassCost> plan() const override {
+    const auto repeats = static_cast<std::size_t>(substeps_);
+    std::vector<PassCost> costs;
+    if (scene_.wind)
+      costs.push_back({.pass = "wind", .items = scene_.mesh.triangles.size(), .repeats = repeats});
+    for (const Springs& s : springs_)
+      costs.push_back({.pass = std::string(to_string(s.family)) + " springs",
+                       .items = s.links.size(),
+                       .repeats = repeats,
+                       .bytes = s.links.size() * sizeof(Link)});
+    costs.push_back({.pass = "integrate",
+                     .items = x_.size(),
+                     .repeats = repeats,
+                     .bytes = x_.size() * (3 * sizeof(V) + sizeof(Real))});
+    return costs;
+  }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  /// G = m g, the wind, F = -k x of every spring, F = -c v of every particle; a = F/m.
+  void accumulate_forces() {
+    const V g = scene_.gravity.template cast<Real>();
+    const Real c = static_cast<Real>(central_ ? 0 : drag_);
+    for (std::size_t i = 0; i < x_.size(); ++i) a_[i] = g - w_[i] * c * v_[i];
+    add_wind<Real>(scene_, x_, v_, w_, a_);
+    for (const Springs& springs : springs_) {
+      const Real k = static_cast<Real>(springs.stiffness);
+      for (const Link& l : springs.links) {
+        const V delta = x_[at(l.b)] - x_[at(l.a)];
+        const Real length = delta.norm();
+        if (length == 0) continue;  // no direction to pull in
+        const V pull = k * (length - static_cast<Real>(l.rest)) / length * delta;
+        a_[at(l.a)] += w_[at(l.a)] * pull;
+        a_[at(l.b)] -= w_[at(l.b)] * pull;
+      }
+    }
+  }
+
+  void explicit_euler(std::size_t i, Real dt, Real keep) {
+    x_[i] += v_[i] * dt;
+    v_[i] = keep * v_[i] + a_[i] * dt;
+  }
+  void symplectic_euler(std::size_t i, Real dt, Real keep) {
+    v_[i] = keep * v_[i] + a_[i] * dt;
+    x_[i] += v_[i] * dt;
+  }
+  /// x* = 2x - x' + a dt^2 with v = (x - x')/dt kept instead of x', so that no digits are lost.
+  void verlet(std::size_t i, Real dt, Real keep) {
+    const Real half = central_ ? static_cast<Real>(drag_) * w_[i] * dt / 2 : Real(0);
+    v_[i] = ((1 - half) * keep * v_[i] + a_[i] * dt) / (1 + half);
+    x_[i] += v_[i] * dt;
+  }
+
+  void move_pins(double t, double dt) {
+    if (scene_.pin_motions.empty()) return;
+    for (const int pin : scene_.pins) {
+      const V place = pin_position(scene_, pin, t).template cast<Real>();
+      v_[at(pin)] = (place - x_[at(pin)]) / static_cast<Real>(dt);
+      x_[at(pin)] = place;
+    }
+  }
+
+  Scene scene_;
+  int substeps_;
+  double drag_;
+  bool central_;
+  void (MassSpring::*integrate_)(std::size_t, Real, Real);
+  std::vector<Springs> springs_;
+  std::vector<Real> w_;
+  std::vector<V> x_, v_, a_;
+};
+
+std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
+  if (params.is("precision", "float")) return std::make_unique<MassSpring<float>>(scene, params);
+  return std::make_unique<MassSpring<double>>(scene, params);
+}
+
+std::vector<std::string> cannot(const Scene& scene, const Params& params) {
+  std::vector<std::string> reasons;
+  if (!scene.colliders.empty()) reasons.emplace_back("springs alone do not model contact");
+  if (scene.self_collision) reasons.emplace_back("self-collision is not modelled");
+  if (params.is("drag-at", "central") && !params.is("integrator", "verlet"))
+    reasons.emplace_back("drag-at=central needs integrator=verlet");
+  return reasons;
+}
+
+Effective effective(const Scene&, const Params& params) {
+  std::string springs;
+  for (const Family family : kFamilies)
+    springs += (springs.empty() ? "" : ", ") + std::string(to_string(family)) + " " +
+               std::string(params.value(to_string(family))) + " N/m";
+  return {{"precision", std::string(params.choice("precision"))},
+          {"links", "Hooke springs: " + springs},
+          {"work unit", "spring evaluations, not projections"}};
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_SOLVER(mass_spring) = {.name = "mass-spring",
+                            .summary = "Hooke springs with drag, integrated explicitly",
+                            .source = "the report, section 3; Provot 1995; Lander 1999",
+                            .params = taut::kParams,
+                            .make = taut::make,
+                            .cannot = taut::cannot,
+                            .effective = taut::effective};

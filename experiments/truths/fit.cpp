@@ -1,0 +1,36 @@
+#include "experiments/truths/fit.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace taut {
+
+Slope log_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto n = static_cast<double>(x.size());
+  double mx = 0, my = 0, sxx = 0, sxy = 0, rest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) mx += std::log(x[i]) / n, my += std::log(y[i]) / n;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double dx = std::log(x[i]) - mx;
+    sxx += dx * dx;
+    sxy += dx * (std::log(y[i]) - my);
+  }
+  Slope s;
+  s.value = sxy / sxx;
+  s.intercept = my - s.value * mx;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    rest += std::pow(std::log(y[i]) - s.intercept - s.value * std::log(x[i]), 2);
+  if (n > 2) s.error = std::sqrt(rest / (n - 2) / sxx);
+  return s;
+}
+
+std::array<double, 2> two_term_recurrence(const std::vector<double>& y) {
+  double aa = 0, ab = 0, bb = 0, ac = 0, bc = 0;
+  for (std::size_t n = 1; n + 1 < y.size(); ++n) {
+    aa += y[n] * y[n], ab += y[n] * y[n - 1], bb += y[n - 1] * y[n - 1];
+    ac += y[n] * y[n + 1], bc += y[n - 1] * y[n + 1];
+  }
+  const double det = aa * bb - ab * ab;
+  return {(ac * bb - bc * ab) / det, (aa * bc - ab * ac) / det};
+}
+
+}  // namespace taut

@@ -1,0 +1,89 @@
+#include "experiments/truths/truth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace taut {
+
+std::string_view to_string(Verdict verdict) {
+  constexpr std::array<std::string_view, 4> names{"passed", "deviates", "not claimed", "broken"};
+  return names[static_cast<std::size_t>(verdict)];
+}
+
+std::string_view section_title(int section) {
+  constexpr std::array<std::string_view, 10> titles{"One constraint",
+                                                    "The twin: Bullet is Jakobsen's algorithm",
+                                                    "Motion without constraints",
+                                                    "Pendulum, stick, chain",
+                                                    "Stability of relaxation",
+                                                    "Cloth",
+                                                    "Contact",
+                                                    "Published numbers",
+                                                    "References",
+                                                    "Metrics"};
+  return titles[static_cast<std::size_t>(section - 1)];
+}
+
+bool Ledger::wants(std::string_view subject) const {
+  if (only_.empty()) return true;
+  std::string_view name = subject.substr(0, subject.find(':'));
+  return std::any_of(only_.begin(), only_.end(), [&](const std::string& o) { return o == name; });
+}
+
+void Ledger::add(Finding f) {
+  if (wants(f.subject)) findings_.push_back(std::move(f));
+}
+
+namespace {
+
+/// NaN is never within any tolerance.
+bool within(double measured, double expected, double tolerance) {
+  return std::abs(measured - expected) <= tolerance;
+}
+
+Finding finding(std::string_view subject, std::string_view quantity, std::string_view unit,
+                double measured, double expected, double tolerance) {
+  Finding f;
+  f.subject = subject, f.quantity = quantity, f.unit = unit;
+  f.measured = measured, f.expected = expected, f.tolerance = tolerance;
+  f.verdict = within(measured, expected, tolerance) ? Verdict::passed : Verdict::broken;
+  return f;
+}
+
+}  // namespace
+
+void Ledger::equal(std::string_view subject, std::string_view quantity, std::string_view unit,
+                   double measured, double expected, double tolerance) {
+  add(finding(subject, quantity, unit, measured, expected, tolerance));
+}
+
+void Ledger::below(std::string_view subject, std::string_view quantity, std::string_view unit,
+                   double measured, double limit) {
+  add(finding(subject, quantity, unit, measured, 0, limit));
+}
+
+void Ledger::slope(std::string_view subject, std::string_view quantity, double measured,
+                   double uncertainty, double expected, double tolerance) {
+  Finding f = finding(subject, quantity, "1", measured, expected, tolerance);
+  f.uncertainty = uncertainty;
+  add(std::move(f));
+}
+
+void Ledger::deviates(std::string_view subject, std::string_view quantity, std::string_view unit,
+                      double measured, double expected, double explained, double tolerance,
+                      std::string_view why) {
+  Finding f = finding(subject, quantity, unit, measured, expected, tolerance);
+  f.verdict = within(measured, explained, tolerance) ? Verdict::deviates : Verdict::broken;
+  f.why = why;
+  add(std::move(f));
+}
+
+void Ledger::not_claimed(std::string_view subject, std::string_view why) {
+  Finding f;
+  f.subject = subject, f.verdict = Verdict::not_claimed, f.why = why;
+  f.measured = f.expected = std::nan("");
+  add(std::move(f));
+}
+
+}  // namespace taut

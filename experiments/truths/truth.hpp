@@ -1,0 +1,89 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace taut {
+
+/// How a measured number compares with what is known.
+enum class Verdict {
+  passed,       ///< agrees within the tolerance
+  deviates,     ///< differs for a known reason, by as much as that reason explains
+  not_claimed,  ///< the solver does not offer what the truth is about
+  broken        ///< differs: the testbed or the solver is wrong
+};
+std::string_view to_string(Verdict);
+
+/// One number of one subject against the truth.
+struct Finding {
+  std::string subject;   ///< "jakobsen:projection=exact,...", "static reference", "closed form"
+  std::string quantity;  ///< what was measured
+  std::string unit;      ///< "1" if dimensionless
+  double measured = 0;
+  double expected = 0;     ///< what the truth says
+  double tolerance = 0;    ///< |measured - expected| may be this large; for `deviates` too
+  double uncertainty = 0;  ///< one standard error of a fitted slope; 0: not fitted
+  Verdict verdict = Verdict::passed;
+  std::string why;  ///< of a deviation or of a claim not made
+};
+
+/// Collects the findings of one truth and knows which solvers were asked for.
+class Ledger {
+ public:
+  /// `only`: names of solvers; empty: all subjects. References count as "reference".
+  explicit Ledger(std::vector<std::string> only = {}) : only_(std::move(only)) {}
+
+  /// Whether this subject's solver was asked for: spares the work if not.
+  bool wants(std::string_view subject) const;
+
+  /// |measured - expected| <= tolerance (absolute, in the quantity's unit).
+  void equal(std::string_view subject, std::string_view quantity, std::string_view unit,
+             double measured, double expected, double tolerance);
+  /// 0 <= measured <= limit: an error that has to be small.
+  void below(std::string_view subject, std::string_view quantity, std::string_view unit,
+             double measured, double limit);
+  /// A fitted exponent with its standard error.
+  void slope(std::string_view subject, std::string_view quantity, double measured,
+             double uncertainty, double expected, double tolerance);
+  /// The truth says `expected`; this subject legitimately gives `explained` (within tolerance).
+  void deviates(std::string_view subject, std::string_view quantity, std::string_view unit,
+                double measured, double expected, double explained, double tolerance,
+                std::string_view why);
+  void not_claimed(std::string_view subject, std::string_view why);
+
+  const std::vector<Finding>& findings() const { return findings_; }
+
+ private:
+  void add(Finding);
+  std::vector<std::string> only_;
+  std::vector<Finding> findings_;
+};
+
+/// How a truth introduces itself: found by its TAUT_TRUTH line. Its place in the catalogue is
+/// section.row, as in `taut verify --section 4`.
+struct TruthEntry {
+  std::string_view name;  ///< "hanging-chain-sweeps"
+  int section = 0;        ///< 1 constraint, 2 twin, 3 free motion, 4 pendulum and chain,
+                    ///< 5 stability, 6 cloth, 7 contact, 8 published, 9 references, 10 metrics
+  int row = 0;                 ///< within the section, from 1
+  std::string_view statement;  ///< what must hold, one sentence with the formula
+  std::string_view source;     ///< paper, book or derivation
+  void (*check)(Ledger&);
+};
+
+/// All truths (generated; see cmake/registry.cmake).
+std::span<const TruthEntry* const> truths();
+
+/// The title of a section of the catalogue.
+std::string_view section_title(int section);
+
+}  // namespace taut
+
+/// Defines the entry under the name by which the generated registry finds it.
+#define TAUT_TRUTH(id)                \
+  namespace taut {                    \
+  extern const TruthEntry truth_##id; \
+  }                                   \
+  const taut::TruthEntry taut::truth_##id

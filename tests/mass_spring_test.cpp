@@ -1,0 +1,75 @@
+// The report's section 3 and XPBD, held to each other and to what their formulas say.
+#include <gtest/gtest.h>
+
+#include "experiments/truths/probe.hpp"
+
+namespace taut {
+namespace {
+
+Scene hanging_sheet() {
+  Scene s = bare::sheet(8, 8, {.shear = true});
+  s.pins = {0, 7};
+  s.gravity = {0, -kG, 0};
+  s.wind = Wind{{1, 0, 2}, 0.1};
+  s.damping = 0.5;
+  return s;
+}
+
+TEST(MassSpring, SymplecticEulerAndVerletAreTheSameMotion) {
+  const Scene s = hanging_sheet();
+  Probe euler(s, mass_spring("symplectic-euler", 0.5, 1e-3));
+  Probe verlet(s, mass_spring("verlet", 0.5, 1e-3));
+  euler.step(64), verlet.step(64);
+  EXPECT_LT(max_distance(euler.state().x, verlet.state().x), 1e-12);
+}
+
+TEST(MassSpring, SubstepsAreShorterSteps) {
+  Scene s = hanging_sheet(), fine = s;
+  fine.dt = s.dt / 4;
+  Probe a(s, with("mass-spring:precision=double", "substeps=4"));
+  Probe b(fine, with("mass-spring:precision=double", "substeps=1"));
+  a.step(16), b.step(64);
+  EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-12);
+}
+
+TEST(MassSpring, FloatFollowsDouble) {
+  const Scene s = hanging_sheet();
+  Probe a(s, "mass-spring:precision=double"), b(s, "mass-spring:precision=float");
+  a.step(32), b.step(32);
+  EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-4);
+}
+
+TEST(MassSpring, SaysWhatItCannot) {
+  Scene s = hanging_sheet();
+  s.colliders.push_back({Ball{Vec3::Zero(), 1}, {}, 0});
+  s.self_collision = SelfCollision{0.01};
+  const SolverChoice choice = parse_solver("mass-spring:integrator=explicit-euler,drag-at=central");
+  EXPECT_EQ(choice.entry->cannot(s, choice.params).size(), 3u);
+}
+
+TEST(Xpbd, WithoutComplianceItIsJakobsensExactProjection) {
+  Scene s = hanging_sheet();
+  s.pin_motions.push_back({{7}, {.velocity = Vec3(-0.3, 0, 0)}});
+  for (const int substeps : {1, 4}) {
+    Probe a(s, xpbd(substeps));
+    Probe b(s, jakobsen(1, "exact", "substeps=" + std::to_string(substeps)));
+    a.step(), b.step();
+    EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-15);
+    a.step(63), b.step(63);
+    EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-10);
+    EXPECT_LT(max_distance(a.state().v, b.state().v), 1e-7);
+  }
+}
+
+TEST(Xpbd, AConvergedCompliantLinkIsASpring) {
+  // A mass on a link of compliance alpha rests at alpha m g below the rest length.
+  Scene s = bare::chain(1, 1, 0.5);
+  s.gravity = {0, -kG, 0};
+  s.damping = 4;
+  Probe probe(s, xpbd(4, "structural=0.01"));
+  ASSERT_TRUE(settle(probe, 1e-9, 16, 4096));
+  EXPECT_NEAR(probe.x(1).y(), -1 - 0.01 * 0.5 * kG, 1e-8);
+}
+
+}  // namespace
+}  // namespace taut
