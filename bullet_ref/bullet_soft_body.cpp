@@ -1,5 +1,5 @@
 // Bullet's btSoftBody with its Positions solver, which is Jakobsen's algorithm under another name.
-// Each statement of the builder that looks odd answers a trap that bullet_ref/README.md describes.
+// Statements that look odd answer traps that bullet_ref/README.md describes.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletSoftBody/btSoftBody.h>
@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_ref/cloth_builder.hpp"
 #include "bullet_ref/convert.hpp"
 #include "bullet_ref/read_back.hpp"
 #include "bullet_ref/rigid_colliders.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/wind.hpp"
 
@@ -82,11 +82,6 @@ constexpr ParamSpec kParams[] = {
      .help = "off: no faces, so that Bullet does not compute normals, which we do not either"},
 };
 
-/// One substep [s]. Bullet casts the time step to float even in its double build.
-btScalar substep_length(const Scene& scene, const Params& params) {
-  return static_cast<float>(scene.dt / params.integer("substeps"));
-}
-
 /// A world with nothing in it; the order of members is the order in which Bullet wants them built.
 struct World {
   btSoftBodyRigidBodyCollisionConfiguration configuration;
@@ -95,44 +90,6 @@ struct World {
   btSequentialImpulseConstraintSolver solver;
   btSoftRigidDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
 };
-
-void configure_world(btSoftRigidDynamicsWorld& world, const Scene& scene, const Params& params) {
-  world.setGravity(to_bullet(scene.gravity));  // does not reach soft bodies
-  btSoftBodyWorldInfo& info = world.getWorldInfo();
-  info.m_gravity = to_bullet(scene.gravity);
-  info.air_density = 0;
-  info.m_maxDisplacement = btScalar(1e9);
-  info.m_sparsesdf.setDefaultVoxelsz(static_cast<btScalar>(params.real("voxel")));
-  info.m_sparsesdf.Reset();  // takes the voxel size over
-}
-
-std::unique_ptr<btSoftBody> make_body(btSoftBodyWorldInfo& info, const Scene& scene,
-                                      const Params& params) {
-  const Mesh& mesh = scene.mesh;
-  std::vector<btVector3> x;
-  for (const Vec3& rest : mesh.rest) x.push_back(to_bullet(rest));
-  std::vector<btScalar> mass;
-  for (const double m : mesh.mass) mass.push_back(static_cast<btScalar>(m));
-  for (const int pin : scene.pins) mass[static_cast<std::size_t>(pin)] = 0;
-  auto body = std::make_unique<btSoftBody>(&info, mesh.size(), x.data(), mass.data());
-
-  while (body->m_materials.size() < static_cast<int>(kFamilies.size())) body->appendMaterial();
-  for (int i = 0; i < body->m_materials.size(); ++i)
-    body->m_materials[i]->m_kLST = static_cast<btScalar>(params.real("stiffness"));
-  for (const Link& link : scene.links)
-    body->appendLink(link.a, link.b, body->m_materials[static_cast<int>(link.family)]);
-  if (params.is("faces", "on"))
-    for (const auto& [a, b, c] : mesh.triangles) body->appendFace(a, b, c);
-
-  body->updateConstants();  // overwrites the rest lengths with the current ones
-  for (int i = 0; i < body->m_links.size(); ++i) {
-    btSoftBody::Link& link = body->m_links[i];
-    link.m_rl = static_cast<btScalar>(scene.links[static_cast<std::size_t>(i)].rest);
-    link.m_c1 = link.m_rl * link.m_rl;  // what the solver reads
-  }
-  body->m_bUpdateRtCst = false;  // or the first step does it again
-  return body;
-}
 
 void configure_body(btSoftBody& body, const Scene& scene, const Params& params) {
   btSoftBody::Config& c = body.m_cfg;
@@ -150,9 +107,6 @@ void configure_body(btSoftBody& body, const Scene& scene, const Params& params) 
     c.m_psequence.push_back(btSoftBody::ePSolver::Linear);
     c.m_psequence.push_back(btSoftBody::ePSolver::RContacts);
   }
-  body.getCollisionShape()->setMargin(
-      static_cast<btScalar>(scene.thickness + params.real("margin")));
-  body.setActivationState(DISABLE_DEACTIVATION);
 }
 
 class BulletSoftBody final : public Solver, public HoldsScene {
@@ -164,8 +118,10 @@ class BulletSoftBody final : public Solver, public HoldsScene {
         substeps_(params.integer("substeps")),
         h_(substep_length(scene, params)),
         colliders_(scene, world_.world) {
-    configure_world(world_.world, scene, params);
-    body_ = make_body(world_.world.getWorldInfo(), scene, params);
+    world_.world.setGravity(to_bullet(scene.gravity));  // does not reach soft bodies
+    configure_world_info(world_.world.getWorldInfo(), scene, params.real("voxel"));
+    body_ = build_cloth(world_.world.getWorldInfo(), scene, params.real("stiffness"), margin_,
+                        params.is("faces", "on"));
     configure_body(*body_, scene, params);
     world_.world.addSoftBody(body_.get());
     load(scene.start);
@@ -260,7 +216,6 @@ std::vector<PassCost> BulletSoftBody::plan() const {
   const std::size_t sweeps = per_step * static_cast<std::size_t>(iterations_);
   std::size_t links = 0;
   for (int i = 0; i < b.m_links.size(); ++i) links += b.m_links[i].m_c0 > 0;
-  const std::size_t tree = (2 * n - 1) * sizeof(btDbvtNode);
 
   std::vector<PassCost> costs;
   if (scene_.wind)
@@ -268,17 +223,13 @@ std::vector<PassCost> BulletSoftBody::plan() const {
                      .items = scene_.mesh.triangles.size(),
                      .repeats = per_step,
                      .bytes = scene_.mesh.triangles.size() * sizeof(Triangle)});
-  costs.push_back({.pass = "predict and update tree",
-                   .items = n,
-                   .repeats = per_step,
-                   .bytes = held(b.m_nodes) + held(b.m_X) + tree});
+  costs.push_back(
+      {.pass = "predict and update tree", .items = n, .repeats = per_step, .bytes = node_bytes(b)});
   if (!scene_.colliders.empty()) {
-    const btSparseSdf<3>& sdf = b.m_worldInfo->m_sparsesdf;
-    const std::size_t cells = static_cast<std::size_t>(sdf.ncells) * sizeof(btSparseSdf<3>::Cell);
     costs.push_back({.pass = "detect contacts",
                      .items = n * scene_.colliders.size(),
                      .repeats = per_step,
-                     .bytes = held(sdf.cells) + cells + colliders_.bytes()});
+                     .bytes = distance_field_bytes(b) + colliders_.bytes()});
     costs.push_back({.pass = "contacts",
                      .items = static_cast<std::size_t>(b.m_rcontacts.size()),
                      .repeats = sweeps,
@@ -301,26 +252,9 @@ std::vector<PassCost> BulletSoftBody::plan() const {
 Scene BulletSoftBody::read_back() const {
   const btSoftBody& b = *body_;
   Scene scene;
-  for (int i = 0; i < b.m_nodes.size(); ++i) {
-    scene.mesh.rest.push_back(from_bullet(b.m_X[i]));
-    const double w = static_cast<double>(b.m_nodes[i].m_im);
-    scene.mesh.mass.push_back(w > 0 ? 1 / w : 0);
-    if (!(w > 0)) scene.pins.push_back(i);
-  }
-  const auto index = [&](const btSoftBody::Node* n) { return static_cast<int>(n - &b.m_nodes[0]); };
-  for (int i = 0; i < b.m_faces.size(); ++i) {
-    const auto& n = b.m_faces[i].m_n;
-    scene.mesh.triangles.push_back({index(n[0]), index(n[1]), index(n[2])});
-  }
-  for (int i = 0; i < b.m_links.size(); ++i) {
-    const btSoftBody::Link& link = b.m_links[i];
-    const auto family = b.m_materials.findLinearSearch(link.m_material);
-    scene.links.push_back({index(link.m_n[0]), index(link.m_n[1]),
-                           std::sqrt(static_cast<double>(link.m_c1)), static_cast<Family>(family)});
-  }
+  read_back_cloth(b, RestLength::m_c1, scene);
   store(scene.start);
   scene.colliders = colliders_.read_back(0);
-  scene.gravity = from_bullet(b.m_worldInfo->m_gravity);
   scene.damping = -std::log1p(-static_cast<double>(b.m_cfg.kDP)) / static_cast<double>(h_);
   scene.thickness = static_cast<double>(b.getCollisionShape()->getMargin()) - margin_;
   scene.dt = static_cast<double>(h_) * substeps_;
@@ -332,10 +266,7 @@ Scene BulletSoftBody::read_back() const {
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
-  if (!params.is("precision", kBulletPrecision))
-    throw InputError("bullet: precision=" + std::string(params.choice("precision")) +
-                     " needs the program " +
-                     std::string(bullet_program(params.choice("precision"))));
+  require_program("bullet", params);
   return std::make_unique<BulletSoftBody>(scene, params);
 }
 
@@ -355,29 +286,22 @@ std::vector<std::string> cannot(const Scene& scene, const Params& params) {
     reasons.push_back("friction above 1 turns btSoftBody's tangential motion around");
   if (params.integer("iterations") == 0 && scene.damping > 0)
     reasons.push_back("damping: without iterations btSoftBody skips it");
-  if (substep_length(scene, params) <= SIMD_EPSILON)
+  if (static_cast<btScalar>(substep_length(scene, params)) <= SIMD_EPSILON)
     reasons.push_back("stepSimulation ignores a substep this short");
   return reasons;
-}
-
-std::string text(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g", value);
-  return digits;
 }
 
 Effective effective(const Scene& scene, const Params& params) {
   const double h = static_cast<double>(substep_length(scene, params));
   Effective lines = {
-      {"library", "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
-                      std::to_string(BT_BULLET_VERSION % 100) + ", " +
-                      std::string(params.choice("precision"))},
-      {"time step", text(h) + " s x " + std::string(params.value("substeps")) + ", as binary32"},
+      library_line(params),
+      time_step_line(scene, params),
       {"integration", "symplectic Euler; the same positions as Verlet"},
-      {"projection", "sqrt-free, weighted by inverse mass, kLST " + text(params.real("stiffness"))},
+      {"projection",
+       "sqrt-free, weighted by inverse mass, kLST " + short_text(params.real("stiffness"))},
       {"link order", "the scene's"},
       {"gravity", "the scene's (soft bodies' own default: -10 m/s^2 in y)"},
-      {"damping", "kDP " + text(-std::expm1(-scene.damping * h)) + " per substep"},
+      {"damping", "kDP " + short_text(-std::expm1(-scene.damping * h)) + " per substep"},
       {"normals", params.is("faces", "on") ? "computed every substep" : "off"},
   };
   if (scene.wind)
@@ -387,10 +311,11 @@ Effective effective(const Scene& scene, const Params& params) {
                                             ? "links, then contacts"
                                             : "contacts, then links (Bullet's own)");
   lines.emplace_back("contacts", "vertices only, found once per substep at the predicted place");
-  lines.emplace_back("margin", text(scene.thickness + params.real("margin")) + " m (default 0.25)");
+  lines.emplace_back("margin",
+                     short_text(scene.thickness + params.real("margin")) + " m (default 0.25)");
   lines.emplace_back("distance field",
-                     "trilinear, voxel " + text(params.real("voxel")) + " m (default 0.25)");
-  lines.emplace_back("contact hardness", "kKHR " + text(params.real("hardness")));
+                     "trilinear, voxel " + short_text(params.real("voxel")) + " m (default 0.25)");
+  lines.emplace_back("contact hardness", "kKHR " + short_text(params.real("hardness")));
   lines.emplace_back("friction", params.is("friction", "own")
                                      ? "tangential motion x (1 - mu) per contact pass"
                                      : "none");

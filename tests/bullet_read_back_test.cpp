@@ -58,6 +58,12 @@ TEST(BulletReadBack, HoldsEverythingThatTheSceneSays) {
   EXPECT_EQ(differences(scene, read_back(*bullet(scene)), 1e-13), std::vector<std::string>{});
 }
 
+TEST(BulletReadBack, SoDoesTheDeformableBody) {
+  const Scene scene = everything();
+  EXPECT_EQ(differences(scene, read_back(*bullet(scene, "bullet-deformable")), 1e-13),
+            std::vector<std::string>{});
+}
+
 TEST(BulletReadBack, SubstepsChangeTheTimeStepByRoundingToBinary32) {
   const Scene scene = everything();
   const auto solver = bullet(scene, "bullet:substeps=7");

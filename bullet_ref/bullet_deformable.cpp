@@ -1,0 +1,350 @@
+// Bullet's newer cloth: btSoftBody in a btDeformableMultiBodyDynamicsWorld, with Hooke springs for
+// links and an implicit Euler step (one Newton step with conjugate gradients unless told
+// otherwise). Statements that look odd answer traps that bullet_ref/README.md describes.
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletSoftBody/btDeformableBodySolver.h>
+#include <BulletSoftBody/btDeformableGravityForce.h>
+#include <BulletSoftBody/btDeformableMassSpringForce.h>
+#include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+
+#include <cmath>
+
+#include "bullet_ref/cloth_builder.hpp"
+#include "bullet_ref/convert.hpp"
+#include "bullet_ref/read_back.hpp"
+#include "bullet_ref/rigid_colliders.hpp"
+#include "core/model/solver.hpp"
+#include "core/model/wind.hpp"
+
+namespace taut {
+
+namespace {
+
+using Kind = ParamSpec::Kind;
+constexpr ParamSpec kParams[] = {
+    {.name = "stiffness",
+     .kind = Kind::real,
+     .unit = "N/m",
+     .default_value = "1000",
+     .min = 1e-6,
+     .max = 1e9,
+     .help = "spring constant of every link: the accuracy knob, for the scene's links are rigid"},
+    {.name = "implicit",
+     .kind = Kind::choice,
+     .default_value = "true",
+     .choices = "true|false",
+     .help = "backward Euler, or explicit springs (stable below k h^2/m of about 0.3)"},
+    {.name = "newton",
+     .kind = Kind::integer,
+     .default_value = "1",
+     .min = 1,
+     .max = 1000,
+     .help = "Newton steps at most per implicit substep (Bullet's default: 1)"},
+    {.name = "substeps",
+     .kind = Kind::integer,
+     .default_value = "1",
+     .min = 1,
+     .max = 1e6,
+     .help = "each step is this many calls of stepSimulation(dt / substeps)"},
+    {.name = "precision",
+     .kind = Kind::choice,
+     .default_value = "double",
+     .choices = "float|double",
+     .help = "which build of Bullet; float runs in taut-f32"},
+    {.name = "spring-damping",
+     .kind = Kind::real,
+     .unit = "N s/m",
+     .default_value = "0",
+     .min = 0,
+     .max = 1e6,
+     .help = "damping along every link, on top of the scene's (Bullet's default: 0.05)"},
+    {.name = "margin",
+     .kind = Kind::real,
+     .unit = "m",
+     .default_value = "0",
+     .min = 0,
+     .max = 1,
+     .help = "collision margin on top of the scene's thickness (Bullet's default: 0.25)"},
+    {.name = "voxel",
+     .kind = Kind::real,
+     .unit = "m",
+     .default_value = "0.05",
+     .min = 1e-3,
+     .max = 10,
+     .help = "grid spacing of the colliders' distance fields (this world's default: 0.005)"},
+};
+
+/// Bullet has no setter for its number of Newton steps.
+struct DeformableSolver : btDeformableBodySolver {
+  explicit DeformableSolver(int newton_steps) { m_maxNewtonIterations = newton_steps; }
+};
+
+/// A world with nothing in it; the order of members is the order in which Bullet wants them built.
+struct World {
+  explicit World(int newton_steps) : deformables(newton_steps) {
+    constraints.setDeformableSolver(&deformables);
+  }
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  DeformableSolver deformables;
+  btDeformableMultiBodyConstraintSolver constraints;
+  btDeformableMultiBodyDynamicsWorld world{&dispatcher, &broadphase, &constraints, &configuration,
+                                           &deformables};
+};
+
+class BulletDeformable final : public Solver, public HoldsScene {
+ public:
+  BulletDeformable(const Scene& scene, const Params& params)
+      : scene_(scene),
+        margin_(params.real("margin")),
+        substeps_(params.integer("substeps")),
+        newton_(params.is("implicit", "true") ? params.integer("newton") : 1),
+        h_(substep_length(scene, params)),
+        keep_(static_cast<btScalar>(std::exp(-scene.damping * static_cast<double>(h_)))),
+        world_(newton_),
+        colliders_(scene, world_.world),
+        springs_(static_cast<btScalar>(params.real("stiffness")),
+                 static_cast<btScalar>(params.real("spring-damping"))),
+        gravity_(to_bullet(scene.gravity)) {
+    auto& world = world_.world;
+    world.setGravity(to_bullet(scene.gravity));  // does not reach soft bodies
+    configure_world_info(world.getWorldInfo(), scene, params.real("voxel"));
+    world.setImplicit(params.is("implicit", "true"));
+    world.setUseProjection(true);  // without it pinned implicit bodies do not move
+    body_ = build_cloth(world.getWorldInfo(), scene, 1, margin_, true);
+    body_->m_cfg.drag = 0;
+    body_->m_cfg.kDF = 1;  // so that a collider's friction is what the scene says
+    body_->m_cfg.collisions =
+        scene.colliders.empty() ? 0
+                                : btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
+    world.addSoftBody(body_.get());
+    world.addForce(body_.get(), &springs_);
+    world.addForce(body_.get(), &gravity_);
+    load(scene.start);
+  }
+  ~BulletDeformable() override { world_.world.removeSoftBody(body_.get()); }
+
+  void load(const State& state) override {
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      btSoftBody::Node& n = node(i);
+      n.m_x = n.m_q = to_bullet(state.x[i]);
+      set_velocity(n, n.m_im > 0 ? to_bullet(state.v[i]) : btVector3(0, 0, 0));
+      n.m_f.setZero();
+      n.m_splitv.setZero();
+    }
+    pin_velocity_.clear();
+    for (const int pin : scene_.pins)
+      pin_velocity_.push_back(to_bullet(state.v[static_cast<std::size_t>(pin)]));
+    body_->updateBounds();
+  }
+
+  void step(double t, double dt) override {
+    const double h = dt / substeps_;
+    for (int s = 0; s < substeps_; ++s) substep(t + s * h, t + (s + 1) * h);
+  }
+
+  void store(State& state) const override {
+    state.x.resize(scene_.start.x.size()), state.v.resize(state.x.size());
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      state.x[i] = from_bullet(node(i).m_x);
+      state.v[i] = from_bullet(node(i).m_v);
+    }
+    for (std::size_t p = 0; p < scene_.pins.size(); ++p)
+      state.v[static_cast<std::size_t>(scene_.pins[p])] = from_bullet(pin_velocity_[p]);
+  }
+
+  std::vector<PassCost> plan() const override;
+  Scene read_back() const override;
+
+ private:
+  /// The implicit scheme starts from m_vn, the explicit one from m_v.
+  static void set_velocity(btSoftBody::Node& n, const btVector3& v) { n.m_v = n.m_vn = v; }
+
+  void substep(double from, double to) {
+    if (scene_.wind) find_wind();
+    if (scene_.damping > 0) damp();
+    if (scene_.wind) blow();
+    colliders_.move(from, to);
+    move_pins(to);
+    world_.world.stepSimulation(h_, 0);  // with its default arguments it would step by 1/60 s
+  }
+
+  /// Bullet's drag is lost in the implicit scheme, so velocities are damped here.
+  void damp() {
+    for (int i = 0; i < body_->m_nodes.size(); ++i)
+      set_velocity(body_->m_nodes[i], body_->m_nodes[i].m_v * keep_);
+  }
+
+  /// The wind's impulse on every node, from the velocities that store() would give.
+  void find_wind() {
+    wind_.assign(scene_.start.x.size(), Vec3::Zero());
+    store(now_);
+    for (const auto& [a, b, c] : scene_.mesh.triangles) {
+      const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b),
+                 ic = static_cast<std::size_t>(c);
+      const Vec3 force = wind_on_corner(*scene_.wind, now_.x[ia], now_.x[ib], now_.x[ic],
+                                        (now_.v[ia] + now_.v[ib] + now_.v[ic]) / 3);
+      for (const std::size_t corner : {ia, ib, ic}) wind_[corner] += force;
+    }
+  }
+
+  /// This world ignores addForce, so the impulse goes into the velocity that the step starts from.
+  void blow() {
+    for (std::size_t i = 0; i < wind_.size(); ++i) {
+      btSoftBody::Node& n = node(i);
+      set_velocity(n, n.m_v + to_bullet(wind_[i]) * (n.m_im * h_));
+    }
+  }
+
+  void move_pins(double to) {
+    for (std::size_t p = 0; p < scene_.pins.size(); ++p) {
+      btSoftBody::Node& n = node(static_cast<std::size_t>(scene_.pins[p]));
+      const btVector3 there =
+          scene_.pin_motions.empty() ? n.m_x : to_bullet(pin_position(scene_, scene_.pins[p], to));
+      pin_velocity_[p] = (there - n.m_x) / h_;
+      n.m_x = n.m_q = there;
+    }
+  }
+
+  btSoftBody::Node& node(std::size_t i) { return body_->m_nodes[static_cast<int>(i)]; }
+  const btSoftBody::Node& node(std::size_t i) const { return body_->m_nodes[static_cast<int>(i)]; }
+
+  Scene scene_;
+  double margin_;
+  int substeps_;
+  int newton_;
+  btScalar h_;
+  btScalar keep_;  ///< share of a velocity that damping leaves in one substep
+  World world_;
+  RigidColliders colliders_;
+  btDeformableMassSpringForce springs_;
+  btDeformableGravityForce gravity_;
+  std::unique_ptr<btSoftBody> body_;
+  std::vector<btVector3> pin_velocity_;  ///< [pins] m/s, for wind and store()
+  std::vector<Vec3> wind_;               ///< [n] N
+  State now_;
+};
+
+std::vector<PassCost> BulletDeformable::plan() const {
+  const auto n = static_cast<std::size_t>(body_->m_nodes.size());
+  const auto links = static_cast<std::size_t>(body_->m_links.size());
+  const auto faces = static_cast<std::size_t>(body_->m_faces.size());
+  const auto per_step = static_cast<std::size_t>(substeps_);
+  std::vector<PassCost> costs;
+  if (scene_.wind)
+    costs.push_back({.pass = "wind",
+                     .items = faces,
+                     .repeats = per_step,
+                     .bytes = n * 3 * sizeof(Vec3) + faces * sizeof(Triangle)});
+  costs.push_back({.pass = "predict and update tree",
+                   .items = n,
+                   .repeats = per_step,
+                   .bytes = node_bytes(*body_)});
+  if (!scene_.colliders.empty())
+    costs.push_back({.pass = "detect contacts",
+                     .items = n * scene_.colliders.size(),
+                     .repeats = per_step,
+                     .bytes = distance_field_bytes(*body_) + colliders_.bytes()});
+  // Conjugate gradients visit every spring once per iteration, up to 300 times; Bullet keeps no
+  // count.
+  costs.push_back(
+      {.pass = "springs (Newton steps)",
+       .items = links,
+       .repeats = per_step * static_cast<std::size_t>(newton_),
+       .bytes = static_cast<std::size_t>(body_->m_links.capacity()) * sizeof(btSoftBody::Link) +
+                9 * n * sizeof(btVector3)});
+  if (faces > 0)
+    costs.push_back(
+        {.pass = "normals",
+         .items = faces,
+         .repeats = per_step,
+         .bytes = static_cast<std::size_t>(body_->m_faces.capacity()) * sizeof(btSoftBody::Face)});
+  return costs;
+}
+
+Scene BulletDeformable::read_back() const {
+  Scene scene;
+  read_back_cloth(*body_, RestLength::m_rl, scene);
+  scene.gravity = from_bullet(gravity_.m_gravity);
+  store(scene.start);
+  scene.colliders = colliders_.read_back(0);
+  scene.thickness = static_cast<double>(body_->getCollisionShape()->getMargin()) - margin_;
+  scene.dt = static_cast<double>(h_) * substeps_;
+  // Bullet has no place for these; the adapter applies them at each substep.
+  scene.damping = -std::log(static_cast<double>(keep_)) / static_cast<double>(h_);
+  scene.pin_motions = scene_.pin_motions;
+  scene.wind = scene_.wind;
+  scene.steps = scene_.steps;
+  return scene;
+}
+
+std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
+  require_program("bullet-deformable", params);
+  return std::make_unique<BulletDeformable>(scene, params);
+}
+
+std::vector<std::string> cannot(const Scene& scene, const Params& params) {
+  std::vector<std::string> reasons;
+  if (scene.self_collision)
+    reasons.push_back(
+        "self-collision: Bullet shuffles its contacts by a generator that the whole process "
+        "shares, "
+        "so that a case could not be repeated");
+  if (static_cast<btScalar>(substep_length(scene, params)) <= SIMD_EPSILON)
+    reasons.push_back("stepSimulation ignores a substep this short");
+  return reasons;
+}
+
+Effective effective(const Scene& scene, const Params& params) {
+  const bool implicit = params.is("implicit", "true");
+  Effective lines = {
+      library_line(params),
+      time_step_line(scene, params),
+      {"integration", implicit ? "backward Euler, " + std::string(params.value("newton")) +
+                                     " Newton step(s), conjugate gradients"
+                               : "symplectic Euler, explicit springs"},
+      {"links", "springs of " + short_text(params.real("stiffness")) +
+                    " N/m, all families; the "
+                    "scene's are rigid"},
+      {"spring damping", short_text(params.real("spring-damping")) + " N s/m (default 0.05)"},
+      {"gravity", "the scene's, by btDeformableGravityForce (default: none)"},
+      {"damping", "velocities x exp(-damping h) before each substep"},
+      {"NaN", "Bullet turns velocity changes that are not numbers into zero"},
+  };
+  if (!implicit) lines.emplace_back("speed limit", "the cloth's bounding box per substep");
+  if (scene.wind) lines.emplace_back("wind", "our face law, as an impulse before each substep");
+  if (scene.colliders.empty()) return lines;
+  lines.emplace_back("contacts", "vertices only, found once per substep");
+  lines.emplace_back("margin",
+                     short_text(scene.thickness + params.real("margin")) + " m (default 0.25)");
+  lines.emplace_back("distance field",
+                     "trilinear, voxel " + short_text(params.real("voxel")) + " m (default 0.005)");
+  lines.emplace_back("friction", "Coulomb, kDF 1");
+  if (implicit && !scene.pins.empty())
+    lines.emplace_back("contact prediction",
+                       "Bullet assigns forces past a pin to the wrong vertex when it predicts "
+                       "contact velocities");
+  return lines;
+}
+
+std::string_view program(const Params& params) {
+  return bullet_program(params.choice("precision"));
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_SOLVER(bullet_deformable) = {
+    .name = "bullet-deformable",
+    .summary = "Bullet's deformable body: Hooke springs, implicit Euler",
+    .source =
+        "Bullet Physics 3.24, btDeformableMultiBodyDynamicsWorld, btDeformableMassSpringForce",
+    .params = taut::kParams,
+    .make = taut::make,
+    .cannot = taut::cannot,
+    .effective = taut::effective,
+    .program = taut::program};
