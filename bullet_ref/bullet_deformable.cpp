@@ -104,7 +104,7 @@ class BulletDeformable final : public Solver, public HoldsScene {
         substeps_(params.integer("substeps")),
         newton_(params.is("implicit", "true") ? params.integer("newton") : 1),
         h_(substep_length(scene, params)),
-        keep_(static_cast<btScalar>(std::exp(-scene.damping * static_cast<double>(h_)))),
+        loss_(static_cast<btScalar>(-std::expm1(-scene.damping * static_cast<double>(h_)))),
         world_(newton_),
         colliders_(scene, world_.world),
         springs_(static_cast<btScalar>(params.real("stiffness")),
@@ -176,7 +176,7 @@ class BulletDeformable final : public Solver, public HoldsScene {
   /// Bullet's drag is lost in the implicit scheme, so velocities are damped here.
   void damp() {
     for (int i = 0; i < body_->m_nodes.size(); ++i)
-      set_velocity(body_->m_nodes[i], body_->m_nodes[i].m_v * keep_);
+      set_velocity(body_->m_nodes[i], body_->m_nodes[i].m_v * (1 - loss_));
   }
 
   /// The wind's impulse on every node, from the velocities that store() would give.
@@ -218,7 +218,7 @@ class BulletDeformable final : public Solver, public HoldsScene {
   int substeps_;
   int newton_;
   btScalar h_;
-  btScalar keep_;  ///< share of a velocity that damping leaves in one substep
+  btScalar loss_;  ///< share of a velocity that damping takes in one substep
   World world_;
   RigidColliders colliders_;
   btDeformableMassSpringForce springs_;
@@ -275,7 +275,7 @@ Scene BulletDeformable::read_back() const {
   scene.thickness = static_cast<double>(body_->getCollisionShape()->getMargin()) - margin_;
   scene.dt = static_cast<double>(h_) * substeps_;
   // Bullet has no place for these; the adapter applies them at each substep.
-  scene.damping = -std::log(static_cast<double>(keep_)) / static_cast<double>(h_);
+  scene.damping = -std::log1p(-static_cast<double>(loss_)) / static_cast<double>(h_);
   scene.pin_motions = scene_.pin_motions;
   scene.wind = scene_.wind;
   scene.steps = scene_.steps;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 
 namespace taut {
@@ -151,15 +150,6 @@ TEST(BulletLimits, SaysWhatItWouldMisread) {
   scene.self_collision.reset();
   scene.damping = 1;
   EXPECT_EQ(reasons("bullet:iterations=0"), 1u);
-}
-
-TEST(BulletLimits, EachPrecisionHasItsProgram) {
-  const Scene scene = sheet_above({.shape = Plane{}}, {0, 0.33, 0}, Vec3::UnitX(), Vec3::UnitZ());
-  const SolverChoice in_double = parse_solver("bullet:precision=double");
-  const SolverChoice in_float = parse_solver("bullet:precision=float");
-  EXPECT_EQ(in_double.entry->program(in_double.params), "taut");
-  EXPECT_EQ(in_float.entry->program(in_float.params), "taut-f32");
-  EXPECT_THROW(in_float.entry->make(scene, in_float.params), InputError);
 }
 
 }  // namespace
