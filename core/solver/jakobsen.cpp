@@ -2,9 +2,9 @@
 #include <memory>
 
 #include "core/model/solver.hpp"
+#include "core/solver/contact/responses.hpp"
 #include "core/solver/jakobsen_params.hpp"
 #include "core/solver/order.hpp"
-#include "core/solver/passes/collide.hpp"
 #include "core/solver/passes/jacobi.hpp"
 #include "core/solver/passes/links.hpp"
 #include "core/solver/passes/wind.hpp"
@@ -34,20 +34,24 @@ class Jakobsen final : public Solver {
       add_links<Projection::exact>(scene, w, params);
     else
       add_links<Projection::sqrt_free>(scene, w, params);
-    for (const Collider& collider : scene.colliders)
-      constraints_.push_back(
-          std::make_unique<CollidePass<Real>>(collider, scene.thickness, p_.size()));
+    contact_ = make_contact<Real>(scene, params);
   }
 
   /// The published TimeStep(), substeps times with dt / substeps.
   void step(double t, double dt) override {
     const double h = dt / substeps_;
     for (int s = 0; s < substeps_; ++s, t += h) {
-      for (auto& force : forces_) force->apply(p_, t, h);  // AccumulateForces
-      verlet(h);                                           // Verlet
+      apply(forces_, t, h);  // AccumulateForces
+      verlet(h);             // Verlet
       pins_.place(p_, t + h);
-      for (int k = 0; k < iterations_; ++k)  // SatisfyConstraints
-        for (auto& constraint : constraints_) constraint->apply(p_, t, h);
+      for (const auto* list : {&contact_.before, &contact_.sweep, &contact_.after})
+        for (auto& pass : *list) pass->begin(p_, t, h);
+      apply(contact_.before, t, h);
+      for (int k = 0; k < iterations_; ++k) {  // SatisfyConstraints
+        apply(constraints_, t, h);
+        apply(contact_.sweep, t, h);
+      }
+      apply(contact_.after, t, h);
     }
   }
 
@@ -57,6 +61,8 @@ class Jakobsen final : public Solver {
       p_.x.set(i, state.x[i].template cast<Real>());
       p_.previous.set(i, previous.template cast<Real>());
     }
+    for (const auto* list : {&contact_.before, &contact_.sweep, &contact_.after})
+      for (auto& pass : *list) pass->restart();
   }
 
   void store(State& state) const override {
@@ -81,11 +87,20 @@ class Jakobsen final : public Solver {
     add({{.pass = "verlet", .items = p_.size(), .bytes = bytes}}, substeps_);
     if (!pins_.empty())
       add({{.pass = "pins", .items = pins_.size(), .bytes = pins_.bytes()}}, substeps_);
+    for (const auto& pass : contact_.before) add(pass->cost(), substeps_);
     for (const auto& constraint : constraints_) add(constraint->cost(), substeps_ * iterations_);
+    for (const auto& pass : contact_.sweep) add(pass->cost(), substeps_ * iterations_);
+    for (const auto& pass : contact_.after) add(pass->cost(), substeps_);
     return costs;
   }
 
  private:
+  using PassList = std::vector<std::unique_ptr<Pass<Real>>>;
+
+  void apply(PassList& passes, double t, double dt) {
+    for (auto& pass : passes) pass->apply(p_, t, dt);
+  }
+
   /// x* = x + (x - x') + a dt^2, the velocity x - x' damped.
   void verlet(double dt) {
     using Point = typename Points<Real>::Point;
@@ -133,8 +148,9 @@ class Jakobsen final : public Solver {
   double damping_;
   Pins pins_;
   Particles<Real> p_;
-  std::vector<std::unique_ptr<Pass<Real>>> forces_;
-  std::vector<std::unique_ptr<Pass<Real>>> constraints_;
+  PassList forces_;
+  PassList constraints_;
+  ContactPasses<Real> contact_;
 };
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/solver/contact/responses.hpp"
+
 namespace taut {
 
 namespace {
@@ -71,6 +73,12 @@ constexpr ParamSpec kSpecs[] = {
      .min = 0,
      .max = kInf,
      .help = "of a bend link"},
+    {.name = "contact",
+     .kind = Kind::choice,
+     .default_value = "swept",
+     .choices = "swept|sweep|before|after|freeze|halt",
+     .help = "response to colliders: in every sweep, with or without the test against passing "
+             "through; once, before or after the sweeps; or the report's quick fixes"},
     {.name = "precision",
      .kind = Kind::choice,
      .default_value = "float",
@@ -104,10 +112,12 @@ Firmness firmness(const Params& params, double substep, int iterations) {
           .iterations = iterations};
 }
 
-Effective jakobsen_effective(const Scene&, const Params& params) {
-  return {{"precision", std::string(params.choice("precision"))},
-          {"link order",
-           params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))}};
+Effective jakobsen_effective(const Scene& scene, const Params& params) {
+  Effective lines{{"precision", std::string(params.choice("precision"))},
+                  {"link order", params.is("order", "mesh") ? "the scene's"
+                                                            : std::string(params.choice("order"))}};
+  for (auto& line : contact_effective(scene, params)) lines.push_back(std::move(line));
+  return lines;
 }
 
 }  // namespace taut

@@ -1,0 +1,57 @@
+#include "core/solver/contact/responses.hpp"
+
+#include "core/solver/passes/collide.hpp"
+#include "core/solver/passes/report_fixes.hpp"
+
+namespace taut {
+
+namespace {
+
+template <class Real, template <class> class SurfaceOf>
+void add_response(const Collider& collider, const Scene& scene, const Params& params,
+                  ContactPasses<Real>& passes) {
+  const std::size_t n = scene.start.x.size();
+  const double thickness = scene.thickness;
+  using Swept = CollidePass<Real, SurfaceOf, true>;
+  using Nearest = CollidePass<Real, SurfaceOf, false>;
+  if (params.is("contact", "swept"))
+    passes.sweep.push_back(std::make_unique<Swept>(collider, thickness, n));
+  else if (params.is("contact", "sweep"))
+    passes.sweep.push_back(std::make_unique<Nearest>(collider, thickness, n));
+  else if (params.is("contact", "before"))
+    passes.before.push_back(std::make_unique<Nearest>(collider, thickness, n));
+  else if (params.is("contact", "after"))
+    passes.after.push_back(std::make_unique<Nearest>(collider, thickness, n));
+  else if (params.is("contact", "freeze"))
+    passes.sweep.push_back(std::make_unique<FreezePass<Real, SurfaceOf>>(collider, thickness, n));
+  else
+    passes.before.push_back(std::make_unique<HaltPass<Real, SurfaceOf>>(collider, thickness, n));
+}
+
+}  // namespace
+
+template <class Real>
+ContactPasses<Real> make_contact(const Scene& scene, const Params& params) {
+  ContactPasses<Real> passes;
+  for (const Collider& collider : scene.colliders) {
+    if (std::holds_alternative<Plane>(collider.shape))
+      add_response<Real, PlaneSurface>(collider, scene, params, passes);
+    else if (std::holds_alternative<Ball>(collider.shape))
+      add_response<Real, BallSurface>(collider, scene, params, passes);
+    else
+      add_response<Real, BoxSurface>(collider, scene, params, passes);
+  }
+  return passes;
+}
+
+template ContactPasses<float> make_contact(const Scene&, const Params&);
+template ContactPasses<double> make_contact(const Scene&, const Params&);
+
+Effective contact_effective(const Scene& scene, const Params& params) {
+  if (scene.colliders.empty()) return {};
+  return {{"contact response", std::string(params.choice("contact"))},
+          {"friction", "Coulomb: tangential correction at most mu times the depth"},
+          {"contact distance", "the scene's thickness"}};
+}
+
+}  // namespace taut
