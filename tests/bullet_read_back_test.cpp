@@ -28,6 +28,7 @@ Scene everything() {
     scene.start.x[i] = 1.1 * scene.start.x[i] + Vec3(0, 2, 0);  // a stretched start
     scene.start.v[i] = {0.1, -0.2, 0.01 * static_cast<double>(i)};
   }
+  for (Link& link : scene.links) link.rest *= 0.9;  // tighter than the rest shape
   scene.pin_motions = {{{0}, {.velocity = {0, 0, 1}}}};
   const Vec3 tilted = Vec3(1, 2, 3).normalized();
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.7, tilted));
