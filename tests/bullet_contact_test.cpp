@@ -28,7 +28,7 @@ Scene sheet_above(const Collider& collider, const Vec3& middle, const Vec3& u, c
   scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
   scene.colliders = {collider};
   scene.thickness = kThickness;
-  scene.dt = static_cast<float>(1 / 60.0);
+  scene.dt = static_cast<double>(1 / 60.0F);
   scene.steps = 180;
   return scene;
 }

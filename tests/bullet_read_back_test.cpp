@@ -42,7 +42,7 @@ Scene everything() {
   scene.gravity = {0.5, -3.7, 0.1};
   scene.damping = 0.3;
   scene.thickness = 0.01;
-  scene.dt = static_cast<float>(1 / 60.0);
+  scene.dt = static_cast<double>(1 / 60.0F);
   return scene;
 }
 
