@@ -105,7 +105,8 @@ TEST_F(Figures, NamesWithQuotesCommasAndLineBreaksReachNobodysSyntax) {
     r.params["mode"] = r.params["iterations"] == "4" ? "it's, \"odd\"\n`date` $0 %d" : "plain";
     r.status.reason = "a,b\n\"c\"";
   }
-  const Figure figure = draw({.kind = "error-iterations", .title = "'; system 'date `id` \\n"}, records);
+  const Figure figure =
+      draw({.kind = "error-iterations", .title = "'; system 'date `id` \\n"}, records);
   EXPECT_NE(read_file(figure.svg).find("'; system 'date `id` \\n"), std::string::npos);
 }
 

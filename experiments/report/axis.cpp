@@ -23,7 +23,7 @@ constexpr std::array kTitles{
     Titled{"iterations", "sweeps per step", ""},
     Titled{"substeps", "substeps per step", ""},
     Titled{"steps", "steps", ""},
-    Titled{"t", "simulated time", "t"},
+    Titled{"t", "simulated time", "s"},
     Titled{"projections", "constraint projections per step", ""},
     Titled{"vertices", "vertices", ""},
     Titled{"links", "links", ""},
@@ -41,17 +41,25 @@ std::string metric_title(std::string_view name) {
   return title;
 }
 
+/// Strains and shares read as per cent; counts and ratios of energies do not.
+bool is_share(std::string_view name) {
+  constexpr std::array<std::string_view, 8> kStarts{
+      "stretch", "compression", "structural", "shear",
+      "bend",    "area",        "strain",     "penetration.share"};
+  return name == "tunnelling.share" ||
+         std::ranges::any_of(kStarts, [&](auto start) { return name.starts_with(start); });
+}
+
 void set_unit(Quantity& q, std::string_view si) {
-  if (si == "1")
-    q.unit = "%", q.scale = 100;
-  else if (si == "m")
+  if (si == "1") {
+    if (is_share(q.name)) q.unit = "%", q.scale = 100;
+  } else if (si == "m") {
     q.unit = "mm", q.scale = 1e3;
-  else if (si == "s")
+  } else if (si == "s" && q.name != "t" && !q.name.starts_with("settle")) {
     q.unit = "ms", q.scale = 1e3;
-  else if (si == "t")
-    q.unit = "s";
-  else
+  } else {
     q.unit = si;
+  }
 }
 
 }  // namespace
@@ -74,7 +82,8 @@ double value_of(const Record& record, std::string_view name) {
 }
 
 std::string Quantity::text(double si, int digits) const {
-  const std::string number = significant(si * scale, digits);
+  const bool counted = unit.empty() && si == std::round(si) && std::abs(si) < 1e7;
+  const std::string number = counted ? exact(si) : significant(si * scale, digits);
   return unit.empty() || !std::isfinite(si) ? number : number + "\u00A0" + unit;
 }
 

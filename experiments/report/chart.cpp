@@ -140,10 +140,13 @@ SlopeLine slope_line(const Chart& chart, const PlotArea& area) {
   return line;
 }
 
+/// An empty cell would make gnuplot join the neighbours across a failure.
+std::string number(double value) { return std::isfinite(value) ? exact(value) : "NaN"; }
+
 std::string csv_row(const std::string& label, const Point& p) {
   const Record& r = *p.record;
-  return csv_field(label) + "," + csv_field(r.solver) + "," + exact(p.x) + "," + exact(p.y) + "," +
-         exact(p.along) + "," + std::string(to_string(r.status.kind)) + "," +
+  return csv_field(label) + "," + csv_field(r.solver) + "," + number(p.x) + "," + number(p.y) +
+         "," + exact(p.along) + "," + std::string(to_string(r.status.kind)) + "," +
          csv_field(r.status.reason) + "," + csv_field(r.id) + "\n";
 }
 
@@ -207,10 +210,11 @@ std::string point_names(const Chart& chart, const PlotArea& area) {
       const Point& p = *points[i];
       const double x = chart.x.position(p.x * chart.x.quantity.scale);
       const double y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));
-      out += "set label " + gnuplot_string(significant(p.along, 3)) + " at " +
-             screen(area.left + x * (area.right - area.left) + 7,
-                    area.bottom - y * (area.bottom - area.top) - 9, chart) +
-             " center tc rgb " + quoted(solver_style(curve.solver).colour.light) + " font ',10'\n";
+      out += "set label " + gnuplot_string(quantity("iterations").text(p.along, 2)) + " at " +
+             screen(area.left + x * (area.right - area.left) + 10,
+                    area.bottom - y * (area.bottom - area.top) - 10, chart) +
+             " center tc rgb " + quoted(solver_style(curve.solver).colour.light) +
+             " font ',11' front\n";
     }
   }
   return out;

@@ -38,6 +38,7 @@ struct FigureSpec {
   std::string file;               ///< file name without extension; "": from kind, x and y
   std::optional<double> slope;    ///< the theory's exponent of y over x
   int width = 760, height = 470;  ///< px; a hundredth of an inch in PDF
+  bool legend = true;             ///< false where the page around the figure explains it
   std::vector<Format> formats{Format::svg, Format::pdf};
 };
 

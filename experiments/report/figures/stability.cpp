@@ -76,6 +76,8 @@ std::string tick_text(const Quantity& q, double si) {
   return shown == std::round(shown) && shown < 1e5 ? exact(shown) : significant(shown, 2);
 }
 
+std::string muted() { return "'" + std::string(neutral("muted").light) + "'"; }
+
 std::string index_ticks(const std::string& which, const Quantity& q, const std::vector<double>& at,
                         double room) {
   const auto stride = static_cast<std::size_t>(
@@ -83,10 +85,23 @@ std::string index_ticks(const std::string& which, const Quantity& q, const std::
   std::string out = "set " + which + "tics scale 0 (";
   for (std::size_t i = 0; i < at.size(); i += stride)
     out += (i > 0 ? ", " : "") + gnuplot_string(tick_text(q, at[i])) + " " + std::to_string(i);
-  return out + ") textcolor rgb '" + std::string(neutral("muted").light) + "' font ',12'\nset " +
-         which + "range [-0.5:" + exact(static_cast<double>(at.size()) - 0.5) + "]\nset " + which +
-         "label " + gnuplot_string(q.label()) + " textcolor rgb '" +
-         std::string(neutral("muted").light) + "' font ',12'\n";
+  return out + ") textcolor rgb " + muted() + " font ',12'\nset " + which +
+         "range [-0.5:" + exact(static_cast<double>(at.size()) - 0.5) + "]\n";
+}
+
+/// Axis titles, placed by hand: gnuplot's own would leave the picture.
+std::string panel_titles(const FigureSpec& spec, const PlotArea& area, double left, double right,
+                         bool first) {
+  const auto at = [&](double x, double y) {
+    return " at screen " + exact(x / spec.width) + ",screen " +
+           exact((spec.height - y) / spec.height) + " center tc rgb " + muted() + " font ',12'";
+  };
+  std::string out = "set label 101 " + gnuplot_string(quantity(spec.x).label()) +
+                    at((left + right) / 2, area.bottom + 38) + "\n";
+  if (first)
+    out += "set label 102 " + gnuplot_string(quantity(spec.y).label()) +
+           at(14, (area.top + area.bottom) / 2) + " rotate by 90\n";
+  return out;
 }
 
 std::set<Status::Kind> kinds_in(const Map& map) {
@@ -139,26 +154,38 @@ std::string legend(const Map& map, const FigureSpec& spec, double y) {
   return out;
 }
 
+std::string panel_name(const Panel& panel) {
+  return "set label 100 " + gnuplot_string(panel.label) +
+         " at graph 0,graph 1 offset 0,0.9 left tc rgb '" +
+         std::string(solver_style(panel.solver).colour.light) + "' font ',13'\n";
+}
+
+/// Room above the cells [px]: title, legend, names of the panels.
+double head_room(const Map& map, const FigureSpec& spec) {
+  return (spec.title.empty() ? 8 : 46) + (spec.legend ? 18 : 0) +
+         (spec.legend || map.panels.size() > 1 ? 22 : 0);
+}
+
 std::string make_script(const Map& map, const FigureSpec& spec, const PlotArea& whole) {
   const double count = static_cast<double>(map.panels.size());
   const double pitch = (whole.right - whole.left + 56) / count;
   std::string out = script_preamble(spec.title, whole, spec.width, spec.height) +
                     "unset border\nset multiplot\n" +
-                    legend(map, spec, spec.title.empty() ? 12 : 46);
+                    (spec.legend ? legend(map, spec, spec.title.empty() ? 12 : 46) : "");
   for (std::size_t i = 0; i < map.panels.size(); ++i) {
     const double left = whole.left + static_cast<double>(i) * pitch, right = left + pitch - 56;
     const Panel& panel = map.panels[i];
     out += "set lmargin at screen " + exact(left / spec.width) + "\nset rmargin at screen " +
-           exact(right / spec.width) + "\nset label 100 " + gnuplot_string(panel.label) +
-           " at graph 0,graph 1 offset 0,0.9 left tc rgb '" +
-           std::string(solver_style(panel.solver).colour.light) + "' font ',13'\n" +
+           exact(right / spec.width) + "\n" +
+           (spec.legend || map.panels.size() > 1 ? panel_name(panel) : "") +
            index_ticks("x", quantity(spec.x), map.columns, right - left) +
            index_ticks("y", quantity(spec.y), map.rows, (whole.bottom - whole.top) * 1.6);
-    if (i > 0) out += "set ylabel ''\n";
+    out += panel_titles(spec, whole, left, right, i == 0);
     out += plot_panel(map, i);
     if (i == 0)
-      out += "unset title\n" + std::string("unset for [k=1:90] label k\n") +
-             "unset for [k=1:90] object k\n";
+      out +=
+          "unset label 102\nunset for [k=1:90] label k\n"
+          "unset for [k=1:90] object k\n";
   }
   return out + "unset multiplot\n";
 }
@@ -168,7 +195,7 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
   Drawing drawing;
   drawing.area = {64,
                   spec.width - 12.0,
-                  spec.title.empty() ? 48.0 : 86.0,
+                  head_room(map, spec),
                   spec.height - 50.0,
                   0,
                   static_cast<double>(map.columns.size())};

@@ -1,0 +1,278 @@
+#include "experiments/report/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "experiments/report/axis.hpp"
+#include "experiments/report/curves.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/html.hpp"
+
+namespace taut::report {
+
+namespace {
+
+/// A ratio within this factor of 1 is called equal.
+constexpr double kAlike = 1.05;
+
+bool usable(const Record& r) {
+  return r.status.kind == Status::Kind::ok || r.status.kind == Status::Kind::unsettled;
+}
+
+std::string case_key(const Record& r) {
+  std::string key = r.scene + "|" + exact(r.dt);
+  for (const char* setting : {"iterations", "substeps"}) key += "|" + exact(value_of(r, setting));
+  for (const std::string& text : r.spec.overrides) key += "|" + text;
+  return key;
+}
+
+std::vector<Record> all_records(const ReportInput& input) {
+  std::vector<Record> all;
+  std::set<std::string> keys;
+  for (const StudyResult& study : input.studies)
+    for (const Record& r : study.records)
+      if (keys.insert(r.key.empty() ? r.id : r.key).second) all.push_back(r);
+  return all;
+}
+
+std::map<std::string, std::string> choices(const Record& r) {
+  auto params = r.params;
+  params.erase("iterations");
+  params.erase("substeps");
+  return params;
+}
+
+Contender choose(const std::string& solver, const std::vector<Record>& all) {
+  std::vector<std::pair<std::map<std::string, std::string>, std::vector<Record>>> groups;
+  for (const Record& r : all) {
+    if (r.solver != solver) continue;
+    const auto params = choices(r);
+    auto group = std::ranges::find(groups, params, [](const auto& g) { return g.first; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {params, {}});
+    group->second.push_back(r);
+  }
+  const auto best =
+      std::ranges::max_element(groups, {}, [](const auto& group) { return group.second.size(); });
+  Contender contender{solver, solver_title(solver), best->second};
+  for (const auto& setting : best->first)
+    if (std::ranges::any_of(groups, [&](const auto& g) {
+          const auto other = g.first.find(setting.first);
+          return other == g.first.end() || other->second != setting.second;
+        }))
+      contender.label += " " + setting.second;
+  return contender;
+}
+
+int common_sweeps(const std::vector<Contender>& contenders) {
+  std::map<int, int> counts;
+  for (const Contender& c : contenders) {
+    std::set<int> seen;
+    for (const Record& r : c.records)
+      if (const double k = value_of(r, "iterations"); k >= 1) seen.insert(static_cast<int>(k));
+    for (const int k : seen) ++counts[k];
+  }
+  int best = 0;
+  for (const auto& [k, n] : counts)
+    if (n == static_cast<int>(contenders.size()) &&
+        (best == 0 || std::abs(std::log(k / 16.0)) < std::abs(std::log(best / 16.0))))
+      best = k;
+  return best;
+}
+
+double geometric(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += std::log(v);
+  return std::exp(sum / static_cast<double>(values.size()));
+}
+
+}  // namespace
+
+std::optional<Ratio> ratio_of(const Contender& contender, const Contender& first,
+                              const std::string& value) {
+  std::map<std::string, double> reference;
+  for (const Record& r : first.records)
+    if (usable(r)) reference[case_key(r)] = value_of(r, value);
+  std::map<std::string, std::vector<double>> by_scene;
+  int pairs = 0;
+  for (const Record& r : contender.records) {
+    const auto other = usable(r) ? reference.find(case_key(r)) : reference.end();
+    if (other == reference.end()) continue;
+    const double quotient = value_of(r, value) / other->second;
+    if (!std::isfinite(quotient) || !(quotient > 0)) continue;
+    ++pairs;
+    by_scene[r.scene].push_back(quotient);
+  }
+  if (pairs == 0) return std::nullopt;
+  Ratio ratio{1, pairs, {}};
+  std::vector<double> means;
+  for (const auto& [scene, values] : by_scene)
+    means.push_back(ratio.by_scene[scene] = geometric(values));
+  ratio.mean = geometric(means);
+  return ratio;
+}
+
+Comparison compare(const ReportInput& input) {
+  const std::vector<Record> all = all_records(input);
+  std::vector<std::string> solvers;
+  for (const Record& r : all)
+    if (std::ranges::find(solvers, r.solver) == solvers.end()) solvers.push_back(r.solver);
+  std::ranges::stable_sort(solvers, {}, [](const std::string& s) { return s != "jakobsen"; });
+  Comparison facts;
+  for (const std::string& solver : solvers) facts.contenders.push_back(choose(solver, all));
+  facts.sweeps = common_sweeps(facts.contenders);
+  for (const Contender& c : facts.contenders) {
+    facts.stretch.push_back(ratio_of(c, facts.contenders.front(), "stretch.rms"));
+    facts.cost.push_back(ratio_of(c, facts.contenders.front(), kCpuValue));
+    facts.failed.push_back(static_cast<int>(std::ranges::count_if(c.records, [](const Record& r) {
+      return !usable(r) && r.status.kind != Status::Kind::unsupported;
+    })));
+    facts.total.push_back(static_cast<int>(c.records.size()));
+  }
+  return facts;
+}
+
+std::optional<double> largest_stable_dt(const Contender& contender, const std::string& scene,
+                                        int sweeps) {
+  std::map<double, bool> stable;
+  for (const Record& r : contender.records) {
+    if (r.scene != scene || value_of(r, "iterations") != sweeps) continue;
+    const auto [at, fresh] = stable.try_emplace(r.dt, true);
+    at->second = at->second && usable(r);
+  }
+  if (stable.size() < 2) return std::nullopt;
+  double largest = 0;
+  for (const auto& [dt, good] : stable) {
+    if (!good) break;
+    largest = dt;
+  }
+  return largest;
+}
+
+std::vector<std::optional<double>> stable_dt(const Comparison& facts,
+                                             const std::vector<std::string>& scenes) {
+  std::vector<std::vector<double>> found(facts.contenders.size());
+  for (const std::string& scene : scenes) {
+    std::vector<double> here;
+    for (const Contender& c : facts.contenders)
+      if (const auto dt = largest_stable_dt(c, scene, facts.sweeps); dt && *dt > 0)
+        here.push_back(*dt);
+    if (here.size() != facts.contenders.size()) continue;
+    for (std::size_t i = 0; i < here.size(); ++i) found[i].push_back(here[i]);
+  }
+  std::vector<std::optional<double>> means;
+  for (const auto& values : found)
+    means.push_back(values.empty() ? std::nullopt : std::optional(geometric(values)));
+  return means;
+}
+
+std::optional<double> value_at(const Contender& contender, const std::string& scene, int sweeps,
+                               const std::string& value) {
+  std::vector<Record> here;
+  for (const Record& r : contender.records)
+    if (r.scene == scene && value_of(r, "iterations") == sweeps) here.push_back(r);
+  if (here.empty()) return std::nullopt;
+  for (const Record& r : most_common(here, "dt", 1.0 / 64).records)
+    if (usable(r) && std::isfinite(value_of(r, value))) return value_of(r, value);
+  return std::nullopt;
+}
+
+namespace {
+
+std::string times(double factor) { return "<b>" + ratio(factor) + " times</b>"; }
+
+/// "at 16 sweeps on hang: 1.2 % against 3.9 %"
+std::string quote(const Comparison& facts, const std::string& scene, std::size_t a, std::size_t b) {
+  const auto one = value_at(facts.contenders[a], scene, facts.sweeps, "stretch.rms");
+  const auto two = value_at(facts.contenders[b], scene, facts.sweeps, "stretch.rms");
+  if (!one || !two) return "";
+  const Quantity q = quantity("stretch.rms");
+  return "; " + escape_html(scene) + " at " + std::to_string(facts.sweeps) +
+         " sweeps: " + q.text(*one) + " against " + q.text(*two) + " RMS";
+}
+
+std::string plural(int n, const std::string& one) {
+  return std::to_string(n) + " " + one + (n == 1 ? "" : "s");
+}
+
+/// Scenes on which the order turns round, at most two of them by name.
+std::string exceptions(const Ratio& ratio, const std::string& other) {
+  std::vector<std::string> against;
+  for (const auto& [scene, r] : ratio.by_scene)
+    if ((ratio.mean >= 1 && r < 1 / kAlike) || (ratio.mean < 1 && r > kAlike))
+      against.push_back(scene);
+  if (against.empty()) return "";
+  const std::string scenes =
+      against.size() > 2 ? plural(static_cast<int>(against.size()), "scene")
+                         : escape_html(against.front()) +
+                               (against.size() == 2 ? " and " + escape_html(against.back()) : "");
+  return ", though on " + scenes + " " + other + " stretches less";
+}
+
+std::string stretch_sentence(const Comparison& facts, const std::string& hero, std::size_t i) {
+  const Ratio& r = *facts.stretch[i];
+  const std::string us = solver_name(facts.contenders.front()),
+                    them = solver_name(facts.contenders[i]);
+  const std::string basis = plural(r.pairs, "pair") + " of cases on " +
+                            plural(static_cast<int>(r.by_scene.size()), "scene");
+  if (r.mean < kAlike && r.mean > 1 / kAlike)
+    return "At equal sweeps " + us + " and " + them + " stretch <b>alike</b> (ratio " +
+           significant(r.mean, 3) + " over " + basis + quote(facts, hero, 0, i) + ")";
+  const bool first_wins = r.mean > 1;
+  const std::size_t winner = first_wins ? 0 : i, loser = first_wins ? i : 0;
+  return "At equal sweeps " + (first_wins ? us : them) + " stretches " +
+         times(first_wins ? r.mean : 1 / r.mean) + " less than " + (first_wins ? them : us) +
+         " (geometric mean over " + basis + quote(facts, hero, winner, loser) + ")" +
+         exceptions(r, first_wins ? them : us);
+}
+
+std::string dt_sentence(const Comparison& facts, const std::vector<std::string>& scenes) {
+  const auto dt = stable_dt(facts, scenes);
+  if (dt.size() < 2 || !dt[0] || !dt[1]) return "";
+  const Quantity q = quantity("dt");
+  const std::size_t better = *dt[0] >= *dt[1] ? 0 : 1;
+  const double factor = *dt[better] / *dt[1 - better];
+  const std::string at = " at " + plural(facts.sweeps, "sweep");
+  if (factor < kAlike) return "; both stand time steps up to " + q.text(*dt[0]) + at;
+  return "; " + solver_name(facts.contenders[better]) + " stands " + times(factor) +
+         " longer time steps" + at + " (" + q.text(*dt[better]) + " against " +
+         q.text(*dt[1 - better]) + ")";
+}
+
+std::string cost_sentence(const Comparison& facts) {
+  if (facts.cost.size() < 2 || !facts.cost[1]) return "";
+  const double r = facts.cost[1]->mean;
+  if (r < kAlike && r > 1 / kAlike) return "; a step costs both the same CPU time";
+  return "; a step of " + solver_name(facts.contenders[r > 1 ? 0 : 1]) + " costs " +
+         times(r > 1 ? r : 1 / r) + " less CPU time";
+}
+
+std::string failure_sentence(const Comparison& facts) {
+  if (std::ranges::all_of(facts.failed, [](int n) { return n == 0; })) return "No case failed.";
+  std::string out = "Failed cases:";
+  for (std::size_t i = 0; i < facts.contenders.size(); ++i)
+    out += (i > 0 ? ", " : " ") + solver_name(facts.contenders[i]) + " " +
+           std::to_string(facts.failed[i]) + " of " + std::to_string(facts.total[i]);
+  return out + ".";
+}
+
+}  // namespace
+
+std::string verdict(const Comparison& facts, const std::string& hero,
+                    const std::vector<std::string>& scenes) {
+  if (facts.contenders.size() < 2)
+    return solver_name(facts.contenders.front()) + " ran " + plural(facts.total.front(), "case") +
+           " alone: there is nothing to compare it with. " + failure_sentence(facts);
+  std::string out;
+  for (std::size_t i = 1; i < facts.contenders.size(); ++i) {
+    if (!facts.stretch[i]) continue;
+    out += (out.empty() ? "" : ". ") + stretch_sentence(facts, hero, i);
+    if (i == 1) out += dt_sentence(facts, scenes) + cost_sentence(facts);
+  }
+  if (out.empty())
+    out = "No case ended well for two solvers under equal settings: stretch cannot be compared";
+  return out + ". " + failure_sentence(facts);
+}
+
+}  // namespace taut::report

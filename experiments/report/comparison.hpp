@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/report/input.hpp"
+
+namespace taut::report {
+
+/// One solver with the settings under which it is compared: of several choices the one with most
+/// cases, so that "Bullet" means one thing in every sentence.
+struct Contender {
+  std::string solver;
+  std::string label;  ///< "Bullet", or "Bullet float" if other choices were run too
+  std::vector<Record> records;
+};
+
+/// y of a contender over y of the first one, case by case: same scene, time step, overrides and
+/// sweeps.
+struct Ratio {
+  double mean = 0;  ///< geometric, over scenes: a study with many cases of one scene weighs no more
+  int pairs = 0;    ///< cases in which both ended with a positive value
+  std::map<std::string, double> by_scene;  ///< geometric means
+};
+
+/// The numbers of which verdict and tiles speak.
+struct Comparison {
+  std::vector<Contender> contenders;          ///< in the order of first appearance
+  std::vector<std::optional<Ratio>> stretch;  ///< RMS stretch over the first contender's
+  std::vector<std::optional<Ratio>> cost;     ///< CPU per step over the first contender's
+  int sweeps = 0;                             ///< at which single cases are quoted; 0: none
+  std::vector<int> failed, total;  ///< cases by contender; unsupported ones are not failures
+};
+
+Comparison compare(const ReportInput&);
+
+/// y over y of the first contender's matching cases; nullopt without a pair.
+std::optional<Ratio> ratio_of(const Contender&, const Contender& first, const std::string& value);
+
+/// The largest dt [s] of a contender's cases on `scene` at `sweeps` below which (itself included)
+/// every tried dt ended ok or unsettled; nullopt if fewer than two were tried, 0 if the smallest
+/// failed.
+std::optional<double> largest_stable_dt(const Contender&, const std::string& scene, int sweeps);
+
+/// Geometric mean over scenes of the largest stable dt, scenes where all contenders have one.
+std::vector<std::optional<double>> stable_dt(const Comparison&,
+                                             const std::vector<std::string>& scenes);
+
+/// The value of the one case on `scene` at `sweeps` and the most common dt; nullopt if it failed.
+std::optional<double> value_at(const Contender&, const std::string& scene, int sweeps,
+                               const std::string& value);
+
+/// The verdict: what the data say, as HTML. Never claims what no pair of cases shows.
+std::string verdict(const Comparison&, const std::string& hero,
+                    const std::vector<std::string>& scenes);
+
+}  // namespace taut::report

@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/axis.hpp"
+#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/html.hpp"
+#include "experiments/report/report.hpp"
+#include "experiments/report/section.hpp"
+
+namespace taut::report {
+
+namespace {
+
+std::vector<std::string> scene_names(const ReportInput& input) {
+  std::vector<std::string> names;
+  for (const StudyResult& study : input.studies)
+    for (const Record& r : study.records)
+      if (std::ranges::find(names, r.scene) == names.end()) names.push_back(r.scene);
+  return names;
+}
+
+std::string hero_scene(const ReportInput& input, const std::vector<std::string>& scenes) {
+  for (const SceneMedia& media : input.media)
+    if (!media.clips.empty()) return media.scene;
+  if (!input.series.empty()) return input.series.front().scene;
+  return scenes.front();
+}
+
+}  // namespace
+
+Page::Page(const ReportInput& input, std::filesystem::path scratch)
+    : media_budget(kReportLimit * 2 / 3),
+      input_(input),
+      scratch_(std::move(scratch)),
+      facts_(compare(input)),
+      scenes_(scene_names(input)),
+      hero_(hero_scene(input, scenes_)) {}
+
+std::vector<Record> Page::sweep(const std::string& scene, const std::string& setting,
+                                const std::string& needs) const {
+  std::vector<Record> best;
+  std::size_t most = 1;
+  for (const StudyResult& study : input_.studies) {
+    std::vector<Record> here;
+    std::set<double> values;
+    bool any = needs.empty();
+    for (const Record& r : study.records) {
+      const double value = value_of(r, setting);
+      if (r.scene != scene || !std::isfinite(value)) continue;
+      any = any || std::isfinite(value_of(r, needs));
+      values.insert(value);
+      here.push_back(r);
+    }
+    if (any && values.size() > most) most = values.size(), best = std::move(here);
+  }
+  return best;
+}
+
+Figure Page::draw(FigureSpec spec, const FigureData& data, std::string& svg) {
+  const std::string id = "f" + std::to_string(++figures_);
+  // The heading is text of the page; in the picture it would only repeat itself.
+  const std::string title = std::exchange(spec.title, "");
+  spec.legend = false;
+  spec.formats = {Format::svg};
+  spec.file = id + "-" + slug(spec.file.empty() ? spec.kind : spec.file);
+  Figure figure = make_figure(spec, data, scratch_);
+  svg = inline_svg(read_file(figure.svg), id, title, figure.description);
+  return figure;
+}
+
+std::string Page::figure(FigureSpec spec, const FigureData& data, const std::string& heading,
+                         const std::string& caption, const std::string& classes) {
+  std::string svg, note;
+  Figure figure;
+  try {
+    figure = draw(spec, data, svg);
+  } catch (const PlotError& error) {
+    note = absent(error.what(), "");
+    const FigureEntry& entry = find_figure(spec.kind);
+    if (spec.x.empty()) spec.x = entry.x;
+    if (spec.y.empty()) spec.y = entry.y;
+    if (spec.along.empty()) spec.along = spec.x == "dt" ? "dt" : entry.along;
+    const Drawing drawing = entry.draw(spec, data);
+    figure.table = drawing.table;
+    figure.csv = scratch_ / ("f" + std::to_string(figures_) + "-" + slug(spec.kind) + ".csv");
+    write_file(figure.csv, drawing.csv);
+  } catch (const InputError&) {
+    return "";  // nothing to draw
+  }
+  return "<figure class=\"card " + classes + "\"><figcaption><h4>" + escape_html(heading) +
+         "</h4><p>" + caption + "</p></figcaption>" +
+         (svg.empty() ? note
+                      : "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"" +
+                            escape_html(heading) + "\">" + svg + "</div>") +
+         html_data(figure.table, heading, read_file(figure.csv), figure.csv.filename().string()) +
+         "</figure>\n";
+}
+
+}  // namespace taut::report

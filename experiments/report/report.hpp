@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+
+#include "experiments/report/input.hpp"
+
+namespace taut::report {
+
+/// The report as one HTML text that needs nothing else: no request leaves it (its content security
+/// policy forbids them). Figures are drawn on the way; where gnuplot is missing the data tables
+/// stay and a line says why the picture is absent. Throws InputError if no study has a record.
+std::string make_report(const ReportInput&);
+
+/// The same into a file, whole or not at all; gives its path. Throws std::runtime_error as well.
+std::filesystem::path write_report(const ReportInput&, const std::filesystem::path&);
+
+/// A report may weigh this much [bytes]; videos that would exceed it are left out, and said so.
+inline constexpr std::size_t kReportLimit = 3'000'000;
+
+}  // namespace taut::report

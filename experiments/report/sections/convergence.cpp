@@ -1,0 +1,44 @@
+#include <cmath>
+
+#include "experiments/report/axis.hpp"
+#include "experiments/report/curves.hpp"
+#include "experiments/report/html.hpp"
+#include "experiments/report/section.hpp"
+
+namespace taut::report {
+
+namespace {
+
+std::string caption(const std::vector<Record>& records, double dt) {
+  std::string out = "Δt = " + quantity("dt").text(dt, 3);
+  const std::string fitted = "; fitted exponent over the second half of the sweeps: ";
+  std::string slopes;
+  for (const Curve& curve : make_curves(records, "iterations", "stretch.rms", "iterations")) {
+    const double from = curve.points[curve.points.size() / 2].x;
+    if (const double slope = fitted_slope(curve, from); std::isfinite(slope))
+      slopes += (slopes.empty() ? "" : ", ") + solver_name(curve.solver, curve.label) + " " +
+                significant(slope, 2);
+  }
+  return out + (slopes.empty() ? "" : fitted + slopes);
+}
+
+std::string render(Page& page, const std::string& scene) {
+  const Slice slice = most_common(page.sweep(scene, "iterations", "stretch.rms"), "dt", 1.0 / 64);
+  if (slice.records.empty()) return "";
+  std::optional<double> slope;
+  for (const StudyResult& study : page.input().studies)
+    if (const auto at = study.slopes.find(scene); at != study.slopes.end()) slope = at->second;
+  return page.figure({.kind = "error-iterations",
+                      .title = "Residual stretch over sweeps, " + scene,
+                      .slope = slope,
+                      .width = 540,
+                      .height = 380},
+                     {slice.records, {}}, "Convergence: " + quantity("stretch.rms").title,
+                     caption(slice.records, slice.value));
+}
+
+}  // namespace
+}  // namespace taut::report
+
+TAUT_SECTION(convergence) = {
+    .name = "convergence", .order = 50, .per_scene = true, .render = taut::report::render};

@@ -1,0 +1,35 @@
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/report/axis.hpp"
+#include "experiments/report/curves.hpp"
+#include "experiments/report/html.hpp"
+#include "experiments/report/section.hpp"
+
+namespace taut::report {
+
+namespace {
+
+std::string render(Page& page, const std::string& scene) {
+  const auto all = page.sweep(scene, "iterations", "stretch.rms");
+  const bool timed = std::ranges::any_of(
+      all, [](const Record& r) { return std::isfinite(value_of(r, kCpuValue)); });
+  const Slice slice = most_common(all, "dt", 1.0 / 64);
+  if (slice.records.empty()) return "";
+  return page.figure(
+      {.kind = "work-precision",
+       .x = timed ? kCpuValue : "projections",
+       .title = "Stretch over work, " + scene,
+       .width = 540,
+       .height = 380},
+      {slice.records, {}}, "Work–precision",
+      std::string("down and left is better; numbers are sweeps, the grey stair is the Pareto "
+                  "front") +
+          (timed ? "" : "; work counted in projections, <code>taut bench</code> adds CPU time"));
+}
+
+}  // namespace
+}  // namespace taut::report
+
+TAUT_SECTION(work_precision) = {
+    .name = "work-precision", .order = 60, .per_scene = true, .render = taut::report::render};

@@ -1,0 +1,200 @@
+// The report: one file, everything in it, nothing that the data do not say.
+#include "experiments/report/report.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/axis.hpp"
+#include "experiments/report/comparison.hpp"
+#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/html.hpp"
+#include "experiments/report/section.hpp"
+#include "tests/synthetic_records.hpp"
+
+namespace taut::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+/// What a bare run gives: two studies on two scenes, with strain over time.
+ReportInput example() {
+  ReportInput input;
+  input.command = "./taut run iterations time-steps";
+  input.provenance = {{"version", "taut 0.1.0"}, {"compiler", "g++ 12.2.0"}};
+  input.solvers = {{"jakobsen", "Verlet with relaxed sticks", "Jakobsen 2001"},
+                   {"bullet", "btSoftBody", "Bullet 3.24"}};
+  input.scenes = {{"hang", "A sheet held by two corners"}, {"ball", "A sheet on a ball"}};
+  StudyResult sweeps{"iterations", "How fast does stretch fall?", {}, 40, {{"hang", -1}}};
+  StudyResult steps{"time-steps", "Which steps survive?", {}, 0, {}};
+  for (const std::string scene : {"hang", "ball"}) {
+    for (const Record& r : synthetic::iterations(scene)) sweeps.records.push_back(r);
+    for (const Record& r : synthetic::time_steps(scene)) steps.records.push_back(r);
+  }
+  for (StudyResult* study : {&sweeps, &steps})
+    for (Record& r : study->records)
+      if (r.scene == "hang") r.values.erase("penetration.max");
+  input.studies = {sweeps, steps};
+  for (const std::string solver : {"jakobsen", "bullet"}) {
+    TimeSeries series{"ball", solver, solver_title(solver), "stretch.rms", {}, {}};
+    for (int i = 0; i <= 160; ++i) {
+      const double t = i / 64.0;
+      series.t.push_back(t);
+      series.y.push_back((solver == "bullet" ? 0.06 : 0.02) * std::exp(-t) * (1 - std::cos(6 * t)));
+    }
+    input.series.push_back(series);
+  }
+  return input;
+}
+
+TEST(Report, OneFileThatAsksForNothing) {
+  const fs::path path =
+      fs::temp_directory_path() / ("taut_report_" + std::to_string(getpid()) + ".html");
+  EXPECT_EQ(write_report(example(), path), path);
+  const std::string html = read_file(path);
+  if (const char* keep = getenv("TAUT_KEEP_REPORT"))
+    fs::copy_file(path, keep, fs::copy_options::overwrite_existing);
+  fs::remove(path);
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+  for (const char* request : {"src=\"http", "href=\"http", "url(", "@import", "<link", "fetch("})
+    EXPECT_EQ(html.find(request), std::string::npos) << request;
+  EXPECT_LT(html.size(), 1'000'000U * 2) << "1 MB a scene";
+}
+
+TEST(Report, EverySectionIsThereAndEveryChartHasItsNumbers) {
+  const std::string html = make_report(example());
+  for (const char* id : {"verdict", "hero", "tiles", "fairness", "scenes", "scene-hang",
+                         "scene-ball", "truths", "regressions", "method", "raw", "limits"})
+    EXPECT_EQ(count(html, "id=\"" + std::string(id) + "\""), 1U) << id;
+  EXPECT_GT(count(html, "<svg class=\"chart\""), 8U);
+  EXPECT_EQ(count(html, "<svg class=\"chart\""), count(html, "<details class=\"data\""));
+  EXPECT_EQ(count(html, "<svg class=\"chart\""), count(html, "</desc>"));
+  EXPECT_EQ(html.find("rgb("), std::string::npos) << "every colour follows the theme";
+}
+
+TEST(Report, AbsentDataNameTheCommandThatMakesThem) {
+  const std::string html = make_report(example());
+  for (const char* command : {"taut truths", "taut check", "taut bench", "taut render ball"})
+    EXPECT_NE(html.find(command), std::string::npos) << command;
+}
+
+TEST(Report, NamesFromOutsideStayText) {
+  ReportInput input = example();
+  const std::string evil = "<script>alert(1)</script>\"'&";
+  input.title = evil;
+  input.command = evil;
+  input.scenes[0].summary = evil;
+  input.studies[0].question = evil;
+  for (Record& r : input.studies[0].records) {
+    r.id += evil;
+    r.status.reason = evil;
+    r.params["mode"] = evil;
+    r.effective.emplace_back(evil, evil);
+    if (r.scene == "ball") r.scene = evil;
+  }
+  const std::string html = make_report(input);
+  EXPECT_EQ(html.find("<script>alert"), std::string::npos);
+  EXPECT_NE(html.find("&lt;script&gt;alert"), std::string::npos);
+}
+
+TEST(Report, SurvivesNanFailuresOnlyAndASingleSolver) {
+  ReportInput input = example();
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records) {
+      r.values["stretch.rms"] = std::numeric_limits<double>::quiet_NaN();
+      r.projections = 0;
+    }
+  for (double& y : input.series[0].y) y = std::numeric_limits<double>::quiet_NaN();
+  std::string html = make_report(input);
+  EXPECT_EQ(html.find("nan"), html.find("nance")) << "NaN is shown as a dash";
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records) synthetic::fail(r, Status::Kind::crash, "SIGSEGV");
+  html = make_report(input);
+  EXPECT_NE(html.find("stretch cannot be compared"), std::string::npos);
+  for (StudyResult& study : input.studies)
+    std::erase_if(study.records, [](const Record& r) { return r.solver == "bullet"; });
+  EXPECT_NE(make_report(input).find("nothing to compare it with"), std::string::npos);
+}
+
+TEST(Report, WithoutAnyRecordIsAnInputError) {
+  EXPECT_THROW(make_report({}), InputError);
+  ReportInput input = example();
+  for (StudyResult& study : input.studies) study.records.clear();
+  EXPECT_THROW(make_report(input), InputError);
+}
+
+TEST(Report, MediaThatWouldBurstTheLimitAreLeftOutAndSaidSo) {
+  ReportInput input = example();
+  input.media = {
+      {"ball", {{"video/mp4", std::string(4'000'000, 'x'), "", "a ball", {}}}, 2.5, 1, {}}};
+  const std::string html = make_report(input);
+  EXPECT_LT(html.size(), kReportLimit);
+  EXPECT_NE(html.find("left out"), std::string::npos);
+  input.media[0].clips[0].bytes.resize(1000);
+  EXPECT_NE(make_report(input).find("src=\"data:video/mp4;base64,eHh4"), std::string::npos);
+}
+
+TEST(Verdict, NamesTheWinnerWhicheverItIs) {
+  ReportInput input = example();
+  std::string text = verdict(compare(input), "hang", {"hang", "ball"});
+  EXPECT_NE(text.find(">Jakobsen</b> stretches <b>"), std::string::npos) << text;
+  EXPECT_NE(text.find("3.0% against"), 0U);
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records) {
+      auto& stretch = r.values["stretch.rms"];
+      if (r.solver == "bullet") stretch /= 100;
+    }
+  text = verdict(compare(input), "hang", {"hang", "ball"});
+  EXPECT_NE(text.find(">Bullet</b> stretches <b>"), std::string::npos) << text;
+}
+
+TEST(Verdict, EqualSolversAreAlike) {
+  ReportInput input = example();
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records)
+      r.values["stretch.rms"] = 0.1 / value_of(r, "iterations"), r.status = {};
+  const std::string text = verdict(compare(input), "hang", {"hang", "ball"});
+  EXPECT_NE(text.find("<b>alike</b> (ratio 1.00"), std::string::npos) << text;
+  EXPECT_NE(text.find("both stand time steps up to 100"), std::string::npos) << text;
+  EXPECT_NE(text.find("No case failed."), std::string::npos) << text;
+}
+
+TEST(Comparison, RatiosPairOnlyCasesThatBothEndedWell) {
+  const Comparison facts = compare(example());
+  ASSERT_EQ(facts.contenders.size(), 2U);
+  EXPECT_EQ(facts.contenders[0].solver, "jakobsen");
+  EXPECT_EQ(facts.sweeps, 16);
+  ASSERT_TRUE(facts.stretch[1]);
+  // time-steps pairs have ratio 1; of 2 x 9 sweeps pairs with ratio 3 Bullet's k = 128 failed.
+  EXPECT_GT(facts.stretch[1]->mean, 1);
+  EXPECT_LT(facts.stretch[1]->mean, 3);
+  const auto dt = largest_stable_dt(facts.contenders[1], "hang", 4);
+  ASSERT_TRUE(dt);
+  EXPECT_LT(*dt, 0.1);
+}
+
+TEST(InlineSvg, KeepsContentDropsIdsAndTakesTheThemesColours) {
+  const std::string svg = inline_svg(
+      "<svg width=\"9\" viewBox=\"0 0 9 9\">\n<defs><a id='x'/></defs><g "
+      "id=\"gnuplot_canvas\">\n<g "
+      "stroke=\"none\">\n</g><path stroke=\"rgb(11, 107, 203)\"/></g></svg>",
+      "f1", "A <b>", "d");
+  EXPECT_EQ(svg.find("gnuplot_canvas"), std::string::npos);
+  EXPECT_EQ(svg.find("<defs>"), std::string::npos);
+  EXPECT_EQ(count(svg, "<g"), 1U);
+  EXPECT_NE(svg.find("var(--s-blue)"), std::string::npos);
+  EXPECT_NE(svg.find("A &lt;b&gt;"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace taut::report
