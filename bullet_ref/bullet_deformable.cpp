@@ -103,7 +103,7 @@ class BulletDeformable final : public Solver, public HoldsScene {
         margin_(params.real("margin")),
         substeps_(params.integer("substeps")),
         newton_(params.is("implicit", "true") ? params.integer("newton") : 1),
-        h_(substep_length(scene, params)),
+        h_(static_cast<btScalar>(substep_length(scene, params))),
         loss_(static_cast<btScalar>(-std::expm1(-scene.damping * static_cast<double>(h_)))),
         world_(newton_),
         colliders_(scene, world_.world),

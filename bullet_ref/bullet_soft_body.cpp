@@ -116,7 +116,7 @@ class BulletSoftBody final : public Solver, public HoldsScene {
         margin_(params.real("margin")),
         iterations_(params.integer("iterations")),
         substeps_(params.integer("substeps")),
-        h_(substep_length(scene, params)),
+        h_(static_cast<btScalar>(substep_length(scene, params))),
         colliders_(scene, world_.world) {
     world_.world.setGravity(to_bullet(scene.gravity));  // does not reach soft bodies
     configure_world_info(world_.world.getWorldInfo(), scene, params.real("voxel"));

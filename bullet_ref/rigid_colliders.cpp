@@ -118,7 +118,7 @@ std::vector<Collider> RigidColliders::read_back(double t) const {
       collider.shape = Ball{origin, ball->getRadius()};
     } else {
       const auto& box = dynamic_cast<const btBoxShape&>(*body->shape);
-      const Vec3 half = from_bullet(box.getHalfExtentsWithMargin());
+      const Vec3 half = from_bullet(box.getHalfExtentsWithoutMargin());
       const Vec3 normal = rotation * Vec3::UnitY();
       if (body->is_plane)
         collider.shape = Plane{normal, normal.dot(origin) + half.y()};

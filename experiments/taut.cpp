@@ -1,11 +1,30 @@
 // The command line: `taut VERB ...`. Each verb is a file in experiments/verbs.
+#include <algorithm>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "core/model/input_error.hpp"
 #include "experiments/verbs/verb.hpp"
 
+namespace {
+
+/// The first word, if it is neither an option nor a verb.
+std::string unknown_verb(int argc, char** argv, std::vector<std::string>& names) {
+  for (const taut::VerbEntry* verb : taut::verbs()) names.emplace_back(verb->name);
+  if (argc < 2 || argv[1][0] == '-') return {};
+  return std::find(names.begin(), names.end(), argv[1]) == names.end() ? argv[1] : "";
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  std::vector<std::string> names;
+  if (const std::string word = unknown_verb(argc, argv, names); !word.empty()) {
+    std::cerr << "unknown verb '" << word << "'" << taut::suggestion(word, names)
+              << " (`taut --help` names all)\n";
+    return taut::kUsage;
+  }
   CLI::App app("taut: runs cloth solvers side by side on identical scenes and measures them");
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Help of every verb");

@@ -28,6 +28,7 @@ Scene everything() {
     scene.start.x[i] = 1.1 * scene.start.x[i] + Vec3(0, 2, 0);  // a stretched start
     scene.start.v[i] = {0.1, -0.2, 0.01 * static_cast<double>(i)};
   }
+  for (Link& link : scene.links) link.rest *= 0.9;  // tighter than the rest shape
   scene.pin_motions = {{{0}, {.velocity = {0, 0, 1}}}};
   const Vec3 tilted = Vec3(1, 2, 3).normalized();
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.7, tilted));
@@ -41,7 +42,7 @@ Scene everything() {
   scene.gravity = {0.5, -3.7, 0.1};
   scene.damping = 0.3;
   scene.thickness = 0.01;
-  scene.dt = static_cast<float>(1 / 60.0);
+  scene.dt = static_cast<double>(1 / 60.0F);
   return scene;
 }
 

@@ -42,6 +42,22 @@ Eigen::VectorXd steady_strain(const Eigen::MatrixXd& sweep, int k, double a) {
   return (Eigen::MatrixXd::Identity(n, n) - power).partialPivLu().solve(load);
 }
 
+Eigen::MatrixXd transverse_sweeps(int n, int k, double a, double l) {
+  Eigen::VectorXd e = steady_strain(chain_sweep(n, Sweep::gauss_seidel), k, a);
+  e[0] += a;  // the fall
+  Eigen::MatrixXd y = Eigen::MatrixXd::Identity(n, n);
+  for (int sweep = 0; sweep < k; ++sweep)
+    for (int j = 0; j < n; ++j) {
+      const double share = (j == 0 ? 1.0 : 0.5) * e[j] / (l + e[j]);
+      Eigen::RowVectorXd pull = share * y.row(j);
+      if (j > 0) pull -= share * y.row(j - 1);
+      y.row(j) -= pull;
+      if (j > 0) y.row(j - 1) += pull;
+      e += e[j] * correction(n, j);
+    }
+  return y;
+}
+
 double collapsed_strain(int n, int k, double a) {
   const double rate = std::numbers::pi * std::numbers::pi * k / (4.0 * n * n);
   double sum = 0;

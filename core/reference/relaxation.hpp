@@ -23,6 +23,11 @@ double collapsed_strain(int n, int k, double a);
 /// printed limits for a chain of n links.
 double chain_radius(int n, Sweep);
 
+/// What k Gauss-Seidel sweeps do to small sideways displacements of that chain hanging at rest, in
+/// place of the implicit (1 + w^2 dt^2)^-1: each correction acts along its link as it lies at that
+/// moment of the sweeps. [n x n]; a = g dt^2 [m], links of length l [m].
+Eigen::MatrixXd transverse_sweeps(int n, int k, double a, double l);
+
 /// Growth per step of a mode that k sweeps multiply by mu: the roots of z^2 - 2 mu z + mu = 0.
 /// The one of larger modulus.
 std::complex<double> verlet_root(double mu);

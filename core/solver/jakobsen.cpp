@@ -158,10 +158,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return std::make_unique<Jakobsen<double>>(scene, params);
 }
 
-std::vector<std::string> cannot(const Scene& scene, const Params&) {
-  if (scene.self_collision) return {"self-collision is not modelled"};
-  return {};
-}
+std::vector<std::string> cannot(const Scene&, const Params&) { return {}; }
 
 }  // namespace
 }  // namespace taut

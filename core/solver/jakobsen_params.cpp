@@ -79,6 +79,11 @@ constexpr ParamSpec kSpecs[] = {
      .choices = "swept|sweep|before|after|freeze|halt",
      .help = "response to colliders: in every sweep, with or without the test against passing "
              "through; once, before or after the sweeps; or the report's quick fixes"},
+    {.name = "self",
+     .kind = Kind::choice,
+     .default_value = "grid",
+     .choices = "grid|octree|off",
+     .help = "self-collision where the scene has it: hash grid, the report's octree, or none"},
     {.name = "precision",
      .kind = Kind::choice,
      .default_value = "float",

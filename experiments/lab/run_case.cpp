@@ -61,6 +61,8 @@ class Instruments {
   std::vector<Watching> watching_;
 };
 
+}  // namespace
+
 Record describe(const Scene& scene, const SolverChoice& choice) {
   Record record;
   record.spec = {scene.name, {}, choice.canonical()};
@@ -74,8 +76,6 @@ Record describe(const Scene& scene, const SolverChoice& choice) {
   record.links = static_cast<int>(scene.links.size());
   return record;
 }
-
-}  // namespace
 
 CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOptions& options) {
   CaseRun run{describe(scene, choice), {}, scene.start};

@@ -25,7 +25,7 @@ struct RunOptions {
 
 /// What became of a case: the record and what is too big for it.
 struct CaseRun {
-  Record record;  ///< spec, key and id are those of run_case's caller: see lab/key.hpp
+  Record record;  ///< key and id are empty; run_case of a Case (lab/case.hpp) sets them
   Series series;
   State last;  ///< the last sound boundary: the final state, or the last before an explosion
 };
@@ -35,5 +35,8 @@ struct CaseRun {
 /// A scene that the solver cannot represent gives `unsupported` and no run. Numerical failure never
 /// throws; what make() throws (InputError, bad_alloc) passes through.
 CaseRun run_case(const Scene&, const SolverChoice&, const RunOptions& = {});
+
+/// What is known of a case before it runs.
+Record describe(const Scene&, const SolverChoice&);
 
 }  // namespace taut

@@ -143,7 +143,7 @@ void mass_weighted(Ledger& ledger) {
                worst_over_strains([&](double e) {
                  return projected(bullet(1), e, 1, 3) - projected(twin, e, 1, 3);
                }),
-               2e-15);
+               32 * kEpsilon);
 }
 
 }  // namespace

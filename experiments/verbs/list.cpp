@@ -1,7 +1,12 @@
 #include <iostream>
-#include <string>
+#include <memory>
+#include <nlohmann/json.hpp>
 
+#include "core/model/input_error.hpp"
+#include "core/model/scene_io.hpp"
 #include "core/model/solver.hpp"
+#include "experiments/lab/data.hpp"
+#include "experiments/lab/study.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/verbs/verb.hpp"
 
@@ -9,24 +14,137 @@ namespace taut {
 
 namespace {
 
+using nlohmann::json;
+
+constexpr std::string_view kKinds[] = {"scenes", "solvers", "metrics", "studies"};
+
+std::string allowed(const ParamSpec& spec) {
+  if (spec.kind == ParamSpec::Kind::choice) return std::string(spec.choices);
+  json min = spec.min, max = spec.max;
+  if (spec.kind == ParamSpec::Kind::integer)
+    min = static_cast<long>(spec.min), max = static_cast<long>(spec.max);
+  return min.dump() + " to " + max.dump();
+}
+
+json list_scenes() {
+  json all = json::array();
+  for (const std::string& name : shipped("scenes")) {
+    const Scene scene = load_scene(find_scene(name));
+    all.push_back({{"name", name},
+                   {"summary", scene.summary},
+                   {"vertices", scene.mesh.size()},
+                   {"links", scene.links.size()},
+                   {"dt", scene.dt},
+                   {"duration", scene.duration()}});
+  }
+  return all;
+}
+
+json list_solvers() {
+  json all = json::array();
+  for (const SolverEntry* entry : solvers()) {
+    json params = json::array();
+    for (const ParamSpec& spec : entry->params)
+      params.push_back({{"name", spec.name},
+                        {"default", spec.default_value},
+                        {"unit", spec.unit},
+                        {"allowed", allowed(spec)},
+                        {"help", spec.help}});
+    all.push_back({{"name", entry->name},
+                   {"summary", entry->summary},
+                   {"source", entry->source},
+                   {"params", params}});
+  }
+  return all;
+}
+
+json list_metrics() {
+  json all = json::array();
+  for (const MetricEntry* entry : metrics()) {
+    json values = json::array();
+    for (const ValueSpec& spec : entry->values)
+      values.push_back({{"name", spec.name},
+                        {"unit", spec.unit},
+                        {"help", spec.help},
+                        {"in_series", spec.in_series}});
+    all.push_back({{"name", entry->name},
+                   {"summary", entry->summary},
+                   {"source", entry->source},
+                   {"values", values}});
+  }
+  return all;
+}
+
+json list_studies() {
+  json all = json::array();
+  for (const std::string& name : shipped("studies")) {
+    const Study study = load_study(name);
+    all.push_back({{"name", name},
+                   {"question", study.question},
+                   {"presets", study.presets},
+                   {"scenes", study.scenes},
+                   {"solvers", study.solvers}});
+  }
+  return all;
+}
+
+json list(std::string_view kind) {
+  if (kind == "scenes") return list_scenes();
+  if (kind == "solvers") return list_solvers();
+  return kind == "metrics" ? list_metrics() : list_studies();
+}
+
+std::string text(const json& value) { return value.is_string() ? value.get<std::string>() : ""; }
+
+void print_text(std::string_view kind, const json& all) {
+  std::cout << kind << '\n';
+  for (const json& one : all) {
+    std::cout << "  " << text(one["name"]) << ": "
+              << text(one.contains("summary") ? one["summary"] : one["question"]) << '\n';
+    if (one.contains("source")) std::cout << "      source: " << text(one["source"]) << '\n';
+    for (const json& param : one.value("params", json::array())) {
+      std::cout << "      " << text(param["name"]) << '=' << text(param["default"]);
+      if (const std::string unit = text(param["unit"]); !unit.empty())
+        std::cout << " [" << unit << ']';
+      std::cout << "  (" << text(param["allowed"]) << ")  " << text(param["help"]) << '\n';
+    }
+    for (const json& value : one.value("values", json::array()))
+      std::cout << "      " << text(value["name"]) << " [" << text(value["unit"]) << "]  "
+                << text(value["help"]) << '\n';
+  }
+}
+
+int run(const std::string& what, bool as_json) {
+  json all;
+  for (const std::string_view kind : kKinds)
+    if (what.empty() || what == kind) all[std::string(kind)] = list(kind);
+  if (as_json) {
+    std::cout << (what.empty() ? all : all[what]).dump(2) << '\n';
+    return kPass;
+  }
+  bool first = true;
+  for (const std::string_view kind : kKinds)
+    if (all.contains(kind)) {
+      if (!first) std::cout << '\n';
+      first = false;
+      print_text(kind, all[std::string(kind)]);
+    }
+  return kPass;
+}
+
 std::function<int()> bind(CLI::App& app) {
   const auto what = std::make_shared<std::string>();
-  app.add_option("WHAT", *what, "solvers | metrics")->check(CLI::IsMember({"solvers", "metrics"}));
-  return [what] {
-    if (what->empty() || *what == "solvers")
-      for (const SolverEntry* entry : solvers())
-        std::cout << entry->name << '\t' << entry->summary << '\n';
-    if (what->empty() || *what == "metrics")
-      for (const MetricEntry* entry : metrics())
-        std::cout << entry->name << '\t' << entry->summary << '\n';
-    return kPass;
-  };
+  const auto as_json = std::make_shared<bool>(false);
+  app.add_option("WHAT", *what, "scenes | solvers | metrics | studies (default: all)")
+      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies"}));
+  app.add_flag("--json", *as_json, "Print JSON");
+  return [what, as_json] { return run(*what, *as_json); };
 }
 
 }  // namespace
 }  // namespace taut
 
 TAUT_VERB(list) = {.name = "list",
-                   .summary = "Names scenes, solvers, metrics and studies",
+                   .summary = "Names scenes, solvers with their parameters, metrics and studies",
                    .example = "taut list solvers",
                    .bind = taut::bind};

@@ -1,7 +1,9 @@
 #include "core/solver/contact/responses.hpp"
 
 #include "core/solver/passes/collide.hpp"
+#include "core/solver/passes/octree.hpp"
 #include "core/solver/passes/report_fixes.hpp"
+#include "core/solver/passes/self_collide.hpp"
 
 namespace taut {
 
@@ -33,6 +35,10 @@ void add_response(const Collider& collider, const Scene& scene, const Params& pa
 template <class Real>
 ContactPasses<Real> make_contact(const Scene& scene, const Params& params) {
   ContactPasses<Real> passes;
+  if (scene.self_collision && params.is("self", "grid"))
+    passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene));
+  if (scene.self_collision && params.is("self", "octree"))
+    passes.sweep.push_back(std::make_unique<OctreePass<Real>>(scene));
   for (const Collider& collider : scene.colliders) {
     if (std::holds_alternative<Plane>(collider.shape))
       add_response<Real, PlaneSurface>(collider, scene, params, passes);
@@ -48,10 +54,14 @@ template ContactPasses<float> make_contact(const Scene&, const Params&);
 template ContactPasses<double> make_contact(const Scene&, const Params&);
 
 Effective contact_effective(const Scene& scene, const Params& params) {
-  if (scene.colliders.empty()) return {};
-  return {{"contact response", std::string(params.choice("contact"))},
-          {"friction", "Coulomb: tangential correction at most mu times the depth"},
-          {"contact distance", "the scene's thickness"}};
+  Effective lines;
+  if (!scene.colliders.empty())
+    lines = {{"contact response", std::string(params.choice("contact"))},
+             {"friction", "Coulomb: tangential correction at most mu times the depth"},
+             {"contact distance", "the scene's thickness"}};
+  if (scene.self_collision)
+    lines.emplace_back("self-collision", std::string(params.choice("self")));
+  return lines;
 }
 
 }  // namespace taut

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace taut {
+
+/// Where shipped scenes and studies are: $TAUT_DATA if it is set, else share/taut beside an
+/// installed program, else the source tree. Throws InputError if $TAUT_DATA is no folder.
+std::filesystem::path data_folder();
+
+/// Names of the shipped "scenes" or "studies", sorted.
+std::vector<std::string> shipped(const std::string& kind);
+
+/// The file of a scene or study: a text with a '/' or that ends in .toml is a path, any other the
+/// name of a shipped one. Throws InputError, with a suggestion for a name that is not known.
+std::filesystem::path find_scene(const std::string& name_or_path);
+std::filesystem::path find_study(const std::string& name_or_path);
+
+/// The running program's own file, and a program that is installed beside it ("" is itself).
+std::filesystem::path this_program();
+std::filesystem::path sibling_program(const std::string& name);
+
+}  // namespace taut

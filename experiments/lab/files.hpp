@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace taut {
+
+/// Everything in a file; throws InputError if it cannot be read.
+std::string read_text(const std::filesystem::path&);
+
+/// Writes a whole file and waits until it is on the disk. Throws InputError with the system's
+/// reason (read-only, full, no such folder).
+void write_durably(const std::filesystem::path&, std::string_view text);
+
+/// Appends a line in one write. Throws as write_durably.
+void append_line(const std::filesystem::path&, std::string_view line);
+
+/// Makes the folder's entries (new names, renames) durable. Throws as write_durably.
+void sync_folder(const std::filesystem::path&);
+
+/// Creates the folder and its parents; throws InputError with the system's reason.
+void make_folder(const std::filesystem::path&);
+
+/// "<host>.<pid>.<8 hex digits>": a name that no other process gives.
+std::string unique_suffix();
+
+/// "20260102T030405Z", the time now.
+std::string utc_stamp();
+
+}  // namespace taut

@@ -1,0 +1,237 @@
+// Section 3, particles without springs: falling, damping, wind on a face, the tilted strip.
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "experiments/truths/probe.hpp"
+
+namespace taut {
+
+namespace {
+
+const Vec3 kGravity(0, -kG, 0);
+const Vec3 kThrow(3, 4, -1);  // m/s
+
+/// Two free particles far apart, thrown together.
+Scene thrown() {
+  Scene s = bare::scene({Vec3::Zero(), Vec3(1, 0, 0)}, {0.3, 2.0}, {});
+  s.gravity = kGravity;
+  s.start.v = {kThrow, kThrow};
+  return s;
+}
+
+/// Settings that step as Verlet does.
+std::vector<std::string> verlet_like() {
+  return {jakobsen(1), bullet(1), xpbd(1), mass_spring("verlet", 1),
+          mass_spring("symplectic-euler", 1)};
+}
+
+void free_fall(Ledger& ledger) {
+  const auto check = [&](const std::string& solver, const char* quantity, double offset,
+                         const Vec3& correction) {
+    Scene s = thrown();
+    for (Vec3& v : s.start.v) v += correction;
+    if (!claims(ledger, solver, s)) return;
+    Probe probe(s, solver);
+    double worst = 0;
+    for (int n = 1; n <= 64; ++n) {
+      probe.step();
+      const double t = n * s.dt;
+      const Vec3 expected = kThrow * t + kGravity * (t * t / 2 + offset * t * s.dt / 2);
+      worst = std::max(worst, (probe.x(0) - expected).norm());
+    }
+    ledger.below(solver, quantity, "m", worst, 1e-12);
+  };
+  for (const std::string& solver : verlet_like()) {
+    check(solver, "distance from v0 t + g t^2/2 + g t dt/2 over 1 s", 1, Vec3::Zero());
+    check(solver, "distance from the exact parabola, start x_-1 = x0 - v0 dt + g dt^2/2", 0,
+          -kGravity / 128);
+  }
+  check(mass_spring("explicit-euler", 1), "distance from v0 t + g t^2/2 - g t dt/2 over 1 s", -1,
+        Vec3::Zero());
+  const std::string in_float = "jakobsen:precision=float";
+  Scene s = thrown();
+  if (!claims(ledger, in_float, s)) return;
+  Probe probe(s, in_float);
+  probe.step(64);
+  ledger.below(in_float, "distance from v0 t + g t^2/2 + g t dt/2 at 1 s", "m",
+               (probe.x(0) - (kThrow + kGravity * (0.5 + 1.0 / 128))).norm(), 1e-4);
+}
+
+void damping(Ledger& ledger) {
+  for (const std::string& solver : verlet_like()) {
+    Scene s = thrown();
+    s.damping = 3;
+    if (!claims(ledger, solver, s)) continue;
+    const double q = std::exp(-s.damping * s.dt);
+    Probe probe(s, solver);
+    double worst = 0;
+    for (int n = 1; n <= 64; ++n) {
+      probe.step();
+      const double decay = q * (1 - std::pow(q, n)) / (1 - q);
+      const Vec3 a = kGravity * s.dt * s.dt;
+      const Vec3 expected = kThrow * s.dt * decay + a / (1 - q) * (n - decay);
+      worst = std::max(worst, (probe.x(0) - expected).norm());
+    }
+    const bool is_bullet = solver.starts_with("bullet");
+    ledger.below(solver, "distance from the closed form of x + q (x - x') + g dt^2 over 1 s", "m",
+                 worst, is_bullet ? 1e-9 : 1e-12);
+    probe.step(64 * 14);
+    ledger.equal(solver, "terminal speed g dt/(1 - q)", "m/s", -probe.v(0).y(), kG * s.dt / (1 - q),
+                 1e-9);
+  }
+}
+
+/// One horizontal face of equal masses, wind of strength c, nothing else.
+Scene face(double strength, Wind::Law law) {
+  Scene s = bare::scene({Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 0, -0.5)}, {0.1, 0.1, 0.1}, {});
+  s.mesh.triangles = {{0, 1, 2}};
+  s.gravity = kGravity;
+  s.wind = Wind{Vec3::Zero(), strength, law};
+  return s;
+}
+
+constexpr double kArea = 0.25, kMass = 0.3;
+
+void wind_on_a_face(Ledger& ledger) {
+  for (const std::string& solver : verlet_like()) {
+    const double c = 8;
+    const Scene s = face(c, Wind::Law::relative);
+    if (!claims(ledger, solver, s)) continue;
+    const double rate = c * kArea * s.dt / kMass, terminal = kMass * kG / (c * kArea);
+    Probe probe(s, solver);
+    double worst = 0;
+    for (int n = 1; n <= 64; ++n) {
+      probe.step();
+      const double speed = terminal * (1 - std::pow(1 - rate, n));
+      for (int i = 0; i < 3; ++i) worst = std::max(worst, (probe.v(i) - Vec3(0, -speed, 0)).norm());
+    }
+    ledger.below(solver, "distance from (m g/cA)(1 - (1 - cA dt/m)^n)", "m/s", worst, 1e-11);
+    probe.step(1000);
+    ledger.equal(solver, "terminal speed m g/(cA)", "m/s", -probe.v(0).y(), terminal, 1e-11);
+
+    // Stable while cA dt/m < 2: the factor 1 - rate per step is measured on both sides.
+    double factors[2];
+    for (const bool above : {false, true}) {
+      Scene edge = face((above ? 2.001 : 1.999) * kMass / (kArea * s.dt), Wind::Law::relative);
+      edge.gravity.setZero();
+      edge.start.v.assign(3, Vec3(0, -1, 0));
+      Probe fast(edge, solver);
+      fast.step(101);
+      const double first = fast.v(0).y();
+      fast.step();
+      factors[above] = std::abs(fast.v(0).y() / first);
+    }
+    ledger.equal(solver, "growth per step at cA dt/m = 1.999", "1", factors[0], 0.999, 1e-9);
+    ledger.equal(solver, "growth per step at cA dt/m = 2.001", "1", factors[1], 1.001, 1e-9);
+  }
+}
+
+void literal_wind(Ledger& ledger) {
+  for (const std::string& solver : verlet_like()) {
+    Scene s = face(0.4, Wind::Law::literal);
+    s.wind->velocity = Vec3(0, 2, 1);
+    if (!claims(ledger, solver, s)) continue;
+    Probe probe(s, solver);
+    probe.step(640);
+    // c (n . d) n A/m upwards, whatever the speed
+    const double a = 0.4 * 2 * kArea / kMass - kG;
+    ledger.equal(solver, "speed after 10 s: no terminal speed", "m/s", probe.v(0).y(), 10 * a,
+                 1e-9);
+  }
+}
+
+/// A strip hung by its top edge. Each quad is covered twice, once per diagonal, at half the
+/// strength: the only triangulation that loads the vertices of a row alike.
+Scene strip(double wind_speed, double strength, double area_density) {
+  const int rows = 9;
+  const double width = 0.125, height = 1;
+  Scene s = bare::sheet(2, rows, {.shear = true}, Lumping::area, width, height,
+                        area_density * width * height);
+  s.mesh.triangles.clear();
+  for (int j = 0; j + 1 < rows; ++j) {
+    const int a = 2 * j, b = a + 1, c = a + 2, d = a + 3;
+    for (const Triangle& t :
+         {Triangle{a, c, d}, Triangle{a, d, b}, Triangle{a, c, b}, Triangle{b, c, d}})
+      s.mesh.triangles.push_back(t);
+  }
+  s.pins = {0, 1};
+  s.gravity = kGravity;
+  s.wind = Wind{Vec3(0, 0, wind_speed), strength / 2, Wind::Law::relative};
+  s.damping = 4;
+  return s;
+}
+
+void wind_tilt(Ledger& ledger) {
+  const double speed = 4, c = 0.25, density = 0.1;  // c U = 1 N/m^2 against 0.981 N/m^2
+  const double expected = std::atan(c * speed / (density * kG)) * 180 / std::numbers::pi;
+  ledger.equal("closed form", "tilt where the wind weighs 1/0.981 of the cloth", "deg", expected,
+               45.5495, 5e-5);
+  const auto check = [&](const std::string& solver) {
+    const Scene s = strip(speed, c, density);
+    if (!claims(ledger, solver, s)) return;
+    Probe probe(s, solver);
+    if (!settle(probe, 1e-9, 64, 64 * 100)) {
+      ledger.equal(solver, "comes to rest", "1", 0, 1, 0);
+      return;
+    }
+    double flattest = 1e300, steepest = 0;
+    for (int j = 1; j < 9; ++j)
+      for (int i = 0; i < 2; ++i) {
+        const Vec3 d = probe.x(2 * j + i) - probe.x(i);
+        const double tilt = std::atan2(d.z(), -d.y()) * 180 / std::numbers::pi;
+        flattest = std::min(flattest, tilt), steepest = std::max(steepest, tilt);
+      }
+    // Stretched faces catch more wind: strain e adds e cos(tilt) sin(tilt) rad.
+    const double slack = 1e-6 + max_strain(s, probe.state()) * 90 / std::numbers::pi;
+    ledger.equal(solver, "smallest tilt of a row", "deg", flattest, expected, slack);
+    ledger.equal(solver, "largest tilt of a row", "deg", steepest, expected, slack);
+  };
+  check(jakobsen(400));
+  check(jakobsen(400, "sqrt-free"));
+  check(bullet(400));
+  check(xpbd(64));
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_TRUTH(free_fall) = {
+    .name = "free-fall",
+    .section = 3,
+    .row = 1,
+    .statement = "x_n = x0 + v0 t + g t^2/2 + g t dt/2; explicit Euler has -g t dt/2",
+    .source = "sum of the Verlet recurrence",
+    .check = taut::free_fall};
+
+TAUT_TRUTH(damping_factor) = {
+    .name = "damping-factor",
+    .section = 3,
+    .row = 2,
+    .statement =
+        "x_n = x0 + u0 q(1-q^n)/(1-q) + a/(1-q) [n - q(1-q^n)/(1-q)], q = exp(-damping dt)",
+    .source = "sum of x* = x + q (x - x') + a dt^2",
+    .check = taut::damping};
+
+TAUT_TRUTH(wind_face) = {.name = "wind-face",
+                         .section = 3,
+                         .row = 6,
+                         .statement = "v_n = (m g/cA)(1 - (1 - cA dt/m)^n); stable iff cA dt/m < 2",
+                         .source = "the report, section 3, with d the wind relative to the face",
+                         .check = taut::wind_on_a_face};
+
+TAUT_TRUTH(wind_literal) = {
+    .name = "wind-literal",
+    .section = 3,
+    .row = 7,
+    .statement = "with d the wind itself, as printed, a face accelerates without end",
+    .source = "the report, section 3, read literally",
+    .check = taut::literal_wind};
+
+TAUT_TRUTH(wind_tilt) = {
+    .name = "wind-tilt",
+    .section = 3,
+    .row = 8,
+    .statement = "a strip hung by its top edge in steady wind is a plane: tan(tilt) = wind/weight",
+    .source = "balance of moments of every row, masses lumped by area",
+    .check = taut::wind_tilt};

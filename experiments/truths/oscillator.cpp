@@ -1,0 +1,170 @@
+// Section 3, springs: the oscillator in discrete time, and where explicit integration blows up.
+#include <cmath>
+
+#include "core/reference/closed_forms.hpp"
+#include "experiments/truths/fit.hpp"
+#include "experiments/truths/probe.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr double kStiffness = 40, kSpringMass = 0.1, kOmega = 20;  // N/m, kg, rad/s
+
+/// One mass on a spring from a pin, displaced along it by `out` [m].
+Scene oscillator(double dt, double out) {
+  Scene s = bare::chain(1, 1, kSpringMass);
+  s.start.x[1].y() -= out;
+  s.dt = dt;
+  return s;
+}
+
+double displacement(const Probe& probe) { return -probe.x(1).y() - 1; }
+
+void hooke_oscillator(Ledger& ledger) {
+  for (const char* integrator : {"verlet", "symplectic-euler"}) {
+    const std::string solver = mass_spring(integrator, kStiffness);
+    const double dt = 1.0 / 64, x0 = 0.1;
+    Scene s = oscillator(dt, x0);
+    if (!claims(ledger, solver, s)) continue;
+    // Start on the branch x_n = x0 cos(n W dt): v0 = (x_0 - x_-1)/dt.
+    const double phase = 2 * std::asin(kOmega * dt / 2);
+    s.start.v[1].y() = -(x0 - x0 * std::cos(phase)) / dt;
+    Probe probe(s, solver);
+    double worst = 0, least = 1e300, most = 0, before = x0;
+    for (int n = 1; n <= 1000; ++n) {
+      probe.step();
+      const double x = displacement(probe);
+      worst = std::max(worst, std::abs(x - x0 * std::cos(n * phase)));
+      const double energy = std::pow((x - before) / dt, 2) / 2 + kOmega * kOmega * x * before / 2;
+      least = std::min(least, energy), most = std::max(most, energy);
+      before = x;
+    }
+    ledger.below(solver, "distance from x0 cos(n W dt), sin(W dt/2) = w dt/2, 1000 steps", "m",
+                 worst, 1e-11);
+    ledger.below(solver, "drift of ((x'-x)/dt)^2/2 + w^2 x x'/2 over 1000 steps, relative", "1",
+                 (most - least) / most, 1e-11);
+    std::vector<double> steps, errors;
+    for (int r = 5; r <= 9; ++r) {
+      const double h = std::ldexp(1, -r);
+      Probe mass(oscillator(h, x0), solver);
+      std::vector<double> y;
+      for (int n = 0; n < 100; ++n) mass.step(), y.push_back(displacement(mass));
+      const double frequency = std::acos(two_term_recurrence(y)[0] / 2) / h;
+      steps.push_back(h), errors.push_back(std::abs(frequency - kOmega) / kOmega);
+    }
+    const Slope order =
+        log_slope({steps.begin() + 1, steps.end()}, {errors.begin() + 1, errors.end()});
+    ledger.slope(solver, "order in dt of the frequency", order.value, order.error, 2, 0.02);
+  }
+}
+
+/// The dominant multiplier per step of small displacements; negative when they alternate.
+double multiplier(const std::string& solver, double dt) {
+  Probe probe(oscillator(dt, 1e-6), solver);
+  probe.step(24);
+  const double before = displacement(probe);
+  probe.step();
+  return displacement(probe) / before;
+}
+
+void spring_step_limit(Ledger& ledger) {
+  // Without drag the limit is where the roots leave the unit circle, at trace = -2.
+  const auto undamped = [&](const std::string& solver) {
+    const double limit = sign_change(1.9 / kOmega, 2.1 / kOmega, 1e-9, [&](double dt) {
+      Probe probe(oscillator(dt, 1e-6), solver);
+      std::vector<double> y{1e-6};
+      for (int n = 0; n < 8; ++n) probe.step(), y.push_back(displacement(probe));
+      return two_term_recurrence(y)[0] + 2;
+    });
+    ledger.equal(solver, "largest stable dt w/2", "1", limit * kOmega / 2, 1, 1e-6);
+  };
+  for (const char* integrator : {"verlet", "symplectic-euler"})
+    if (const std::string solver = mass_spring(integrator, kStiffness);
+        claims(ledger, solver, oscillator(1.0 / 64, 0)))
+      undamped(solver);
+  // With drag one root reaches -1 alone.
+  const double zeta = 0.5, drag = 2 * zeta * kOmega * kSpringMass;
+  const double shrunk = std::sqrt(1 + zeta * zeta) - zeta;
+  const auto damped = [&](const std::string& solver, double expected) {
+    if (!claims(ledger, solver, oscillator(1.0 / 64, 0))) return;
+    const double limit = sign_change(0.9 * expected * 2 / kOmega, 1.1 * expected * 2 / kOmega,
+                                     1e-10, [&](double dt) { return multiplier(solver, dt) + 1; });
+    ledger.equal(solver, "largest stable dt w/2 with damping ratio 0.5", "1", limit * kOmega / 2,
+                 expected, 1e-6);
+  };
+  damped(mass_spring("symplectic-euler", kStiffness, drag), shrunk);
+  damped(mass_spring("verlet", kStiffness, drag), shrunk);
+  damped(with(mass_spring("verlet", kStiffness, drag), "drag-at=central"), 1);
+  // Explicit Euler grows by sqrt(1 + w^2 dt^2) at every dt.
+  const std::string euler = mass_spring("explicit-euler", kStiffness);
+  if (!claims(ledger, euler, oscillator(1.0 / 64, 0))) return;
+  const double dt = 1.0 / 1024;
+  Probe probe(oscillator(dt, 1e-6), euler);
+  std::vector<double> y;
+  for (int n = 0; n < 200; ++n) probe.step(), y.push_back(displacement(probe));
+  ledger.equal(euler, "growth per step at w dt = 0.02: never stable", "1",
+               std::sqrt(-two_term_recurrence(y)[1]), std::sqrt(1 + std::pow(kOmega * dt, 2)),
+               1e-9);
+}
+
+/// Largest displacement of a perturbed flat grid after 600 steps, over the first.
+double growth(const std::string& solver, double dt, const LinkChoice& links) {
+  Scene s = bare::sheet(20, 20, links, Lumping::equal, 19, 19, 400);  // 1 kg, 1 m
+  for (std::size_t i = 0; i < s.start.x.size(); ++i)
+    s.start.x[i] += 1e-9 * Vec3(std::sin(1.0 + 7.0 * static_cast<double>(i)),
+                                std::cos(2.0 + 3.0 * static_cast<double>(i)), 0);
+  s.dt = dt;
+  Probe probe(s, solver);
+  probe.step(600);
+  return max_distance(probe.state().x, s.mesh.rest) / 1e-9;
+}
+
+void spring_grid_limit(Ledger& ledger) {
+  struct Case {
+    LinkChoice links;
+    const char* name;
+    double eigenvalue;
+  };
+  const std::string solver = mass_spring("verlet", 1);
+  for (const Case& c : {Case{{}, "structural", 3.975}, Case{{.shear = true}, "+ shear", 7.927},
+                        Case{{.shear = true, .bend = true}, "+ bend", 9.987}}) {
+    const double value = reference::spring_grid_eigenvalue(20, c.links.shear, c.links.bend);
+    const std::string name = c.name;
+    ledger.equal("closed form", "largest eigenvalue times m/k, 20x20 " + name, "1", value,
+                 c.eigenvalue, 5e-4);
+    if (!claims(ledger, solver, bare::sheet(2, 2))) continue;
+    const double limit = 2 / std::sqrt(value);
+    const double below = growth(solver, 0.998 * limit, c.links),
+                 above = growth(solver, 1.002 * limit, c.links);
+    ledger.equal(solver, "stays bounded at 0.998 of dt_max, " + name, "1", below < 100, 1, 0);
+    ledger.equal(solver, "blows up at 1.002 of dt_max, " + name, "1", !(above < 1e4), 1, 0);
+  }
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_TRUTH(hooke_oscillator) = {
+    .name = "hooke-oscillator",
+    .section = 3,
+    .row = 3,
+    .statement = "Verlet on -kx: sin(W dt/2) = w dt/2, a conserved energy, order 2 in dt",
+    .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1",
+    .check = taut::hooke_oscillator};
+
+TAUT_TRUTH(spring_step_limit) = {
+    .name = "spring-step-limit",
+    .section = 3,
+    .row = 4,
+    .statement = "dt_max = 2/w; with lagged drag (2/w)(sqrt(1 + zeta^2) - zeta); central: 2/w",
+    .source = "roots of z^2 - (2 - w^2 dt^2 - gamma dt) z + 1 - gamma dt",
+    .check = taut::spring_step_limit};
+
+TAUT_TRUTH(spring_grid_limit) = {
+    .name = "spring-grid-limit",
+    .section = 3,
+    .row = 5,
+    .statement = "a 20x20 grid of springs is stable below 1.003, 0.710, 0.633 sqrt(m/k)",
+    .source = "largest eigenvalue of the flat grid, edges free",
+    .check = taut::spring_grid_limit};

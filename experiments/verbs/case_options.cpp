@@ -1,0 +1,42 @@
+#include "experiments/verbs/case_options.hpp"
+
+#include <unistd.h>
+
+#include <fstream>
+
+#include "core/model/input_error.hpp"
+#include "experiments/lab/data.hpp"
+
+namespace taut {
+
+void CaseOptions::bind(CLI::App& app) {
+  app.add_option("SCENE", scene_, "Name of a shipped scene, or a path")->required();
+  app.add_option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)")->required();
+  app.add_option("--dt", dt_, "Time step [s], a number or a fraction such as 1/120");
+  app.add_option("--duration", duration_, "Simulated time [s]");
+  app.add_option("--set", settings_, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
+      ->allow_extra_args(false);
+}
+
+Case CaseOptions::make() const {
+  CaseSpec spec{scene_, settings_, solver_};
+  if (!dt_.empty()) spec.overrides.push_back("time.dt=\"" + dt_ + "\"");
+  if (!duration_.empty()) spec.overrides.push_back("time.duration=\"" + duration_ + "\"");
+  return make_case(spec);
+}
+
+void continue_in_right_program(const SolverChoice& choice) {
+  const std::string needed(choice.entry->program ? choice.entry->program(choice.params) : "");
+  if (needed.empty() || needed == this_program().filename()) return;
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(in, word, '\0');) words.push_back(word);
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const std::string program = sibling_program(needed);
+  execv(program.c_str(), argv.data());
+  throw InputError(choice.brief() + " needs the program " + program + ", which cannot be run");
+}
+
+}  // namespace taut

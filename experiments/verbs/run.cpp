@@ -1,0 +1,146 @@
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "core/model/input_error.hpp"
+#include "experiments/lab/campaign.hpp"
+#include "experiments/verbs/invoke.hpp"
+#include "experiments/verbs/progress.hpp"
+#include "experiments/verbs/verb.hpp"
+
+namespace taut {
+
+namespace {
+
+/// What a bare `taut run` answers.
+const std::vector<std::string> kMainJob{"iterations", "time-steps", "penetration"};
+constexpr const char* kMainPreset = "quick";
+
+struct Options {
+  std::vector<std::string> studies;
+  std::string preset, shard, only, out = default_results();
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  double seconds = Limits{}.seconds;
+  double megabytes = static_cast<double>(Limits{}.bytes >> 20);
+  bool no_report = false;
+};
+
+std::string command_line(const Options& options) {
+  std::string text = "taut run";
+  for (const std::string& study : options.studies) text += " " + study;
+  if (!options.preset.empty()) text += " --preset " + options.preset;
+  if (!options.shard.empty()) text += " --shard " + options.shard;
+  if (!options.only.empty()) text += " --only " + options.only;
+  return text;
+}
+
+std::vector<Study> load_studies(const Options& options) {
+  std::vector<Study> studies;
+  std::vector<Diagnostic> wrong;
+  for (const std::string& name : options.studies) try {
+      Study study = load_study(name, options.preset);
+      if (!options.preset.empty() && study.preset.empty())
+        wrong.push_back({study.file, 0, 0,
+                         "study '" + study.name + "' has no preset '" + options.preset + "'" +
+                             suggestion(options.preset, study.presets)});
+      studies.push_back(std::move(study));
+    } catch (const InputError& error) {
+      for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);
+    }
+  if (!wrong.empty()) throw InputError(wrong);
+  return studies;
+}
+
+std::vector<Case> all_cases(const std::vector<Study>& studies) {
+  std::vector<Case> cases;
+  std::vector<Diagnostic> wrong;
+  for (const Study& study : studies) try {
+      for (Case& one : plan(study)) cases.push_back(std::move(one));
+    } catch (const InputError& error) {
+      for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);
+    }
+  if (!wrong.empty()) throw InputError(wrong);
+  std::stable_sort(cases.begin(), cases.end(),
+                   [](const Case& a, const Case& b) { return a.key < b.key; });
+  const auto same = [](const Case& a, const Case& b) { return a.key == b.key; };
+  cases.erase(std::unique(cases.begin(), cases.end(), same), cases.end());
+  return cases;
+}
+
+int exit_code(const Tally& tally) {
+  if (tally.interrupted) return kInterrupted;
+  if (tally.conflicts > 0) return kConflict;
+  return kPass;
+}
+
+int report(const Options& options) {
+  if (options.no_report || !has_verb("report")) {
+    std::cout << options.out << '\n';
+    return kPass;
+  }
+  std::vector<std::string> arguments = options.studies;
+  if (!options.preset.empty()) arguments.insert(arguments.end(), {"--preset", options.preset});
+  arguments.insert(arguments.end(), {"--results", options.out});
+  return invoke("report", arguments);
+}
+
+int run(Options options) {
+  const bool bare = options.studies.empty();
+  if (bare) {
+    options.studies = kMainJob;
+    if (options.preset.empty()) options.preset = kMainPreset;
+  }
+  const Shard shard = Shard::parse(options.shard);
+  const std::vector<Case> cases = all_cases(load_studies(options));
+  const Store store(options.out);
+  store.prepare();
+  const Session session(store, command_line(options), cases, shard);
+  Progress progress;
+  const Tally tally = run_cases(
+      cases, store, session,
+      {.jobs = options.jobs,
+       .limits = {options.seconds, static_cast<std::size_t>(options.megabytes) << 20},
+       .shard = shard,
+       .only_failed = options.only == "failed",
+       .progress = [&](const Tally& t, const Record* record) { progress.show(t, record); }});
+  progress.finish(tally);
+  if (tally.conflicts > 0)
+    std::cerr << tally.conflicts << " cases gave another result than the one stored: see "
+              << (store.root() / "conflicts").string() << '\n';
+  if (tally.interrupted)
+    std::cerr << "interrupted; the same command goes on where this one stopped\n";
+  std::cerr << "store " << store.digest() << '\n';
+  if (const int code = exit_code(tally); code != kPass) return code;
+  if (tally.cases == 0 && options.only == "failed") std::cerr << "no stored failure to run again\n";
+  return bare ? report(options) : (std::cout << options.out << '\n', kPass);
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("STUDY", options->studies,
+                 "Names or paths of studies; none: the main job, preset quick, with its report");
+  app.add_option("--preset", options->preset, "A smaller or larger version that the study defines");
+  app.add_option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--shard", options->shard,
+                 "Only part i of n of the cases, as i/n (default: a Slurm array's, else all)");
+  app.add_option("--only", options->only, "failed: run stored failures again, nothing else")
+      ->check(CLI::IsMember({"failed"}));
+  app.add_option("--out", options->out, "Results folder (default: " + options->out + ")");
+  app.add_option("--timeout", options->seconds, "Wall time limit of a case [s] (default: 120)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--memory", options->megabytes, "Memory limit of a case [MB] (default: 2048)")
+      ->check(CLI::Range(64.0, 1e9));
+  app.add_flag("--no-report", options->no_report, "Run the main job without its report");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_VERB(run) = {.name = "run",
+                  .summary = "Runs studies, one process per case; resumes what was interrupted",
+                  .example =
+                      "taut run\n  taut run iterations --preset quick -j 2\n"
+                      "  taut run my/study.toml --shard 1/4 --out results/shard1",
+                  .bind = taut::bind};

@@ -1,0 +1,149 @@
+// The cloth against itself: what the hash grid keeps apart, and the two failures that the report
+// publishes of its octree.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "core/model/scene_io.hpp"
+#include "core/model/solver.hpp"
+#include "core/solver/contact/neighbours.hpp"
+#include "experiments/lab/run_case.hpp"
+
+namespace taut {
+namespace {
+
+/// Particles at the given places and velocities, no links, no gravity, 1 kg each, radius 5 cm.
+Scene particles(std::vector<Vec3> x, std::vector<Vec3> v) {
+  Scene scene;
+  scene.mesh.mass.assign(x.size(), 1.0);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    scene.mesh.rest.emplace_back(10.0 * static_cast<double>(i), 0, 0);  // far apart at rest
+  scene.start = {std::move(x), std::move(v)};
+  scene.gravity.setZero();
+  scene.self_collision = SelfCollision{.radius = 0.05};
+  scene.dt = 1.0 / 64;
+  return scene;
+}
+
+State run(const Scene& scene, const char* params, int steps) {
+  const SolverChoice choice = parse_solver(std::string("jakobsen:precision=double,") + params);
+  const auto solver = choice.entry->make(scene, choice.params);
+  solver->load(scene.start);
+  for (int n = 0; n < steps; ++n) solver->step(n * scene.dt, scene.dt);
+  State state;
+  solver->store(state);
+  return state;
+}
+
+TEST(SelfCollision, TwoParticlesMeetAndKeepTheirMomentum) {
+  Scene scene = particles({{-0.2, 0, 0}, {0.2, 0.01, 0}}, {{1, 0, 0}, {-1, 0, 0}});
+  scene.mesh.mass[1] = 3;
+  const State state = run(scene, "self=grid", 64);
+  EXPECT_GE((state.x[1] - state.x[0]).norm(), 0.1 - 1e-12);
+  EXPECT_LT(state.x[0].x(), state.x[1].x());
+  EXPECT_NEAR((state.v[0] + 3 * state.v[1] - Vec3(-2, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_GT(run(scene, "self=off", 64).x[0].x(), 0.5);
+}
+
+TEST(SelfCollision, AFastParticleDoesNotPassWithinAStep) {
+  const Scene scene = particles({{-0.48, 0, 0}, {0, 0, 0}}, {{20, 0, 0}, {0, 0, 0}});
+  const State state = run(scene, "self=grid", 3);  // 0.31 m a step, 0.1 m wide
+  EXPECT_LE(state.x[0].x(), state.x[1].x() - 0.1 + 1e-12);
+  EXPECT_GT(run(scene, "self=octree", 3).x[0].x(), 0.4);
+}
+
+TEST(SelfCollision, TheOctreeDoesNotSeeAcrossASplitAndTheGridDoes) {
+  // Two slow particles meet at the middle of a box whose corners hold the others.
+  std::vector<Vec3> x{{-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}};
+  for (const double sx : {-1, 1})
+    for (const double sy : {-1, 1})
+      for (const double sz : {-1, 1}) x.emplace_back(sx, sy, sz);
+  std::vector<Vec3> v(x.size(), Vec3::Zero());
+  v[0] = {0.1, 0.1, 0.1}, v[1] = -v[0];
+  const Scene scene = particles(x, v);
+  const auto gap = [&](const char* params) {
+    const State s = run(scene, params, 40);
+    return (s.x[1] - s.x[0]).norm();
+  };
+  EXPECT_GE(gap("self=grid"), 0.1 - 1e-12);
+  EXPECT_LT(gap("self=octree"), 0.05);
+  EXPECT_EQ(gap("self=octree"), gap("self=off"));
+}
+
+/// A sheet at rest whose particles are larger than the spacing.
+Scene fat_sheet() {
+  Scene scene;
+  scene.mesh = make_sheet({.nu = 9, .nv = 9, .width = 0.8, .height = 0.8, .mass = 0.1});
+  scene.links = grid_links(scene.mesh, {.structural = true, .shear = true});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(81, Vec3::Zero())};
+  scene.gravity.setZero();
+  scene.self_collision = SelfCollision{.radius = 0.15};  // spacing 0.1 m
+  scene.dt = 1.0 / 64;
+  return scene;
+}
+
+double moved(const Scene& scene, const State& state) {
+  double most = 0;
+  for (std::size_t i = 0; i < state.x.size(); ++i)
+    most = std::max(most, (state.x[i] - scene.start.x[i]).norm());
+  return most;
+}
+
+TEST(SelfCollision, ALargeRadiusJamsTheOctreeInTheAirAndNotTheGrid) {
+  Scene scene = fat_sheet();
+  EXPECT_LT(moved(scene, run(scene, "self=grid", 20)), 1e-9);  // nothing fights at rest
+  scene.gravity = {0, -9.81, 0};
+  const double fall = 9.81 / 64 / 64 * 20 * 21 / 2;
+  EXPECT_NEAR(moved(scene, run(scene, "self=grid", 20)), fall, 1e-9);
+  EXPECT_LT(moved(scene, run(scene, "self=octree", 20)), 1e-3);
+}
+
+TEST(SelfCollision, PinsDoNotMove) {
+  Scene scene = particles({{-0.2, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {0, 0, 0}});
+  scene.pins = {1};
+  for (const char* params : {"self=grid", "self=octree"})
+    EXPECT_EQ(run(scene, params, 64).x[1], Vec3::Zero()) << params;
+}
+
+TEST(SelfCollision, IsNoPassUnlessTheSceneHasIt) {
+  for (const bool present : {false, true}) {
+    Scene scene = fat_sheet();
+    if (!present) scene.self_collision.reset();
+    const SolverChoice choice = parse_solver("jakobsen");
+    bool found = false;
+    for (const PassCost& cost : choice.entry->make(scene, choice.params)->plan())
+      found |= cost.pass.starts_with("self-collide");
+    EXPECT_EQ(found, present);
+  }
+}
+
+TEST(Neighbours, AreThoseOfAllPairs) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<> number(-2, 2);
+  Points<double> x(std::make_shared<const Layout>(Layout::packed(500)));
+  for (std::size_t i = 0; i < 500; ++i) x.set(i, {number(random), number(random), number(random)});
+  x.set(0, {1e9, -1e9, 1e9});  // beyond the last cell
+  Neighbours<double> neighbours(500);
+  for (const double reach : {0.05, 0.4, 1.5, 10.0}) {
+    std::multiset<std::pair<std::uint32_t, std::uint32_t>> found, brute;
+    neighbours.pairs(x, reach,
+                     [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
+    for (std::uint32_t a = 0; a < 500; ++a)
+      for (std::uint32_t b = a + 1; b < 500; ++b)
+        if ((x[b] - x[a]).norm() < reach) brute.insert({a, b});
+    EXPECT_EQ(found, brute) << reach;
+  }
+}
+
+TEST(SelfCollision, CrumpleEndsWithoutSelfIntersectionsByDefault) {
+  const auto crossings = [](const char* solver, const char* duration) {
+    const Scene scene = load_scene(TAUT_SOURCE_DIR "/experiments/scenes/crumple.toml", {duration});
+    return run_case(scene, parse_solver(solver)).record.values.at("self.crossings.peak");
+  };
+  EXPECT_EQ(crossings("jakobsen", "time.duration=3"), 0);
+  EXPECT_GT(crossings("jakobsen:self=off", "time.duration=1"), 100);
+}
+
+}  // namespace
+}  // namespace taut
