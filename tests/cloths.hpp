@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "core/model/solver.hpp"
@@ -29,8 +28,10 @@ inline Scene hanging_sheet(int nu, int nv, const LinkChoice& families = {true, t
 /// Pushes every vertex off its place by up to `amount` [m]: a fixed pattern without symmetry.
 inline Scene crumpled(Scene scene, double amount) {
   for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
-    const double k = static_cast<double>(i);
-    const Vec3 wave(std::sin(3.1 * k), std::sin(1.7 * k + 1), std::sin(2.3 * k + 2));
+    const auto noise = [&](std::size_t axis) {  // in whole numbers: the same on every machine
+      return static_cast<double>((i * 7919 + axis * 104729 + i * i * 31) % 2001) / 1000 - 1;
+    };
+    const Vec3 wave(noise(0), noise(1), noise(2));
     if (!std::binary_search(scene.pins.begin(), scene.pins.end(), static_cast<int>(i)))
       scene.start.x[i] += amount * wave;
   }

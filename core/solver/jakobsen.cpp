@@ -4,11 +4,11 @@
 #include "core/model/solver.hpp"
 #include "core/solver/contact/responses.hpp"
 #include "core/solver/jakobsen_params.hpp"
-#include "core/solver/order.hpp"
-#include "core/solver/passes/jacobi.hpp"
-#include "core/solver/passes/links.hpp"
 #include "core/solver/passes/wind.hpp"
 #include "core/solver/pins.hpp"
+#include "core/solver/relaxation.hpp"
+#include "core/solver/simd/kernels.hpp"
+#include "core/solver/team.hpp"
 
 namespace taut {
 
@@ -24,16 +24,16 @@ class Jakobsen final : public Solver {
         h_(scene.dt / substeps_),
         gravity_(scene.gravity),
         damping_(scene.damping),
-        pins_(scene),
-        p_(Layout::packed(scene.start.x.size())) {
+        simd_(simd_of(params)),
+        team_(params.integer("threads")),
+        pins_(scene) {
     const std::vector<double> w = inverse_masses(scene);
+    Relaxation<Real> links = make_relaxation<Real>(scene, w, params, team_);
+    p_ = Particles<Real>(std::move(links.layout));
     p_.w.assign(w.begin(), w.end());
     p_.x = p_.previous = Points<Real>(p_.layout);
     add_forces(scene);
-    if (params.is("projection", "exact"))
-      add_links<Projection::exact>(scene, w, params);
-    else
-      add_links<Projection::sqrt_free>(scene, w, params);
+    if (links.pass) constraints_.push_back(std::move(links.pass));
     contact_ = make_contact<Real>(scene, params);
   }
 
@@ -103,20 +103,18 @@ class Jakobsen final : public Solver {
 
   /// x* = x + (x - x') + a dt^2, the velocity x - x' damped.
   void verlet(double dt) {
-    using Point = typename Points<Real>::Point;
-    const Real keep = static_cast<Real>(std::exp(-damping_ * dt));
-    const Real dt2 = static_cast<Real>(dt * dt);
-    const Point g = gravity_.cast<Real>() * dt2;
-    for (std::size_t i = 0; i < p_.size(); ++i) {
-      const Point x = p_.x[i];
-      Point moved = x + keep * (x - p_.previous[i]) + g;
-      if (!p_.a.empty()) {
-        moved += p_.a[i] * dt2;
-        p_.a.set(i, Point::Zero());
-      }
-      p_.x.set(i, moved);
-      p_.previous.set(i, x);
-    }
+    alignas(64) Real g[kVector];
+    for (std::size_t i = 0; i < kVector; ++i)
+      g[i] = static_cast<Real>(p_.layout->axis(i) < 3 ? gravity_[p_.layout->axis(i)] * dt * dt : 0);
+    const VerletStep<Real> step{.x = p_.x.data(),
+                                .previous = p_.previous.data(),
+                                .a = p_.a.empty() ? nullptr : p_.a.data(),
+                                .keep = static_cast<Real>(std::exp(-damping_ * dt)),
+                                .dt2 = static_cast<Real>(dt * dt),
+                                .g = g};
+    team_.run(p_.layout->length() / kVector, [&](std::size_t begin, std::size_t end) {
+      kernels<Real>(simd_).verlet(step, begin * kVector, end * kVector);
+    });
   }
 
   void add_forces(const Scene& scene) {
@@ -125,27 +123,13 @@ class Jakobsen final : public Solver {
     p_.a = Points<Real>(p_.layout);
   }
 
-  template <Projection kind>
-  void add_links(const Scene& scene, std::span<const double> w, const Params& params) {
-    const std::vector<Link> links = ordered(scene.links, scene.mesh, order_of(params),
-                                            static_cast<std::uint32_t>(params.integer("seed")));
-    std::vector<Stick<Real>> sticks =
-        make_sticks<Real>(links, w, firmness(params, h_, iterations_));
-    if (sticks.empty()) return;
-    auto costs = family_costs(links, w, sticks.size() * sizeof sticks[0]);
-    if (const auto jacobi = jacobi_of(params))
-      constraints_.push_back(std::make_unique<JacobiPass<Real, kind>>(*jacobi, std::move(sticks),
-                                                                      std::move(costs), p_.layout));
-    else
-      constraints_.push_back(
-          std::make_unique<LinkPass<Real, kind>>(std::move(sticks), std::move(costs)));
-  }
-
   int iterations_;
   int substeps_;
   double h_;  ///< s, of a substep
   Vec3 gravity_;
   double damping_;
+  Simd simd_;
+  Team team_;
   Pins pins_;
   Particles<Real> p_;
   PassList forces_;

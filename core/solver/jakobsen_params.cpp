@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/model/input_error.hpp"
 #include "core/solver/contact/responses.hpp"
 
 namespace taut {
@@ -89,11 +90,49 @@ constexpr ParamSpec kSpecs[] = {
      .default_value = "float",
      .choices = "float|double",
      .help = "scalar type of the simulation"},
+    {.name = "layout",
+     .kind = Kind::choice,
+     .default_value = "auto",
+     .choices = "auto|strips|packed",
+     .help = "of the particles under order=coloured: strips of a regular sheet, or packed for any "
+             "mesh"},
+    {.name = "simd",
+     .kind = Kind::choice,
+     .default_value = "auto",
+     .choices = "auto|scalar|sse2|avx2|avx512",
+     .help = "instruction set; every one computes the same bits"},
+    {.name = "threads",
+     .kind = Kind::integer,
+     .default_value = "1",
+     .min = 1,
+     .max = 64,
+     .help = "that share the sweeps of order=coloured; any number computes the same bits"},
 };
 
 }  // namespace
 
 const std::span<const ParamSpec> kJakobsenParams = kSpecs;
+
+Path path_of(const Params& params) {
+  if (params.is("layout", "strips")) return Path::strips;
+  if (params.is("layout", "packed")) return Path::packed;
+  return Path::automatic;
+}
+
+Simd simd_of(const Params& params) {
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
+    if (params.is("simd", to_string(simd))) {
+      if (available(simd)) return simd;
+      throw InputError("jakobsen: simd=" + std::string(to_string(simd)) +
+                       ": this machine does not have it; its widest is " +
+                       std::string(to_string(widest())));
+    }
+  return widest();
+}
+
+Projection projection_of(const Params& params) {
+  return params.is("projection", "exact") ? Projection::exact : Projection::sqrt_free;
+}
 
 Order order_of(const Params& params) {
   if (params.is("order", "coloured")) return Order::coloured;

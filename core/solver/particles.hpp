@@ -15,13 +15,15 @@ namespace taut {
 /// care.
 class Layout {
  public:
-  /// x y z 0 | x y z 0 | ...; two spare points at the end, which no particle owns.
+  static constexpr std::size_t kGrain = 24;  ///< loops over all numbers take so many at a time
+
+  /// x y z 0 | x y z 0 | ...; at least two spare points at the end, which no particle owns.
   static Layout packed(std::size_t n) {
     Layout layout;
-    layout.size_ = n, layout.length_ = 4 * (n + 2);
+    layout.size_ = n, layout.length_ = (4 * (n + 2) + kGrain - 1) / kGrain * kGrain;
     return layout;
   }
-  /// Any injective table of slots within `length` numbers.
+  /// Any injective table of slots within `length` numbers, a multiple of kGrain.
   static Layout table(std::vector<std::uint32_t> slots, std::size_t stride, std::size_t length) {
     Layout layout;
     layout.size_ = slots.size(), layout.stride_ = stride, layout.length_ = length;
@@ -33,6 +35,10 @@ class Layout {
   std::size_t length() const { return length_; }  ///< numbers in the array
   std::size_t stride() const { return stride_; }
   std::size_t slot(std::size_t i) const { return slots_.empty() ? 4 * i : slots_[i]; }
+  /// Which coordinate the number at `place` is: 0 x, 1 y, 2 z, 3 none. Repeats every kGrain.
+  int axis(std::size_t place) const {
+    return static_cast<int>(slots_.empty() ? place % 4 : place / stride_ % 3);
+  }
   std::size_t bytes() const { return slots_.size() * sizeof slots_[0]; }
 
  private:

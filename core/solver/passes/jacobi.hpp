@@ -17,12 +17,12 @@ template <class Real, Projection kind>
 class JacobiPass final : public Pass<Real> {
  public:
   JacobiPass(Jacobi method, std::vector<Stick<Real>> sticks, std::vector<PassCost> costs,
-             const std::shared_ptr<const Layout>& layout)
+             std::size_t particles)
       : sticks_(std::move(sticks)),
         costs_(std::move(costs)),
-        correction_(layout),
-        factor_(layout->size(), Real(1)) {
-    std::vector<int> links(layout->size());
+        correction_(std::make_shared<const Layout>(Layout::packed(particles))),
+        factor_(particles, Real(1)) {
+    std::vector<int> links(particles);
     for (const Stick<Real>& s : sticks_)
       ++links[static_cast<std::size_t>(s.a)], ++links[static_cast<std::size_t>(s.b)];
     const int most = links.empty() ? 0 : *std::max_element(links.begin(), links.end());

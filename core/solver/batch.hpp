@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/solver/order.hpp"
+#include "core/solver/simd/kernels.hpp"
+#include "core/solver/stick.hpp"
+
+namespace taut {
+
+/// A Gauss-Seidel sweep over any links on packed particles: phases of tiles of batches of kLanes
+/// independent links, the last batch of a colour filled up with links that do nothing between the
+/// two spare particles of Layout::packed. Batches between equal masses come first in each colour
+/// and need no shares.
+template <class Real>
+class BatchPlan {
+ public:
+  BatchPlan(const std::vector<Phase>&, std::span<const double> w, const Firmness&);
+  BatchPlan(BatchPlan&&) = default;
+  BatchPlan(const BatchPlan&) = delete;  // it points into itself
+
+  std::size_t phases() const { return phase_.size() - 1; }
+  std::size_t tiles(std::size_t phase) const { return phase_[phase + 1] - phase_[phase]; }
+  std::span<const BatchRun<Real>> runs(std::size_t phase, std::size_t tile) const {
+    const std::size_t t = phase_[phase] + tile;
+    return {runs_.data() + tile_[t], runs_.data() + tile_[t + 1]};
+  }
+
+  /// The links in the order in which the sweep visits them.
+  std::vector<Stick<Real>> order() const;
+  std::size_t bytes() const;
+
+ private:
+  void add_colour(std::vector<Stick<Real>> sticks, std::uint32_t spare);
+  void add_run(std::span<const Stick<Real>> sticks, bool equal, std::uint32_t spare);
+
+  std::vector<Batch<Real>> batches_;
+  std::vector<Real> shares_;
+  std::vector<BatchRun<Real>> runs_;
+  std::vector<std::size_t> tile_, phase_;  ///< where each begins, and the end
+};
+
+}  // namespace taut

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace taut {
+
+/// A regular sheet is cut into kLanes strips of columns, and a SIMD vector holds the same column of
+/// every strip: column c is lane c / K of vector c % K, where K = ceil(nu / kLanes).
+///
+///     one row:  | x of columns 0, K, 2K, .. | y of them | z of them | x of 1, K+1, .. | ...
+///
+/// So all links of a row in one direction are pairs of whole vectors; only at the end of a strip,
+/// where column K-1 meets column K, does a vector pair up with its neighbour shifted by a lane.
+inline constexpr int kLanes = 8;
+/// Numbers in the three coordinate vectors of kLanes particles.
+inline constexpr int kVector = 3 * kLanes;
+
+/// Links of one direction that start in one row.
+template <class Real>
+struct StripRow {
+  const Real* shares;          ///< [K][2][kLanes] of the left and of the right end; 0: no link
+  int plain_begin, plain_end;  ///< vectors whose shares are all StripDirection::half
+};
+
+/// Links (i, j) - (i + columns, j + ..) of one direction; `left` is the end in the lesser column.
+template <class Real>
+struct StripDirection {
+  int left, right;            ///< rows of the two ends, counted from the row that owns the link
+  int columns;                ///< 0, 1 or 2
+  int rows;                   ///< so many rows own links
+  Real rest;                  ///< m
+  Real half;                  ///< share of each end between equal masses
+  const StripRow<Real>* row;  ///< [rows]
+};
+
+template <class Real>
+struct StripSweep {
+  int vectors;         ///< K
+  std::size_t stride;  ///< numbers from one row to the next
+  int directions;
+  StripDirection<Real> direction[6];
+};
+
+/// kLanes links without a common vertex.
+template <class Real>
+struct Batch {
+  std::uint32_t a[kLanes], b[kLanes];  ///< slots in the packed layout
+  Real rest[kLanes];
+};
+
+/// Batches between equal masses share `half`; others have shares of their own.
+template <class Real>
+struct BatchRun {
+  const Batch<Real>* batches;
+  std::size_t count;
+  Real half;
+  const Real* shares;  ///< [count][2][kLanes], or null: all are `half`
+};
+
+/// x, previous, a: [length] numbers, length a multiple of kVector. Adds keep (x - previous) + g
+/// (+ a dt2, and clears a) to x; previous becomes the old x. g repeats every kVector numbers.
+template <class Real>
+struct VerletStep {
+  Real *x, *previous, *a;  ///< a null: no forces
+  Real keep, dt2;
+  const Real* g;  ///< [kVector] m
+};
+
+/// The loops that matter, once for each instruction set.
+template <class Real>
+struct Kernels {
+  void (*verlet)(const VerletStep<Real>&, std::size_t begin, std::size_t end);
+  /// Rows [begin, end) of a sweep; by Projection.
+  void (*strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);
+  void (*batches[2])(const BatchRun<Real>&, Real* x);
+};
+
+enum class Simd { scalar, sse2, avx2, avx512 };
+std::string_view to_string(Simd);
+
+/// Whether this program was built for it and this machine has it.
+bool available(Simd);
+/// The widest that is available.
+Simd widest();
+
+/// Precondition: available. All of them compute the same bits.
+template <class Real>
+const Kernels<Real>& kernels(Simd);
+
+/// Calls f(i) for [begin, end) so that i and i + lag are far apart: first those with i / lag even,
+/// then the others; lag 0: in order. The sweeps over rows and over vectors both run like this.
+template <class F>
+[[gnu::always_inline]] inline void in_two_passes(int begin, int end, int lag, const F& f) {
+  if (lag == 0) {
+    for (int i = begin; i < end; ++i) f(i);
+    return;
+  }
+  for (int pass = 0; pass < 2; ++pass)
+    for (int start = (begin / (2 * lag)) * 2 * lag + pass * lag; start < end; start += 2 * lag)
+      for (int i = start; i < start + lag; ++i)
+        if (i >= begin && i < end) f(i);
+}
+
+/// Calls f(direction, row) for all links that rows [begin, end) own, in the order of the sweep.
+template <class Real, class F>
+[[gnu::always_inline]] inline void visit_rows(const StripSweep<Real>& sweep, int begin, int end,
+                                              const F& f) {
+  for (int d = 0; d < sweep.directions; ++d) {
+    const StripDirection<Real>& direction = sweep.direction[d];
+    const int lag = direction.left > direction.right ? direction.left : direction.right;
+    in_two_passes(begin, end < direction.rows ? end : direction.rows, lag,
+                  [&](int j) { f(direction, j); });
+  }
+}
+
+/// Calls f(k) for the vectors of a row in the order of the sweep.
+template <class Real, class F>
+[[gnu::always_inline]] inline void visit_vectors(const StripSweep<Real>& sweep,
+                                                 const StripDirection<Real>& direction,
+                                                 const F& f) {
+  in_two_passes(0, sweep.vectors, direction.left == direction.right ? direction.columns : 0, f);
+}
+
+}  // namespace taut

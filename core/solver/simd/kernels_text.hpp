@@ -1,0 +1,196 @@
+#pragma once
+
+// Included by one file for each instruction set, which says what its lanes are. No function here
+// may be shared between them: everything depends on the lane type, which is private to the file.
+
+#include <type_traits>
+
+#include "core/solver/distance.hpp"
+#include "core/solver/simd/kernels.hpp"
+#include "core/solver/simd/lanes.hpp"
+
+namespace taut {
+
+/// The particles of one vector of a strip row.
+template <class T, class Real>
+[[gnu::always_inline]] inline Triple<T> load_triple(const Real* x) {
+  return {load<T>(x), load<T>(x + kLanes), load<T>(x + 2 * kLanes)};
+}
+template <class T, class Real>
+[[gnu::always_inline]] inline void store_triple(Real* x, const Triple<T>& p) {
+  store(x, p.x), store(x + kLanes, p.y), store(x + 2 * kLanes, p.z);
+}
+
+template <class T, class Real>
+void verlet(const VerletStep<Real>& s, std::size_t begin, std::size_t end) {
+  const T keep(s.keep), dt2(s.dt2);
+  for (std::size_t i = begin; i < end; i += kVector)
+    for (std::size_t l = 0; l < kVector; l += kWidth<T>) {
+      const T x = load<T>(s.x + i + l);
+      T moved = x + (keep * (x - load<T>(s.previous + i + l)) + load<T>(s.g + l));
+      if (s.a) {
+        moved = moved + load<T>(s.a + i + l) * dt2;
+        store(s.a + i + l, T(0.0));
+      }
+      store(s.x + i + l, moved);
+      store(s.previous + i + l, x);
+    }
+}
+
+/// Rows [begin, end) of a Gauss-Seidel sweep over a regular sheet.
+template <class T, Projection kind, class Real>
+void strips(const StripSweep<Real>& sweep, Real* x, int begin, int end) {
+  visit_rows(sweep, begin, end, [&](const StripDirection<Real>& d, int j) {
+    Real* const left = x + static_cast<std::size_t>(j + d.left) * sweep.stride;
+    Real* const right = x + static_cast<std::size_t>(j + d.right) * sweep.stride;
+    const StripRow<Real> row = d.row[j];
+    const T rest(d.rest), half(d.half);
+    const auto project = [&](Real* a, Real* b, T share_a, T share_b) {
+      Triple<T> x1 = load_triple<T>(a), x2 = load_triple<T>(b);
+      project_distance<kind>(x1, x2, rest, share_a, share_b);
+      // b first: shifted by a lane it ends one number inside the next vector, which may be a's
+      store_triple(b, x2), store_triple(a, x1);
+    };
+    visit_vectors(sweep, d, [&](int k) {
+      Real* const a = left + k * kVector;
+      if (k >= row.plain_begin && k < row.plain_end) {
+        Real* const b = right + (k + d.columns) * kVector;
+        for (int l = 0; l < kLanes; l += kWidth<T>) project(a + l, b + l, half, half);
+      } else {
+        // past the strip's end: the first vectors of the next lane
+        const int partner = k + d.columns;
+        Real* const b = right + (partner < sweep.vectors ? partner * kVector
+                                                         : (partner - sweep.vectors) * kVector + 1);
+        const Real* const shares = row.shares + 2 * kLanes * k;
+        for (int l = 0; l < kLanes; l += kWidth<T>)
+          project(a + l, b + l, load<T>(shares + l), load<T>(shares + kLanes + l));
+      }
+    });
+  });
+}
+
+/// One link after the other: batches for a machine without lanes.
+template <Projection kind, class Real>
+[[gnu::always_inline]] inline void batches_one_by_one(const BatchRun<Real>& run, Real* x) {
+  for (std::size_t n = 0; n < run.count; ++n) {
+    const Batch<Real>& batch = run.batches[n];
+    for (int l = 0; l < kLanes; ++l) {
+      Real *a = x + batch.a[l], *b = x + batch.b[l];
+      Triple<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
+      const Real* const shares = run.shares ? run.shares + 2 * kLanes * n + l : nullptr;
+      project_distance<kind>(x1, x2, batch.rest[l], shares ? shares[0] : run.half,
+                             shares ? shares[kLanes] : run.half);
+      a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
+      b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
+    }
+  }
+}
+
+/// T holds the x y z 0 of one particle, or of two.
+template <class T, class Real>
+[[gnu::always_inline]] inline T load_particles(const Real* x, const std::uint32_t* slot) {
+  if constexpr (kWidth<T> == 4)
+    return load<T>(x + slot[0]);
+  else
+    return T::join(load<typename T::Half>(x + slot[0]), load<typename T::Half>(x + slot[4]));
+}
+template <class T, class Real>
+[[gnu::always_inline]] inline void store_particles(Real* x, const std::uint32_t* slot, T t) {
+  if constexpr (kWidth<T> == 4)
+    store(x + slot[0], t);
+  else
+    store(x + slot[0], t.lower()), store(x + slot[4], t.upper());
+}
+
+/// Lane l of the result is the sum x + y + z of d[l % 4] (its half l / 4): the only transposition.
+template <class T>
+[[gnu::always_inline]] inline T sums(const T (&d)[4]) {
+  if constexpr (kWidth<T> == 4) {
+    const T xy01 = T::template shuffle<0, 4, 1, 5>(d[0], d[1]);
+    const T xy23 = T::template shuffle<0, 4, 1, 5>(d[2], d[3]);
+    const T z01 = T::template shuffle<2, 6, 3, 7>(d[0], d[1]);
+    const T z23 = T::template shuffle<2, 6, 3, 7>(d[2], d[3]);
+    return T::template shuffle<0, 1, 4, 5>(xy01, xy23) +
+           T::template shuffle<2, 3, 6, 7>(xy01, xy23) + T::template shuffle<0, 1, 4, 5>(z01, z23);
+  } else {
+    const T xy01 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(d[0], d[1]);
+    const T xy23 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(d[2], d[3]);
+    const T z01 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(d[0], d[1]);
+    const T z23 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(d[2], d[3]);
+    return T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(xy01, xy23) +
+           T::template shuffle<2, 3, 10, 11, 6, 7, 14, 15>(xy01, xy23) +
+           T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(z01, z23);
+  }
+}
+
+/// Lane l of every particle in t.
+template <int l, class T>
+[[gnu::always_inline]] inline T spread(T t) {
+  if constexpr (kWidth<T> == 4)
+    return T::template shuffle<l, l, l, l>(t, t);
+  else
+    return T::template shuffle<l, l, l, l, l + 4, l + 4, l + 4, l + 4>(t, t);
+}
+
+/// Calls f with 0, 1, 2 and 3 as constants, so that arrays of four stay in registers.
+template <class F>
+[[gnu::always_inline]] inline void four_times(const F& f) {
+  f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{});
+  f(std::integral_constant<int, 2>{}), f(std::integral_constant<int, 3>{});
+}
+
+/// Links g .. g + kWidth<T> - 1 of a batch; shares null: all are half.
+template <class T, Projection kind, bool equal, class Real>
+[[gnu::always_inline]] inline void project_batch(const Batch<Real>& batch, int g,
+                                                 const Real* shares, T half, Real* x) {
+  T x1[4], x2[4], delta[4], squared[4];
+  four_times([&](auto l) {
+    x1[l] = load_particles<T>(x, batch.a + g + l);
+    x2[l] = load_particles<T>(x, batch.b + g + l);
+    delta[l] = x2[l] - x1[l];
+    squared[l] = delta[l] * delta[l];
+  });
+  const T f = excess<kind>(sums(squared), load<T>(batch.rest + g));
+  if constexpr (equal) {
+    const T share = half * f;
+    four_times([&](auto l) {
+      const T moved = spread<l>(share) * delta[l];
+      store_particles(x, batch.a + g + l, x1[l] + moved);
+      store_particles(x, batch.b + g + l, x2[l] - moved);
+    });
+  } else {
+    const T share1 = load<T>(shares + g) * f, share2 = load<T>(shares + kLanes + g) * f;
+    four_times([&](auto l) {
+      store_particles(x, batch.a + g + l, x1[l] + spread<l>(share1) * delta[l]);
+      store_particles(x, batch.b + g + l, x2[l] - spread<l>(share2) * delta[l]);
+    });
+  }
+}
+
+/// Batches with T holding a particle (4 lanes) or two (8): a whole particle is one load.
+template <class T, Projection kind, class Real>
+void batches(const BatchRun<Real>& run, Real* x) {
+  if constexpr (kWidth<T> == 1) {
+    batches_one_by_one<kind>(run, x);
+  } else if (run.shares) {
+    for (std::size_t n = 0; n < run.count; ++n)
+      for (int g = 0; g < kLanes; g += kWidth<T>)
+        project_batch<T, kind, false>(run.batches[n], g, run.shares + 2 * kLanes * n, T(0.0), x);
+  } else {
+    const T half(run.half);
+    for (std::size_t n = 0; n < run.count; ++n)
+      for (int g = 0; g < kLanes; g += kWidth<T>)
+        project_batch<T, kind, true, Real>(run.batches[n], g, nullptr, half, x);
+  }
+}
+
+/// T computes along strips, P on particles.
+template <class Real, class T, class P>
+constexpr Kernels<Real> make_kernels() {
+  constexpr Projection exact = Projection::exact, sqrt_free = Projection::sqrt_free;
+  return {verlet<T, Real>,
+          {strips<T, exact, Real>, strips<T, sqrt_free, Real>},
+          {batches<P, exact, Real>, batches<P, sqrt_free, Real>}};
+}
+
+}  // namespace taut

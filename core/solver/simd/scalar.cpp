@@ -1,0 +1,15 @@
+#include "core/solver/simd/kernels_text.hpp"
+
+namespace taut {
+
+namespace {
+struct Isa;
+}
+
+extern const Kernels<float> kScalarFloat;
+extern const Kernels<double> kScalarDouble;
+
+const Kernels<float> kScalarFloat = make_kernels<float, float, float>();
+const Kernels<double> kScalarDouble = make_kernels<double, double, double>();
+
+}  // namespace taut
