@@ -14,6 +14,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
       file(STRINGS ${ROOT}/${file} lines REGEX "^TAUT_SOLVER\\(([a-z0-9_]+)\\)")
       foreach(line IN LISTS lines)
         string(REGEX REPLACE "^TAUT_SOLVER\\(([a-z0-9_]+)\\).*" "\\1" name "${line}")
+        string(REPLACE "_" "-" name "${name}")  # an identifier's underscore is a name's hyphen
         string(APPEND solvers "    if (solver == \"${name}\") return k_${layer};\n")
       endforeach()
     endforeach()

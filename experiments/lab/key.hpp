@@ -9,8 +9,9 @@
 namespace taut {
 
 /// Digest of what a solver is made of: sources, compiler, flags, library versions; empty for a
-/// solver that is not part of the program (test doubles). `solver` is the name in its TAUT_SOLVER
-/// line. Generated at build time (cmake/fingerprint.cmake).
+/// solver that is not part of the program (test doubles). `solver` is its name: that of its
+/// TAUT_SOLVER line with hyphens for underscores. Generated at build time
+/// (cmake/fingerprint.cmake).
 std::string_view implementation(std::string_view solver);
 /// Digest of what turns states into numbers: metrics, verdict, run_case. Generated likewise.
 std::string_view measurement();

@@ -1,0 +1,64 @@
+"""What the tests of the command line share: a scratch folder, the built programs, a small study."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BINARIES = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/default").resolve()
+
+SCENE = """
+summary = "A small sheet"
+[cloth]
+grid = [4, 4]
+size = [1, 1]
+mass = 0.1
+pins = ["top-left"]
+[time]
+dt = "1/64"
+duration = 0.5
+"""
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        (self.folder / "small.toml").write_text(SCENE)
+
+    def start(self, *words, program="taut", **more):
+        return subprocess.Popen([BINARIES / program, *map(str, words)], cwd=self.folder, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, **more)
+
+    def taut(self, *words, expect=0, program="taut", **more):
+        process = self.start(*words, program=program, **more)
+        process.out, process.err = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, expect, f"{words}\n{process.out}\n{process.err}")
+        return process
+
+    def study(self, name="study.toml", scenes=("./small.toml",), solvers=("jakobsen",), rest=""):
+        file = self.folder / name
+        file.write_text('question = "Does it?"\n'
+                        f"scenes = {json.dumps(list(scenes))}\nsolvers = {json.dumps(list(solvers))}\n{rest}")
+        return "./" + name
+
+    def store_digest(self, process):
+        lines = [line for line in (process.out + process.err).splitlines() if line.startswith("store ")]
+        return lines[-1]
+
+    def records(self, results="results/runs"):
+        return [json.loads(file.read_text()) for file in (self.folder / results / "store").glob("*/*/case.json")]
+
+    def entries(self, results="results/runs"):
+        return sorted((self.folder / results / "store").glob("*/*"))
+
+
+def main():
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
+
+
+assert os.name == "posix"

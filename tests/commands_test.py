@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""What the verbs print, and what bad input costs: a message with its place, exit 2, nothing written."""
+
+import csv
+import json
+
+from command_line import CommandLine, main
+
+
+class BadInput(CommandLine):
+    def refuse(self, *words, says):
+        before = sorted(self.folder.rglob("*"))
+        process = self.taut(*words, expect=2)
+        for text in [says] if isinstance(says, str) else says:
+            self.assertIn(text, process.err)
+        self.assertEqual(process.out, "")
+        self.assertEqual(sorted(self.folder.rglob("*")), before, "nothing is written")
+
+    def test_names(self):
+        self.refuse("rnu", says="unknown verb 'rnu'; did you mean 'run'?")
+        self.refuse("case", "hnag", "jakobsen", says="unknown scene 'hnag'; did you mean 'hang'?")
+        self.refuse("case", "hang", "jakobsne", says="unknown solver 'jakobsne'; did you mean 'jakobsen'?")
+        self.refuse("case", "hang", "jakobsen:iteration=3", says="did you mean 'iterations'?")
+        self.refuse("run", "iteration", says="unknown study 'iteration'; did you mean 'iterations'?")
+        self.refuse("case", "no/such.toml", "jakobsen", says="no/such.toml: no such scene file")
+        self.refuse("run", "iterations", "--preset", "quikc", says="did you mean 'quick'?")
+
+    def test_numbers(self):
+        for value in ["0", "-3", "many", "nan", "1e9", "1.5"]:
+            if value != "0":
+                self.refuse("case", "hang", f"jakobsen:iterations={value}", says=f"iterations={value}")
+            self.refuse("case", "hang", f"jakobsen:substeps={value}", says=f"substeps={value}")
+        for dt in ["0", "-0.01", "nan", "fast", "1/0"]:
+            self.refuse("case", "hang", "jakobsen", "--dt", dt, says="dt")
+        self.refuse("run", "iterations", "--shard", "5/4", says="shard 5/4 does not exist")
+        self.refuse("run", "iterations", "--shard", "two", says="expected i/n")
+
+    def test_a_study_with_many_mistakes_names_them_all(self):
+        (self.folder / "bad.toml").write_text('''question = "?"
+scenes = ["hang", "hnag"]
+solvers = ["jakobsen:iterations=-1"]
+sovers = []
+[sweep]
+iteratons = [1, 2]
+substeps = [1, 0]
+[preset.quick]
+scense = ["hang"]
+[[plot]]
+x = "iterations"
+''')
+        self.refuse("run", "./bad.toml",
+                    says=["bad.toml:2:", "unknown scene 'hnag'; did you mean 'hang'?",
+                          "bad.toml:3:", "iterations=-1 is outside",
+                          "bad.toml:4:1: unknown key 'sovers'", "did you mean 'solvers'?",
+                          "bad.toml:9:1: unknown key 'scense' in [preset.quick]; did you mean 'scenes'?",
+                          "missing key 'kind'"])
+        (self.folder / "bad.toml").write_text('''question = "?"
+scenes = ["hang"]
+solvers = ["jakobsen"]
+[sweep]
+iteratons = [1, 2]
+substeps = [1, 0]
+"time.dt" = 3
+''')
+        self.refuse("run", "./bad.toml",
+                    says=["bad.toml:5:1: no solver of this study has a parameter 'iteratons'; did you mean 'iterations'?",
+                          "bad.toml:6:", "substeps=0 is outside", "bad.toml:7:", "must be a list of values or a range"])
+        (self.folder / "bad.toml").write_text("question = ")
+        self.refuse("run", "./bad.toml", says="bad.toml:1:")
+
+    def test_a_bad_scene_in_a_study_stops_all_of_it(self):
+        (self.folder / "small.toml").write_text("[cloth]\ngrid = [1, 1]\nmas = 3\n")
+        self.refuse("run", self.study(scenes=["hang", "./small.toml"]), says=["small.toml:", "unknown key 'mas'"])
+
+    def test_a_swept_scene_key_that_does_not_exist(self):
+        self.refuse("run", self.study(rest='[sweep]\n"time.td" = [1]\n'), says="unknown key 'td'")
+
+
+class Verbs(CommandLine):
+    def test_every_verb_has_help_with_an_example(self):
+        verbs = self.taut("--help").out
+        for verb in ["list", "run", "case", "plan", "merge", "doctor"]:
+            self.assertIn(verb, verbs)
+            self.assertIn("Example:\n  taut " + verb, self.taut(verb, "--help").out)
+
+    def test_list(self):
+        everything = json.loads(self.taut("list", "--json").out)
+        self.assertIn("hang", [scene["name"] for scene in everything["scenes"]])
+        solver, = [s for s in everything["solvers"] if s["name"] == "jakobsen"]
+        self.assertIn("iterations", [param["name"] for param in solver["params"]])
+        for metric in everything["metrics"]:
+            for value in metric["values"]:
+                self.assertTrue(value["unit"] and value["help"], value["name"])
+        self.assertEqual({"iterations", "time-steps", "penetration"} - {s["name"] for s in everything["studies"]}, set())
+        self.assertIn("stretch.rms [1]", self.taut("list", "metrics").out)
+
+    def test_case_prints_a_record_and_its_final_state(self):
+        run = self.taut("case", "./small.toml", "jakobsen:precision=double", "--dt", "1/128", "--duration", 0.25,
+                        "--set", "cloth.grid=[5, 3]", "--json", "--final-state", "end.csv", "--series", "series.csv",
+                        "--trajectory", "all.traj")
+        record = json.loads(run.out)
+        self.assertEqual((record["dt"], record["steps"], record["vertices"]), (1 / 128, 32, 15))
+        self.assertEqual(record["status"]["kind"], "ok")
+        rows = list(csv.DictReader((self.folder / "end.csv").read_text().splitlines()))
+        self.assertEqual(list(rows[0]), ["vertex", "x", "y", "z", "vx", "vy", "vz"])
+        self.assertEqual(len(rows), 15)
+        for row in rows:  # the shortest text that is the same double
+            self.assertEqual(repr(float(row["y"])), repr(float(repr(float(row["y"])))))
+        self.assertGreater(max(len(row["y"]) for row in rows), 14)
+        self.assertEqual(len((self.folder / "series.csv").read_text().splitlines()), 34)
+        self.assertEqual((self.folder / "all.traj").read_bytes()[:8], b"TAUTTRAJ")
+
+    def test_float_bullet_runs_in_its_own_program(self):
+        for precision in ["float", "double"]:
+            run = self.taut("case", "./small.toml", f"bullet:precision={precision}", "--json")
+            self.assertEqual(json.loads(run.out)["params"]["precision"], precision)
+        self.taut("run", self.study(solvers=["bullet:precision=float", "bullet:precision=double"]))
+        self.assertEqual({r["status"]["kind"] for r in self.records()}, {"ok"})
+        self.assertEqual(len({r["digest"] for r in self.records()}), 2)
+
+    def test_case_and_study_agree(self):
+        self.taut("run", self.study(solvers=["jakobsen:iterations=4"]))
+        alone = json.loads(self.taut("case", "./small.toml", "jakobsen:iterations=4", "--json").out)
+        self.assertEqual(self.records(), [alone])
+
+    def test_plan(self):
+        plan = json.loads(self.taut("plan", "./small.toml", "jakobsen:iterations=2", "--json").out)
+        structural, = [p for p in plan["passes"] if p["pass"] == "structural"]
+        self.assertEqual((structural["items"], structural["repeats"]), (24, 2))
+        self.assertIn("projections", self.taut("plan", "hang", "bullet").out)
+
+    def test_doctor(self):
+        report = json.loads(self.taut("doctor", "--json").out)
+        self.assertIn(report["timing_trusted"], (True, False))
+        self.assertIn("toolchain", [finding["name"] for finding in report["findings"]])
+
+    def test_the_same_scene_under_another_name_is_the_same_case(self):
+        (self.folder / "copy.toml").write_text((self.folder / "small.toml").read_text())
+        self.taut("run", self.study(scenes=["./small.toml"]))
+        again = self.taut("run", self.study(scenes=["./copy.toml"]))
+        self.assertIn("(1 were stored already)", again.err)
+
+
+if __name__ == "__main__":
+    main()

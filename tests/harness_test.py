@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+"""Faulty solvers cost one case each; stores survive kill -9, corruption, shards and conflicts."""
+
+import hashlib
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import time
+
+from command_line import BINARIES, CommandLine, main
+
+SANITIZED = "asan" in BINARIES.name  # its allocator knows no limit on address space
+
+
+class FaultySolvers(CommandLine):
+    def run_modes(self, *modes):
+        study = self.study(solvers=["jakobsen:precision=double"] + [f"faulty:mode={mode}" for mode in modes])
+        run = self.taut("run", study, "--timeout", 2, "--memory", 300, "-j", 2, program="taut-faulty")
+        self.assertIn(f"{len(modes) + 1}/{len(modes) + 1} cases", run.err)
+        statuses = {r["params"].get("mode", "jakobsen"): r["status"] for r in self.records()}
+        self.assertEqual(statuses["jakobsen"]["kind"], "ok")
+        return statuses
+
+    def test_each_costs_one_case(self):
+        modes = ["crash", "abort", "nan", "hang", "throw", "exit", "refuse", "sound"]
+        status = self.run_modes(*modes)
+        self.assertEqual({mode: status[mode]["kind"] for mode in modes},
+                         {"crash": "crash", "abort": "crash", "nan": "exploded", "hang": "timeout", "throw": "error",
+                          "exit": "error", "refuse": "unsupported", "sound": "ok"})
+        self.assertIn("SIGSEGV", status["crash"]["reason"])
+        self.assertIn("SIGABRT", status["abort"]["reason"])
+        self.assertEqual(status["throw"]["reason"], "faulty: threw as told")
+        self.assertEqual(status["refuse"]["reason"], "refuses, as told")
+        for mode in ["crash", "abort", "hang", "exit"]:
+            self.assertEqual(status[mode]["step"], 4, f"{mode}: the last good step is that before the fifth")
+        self.assertEqual((status["nan"]["step"], status["nan"]["vertex"]), (5, 2))
+
+    def test_eating_memory(self):
+        if SANITIZED:
+            self.skipTest("the sanitizer's allocator knows no limit on address space")
+        self.assertEqual(self.run_modes("memory")["memory"]["kind"], "oom")
+
+    def test_printing_without_end(self):
+        status = self.run_modes("print")["print"]
+        self.assertIn(status["kind"], ("crash", "timeout"))
+
+    def test_failures_run_again_only_on_request(self):
+        study = self.study(solvers=["faulty:mode=throw", "faulty:mode=sound"])
+        self.taut("run", study, program="taut-faulty")
+        again = self.taut("run", study, program="taut-faulty")
+        self.assertIn("(2 were stored already)", again.err)
+        failed = self.taut("run", study, "--only", "failed", program="taut-faulty")
+        self.assertIn("1/1 cases: error 1 (0 were stored already)", failed.err)
+
+
+class Store(CommandLine):
+    MANY = 'sweep.iterations = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]\n'
+
+    def test_a_second_run_reuses_everything(self):
+        study = self.study(rest=self.MANY)
+        first = self.taut("run", study)
+        second = self.taut("run", study)
+        self.assertIn("(12 were stored already)", second.err)
+        self.assertEqual(self.store_digest(first), self.store_digest(second))
+
+    def test_kill_9_at_random_moments_then_resume(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="sweep.variant = [0, 1, 2, 3, 4, 5, 6, 7]\n")
+        whole = self.store_digest(self.taut("run", study, "--out", "whole", program="taut-faulty"))
+        moments = random.Random(1)
+        for _ in range(12):
+            process = self.start("run", study, "-j", 2, program="taut-faulty")
+            time.sleep(moments.uniform(0, 0.8))
+            process.kill()
+            process.communicate()
+            for entry in self.entries():
+                self.assertTrue((entry / "status.json").exists(), "an entry is there whole or not at all")
+        resumed = self.taut("run", study, program="taut-faulty")
+        self.assertEqual(self.store_digest(resumed), whole)
+        self.assertEqual(list((self.folder / "results/runs/tmp").iterdir()), [], "leftovers are swept up")
+
+    def test_ctrl_c_then_resume(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="sweep.variant = [0, 1, 2, 3]\n")
+        process = self.start("run", study, "-j", 1, program="taut-faulty")
+        while not self.entries():
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130, said)
+        self.assertIn("goes on where this one stopped", said)
+        self.assertLess(len(self.entries()), 4)
+        self.assertEqual(list((self.folder / "results/runs/tmp").iterdir()), [])
+        self.taut("run", study, program="taut-faulty")
+        self.assertEqual(len(self.entries()), 4)
+
+    def test_a_corrupt_entry_is_reported_set_aside_and_run_again(self):
+        study = self.study(rest=self.MANY)
+        digest = self.store_digest(self.taut("run", study))
+        first, second, third = self.entries()[:3]
+        text = (first / "case.json").read_text()
+        (first / "case.json").write_text(text.replace('"vertices": 16', '"vertices": 17'))
+        (second / "series.csv").unlink()
+        (third / "status.json").write_text("{")
+        again = self.taut("run", study)
+        self.assertEqual(again.err.count("corrupt entry"), 3, again.err)
+        self.assertIn("(9 were stored already)", again.err)
+        self.assertEqual(self.store_digest(again), digest)
+        self.assertEqual(len(list((self.folder / "results/runs/corrupt").iterdir())), 3)
+
+    def test_shards_merge_and_a_missing_one_is_named(self):
+        study = self.study(rest=self.MANY)
+        whole = self.store_digest(self.taut("run", study))
+        for i in (1, 2, 3):
+            self.taut("run", study, "--shard", f"{i}/3", "--out", f"shard{i}")
+        partial = self.taut("merge", "shard1", "shard3", "--out", "partial", expect=3)
+        self.assertIn("missing from shards 2/3", partial.out)
+        merged = self.taut("merge", "shard1", "shard2", "shard3", "--out", "merged")
+        self.assertIn("12/12 cases", merged.out)
+        self.assertEqual(self.store_digest(merged), whole)
+
+    def test_a_slurm_array_is_a_shard(self):
+        study = self.study(rest=self.MANY)
+        for task in (0, 1):
+            self.taut("run", study, env={**os.environ, "SLURM_ARRAY_TASK_ID": str(task), "SLURM_ARRAY_TASK_MIN": "0",
+                                         "SLURM_ARRAY_TASK_COUNT": "2"})
+        self.assertEqual(len(self.entries()), 12)
+
+    def test_another_result_under_the_same_key_is_an_alarm(self):
+        study = self.study(solvers=["faulty:mode=random,at=3"])
+        self.taut("run", study, "--out", "a", program="taut-faulty")
+        self.taut("run", study, "--out", "b", program="taut-faulty")
+        self.taut("merge", "a", "b", "--out", "c", expect=6)
+        self.assertEqual(len(list((self.folder / "c/conflicts").iterdir())), 1)
+        self.assertEqual(len(self.entries("c")), 1, "the first result stays")
+
+    def test_a_folder_that_cannot_be_written(self):
+        study = self.study(rest=self.MANY)
+        (self.folder / "file").write_text("")
+        run = self.taut("run", study, "--out", "file/results", expect=2)
+        self.assertIn("cannot create", run.err)
+        if os.geteuid() != 0:
+            (self.folder / "locked").mkdir(mode=0o500)
+            self.assertIn("Permission denied", self.taut("run", study, "--out", "locked", expect=2).err)
+
+    def test_a_full_disk_loses_nothing_finished(self):
+        place = self.folder / "disk"
+        place.mkdir()
+        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "tmpfs", place],
+                                               capture_output=True).returncode != 0:
+            self.skipTest("needs a small file system")
+        self.addCleanup(subprocess.run, ["umount", place])
+        study = self.study(rest="sweep.iterations = { from = 1, to = 60, steps = 60 }\n")
+        whole = self.store_digest(self.taut("run", study))
+        run = self.taut("run", study, "--out", "disk/results", expect=2)
+        self.assertIn("No space left", run.err)
+        kept = len(self.entries("disk/results"))
+        self.assertGreater(kept, 0)
+        shutil.copytree(place / "results", self.folder / "moved")
+        moved = self.taut("run", study, "--out", "moved")
+        self.assertIn(f"({kept} were stored already)", moved.err)
+        self.assertEqual(self.store_digest(moved), whole)
+
+
+def digest_of(file: pathlib.Path):
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+class Format(CommandLine):
+    def test_an_entry_seals_its_files(self):
+        self.taut("run", self.study())
+        entry, = self.entries()
+        seal = json.loads((entry / "status.json").read_text())
+        self.assertEqual(seal["key"], entry.name)
+        for part, digest in seal["files"].items():
+            self.assertEqual(digest_of(entry / part), digest)
+        rows = (entry / "series.csv").read_text().splitlines()
+        self.assertTrue(rows[0].startswith("step,t,"))
+        self.assertEqual(len(rows), 1 + 33, "0.5 s at 1/64 s: every boundary")
+
+
+if __name__ == "__main__":
+    main()
