@@ -121,9 +121,6 @@ void compare_case(const BaselineRow& row, const Baseline& before, const Baseline
       add(Finding::Kind::case_renamed, "renamed: the baseline calls it '" + other->id + "'");
     else
       add(Finding::Kind::case_new, "new: the baseline does not have this case");
-  } else if (old->spec.solver != row.spec.solver) {
-    add(Finding::Kind::setting_changed,
-        "other settings: " + old->spec.solver + " -> " + row.spec.solver);
   } else if (old->scene != row.scene) {
     add(Finding::Kind::scene_changed, "the scene changed: content " + old->scene.substr(0, 12) +
                                           " -> " + row.scene.substr(0, 12));

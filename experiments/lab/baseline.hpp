@@ -23,7 +23,8 @@ struct BaselineRow {
 /// Sorted by id.
 using Baseline = std::vector<BaselineRow>;
 
-/// `scene` is digest(Scene) of the scene that the record's spec names.
+/// `scene` is digest(Scene) of the scene that the record's spec names. The solver is kept with only
+/// those parameters that differ from their defaults, so that a new parameter changes no row.
 BaselineRow baseline_row(const Record&, const std::string& scene);
 
 /// How far a value may move: |a - b| <= absolute + relative * |b|, b the baseline's.
@@ -55,14 +56,13 @@ struct Finding {
     value_moved,
     status_changed,
     // not the same question: the baseline does not match the study
-    case_missing,     ///< in the baseline, not in the study
-    case_new,         ///< in the study, not in the baseline
-    case_renamed,     ///< the same scene and solver under another id
-    scene_changed,    ///< same id, other content
-    setting_changed,  ///< same id, another solver or other parameters
-    solver_missing,   ///< the baseline has a solver that the study does not run
-    solver_new,       ///< the study runs a solver that has no baseline
-    value_missing,    ///< the baseline has a metric value that no longer exists
+    case_missing,    ///< in the baseline, not in the study
+    case_new,        ///< in the study, not in the baseline
+    case_renamed,    ///< the same scene and solver under another id
+    scene_changed,   ///< same id, other content
+    solver_missing,  ///< the baseline has a solver that the study does not run
+    solver_new,      ///< the study runs a solver that has no baseline
+    value_missing,   ///< the baseline has a metric value that no longer exists
     // for information: no failure
     value_new
   };
@@ -82,6 +82,13 @@ struct Comparison {
   bool regressed() const;
   bool mismatched() const;
 };
+
+/// The command that runs a case in the foreground: "taut case hang jakobsen:iterations=8 --set
+/// ...".
+std::string reproduce(const CaseSpec&);
+
+/// A comparison as JUnit XML, a test case for every row and for every finding that has none.
+std::string junit(const std::string& study, const Baseline& now, const Comparison&);
 
 /// What is different in `now`. Rows whose scene, solver or id do not match are not compared.
 Comparison compare(const Baseline& before, const Baseline& now, const Tolerances&);
