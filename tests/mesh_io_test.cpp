@@ -88,6 +88,29 @@ TEST(MeshFromObj, TwoTrianglesBendAcrossTheirEdge) {
   EXPECT_DOUBLE_EQ(links[5].rest, std::sqrt(3.0));
 }
 
+TEST(MeshFromObj, NoPairIsLinkedTwiceWhereThreeQuadsMeet) {
+  // The corner of a cube: 0 is the corner, 1 2 3 its neighbours. Across the edge 0-1, vertices 2
+  // and 3 are opposite, but they are also the diagonal of the third quad.
+  const Polygons p = parse_obj("x.obj",
+                               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\nv 0 1 1\nv 1 0 1\n"
+                               "f 1 2 5 3\nf 1 3 6 4\nf 1 4 7 2\n");
+  const auto links = mesh_links(p, {.structural = true, .shear = true, .bend = true});
+  EXPECT_EQ(as_set(links).size(), 9u + 6u + 3u);
+  for (const Link& l : links) EXPECT_LT(l.a, l.b);
+  EXPECT_EQ(mesh_links(p, {.structural = false, .shear = false, .bend = true}).size(), 6u);
+}
+
+TEST(MeshFromObj, QuadsAreCutAlongTheirShorterDiagonalAndWeighAsMuchAsTheirTriangles) {
+  const Polygons p = parse_obj("x.obj",
+                               "v 0 0 0\nv 1 0 0\nv 2 2 0\nv 0 1 0\nv -1 0 0\n"
+                               "f 1 2 3 4\nf 1 4 5\n");
+  EXPECT_DOUBLE_EQ(area(p), 2.5);
+  const Mesh mesh = make_mesh(p, 5, Lumping::area);
+  EXPECT_EQ(mesh.triangles[0], (Triangle{1, 2, 3}));  // 2-4 is 1.41 m long, 1-3 is 2.83 m
+  EXPECT_EQ(mesh.triangles[1], (Triangle{1, 3, 0}));
+  EXPECT_DOUBLE_EQ(mesh.mass[4], 5 * (0.5 / 3) / 2.5);
+}
+
 TEST(MeshFromObj, EachTriangleGivesAThirdToItsCorners) {
   const Polygons p = parse_obj("x.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv -4 0 0\nf 1 2 3\nf 1 3 4\n");
   EXPECT_DOUBLE_EQ(area(p), 6);
@@ -126,6 +149,8 @@ TEST(MeshFromObj, SurfacesThatNoClothHasAreNamed) {
             "x.obj:8:1: vertex 8 belongs to no face\n"
             "x.obj:11:1: the edge from vertex 1 to 2 has 4 faces; a cloth has two at most\n"
             "x.obj:12:1: the face has no area");
+  EXPECT_EQ(errors_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nf 1 2 3\nf 1 2 4\nf 2 1 5\n"),
+            "x.obj:8:1: the edge from vertex 1 to 2 has 3 faces; a cloth has two at most");
   EXPECT_EQ(errors_of(""), "x.obj:1:1: no face: a cloth needs one at least");
   EXPECT_THROW(read_obj("no/such.obj"), InputError);
 }

@@ -129,6 +129,18 @@ TEST(SceneFiles, OverridesReplaceAddAndPickElements) {
   EXPECT_TRUE(content(shipped("ball", {"summary=\"other\""})) == content(shipped("ball")));
 }
 
+TEST(SceneFiles, ABoxTurnsByAxisAndAngleOrByAQuaternion) {
+  const auto rotation = [](const std::string& text) {
+    return std::get<Box>(shipped("box", {"collider.0.rotation=" + text}).colliders[0].shape)
+        .rotation;
+  };
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(std::acos(-1.0) / 2, Vec3::UnitZ()));
+  EXPECT_TRUE(rotation("{ axis = [0, 0, 7], angle = 90 }").isApprox(quarter, 1e-15));
+  EXPECT_TRUE(rotation("[3, 0, 0, 3]").isApprox(quarter, 1e-15));
+  EXPECT_THROW(rotation("[0, 0, 0, 0]"), InputError);
+  EXPECT_THROW(rotation("45"), InputError);
+}
+
 TEST(SceneFiles, PinsMoveAndStartWithTheVelocityOfTheirMotion) {
   const std::string text(
       R"(cloth = { grid = [2, 2], size = [1, 1], pins = ["top"], velocity = [0, 0, 5] }
@@ -136,11 +148,12 @@ TEST(SceneFiles, PinsMoveAndStartWithTheVelocityOfTheirMotion) {
 vertices = [1]
 velocity = [2, 0, 0]
 spin = [0, 0, 3]
+pivot = [0, 1, 0]
 path = [{ t = 0, displacement = [0, 0, 0] }, { t = 2, displacement = [0, 0, 1] }]
 )");
   const Scene scene = parse_scene("x", text);
   EXPECT_EQ(scene.start.v[0], Vec3::Zero());
-  EXPECT_EQ(scene.start.v[1], Vec3(2, 3, 0.5));
+  EXPECT_EQ(scene.start.v[1], Vec3(5, 3, 0.5));
   EXPECT_EQ(scene.start.v[3], Vec3(0, 0, 5));
   const double h = 1e-7;
   EXPECT_LT(((pin_position(scene, 1, h) - pin_position(scene, 1, 0)) / h - scene.start.v[1]).norm(),
