@@ -139,7 +139,6 @@ TEST(Baseline, JUnitHasATestCaseForEveryRowAndEveryLoss) {
   before.push_back(row("box", "bullet:iterations=3", 1));
   now[0].values["stretch.max"] = 1;
   EXPECT_EQ(junit("small <study>", now, compare(before, now, {})),
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
             "<testsuite name=\"small &lt;study&gt;\" tests=\"3\" failures=\"2\">\n"
             "  <testcase classname=\"small &lt;study&gt;\" name=\"ball jakobsen:iterations=3\">"
             "<failure>stretch.max 0.5 -&gt; 1 (by 0.5, allowed 5e-07)\n</failure></testcase>\n"

@@ -87,7 +87,8 @@ struct Comparison {
 /// ...".
 std::string reproduce(const CaseSpec&);
 
-/// A comparison as JUnit XML, a test case for every row and for every finding that has none.
+/// A comparison as a JUnit <testsuite>, a test case for every row and for every finding that has
+/// none.
 std::string junit(const std::string& study, const Baseline& now, const Comparison&);
 
 /// What is different in `now`. Rows whose scene, solver or id do not match are not compared.

@@ -53,9 +53,9 @@ std::string junit(const std::string& study, const Baseline& now, const Compariso
     names.insert(name);
     failures[name] += finding.text + "\n";
   }
-  std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"" +
-                    escaped(study) + "\" tests=\"" + std::to_string(names.size()) +
-                    "\" failures=\"" + std::to_string(failures.size()) + "\">\n";
+  std::string xml = "<testsuite name=\"" + escaped(study) + "\" tests=\"" +
+                    std::to_string(names.size()) + "\" failures=\"" +
+                    std::to_string(failures.size()) + "\">\n";
   for (const std::string& name : names) {
     xml += "  <testcase classname=\"" + escaped(study) + "\" name=\"" + escaped(name) + "\"";
     const auto failure = failures.find(name);

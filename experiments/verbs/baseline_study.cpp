@@ -1,0 +1,99 @@
+#include "experiments/verbs/baseline_study.hpp"
+
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <thread>
+
+#include "experiments/lab/digest.hpp"
+#include "experiments/lab/store.hpp"
+#include "experiments/verbs/progress.hpp"
+
+namespace taut {
+
+namespace {
+
+/// Runs what the store lacks; true if all went its way.
+void run_missing(const std::vector<Case>& cases, const Store& store, const BaselineOptions& options,
+                 BaselineStudy& result) {
+  store.prepare();
+  const Session session(store, "taut check " + result.name, cases, {});
+  Progress progress;
+  const Tally tally = run_cases(
+      cases, store, session,
+      {.jobs = options.jobs,
+       .limits = {},
+       .shard = {},
+       .only_failed = false,
+       .progress = [&](const Tally& t, const Record* record) { progress.show(t, record); }});
+  progress.finish(tally);
+  result.conflict = tally.conflicts > 0;
+  result.interrupted = tally.interrupted;
+}
+
+const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
+  for (const BaselineRow& row : rows)
+    if (row.id == id) return &row;
+  return nullptr;
+}
+
+}  // namespace
+
+void BaselineOptions::bind(CLI::App& app) {
+  out = default_results();
+  jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  app.add_option("--baselines", baselines, "Folder of the baselines (default: " + baselines + ")");
+  app.add_option("--out", out, "Results folder (default: " + out + ")");
+  app.add_option("-j,--jobs", jobs, "Cases at a time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
+}
+
+Comparison BaselineStudy::compare() const {
+  const std::set<std::string> left_out(not_run.begin(), not_run.end());
+  Baseline known = before;
+  std::erase_if(known, [&](const BaselineRow& row) { return left_out.count(row.id) > 0; });
+  return taut::compare(known, now, tolerances);
+}
+
+BaselineStudy baseline_study(const std::string& name, const BaselineOptions& options,
+                             bool needs_baseline) {
+  const Study study = load_study(name);
+  BaselineStudy result;
+  result.name = study.name;
+  result.folder = std::filesystem::path(options.baselines) / study.name;
+  result.tolerances = read_tolerances(result.folder);
+  result.before = read_baseline(result.folder);
+  std::ifstream made_with(result.folder / kToolchainFile);
+  std::getline(made_with, result.toolchain);
+  if (result.before.empty() && needs_baseline) return result;
+
+  const Store store(options.out);
+  const std::vector<Case> cases = plan(study);
+  run_missing(cases, store, options, result);
+  std::map<const Scene*, std::string> digests;
+  for (const Case& one : cases) {
+    const auto record = store.find(one);
+    if (!record) {
+      result.not_run.push_back(one.id);
+      continue;
+    }
+    std::string& scene = digests[one.scene.get()];
+    if (scene.empty()) scene = digest(*one.scene);
+    result.now.push_back(baseline_row(*record, scene));
+  }
+  return result;
+}
+
+void print_findings(const BaselineStudy& study, const Comparison& comparison) {
+  for (std::size_t i = 0; i < comparison.findings.size(); ++i) {
+    const Finding& finding = comparison.findings[i];
+    const std::string what = finding.id.empty() ? "solver " + finding.solver : finding.id;
+    std::cout << study.name << ": " << what << ": " << finding.text << '\n';
+    const bool last =
+        i + 1 == comparison.findings.size() || comparison.findings[i + 1].id != finding.id;
+    const BaselineRow* row = find_row(study.now, finding.id);
+    if (last && row) std::cout << "    " << reproduce(row->spec) << '\n';
+  }
+}
+
+}  // namespace taut

@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "experiments/lab/key.hpp"
+#include "experiments/verbs/baseline_study.hpp"
+#include "experiments/verbs/verb.hpp"
+
+namespace taut {
+
+namespace {
+
+struct Options : BaselineOptions {
+  std::vector<std::string> studies;
+  std::string junit;
+  bool strict = false;
+};
+
+/// Names of the studies that have a baseline, sorted.
+std::vector<std::string> studies_with_baseline(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    if (entry.is_directory()) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The worse of two: an alarm before a regression, that before a baseline that does not match, that
+/// before what was not run.
+int worse(int a, int b) {
+  for (const int code : {kInterrupted, kConflict, kEnvironment, kRegression, kNothing, kIncomplete})
+    if (a == code || b == code) return code;
+  return kPass;
+}
+
+bool same_toolchain(const BaselineStudy& study) {
+  if (study.toolchain == toolchain()) return true;
+  std::cerr << study.name << ": the baseline was made with\n    " << study.toolchain
+            << "\n  this program is made with\n    " << toolchain() << '\n';
+  return false;
+}
+
+int verdict(const BaselineStudy& study, const Comparison& comparison) {
+  int code = kPass;
+  if (study.interrupted) code = worse(code, kInterrupted);
+  if (study.conflict) code = worse(code, kConflict);
+  if (!study.not_run.empty()) code = worse(code, kIncomplete);
+  if (comparison.mismatched() || comparison.cases == 0) code = worse(code, kNothing);
+  if (comparison.regressed()) code = worse(code, kRegression);
+  return code;
+}
+
+void summarise(const BaselineStudy& study, const Comparison& comparison) {
+  const auto count = [&](auto test) {
+    return std::count_if(comparison.findings.begin(), comparison.findings.end(), test);
+  };
+  const auto moved = count([](const Finding& f) { return f.is_regression(); });
+  const auto mismatched = count([](const Finding& f) { return f.is_mismatch(); });
+  std::cout << study.name << ": " << comparison.cases << " cases and " << comparison.values
+            << " values compared, " << moved << " moved";
+  if (mismatched) std::cout << ", " << mismatched << " do not match the study";
+  if (!study.not_run.empty()) std::cout << ", " << study.not_run.size() << " not run";
+  std::cout << '\n';
+  if (mismatched)
+    std::cout << "  if the study was meant to change: taut baseline update " << study.name
+              << " --why \"...\"\n";
+}
+
+int check_study(const std::string& name, const Options& options, std::string& xml) {
+  const BaselineStudy study = baseline_study(name, options, true);
+  if (study.before.empty()) {
+    std::cout << study.name << ": nothing to compare with: no baseline in " << study.folder.string()
+              << "; taut baseline update " << study.name << " --why \"...\" makes one\n";
+    return kNothing;
+  }
+  const bool same = same_toolchain(study);
+  if (!same && options.strict) return kEnvironment;
+  const Comparison comparison = study.compare();
+  print_findings(study, comparison);
+  for (const std::string& id : study.not_run)
+    std::cout << study.name << ": " << id << ": was not run\n";
+  summarise(study, comparison);
+  xml += junit(study.name, study.now, comparison);
+  return verdict(study, comparison);
+}
+
+int check(Options options) {
+  if (options.studies.empty()) options.studies = studies_with_baseline(options.baselines);
+  if (options.studies.empty()) {
+    std::cout << "nothing to compare with: no baseline in " << options.baselines << '\n';
+    return kNothing;
+  }
+  int code = kPass;
+  std::string suites;
+  for (const std::string& study : options.studies)
+    code = worse(code, check_study(study, options, suites));
+  if (!options.junit.empty()) {
+    std::ofstream out(options.junit);
+    out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
+        << suites << "</testsuites>\n";
+    if (!out.flush()) throw InputError(options.junit + ": cannot be written");
+  }
+  return code;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("STUDY", options->studies, "Names or paths; none: all that have a baseline");
+  options->bind(app);
+  app.add_option("--junit", options->junit, "Also write a JUnit file for continuous integration");
+  app.add_flag("--strict-env", options->strict,
+               "Fail with 5 if the baseline was made with another toolchain");
+  return [options] { return check(*options); };
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_VERB(check) = {.name = "check",
+                    .summary =
+                        "Compares studies with their committed baselines; runs what is "
+                        "missing",
+                    .example =
+                        "taut check\n  taut check regression --junit check.xml\n"
+                        "Exit: 0 nothing moved; 1 a value or status moved; 3 cases were not "
+                        "run;\n      4 nothing compared, or the baseline does not match the "
+                        "study;\n      5 another toolchain under --strict-env",
+                    .bind = taut::bind};
