@@ -42,6 +42,15 @@ Comparison after(const Change& change) {
   return compare(two(), now, {});
 }
 
+TEST(Baseline, ARowKeepsOnlyTheParametersThatDifferFromTheirDefaults) {
+  Record record;
+  record.spec.solver = parse_solver("jakobsen:iterations=7").canonical();
+  record.status = {Status::Kind::exploded, "energy", 12, 3};
+  const BaselineRow r = baseline_row(record, "content");
+  EXPECT_EQ(r.spec.solver, "jakobsen:iterations=7");
+  EXPECT_EQ(r.status, "exploded (energy)");
+}
+
 TEST(Baseline, TheSameRunHasNothingToReport) {
   const Comparison c = compare(two(), two(), {});
   EXPECT_TRUE(c.findings.empty());

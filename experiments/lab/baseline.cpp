@@ -132,8 +132,10 @@ void compare_case(const BaselineRow& row, const Baseline& before, const Baseline
 }  // namespace
 
 BaselineRow baseline_row(const Record& record, const std::string& scene) {
-  return {record.id,          record.spec,  scene, status_text(record.status),
-          record.projections, record.values};
+  BaselineRow row{record.id,          record.spec,  scene, status_text(record.status),
+                  record.projections, record.values};
+  row.spec.solver = parse_solver(record.spec.solver).brief();
+  return row;
 }
 
 bool Tolerance::holds(double value, double baseline) const {

@@ -64,8 +64,8 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
   if (mismatched) std::cout << ", " << mismatched << " do not match the study";
   if (!study.not_run.empty()) std::cout << ", " << study.not_run.size() << " not run";
   std::cout << '\n';
-  if (mismatched)
-    std::cout << "  if the study was meant to change: taut baseline update " << study.name
+  if (moved || mismatched)
+    std::cout << "  if this was meant to change: taut baseline update " << study.name
               << " --why \"...\"\n";
 }
 
