@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Regressions: a baseline passes only against the study that made it, and says what moved."""
+
+import json
+import shlex
+import xml.etree.ElementTree
+
+from command_line import SCENE, CommandLine, main
+
+
+class Check(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.study(solvers=["jakobsen", "bullet"], rest="[sweep]\niterations = [1, 4]\n")
+        self.baseline = self.folder / "results/baselines/study"
+
+    def update(self, why="the first one"):
+        return self.taut("baseline", "update", "./study.toml", "--why", why)
+
+    def check(self, expect, *more):
+        return self.taut("check", "./study.toml", *more, expect=expect).out
+
+    def edit(self, solver, change):
+        """Passes the rows of one solver's baseline through `change`."""
+        file = self.baseline / f"{solver}.jsonl"
+        rows = change([json.loads(line) for line in file.read_text().splitlines()])
+        file.write_text("".join(json.dumps(row) + "\n" for row in rows))
+
+    def files(self):
+        return {file.name: (file.read_bytes(), file.stat().st_mtime_ns) for file in self.baseline.iterdir()}
+
+    def test_nothing_compared_never_passes(self):
+        self.assertIn("nothing to compare with", self.check(4))
+        self.assertIn("nothing to compare with", self.taut("check", expect=4).out)
+        self.assertFalse((self.folder / "results").exists(), "nothing is run or written")
+        self.update()
+        self.assertIn("nothing to compare with", self.check(4, "--baselines", "elsewhere"))
+
+    def test_the_same_run_passes_and_an_update_then_writes_nothing(self):
+        self.update()
+        for _ in range(2):
+            self.assertIn("study: 4 cases and", self.check(0))
+        before = self.files()
+        self.assertIn("nothing was written", self.update().out)
+        self.assertEqual(self.files(), before)
+        self.taut("baseline", "diff", "./study.toml")
+
+    def test_an_update_needs_a_reason(self):
+        self.taut("baseline", "update", "./study.toml", expect=2)
+        self.taut("baseline", "update", "./study.toml", "--why", " ", expect=2)
+        self.assertFalse(self.baseline.exists())
+        self.update("gravity was wrong")
+        self.assertIn("- gravity was wrong (4 cases)", (self.baseline / "why.md").read_text())
+
+    def test_a_moved_value_is_named_with_the_command_that_reproduces_it(self):
+        self.update()
+
+        def plant(rows):
+            rows[0]["values"]["stretch.max"] *= 1.5
+            return rows
+        self.edit("jakobsen", plant)
+        out = self.check(1, "--junit", "check.xml")
+        self.assertRegex(out, r"study: small \S+: stretch.max \S+ -> \S+ \(by \S+, allowed \S+\)")
+        command = next(line.strip() for line in out.splitlines() if line.strip().startswith("taut case"))
+        self.taut(*shlex.split(command)[1:])
+        suites = xml.etree.ElementTree.parse(self.folder / "check.xml").getroot()
+        self.assertEqual([suites[0].get("tests"), suites[0].get("failures")], ["4", "1"])
+        self.taut("baseline", "diff", "./study.toml", expect=1)
+        bullet = self.files()["bullet.jsonl"]
+        self.update("the plant is pulled out")
+        self.check(0)
+        self.assertEqual(self.files()["bullet.jsonl"], bullet, "only rows that moved are written")
+
+    def test_a_change_of_status_is_a_regression(self):
+        self.update()
+        self.edit("bullet", lambda rows: [rows[0] | {"status": "exploded (energy)"}] + rows[1:])
+        self.assertIn("status exploded (energy) -> ok", self.check(1))
+
+    def test_a_baseline_that_does_not_match_the_study_exits_4(self):
+        self.update()
+        self.edit("bullet", lambda rows: rows[1:])
+        self.assertIn("new: the baseline does not have this case", self.check(4))
+        self.update("complete again")
+        self.edit("bullet", lambda rows: [rows[0] | {"id": "another name"}] + rows[1:])
+        self.assertIn("renamed: the baseline calls it 'another name'", self.check(4))
+        self.update("complete again")
+        self.study(solvers=["jakobsen", "bullet"], rest="[sweep]\niterations = [1]\n")
+        self.assertIn("missing: the study does not have this case", self.check(4))
+        self.study(solvers=["jakobsen"], rest="[sweep]\niterations = [1, 4]\n")
+        self.assertIn("solver bullet: the baseline has this solver", self.check(4))
+        self.update("one solver less")
+        self.assertFalse((self.baseline / "bullet.jsonl").exists())
+        (self.folder / "small.toml").write_text(SCENE.replace("mass = 0.1", "mass = 0.2"))
+        self.assertIn("the scene changed", self.check(4))
+
+    def test_another_toolchain_is_said_and_fails_under_strict_env(self):
+        self.update()
+        (self.baseline / "toolchain.txt").write_text("an abacus\n")
+        self.check(0)
+        process = self.taut("check", "./study.toml", "--strict-env", expect=5)
+        self.assertIn("an abacus", process.err)
+
+    def test_a_damaged_baseline_is_named_by_file_and_line(self):
+        self.update()
+        (self.baseline / "bullet.jsonl").write_text("{\n")
+        process = self.taut("check", "./study.toml", expect=2)
+        self.assertIn("bullet.jsonl:1:1: no baseline row", process.err)
+        (self.baseline / "tolerances.toml").write_text("[default]\nrelativ = 1\n")
+        process = self.taut("check", "./study.toml", expect=2)
+        self.assertIn("did you mean 'relative'?", process.err)
+
+
+if __name__ == "__main__":
+    main()
