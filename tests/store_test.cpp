@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/files.hpp"
 #include "experiments/lab/record_io.hpp"
 
 namespace taut {
@@ -41,16 +42,12 @@ Record some_record() {
 
 class StoreTest : public testing::Test {
  protected:
-  void SetUp() override {
-    root_ = fs::path(testing::TempDir()) / "taut_store_test";
-    fs::remove_all(root_);
-  }
   void TearDown() override { fs::remove_all(root_); }
   Store::Commit put(const Record& record) {
     store_.prepare();
     return store_.commit(store_.stage(record.key), record);
   }
-  fs::path root_ = fs::path(testing::TempDir()) / "taut_store_test";
+  fs::path root_ = fs::path(testing::TempDir()) / unique_suffix();
   std::vector<std::string> said_;
   Store store_{root_, [this](const std::string& text) { said_.push_back(text); }};
 };

@@ -8,16 +8,18 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/data.hpp"
-#include "experiments/lab/digest.hpp"
+#include "experiments/lab/files.hpp"
 #include "experiments/lab/key.hpp"
 
 namespace taut {
 namespace {
 
 Study study_of(const std::string& text, const std::string& preset = "") {
-  const std::string file = testing::TempDir() + "taut_study_test.toml";
+  const std::string file = testing::TempDir() + unique_suffix() + ".toml";
   std::ofstream(file) << text;
-  return load_study(file, preset);
+  const Study study = load_study(file, preset);
+  std::filesystem::remove(file);
+  return study;
 }
 
 std::vector<std::string> ids(const Study& study) {
