@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/solver/order.hpp"
+#include "core/solver/particles.hpp"
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/stick.hpp"
 
@@ -17,7 +18,9 @@ namespace taut {
 template <class Real>
 class BatchPlan {
  public:
-  BatchPlan(const std::vector<Phase>&, std::span<const double> w, const Firmness&);
+  /// layout: packed.
+  BatchPlan(const std::vector<Phase>&, std::span<const double> w, const Firmness&,
+            const Layout& layout);
   BatchPlan(BatchPlan&&) = default;
   BatchPlan(const BatchPlan&) = delete;  // it points into itself
 
@@ -29,12 +32,12 @@ class BatchPlan {
   }
 
   /// The links in the order in which the sweep visits them.
-  std::vector<Stick<Real>> order() const;
+  std::vector<Stick<Real>> order(const Layout&) const;
   std::size_t bytes() const;
 
  private:
-  void add_colour(std::vector<Stick<Real>> sticks, std::uint32_t spare);
-  void add_run(std::span<const Stick<Real>> sticks, bool equal, std::uint32_t spare);
+  void add_colour(std::vector<Stick<Real>> sticks, const Layout&);
+  void add_run(std::span<const Stick<Real>> sticks, bool equal, const Layout&);
 
   std::vector<Batch<Real>> batches_;
   std::vector<Real> shares_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -33,6 +34,7 @@ class Jakobsen final : public Solver {
     p_.w.assign(w.begin(), w.end());
     p_.x = p_.previous = Points<Real>(p_.layout);
     add_forces(scene);
+    constraints_ = make_accelerators<Real>(scene, w, params);
     if (links.pass) constraints_.push_back(std::move(links.pass));
     contact_ = make_contact<Real>(scene, params);
   }
@@ -103,8 +105,8 @@ class Jakobsen final : public Solver {
 
   /// x* = x + (x - x') + a dt^2, the velocity x - x' damped.
   void verlet(double dt) {
-    alignas(64) Real g[kVector];
-    for (std::size_t i = 0; i < kVector; ++i)
+    alignas(64) Real g[kGrain];
+    for (std::size_t i = 0; i < kGrain; ++i)
       g[i] = static_cast<Real>(p_.layout->axis(i) < 3 ? gravity_[p_.layout->axis(i)] * dt * dt : 0);
     const VerletStep<Real> step{.x = p_.x.data(),
                                 .previous = p_.previous.data(),
@@ -112,8 +114,8 @@ class Jakobsen final : public Solver {
                                 .keep = static_cast<Real>(std::exp(-damping_ * dt)),
                                 .dt2 = static_cast<Real>(dt * dt),
                                 .g = g};
-    team_.run(p_.layout->length() / kVector, [&](std::size_t begin, std::size_t end) {
-      kernels<Real>(simd_).verlet(step, begin * kVector, end * kVector);
+    team_.run(p_.layout->length() / kGrain, [&](std::size_t begin, std::size_t end) {
+      kernels<Real>(simd_).verlet(step, begin * kGrain, end * kGrain);
     });
   }
 
@@ -142,7 +144,20 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return std::make_unique<Jakobsen<double>>(scene, params);
 }
 
-std::vector<std::string> cannot(const Scene&, const Params&) { return {}; }
+/// In float, x + g h^2 is x once g h^2 is less than half a unit in the last place of x: nothing
+/// would ever begin to fall.
+std::vector<std::string> cannot(const Scene& scene, const Params& params) {
+  if (!params.is("precision", "float")) return {};
+  const double h = scene.dt / params.integer("substeps");
+  double farthest = 0;
+  for (const Vec3& x : scene.start.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
+  const double resolution = farthest * 0x1p-25, move = scene.gravity.norm() * h * h;
+  if (move == 0 || move >= resolution) return {};
+  const auto most = static_cast<int>(scene.dt / std::sqrt(resolution / scene.gravity.norm()));
+  return {"in float, gravity's move of " + std::to_string(move * 1e9) +
+          " nm a substep is lost in coordinates of " + std::to_string(farthest) + " m: at most " +
+          std::to_string(std::max(most, 1)) + " substeps, or precision=double"};
+}
 
 }  // namespace
 }  // namespace taut

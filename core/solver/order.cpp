@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <random>
+
+#include "core/solver/neighbours.hpp"
 
 namespace taut {
 
@@ -12,23 +15,6 @@ constexpr int kTileSide = 32;                         ///< grid vertices
 constexpr int kTileVertices = kTileSide * kTileSide;  ///< 16 KiB of packed float positions
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-/// Vertices that a vertex has links to, as ranges of one array.
-struct Neighbours {
-  std::vector<int> first, vertex;
-  Neighbours(std::span<const Link> links, int n) : first(at(n) + 1), vertex(2 * links.size()) {
-    for (const Link& link : links) ++first[at(link.a) + 1], ++first[at(link.b) + 1];
-    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-    std::vector<int> end(first.begin(), first.end() - 1);
-    for (const Link& link : links) {
-      vertex[at(end[at(link.a)]++)] = link.b;
-      vertex[at(end[at(link.b)]++)] = link.a;
-    }
-  }
-  std::span<const int> of(int v) const {
-    return {vertex.data() + first[at(v)], vertex.data() + first[at(v) + 1]};
-  }
-};
 
 /// Tile of each vertex: squares of a grid; runs of a breadth-first walk on any other mesh.
 std::vector<int> tiles_of(std::span<const Link> links, const Mesh& mesh) {
@@ -47,7 +33,7 @@ std::vector<int> tiles_of(std::span<const Link> links, const Mesh& mesh) {
     tile[at(start)] = static_cast<int>(queue.size()) / kTileVertices;
     queue.push_back(start);
     for (; next < static_cast<int>(queue.size()); ++next)
-      for (const int v : neighbours.of(queue[at(next)]))
+      for (const auto& [v, link] : neighbours.of(queue[at(next)]))
         if (tile[at(v)] < 0) {
           tile[at(v)] = static_cast<int>(queue.size()) / kTileVertices;
           queue.push_back(v);
@@ -114,6 +100,16 @@ std::vector<Phase> colour(std::span<const Link> links, const Mesh& mesh) {
     if (!tile.empty()) tiles.push_back(std::move(tile));
   }
   return phases(std::move(tiles), at(mesh.size()));
+}
+
+std::vector<std::uint32_t> tile_ranks(std::span<const Link> links, const Mesh& mesh) {
+  const std::vector<int> tile = tiles_of(links, mesh);
+  std::vector<std::uint32_t> sorted(tile.size()), rank(tile.size());
+  std::iota(sorted.begin(), sorted.end(), 0u);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return tile[a] < tile[b]; });
+  for (std::uint32_t place = 0; place < sorted.size(); ++place) rank[sorted[place]] = place;
+  return rank;
 }
 
 std::vector<Link> flatten(const std::vector<Phase>& phases) {

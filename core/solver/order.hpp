@@ -29,6 +29,9 @@ using Phase = std::vector<Tile>;
 /// the links and the mesh.
 std::vector<Phase> colour(std::span<const Link>, const Mesh&);
 
+/// Places of the vertices in memory such that those of a tile are neighbours.
+std::vector<std::uint32_t> tile_ranks(std::span<const Link>, const Mesh&);
+
 /// All links, one after the other.
 std::vector<Link> flatten(const std::vector<Phase>&);
 

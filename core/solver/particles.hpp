@@ -15,21 +15,20 @@ namespace taut {
 /// care.
 class Layout {
  public:
-  static constexpr std::size_t kGrain = 24;  ///< loops over all numbers take so many at a time
+  static constexpr std::size_t kGrain = 48;  ///< loops over all numbers take so many at a time
 
-  /// x y z 0 | x y z 0 | ...; at least two spare points at the end, which no particle owns.
-  static Layout packed(std::size_t n) {
-    Layout layout;
-    layout.size_ = n, layout.length_ = (4 * (n + 2) + kGrain - 1) / kGrain * kGrain;
-    return layout;
+  /// x y z 0 | x y z 0 | ..., particle i at place rank[i], or at i if there are no ranks; at least
+  /// two spare points at the end, which no particle owns.
+  static Layout packed(std::size_t n, std::vector<std::uint32_t> rank = {}) {
+    for (std::uint32_t& r : rank) r *= 4;
+    return Layout(n, 1, 4 * (n + 2), std::move(rank));
   }
-  /// Any injective table of slots within `length` numbers, a multiple of kGrain.
-  static Layout table(std::vector<std::uint32_t> slots, std::size_t stride, std::size_t length) {
-    Layout layout;
-    layout.size_ = slots.size(), layout.stride_ = stride, layout.length_ = length;
-    layout.slots_ = std::move(slots);
-    return layout;
+  /// Vectors of `lanes` coordinates x, y, z, x, ...; x of each particle at its slot.
+  static Layout strips(std::vector<std::uint32_t> slots, std::size_t lanes, std::size_t length) {
+    const std::size_t n = slots.size();
+    return Layout(n, lanes, length, std::move(slots));
   }
+  Layout() = default;
 
   std::size_t size() const { return size_; }      ///< particles
   std::size_t length() const { return length_; }  ///< numbers in the array
@@ -37,13 +36,18 @@ class Layout {
   std::size_t slot(std::size_t i) const { return slots_.empty() ? 4 * i : slots_[i]; }
   /// Which coordinate the number at `place` is: 0 x, 1 y, 2 z, 3 none. Repeats every kGrain.
   int axis(std::size_t place) const {
-    return static_cast<int>(slots_.empty() ? place % 4 : place / stride_ % 3);
+    return static_cast<int>(stride_ == 1 ? place % 4 : place / stride_ % 3);
   }
   std::size_t bytes() const { return slots_.size() * sizeof slots_[0]; }
 
  private:
+  Layout(std::size_t size, std::size_t stride, std::size_t length, std::vector<std::uint32_t> slots)
+      : size_(size),
+        stride_(stride),
+        length_((length + kGrain - 1) / kGrain * kGrain),
+        slots_(std::move(slots)) {}
   std::size_t size_ = 0, stride_ = 1, length_ = 0;
-  std::vector<std::uint32_t> slots_;  ///< empty: packed
+  std::vector<std::uint32_t> slots_;  ///< empty: 4 i
 };
 
 /// Allocates at cache-line boundaries, as the widest lanes need.

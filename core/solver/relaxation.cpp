@@ -2,8 +2,10 @@
 
 #include "core/model/input_error.hpp"
 #include "core/solver/passes/coloured.hpp"
+#include "core/solver/passes/hierarchy.hpp"
 #include "core/solver/passes/jacobi.hpp"
 #include "core/solver/passes/links.hpp"
+#include "core/solver/passes/tethers.hpp"
 
 namespace taut {
 
@@ -57,11 +59,45 @@ Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
             std::make_unique<StripPass<Real>>(std::move(plan), std::move(costs), projection, simd,
                                               team)};
   }
-  BatchPlan<Real> plan(colour(scene.links, scene.mesh), w, firm);
+  Layout layout = Layout::packed(n, tile_ranks(scene.links, scene.mesh));
+  BatchPlan<Real> plan(colour(scene.links, scene.mesh), w, firm, layout);
   auto costs = family_costs(scene.links, w, plan.bytes());
-  return {Layout::packed(n), std::make_unique<BatchPass<Real>>(std::move(plan), std::move(costs),
+  return {std::move(layout), std::make_unique<BatchPass<Real>>(std::move(plan), std::move(costs),
                                                                projection, simd, team)};
 }
+
+namespace {
+
+template <class Real, Projection kind>
+std::vector<std::unique_ptr<Pass<Real>>> accelerators(const Scene& scene, std::span<const double> w,
+                                                      const Params& params) {
+  std::vector<std::unique_ptr<Pass<Real>>> passes;
+  if (const int coarse = params.integer("levels") - 1; coarse > 0)
+    if (auto levels = make_hierarchy(scene, w, coarse); !levels.empty())
+      passes.push_back(std::make_unique<HierarchyPass<Real, kind>>(std::move(levels), w.size()));
+  if (params.is("tethers", "on"))
+    if (auto tethers = make_tethers(scene); !tethers.empty())
+      passes.push_back(std::make_unique<TetherPass<Real, kind>>(std::move(tethers)));
+  return passes;
+}
+
+}  // namespace
+
+template <class Real>
+std::vector<std::unique_ptr<Pass<Real>>> make_accelerators(const Scene& scene,
+                                                           std::span<const double> w,
+                                                           const Params& params) {
+  return projection_of(params) == Projection::exact
+             ? accelerators<Real, Projection::exact>(scene, w, params)
+             : accelerators<Real, Projection::sqrt_free>(scene, w, params);
+}
+
+template std::vector<std::unique_ptr<Pass<float>>> make_accelerators(const Scene&,
+                                                                     std::span<const double>,
+                                                                     const Params&);
+template std::vector<std::unique_ptr<Pass<double>>> make_accelerators(const Scene&,
+                                                                      std::span<const double>,
+                                                                      const Params&);
 
 template Relaxation<float> make_relaxation(const Scene&, std::span<const double>, const Params&,
                                            Team&);

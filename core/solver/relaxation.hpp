@@ -21,4 +21,9 @@ struct Relaxation {
 template <class Real>
 Relaxation<Real> make_relaxation(const Scene&, std::span<const double> w, const Params&, Team&);
 
+/// What the parameters ask to do before each sweep: coarse levels, then tethers.
+template <class Real>
+std::vector<std::unique_ptr<Pass<Real>>> make_accelerators(const Scene&, std::span<const double> w,
+                                                           const Params&);
+
 }  // namespace taut

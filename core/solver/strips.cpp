@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kBlockRows = 8;
 constexpr int kFewestColumns =
-    2 * kLanes + 1;  ///< three vectors: a bend link leaves its strip once
+    2 * kNarrow + 1;  ///< three vectors: a bend link leaves its strip once
 /// In the order of the sweep: along u, along v, both diagonals, then every second vertex.
 constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::structural, 0},
                                                               {0, 1, Family::structural, 0},
@@ -24,9 +24,10 @@ constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::str
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-int vectors_of(const Grid& grid) { return (grid.nu + kLanes - 1) / kLanes; }
+int lanes_of(const Grid& grid) { return grid.nu >= 4 * kWide ? kWide : kNarrow; }
+int vectors_of(const Grid& grid) { return (grid.nu + lanes_of(grid) - 1) / lanes_of(grid); }
 /// One vector more than the row needs: rows of a power of two would share cache sets.
-std::size_t stride_of(const Grid& grid) { return at((vectors_of(grid) + 1) * kVector); }
+std::size_t stride_of(const Grid& grid) { return at((vectors_of(grid) + 1) * 3 * lanes_of(grid)); }
 
 }  // namespace
 
@@ -64,14 +65,14 @@ std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link
 }
 
 Layout strip_layout(const Grid& grid) {
-  const int vectors = vectors_of(grid);
+  const int vectors = vectors_of(grid), lanes = lanes_of(grid);
   std::vector<std::uint32_t> slots;
   slots.reserve(at(grid.size()));
   for (int j = 0; j < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i)
       slots.push_back(static_cast<std::uint32_t>(at(j) * stride_of(grid) +
-                                                 at(i % vectors * kVector + i / vectors)));
-  return Layout::table(std::move(slots), kLanes, at(grid.nv) * stride_of(grid));
+                                                 at(i % vectors * 3 * lanes + i / vectors)));
+  return Layout::strips(std::move(slots), at(lanes), at(grid.nv) * stride_of(grid));
 }
 
 template <class Real>
@@ -79,6 +80,7 @@ StripPlan<Real>::StripPlan(const RegularLinks& links, std::span<const double> w,
                            const Firmness& firm)
     : links_(links) {
   const Grid& grid = links.grid;
+  const int lanes = sweep_.lanes = lanes_of(grid);
   sweep_.vectors = vectors_of(grid);
   sweep_.stride = stride_of(grid);
   sweep_.directions = static_cast<int>(links.directions.size());
@@ -102,12 +104,12 @@ StripPlan<Real>::StripPlan(const RegularLinks& links, std::span<const double> w,
       return static_cast<Real>(softened(firm, family, wl + wr) * ((left ? wl : wr) / (wl + wr)));
     };
     for (int j = 0; j < to.rows; ++j) {
-      std::vector<Real> row(at(2 * kLanes * sweep_.vectors), Real(0));
+      std::vector<Real> row(at(2 * lanes * sweep_.vectors), Real(0));
       for (int i = 0; i + to.columns < grid.nu; ++i) {
         const int k = i % sweep_.vectors, lane = i / sweep_.vectors;
         const Real left = shares(i, j, true), right = shares(i, j, false);
-        row[at(2 * kLanes * k + lane)] = left;
-        row[at(2 * kLanes * k + kLanes + lane)] = right;
+        row[at(2 * lanes * k + lane)] = left;
+        row[at(2 * lanes * k + lanes + lane)] = right;
         if (left == right) ++votes[left];
       }
       const auto [place, is_new] = known.try_emplace(std::move(row), shares_.size());
@@ -124,8 +126,8 @@ StripPlan<Real>::StripPlan(const RegularLinks& links, std::span<const double> w,
     for (int j = 0; j < sweep_.direction[d].rows; ++j) {
       const std::vector<Real>& shares = shares_[table[next++]];
       const auto plain = [&](int k) {
-        const auto* s = shares.data() + 2 * kLanes * k;
-        return std::all_of(s, s + 2 * kLanes,
+        const auto* s = shares.data() + 2 * lanes * k;
+        return std::all_of(s, s + 2 * lanes,
                            [&](Real share) { return share == sweep_.direction[d].half; });
       };
       int begin = 0;
@@ -162,7 +164,7 @@ std::vector<Link> StripPlan<Real>::order() const {
                    const Family family =
                        links_.directions[static_cast<std::size_t>(&d - sweep_.direction)].family;
                    visit_vectors(sweep_, d, [&](int k) {
-                     for (int lane = 0; lane < kLanes; ++lane)
+                     for (int lane = 0; lane < sweep_.lanes; ++lane)
                        if (const int i = lane * sweep_.vectors + k; i + d.columns < grid.nu)
                          links.push_back({grid.index(i, j + d.left),
                                           grid.index(i + d.columns, j + d.right),

@@ -16,7 +16,7 @@ class StripPass final : public Pass<Real> {
             Team& team)
       : plan_(std::move(plan)),
         costs_(std::move(costs)),
-        project_(kernels<Real>(simd).strips[static_cast<int>(projection)]),
+        project_(choose(kernels<Real>(simd), plan_.sweep().lanes)[static_cast<int>(projection)]),
         team_(team) {}
 
   void apply(Particles<Real>& p, double, double) override {
@@ -32,6 +32,9 @@ class StripPass final : public Pass<Real> {
   std::vector<PassCost> cost() const override { return costs_; }
 
  private:
+  static const auto& choose(const Kernels<Real>& kernels, int lanes) {
+    return lanes == kWide ? kernels.wide_strips : kernels.narrow_strips;
+  }
   StripPlan<Real> plan_;
   std::vector<PassCost> costs_;
   void (*project_)(const StripSweep<Real>&, Real*, int, int);

@@ -1,5 +1,4 @@
-// Compiled with -mavx512f -mavx512vl: the layout has eight lanes, so float profits from 32
-// registers only and double from twice the width.
+// Compiled with -mavx512f -mavx512vl.
 #include "core/solver/simd/kernels_text.hpp"
 
 namespace taut {
@@ -12,8 +11,8 @@ extern const Kernels<float> kAvx512Float;
 extern const Kernels<double> kAvx512Double;
 
 const Kernels<float> kAvx512Float =
-    make_kernels<float, Lanes<float, 8, Isa>, Lanes<float, 8, Isa>>();
+    make_kernels<float, Lanes<float, 8, Isa>, Lanes<float, 16, Isa>, Lanes<float, 8, Isa>>();
 const Kernels<double> kAvx512Double =
-    make_kernels<double, Lanes<double, 8, Isa>, Lanes<double, 8, Isa>>();
+    make_kernels<double, Lanes<double, 8, Isa>, Lanes<double, 8, Isa>, Lanes<double, 8, Isa>>();
 
 }  // namespace taut

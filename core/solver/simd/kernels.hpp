@@ -7,21 +7,23 @@
 
 namespace taut {
 
-/// A regular sheet is cut into kLanes strips of columns, and a SIMD vector holds the same column of
-/// every strip: column c is lane c / K of vector c % K, where K = ceil(nu / kLanes).
+/// A regular sheet is cut into `lanes` strips of columns, and a SIMD vector holds the same column
+/// of every strip: column c is lane c / K of vector c % K, where K = ceil(nu / lanes).
 ///
 ///     one row:  | x of columns 0, K, 2K, .. | y of them | z of them | x of 1, K+1, .. | ...
 ///
 /// So all links of a row in one direction are pairs of whole vectors; only at the end of a strip,
 /// where column K-1 meets column K, does a vector pair up with its neighbour shifted by a lane.
+/// Wide sheets have 16 lanes, which AVX-512 takes at once, others 8: the order of the links depends
+/// on the sheet and not on the machine.
+inline constexpr int kNarrow = 8, kWide = 16;
+/// Links of a batch.
 inline constexpr int kLanes = 8;
-/// Numbers in the three coordinate vectors of kLanes particles.
-inline constexpr int kVector = 3 * kLanes;
 
 /// Links of one direction that start in one row.
 template <class Real>
 struct StripRow {
-  const Real* shares;          ///< [K][2][kLanes] of the left and of the right end; 0: no link
+  const Real* shares;          ///< [K][2][lanes] of the left and of the right end; 0: no link
   int plain_begin, plain_end;  ///< vectors whose shares are all StripDirection::half
 };
 
@@ -38,6 +40,7 @@ struct StripDirection {
 
 template <class Real>
 struct StripSweep {
+  int lanes;           ///< kNarrow or kWide
   int vectors;         ///< K
   std::size_t stride;  ///< numbers from one row to the next
   int directions;
@@ -60,21 +63,23 @@ struct BatchRun {
   const Real* shares;  ///< [count][2][kLanes], or null: all are `half`
 };
 
-/// x, previous, a: [length] numbers, length a multiple of kVector. Adds keep (x - previous) + g
-/// (+ a dt2, and clears a) to x; previous becomes the old x. g repeats every kVector numbers.
+/// x, previous, a: [length] numbers, length a multiple of kGrain. Adds keep (x - previous) + g
+/// (+ a dt2, and clears a) to x; previous becomes the old x. g repeats every kGrain numbers.
+inline constexpr std::size_t kGrain = 48;
 template <class Real>
 struct VerletStep {
   Real *x, *previous, *a;  ///< a null: no forces
   Real keep, dt2;
-  const Real* g;  ///< [kVector] m
+  const Real* g;  ///< [kGrain] m
 };
 
 /// The loops that matter, once for each instruction set.
 template <class Real>
 struct Kernels {
   void (*verlet)(const VerletStep<Real>&, std::size_t begin, std::size_t end);
-  /// Rows [begin, end) of a sweep; by Projection.
-  void (*strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);
+  /// Rows [begin, end) of a sweep; by Projection, with kNarrow and with kWide lanes.
+  void (*narrow_strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);
+  void (*wide_strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);
   void (*batches[2])(const BatchRun<Real>&, Real* x);
 };
 

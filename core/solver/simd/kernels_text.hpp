@@ -11,21 +11,21 @@
 
 namespace taut {
 
-/// The particles of one vector of a strip row.
-template <class T, class Real>
+/// The particles of one vector of a strip row, or some of them.
+template <class T, int lanes, class Real>
 [[gnu::always_inline]] inline Triple<T> load_triple(const Real* x) {
-  return {load<T>(x), load<T>(x + kLanes), load<T>(x + 2 * kLanes)};
+  return {load<T>(x), load<T>(x + lanes), load<T>(x + 2 * lanes)};
 }
-template <class T, class Real>
+template <class T, int lanes, class Real>
 [[gnu::always_inline]] inline void store_triple(Real* x, const Triple<T>& p) {
-  store(x, p.x), store(x + kLanes, p.y), store(x + 2 * kLanes, p.z);
+  store(x, p.x), store(x + lanes, p.y), store(x + 2 * lanes, p.z);
 }
 
 template <class T, class Real>
 void verlet(const VerletStep<Real>& s, std::size_t begin, std::size_t end) {
   const T keep(s.keep), dt2(s.dt2);
-  for (std::size_t i = begin; i < end; i += kVector)
-    for (std::size_t l = 0; l < kVector; l += kWidth<T>) {
+  for (std::size_t i = begin; i < end; i += kGrain)
+    for (std::size_t l = 0; l < kGrain; l += kWidth<T>) {
       const T x = load<T>(s.x + i + l);
       T moved = x + (keep * (x - load<T>(s.previous + i + l)) + load<T>(s.g + l));
       if (s.a) {
@@ -37,34 +37,56 @@ void verlet(const VerletStep<Real>& s, std::size_t begin, std::size_t end) {
     }
 }
 
+/// All links between two vectors of strips.
+template <class T, int lanes, Projection kind, class Real, class Shares>
+[[gnu::always_inline]] inline void project_vectors(Real* a, Real* b, T rest, const Shares& shares) {
+  for (int l = 0; l < lanes; l += kWidth<T>) {
+    Triple<T> x1 = load_triple<T, lanes>(a + l), x2 = load_triple<T, lanes>(b + l);
+    project_distance<kind>(x1, x2, rest, shares(l), shares(lanes + l));
+    // b first: shifted by a lane it ends one number inside the next vector, which may be a's
+    store_triple<T, lanes>(b + l, x2), store_triple<T, lanes>(a + l, x1);
+  }
+}
+
+/// The same at the end of the strips: lane l of a meets lane l + 1 of b.
+template <class T, int lanes, Projection kind, class Real, class Shares>
+[[gnu::always_inline]] inline void project_seam(Real* a, Real* b, T rest, const Shares& shares) {
+  if constexpr (kWidth<T> != lanes) {
+    project_vectors<T, lanes, kind>(a, b + 1, rest, shares);
+  } else {
+    // Rotated in registers: an unaligned load would wait for the stores before it.
+    const Triple<T> b0 = load_triple<T, lanes>(b);
+    Triple<T> x1 = load_triple<T, lanes>(a);
+    Triple<T> x2{b0.x.template rotated<1>(), b0.y.template rotated<1>(),
+                 b0.z.template rotated<1>()};
+    project_distance<kind>(x1, x2, rest, shares(0), shares(lanes));
+    store_triple<T, lanes>(b, Triple<T>{x2.x.template rotated<-1>(), x2.y.template rotated<-1>(),
+                                        x2.z.template rotated<-1>()});
+    store_triple<T, lanes>(a, x1);
+  }
+}
+
 /// Rows [begin, end) of a Gauss-Seidel sweep over a regular sheet.
-template <class T, Projection kind, class Real>
+template <class T, int lanes, Projection kind, class Real>
 void strips(const StripSweep<Real>& sweep, Real* x, int begin, int end) {
+  constexpr int vector = 3 * lanes;
   visit_rows(sweep, begin, end, [&](const StripDirection<Real>& d, int j) {
     Real* const left = x + static_cast<std::size_t>(j + d.left) * sweep.stride;
     Real* const right = x + static_cast<std::size_t>(j + d.right) * sweep.stride;
     const StripRow<Real> row = d.row[j];
+    const int vectors = sweep.vectors, columns = d.columns;
     const T rest(d.rest), half(d.half);
-    const auto project = [&](Real* a, Real* b, T share_a, T share_b) {
-      Triple<T> x1 = load_triple<T>(a), x2 = load_triple<T>(b);
-      project_distance<kind>(x1, x2, rest, share_a, share_b);
-      // b first: shifted by a lane it ends one number inside the next vector, which may be a's
-      store_triple(b, x2), store_triple(a, x1);
-    };
     visit_vectors(sweep, d, [&](int k) {
-      Real* const a = left + k * kVector;
-      if (k >= row.plain_begin && k < row.plain_end) {
-        Real* const b = right + (k + d.columns) * kVector;
-        for (int l = 0; l < kLanes; l += kWidth<T>) project(a + l, b + l, half, half);
-      } else {
-        // past the strip's end: the first vectors of the next lane
-        const int partner = k + d.columns;
-        Real* const b = right + (partner < sweep.vectors ? partner * kVector
-                                                         : (partner - sweep.vectors) * kVector + 1);
-        const Real* const shares = row.shares + 2 * kLanes * k;
-        for (int l = 0; l < kLanes; l += kWidth<T>)
-          project(a + l, b + l, load<T>(shares + l), load<T>(shares + kLanes + l));
-      }
+      Real* const a = left + k * vector;
+      const Real* const shares = row.shares + 2 * lanes * k;
+      const auto own = [&](int l) { return load<T>(shares + l); };
+      if (k >= row.plain_begin && k < row.plain_end)
+        project_vectors<T, lanes, kind>(a, right + (k + columns) * vector, rest,
+                                        [&](int) { return half; });
+      else if (k + columns < vectors)
+        project_vectors<T, lanes, kind>(a, right + (k + columns) * vector, rest, own);
+      else
+        project_seam<T, lanes, kind>(a, right + (k + columns - vectors) * vector, rest, own);
     });
   });
 }
@@ -184,12 +206,13 @@ void batches(const BatchRun<Real>& run, Real* x) {
   }
 }
 
-/// T computes along strips, P on particles.
-template <class Real, class T, class P>
+/// Narrow and Wide compute along strips of 8 and 16 lanes, P on particles.
+template <class Real, class Narrow, class Wide, class P>
 constexpr Kernels<Real> make_kernels() {
   constexpr Projection exact = Projection::exact, sqrt_free = Projection::sqrt_free;
-  return {verlet<T, Real>,
-          {strips<T, exact, Real>, strips<T, sqrt_free, Real>},
+  return {verlet<Wide, Real>,
+          {strips<Narrow, kNarrow, exact, Real>, strips<Narrow, kNarrow, sqrt_free, Real>},
+          {strips<Wide, kWide, exact, Real>, strips<Wide, kWide, sqrt_free, Real>},
           {batches<P, exact, Real>, batches<P, sqrt_free, Real>}};
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -36,6 +37,15 @@ struct Lanes {
     return Lanes(__builtin_shufflevector(a.v, b.v, index...));
   }
 
+  /// Lane l of the result is lane l + by, around the end.
+  template <int by>
+  [[gnu::always_inline]] Lanes rotated() const {
+    return [this]<int... lane>(std::integer_sequence<int, lane...>) {
+      return Lanes(__builtin_shufflevector(v, v, (lane + by + width) % width...));
+    }
+    (std::make_integer_sequence<int, width>{});
+  }
+
   /// The two halves of eight lanes.
   using Half [[gnu::vector_size(width * sizeof(Real) / 2)]] = Real;
   [[gnu::always_inline]] static Lanes join(Half lower, Half upper) {
@@ -54,6 +64,8 @@ struct Lanes {
     if constexpr (sizeof(V) == 32 && !single) return Lanes(V(_mm256_sqrt_pd(__m256d(a.v))));
 #endif
 #if defined(__AVX512F__)
+    if constexpr (sizeof(V) == 64 && single)
+      return Lanes(V(_mm512_maskz_sqrt_ps(0xffff, __m512(a.v))));
     if constexpr (sizeof(V) == 64 && !single)
       return Lanes(V(_mm512_maskz_sqrt_pd(0xff, __m512d(a.v))));
 #endif

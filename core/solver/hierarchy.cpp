@@ -1,0 +1,95 @@
+#include "core/solver/hierarchy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/solver/neighbours.hpp"
+
+namespace taut {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Pins and a greedy independent set, in the order of the vertices.
+std::vector<bool> choose(const std::vector<int>& vertices, const Neighbours& neighbours,
+                         std::span<const double> w) {
+  std::vector<bool> coarse(w.size());
+  for (const int v : vertices) coarse[at(v)] = w[at(v)] == 0;
+  for (const int v : vertices) {
+    const auto near = neighbours.of(v);
+    if (std::none_of(near.begin(), near.end(), [&](const auto& end) {
+          return coarse[at(end.vertex)] && w[at(end.vertex)] > 0;
+        }))
+      coarse[at(v)] = true;
+  }
+  return coarse;
+}
+
+/// Links between coarse vertices that are linked or share a finer neighbour. A flat sheet's are
+/// straight; elsewhere the way through the neighbour counts, which a fold can only shorten.
+std::vector<Link> coarse_links(const Mesh& mesh, std::span<const Link> links,
+                               const Neighbours& neighbours, const std::vector<bool>& coarse,
+                               const std::vector<int>& vertices) {
+  std::map<std::pair<int, int>, double> rest;
+  const auto offer = [&](int a, int b, double length) {
+    if (a == b) return;
+    if (mesh.grid) length = (mesh.rest[at(a)] - mesh.rest[at(b)]).norm();
+    const auto [place, is_new] = rest.try_emplace(std::minmax(a, b), length);
+    place->second = std::min(place->second, length);
+  };
+  for (const int v : vertices) {
+    const auto near = neighbours.of(v);
+    for (const auto& [a, to_a] : near) {
+      if (!coarse[at(a)]) continue;
+      if (coarse[at(v)]) offer(v, a, links[at(to_a)].rest);
+      if (coarse[at(v)]) continue;
+      for (const auto& [b, to_b] : near)
+        if (coarse[at(b)] && a < b) offer(a, b, links[at(to_a)].rest + links[at(to_b)].rest);
+    }
+  }
+  std::vector<Link> result;
+  for (const auto& [ends, length] : rest)
+    result.push_back({ends.first, ends.second, length, Family::structural});
+  return result;
+}
+
+}  // namespace
+
+std::vector<Level> make_hierarchy(const Scene& scene, std::span<const double> w, int levels) {
+  std::vector<Link> links = scene.links;
+  std::erase_if(links, [](const Link& l) { return l.family != Family::structural; });
+  std::vector<int> vertices(at(scene.mesh.size()));
+  for (int v = 0; v < scene.mesh.size(); ++v) vertices[at(v)] = v;
+  std::vector<Level> hierarchy;
+  while (static_cast<int>(hierarchy.size()) < levels) {
+    const Neighbours neighbours(links, scene.mesh.size());
+    const std::vector<bool> coarse = choose(vertices, neighbours, w);
+    Level level;
+    for (const int v : vertices) {
+      if (coarse[at(v)]) {
+        level.vertices.push_back(v);
+        continue;
+      }
+      Level::Child child{v, static_cast<int>(level.parents.size()), 0};
+      double sum = 0;
+      for (const auto& [p, link] : neighbours.of(v))
+        if (coarse[at(p)] && links[at(link)].rest > 0) {
+          level.parents.push_back({p, 1 / links[at(link)].rest});
+          sum += level.parents.back().weight;
+        }
+      child.end = static_cast<int>(level.parents.size());
+      for (int p = child.first; p < child.end; ++p) level.parents[at(p)].weight /= sum;
+      if (child.end > child.first) level.children.push_back(child);
+    }
+    if (level.vertices.size() == vertices.size()) break;
+    links = coarse_links(scene.mesh, links, neighbours, coarse, vertices);
+    level.links = make_sticks<double>(links, w, {.stiffness = {INFINITY, INFINITY, INFINITY}});
+    vertices = level.vertices;
+    hierarchy.insert(hierarchy.begin(), std::move(level));
+  }
+  return hierarchy;
+}
+
+}  // namespace taut

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/model/mesh.hpp"
+
+namespace taut {
+
+/// The other ends of each vertex's links, and which links those are.
+class Neighbours {
+ public:
+  Neighbours(std::span<const Link> links, int vertices)
+      : first_(at(vertices) + 1), ends_(2 * links.size()) {
+    for (const Link& link : links) ++first_[at(link.a) + 1], ++first_[at(link.b) + 1];
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    std::vector<int> next(first_.begin(), first_.end() - 1);
+    for (int l = 0; l < static_cast<int>(links.size()); ++l) {
+      const Link& link = links[at(l)];
+      ends_[at(next[at(link.a)]++)] = {link.b, l};
+      ends_[at(next[at(link.b)]++)] = {link.a, l};
+    }
+  }
+
+  struct End {
+    int vertex, link;
+  };
+  std::span<const End> of(int v) const {
+    return {ends_.data() + first_[at(v)], ends_.data() + first_[at(v) + 1]};
+  }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  std::vector<int> first_;
+  std::vector<End> ends_;
+};
+
+}  // namespace taut

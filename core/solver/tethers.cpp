@@ -1,0 +1,84 @@
+#include "core/solver/passes/tethers.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+
+#include "core/solver/neighbours.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr int kMostGroups = 4;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Pins that links join, group by group.
+std::vector<std::vector<int>> pin_groups(const Scene& scene, const Neighbours& neighbours) {
+  std::vector<bool> open(at(scene.mesh.size()));
+  for (const int pin : scene.pins) open[at(pin)] = true;
+  std::vector<std::vector<int>> groups;
+  for (const int start : scene.pins) {
+    if (!open[at(start)]) continue;
+    std::vector<int>& group = groups.emplace_back();
+    group.push_back(start), open[at(start)] = false;
+    for (std::size_t i = 0; i < group.size(); ++i)
+      for (const auto& [v, link] : neighbours.of(group[i]))
+        if (open[at(v)]) open[at(v)] = false, group.push_back(v);
+  }
+  return groups;
+}
+
+struct Way {
+  double length = std::numeric_limits<double>::infinity();
+  int pin = -1;
+};
+
+/// The shortest way along the links from any pin of the group to every vertex (Dijkstra).
+std::vector<Way> ways(const std::vector<int>& group, std::span<const Link> links,
+                      const Neighbours& neighbours, int vertices) {
+  std::vector<Way> way(at(vertices));
+  using Item = std::pair<double, int>;
+  std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
+  for (const int pin : group) way[at(pin)] = {0, pin}, open.push({0, pin});
+  while (!open.empty()) {
+    const auto [length, v] = open.top();
+    open.pop();
+    if (length > way[at(v)].length) continue;
+    for (const auto& [to, link] : neighbours.of(v))
+      if (const double there = length + links[at(link)].rest; there < way[at(to)].length) {
+        way[at(to)] = {there, way[at(v)].pin};
+        open.push({there, to});
+      }
+  }
+  return way;
+}
+
+}  // namespace
+
+std::vector<Tether> make_tethers(const Scene& scene) {
+  std::vector<Link> links = scene.links;
+  std::erase_if(links, [](const Link& l) { return l.family == Family::bend; });
+  const Neighbours neighbours(links, scene.mesh.size());
+  std::vector<std::vector<Tether>> candidates(at(scene.mesh.size()));
+  for (const auto& group : pin_groups(scene, neighbours)) {
+    const std::vector<Way> way = ways(group, links, neighbours, scene.mesh.size());
+    for (int v = 0; v < scene.mesh.size(); ++v) {
+      const auto& [length, pin] = way[at(v)];
+      if (pin < 0 || std::binary_search(scene.pins.begin(), scene.pins.end(), v)) continue;
+      const Vec3 line = scene.mesh.rest[at(v)] - scene.mesh.rest[at(pin)];
+      candidates[at(v)].push_back({v, pin, scene.mesh.grid ? line.norm() : length});
+    }
+  }
+  std::vector<Tether> tethers;
+  for (auto& list : candidates) {
+    std::stable_sort(list.begin(), list.end(),
+                     [](const Tether& a, const Tether& b) { return a.length < b.length; });
+    if (list.size() > kMostGroups) list.resize(kMostGroups);
+    tethers.insert(tethers.end(), list.begin(), list.end());
+  }
+  return tethers;
+}
+
+}  // namespace taut
