@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/model/solver.hpp"
+#include "core/model/triangle.hpp"
 #include "core/solver/passes/collide.hpp"
 
 namespace taut {
@@ -241,6 +242,53 @@ TEST(Contact, RestartForgetsWhatWasFrozen) {
 TEST(Contact, WithoutCollidersThereIsNoPass) {
   for (const PassCost& cost : Runner(points({0, 0, 0}), "").solver().plan())
     EXPECT_TRUE(cost.pass == "verlet" || cost.pass == "pins") << cost.pass;
+}
+
+/// One free triangle of 1 m sides about the origin, level, with corner masses 1, 2 and 3 kg.
+Scene one_face(const Collider& collider) {
+  Scene scene;
+  scene.mesh.rest = {{0.5, 0, -0.3}, {-0.5, 0, -0.3}, {0, 0, 0.6}};
+  scene.mesh.triangles = {{0, 1, 2}};
+  scene.mesh.mass = {1, 2, 3};
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(3, Vec3::Zero())};
+  scene.gravity.setZero();
+  scene.dt = kDt;
+  scene.steps = 1;
+  scene.colliders = {collider};
+  return scene;
+}
+
+TEST(FaceContact, LiftsTheFaceToTheBallAndNoFurther) {
+  const Ball ball{{0.05, -0.19, 0.02}, 0.2};
+  Scene scene = one_face({.shape = ball});
+  EXPECT_EQ(Runner(scene, "").step().x[0].y(), 0);  // no vertex is inside
+  scene.thickness = 0.005;
+  const State state = Runner(scene, ",faces=on,iterations=1").step();
+  const Corners t{state.x[0], state.x[1], state.x[2]};
+  EXPECT_NEAR(deepest_in(ball, t).depth, -0.005, 1e-4);  // the face has turned a little
+  Vec3 momentum = Vec3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) momentum += scene.mesh.mass[i] * state.v[i];
+  EXPECT_GT(momentum.y(), 0);
+  EXPECT_NEAR(std::hypot(momentum.x(), momentum.z()), 0, 1e-12);
+  const State settled = Runner(scene, ",faces=on,iterations=10").step();
+  EXPECT_NEAR(deepest_in(ball, {settled.x[0], settled.x[1], settled.x[2]}).depth, -0.005, 1e-9);
+}
+
+TEST(FaceContact, ABoxCornerLeavesTheFaceOverTheCorner) {
+  Box box{{0, -0.5, 0}, {0.3, 0.3, 0.3}};  // stands on one corner, the other 0.02 m above y = 0
+  box.rotation.setFromTwoVectors(Vec3(1, 1, 1), Vec3::UnitY());
+  box.center.y() = 0.02 - 0.3 * std::sqrt(3.0);
+  const Scene scene = one_face({.shape = box});
+  const State state = Runner(scene, ",faces=on,iterations=1").step();
+  EXPECT_LE(deepest_in(box, {state.x[0], state.x[1], state.x[2]}).depth, 1e-12);
+  for (const Vec3& x : state.x) EXPECT_LT(x.y(), 0.06);
+  EXPECT_GT(deepest_in(box, {scene.start.x[0], scene.start.x[1], scene.start.x[2]}).depth, 0.01);
+}
+
+TEST(FaceContact, LeavesPinsAlone) {
+  Scene scene = one_face({.shape = Ball{{0, -0.19, 0}, 0.2}});
+  scene.pins = {0, 1, 2};
+  EXPECT_EQ(Runner(scene, ",faces=on").step().x, scene.start.x);
 }
 
 /// Nearest points in the solver's closed forms against the model's surface().

@@ -80,6 +80,11 @@ constexpr ParamSpec kSpecs[] = {
      .choices = "swept|sweep|before|after|freeze|halt",
      .help = "response to colliders: in every sweep, with or without the test against passing "
              "through; once, before or after the sweeps; or the report's quick fixes"},
+    {.name = "faces",
+     .kind = Kind::choice,
+     .default_value = "off",
+     .choices = "off|on",
+     .help = "keep faces, not only vertices, out of balls and of the edges and corners of boxes"},
     {.name = "self",
      .kind = Kind::choice,
      .default_value = "grid",

@@ -1,6 +1,7 @@
 #include "core/solver/contact/responses.hpp"
 
 #include "core/solver/passes/collide.hpp"
+#include "core/solver/passes/face_contact.hpp"
 #include "core/solver/passes/octree.hpp"
 #include "core/solver/passes/report_fixes.hpp"
 #include "core/solver/passes/self_collide.hpp"
@@ -39,6 +40,11 @@ ContactPasses<Real> make_contact(const Scene& scene, const Params& params) {
     passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene));
   if (scene.self_collision && params.is("self", "octree"))
     passes.sweep.push_back(std::make_unique<OctreePass<Real>>(scene));
+  for (const Collider& collider : scene.colliders)
+    if (params.is("faces", "on") && !std::holds_alternative<Plane>(collider.shape) &&
+        !scene.mesh.triangles.empty())
+      passes.sweep.push_back(
+          std::make_unique<FaceContactPass<Real>>(collider, scene.thickness, scene.mesh.triangles));
   for (const Collider& collider : scene.colliders) {
     if (std::holds_alternative<Plane>(collider.shape))
       add_response<Real, PlaneSurface>(collider, scene, params, passes);
@@ -58,7 +64,8 @@ Effective contact_effective(const Scene& scene, const Params& params) {
   if (!scene.colliders.empty())
     lines = {{"contact response", std::string(params.choice("contact"))},
              {"friction", "Coulomb: tangential correction at most mu times the depth"},
-             {"contact distance", "the scene's thickness"}};
+             {"contact distance", "the scene's thickness"},
+             {"contact of faces", std::string(params.choice("faces"))}};
   if (scene.self_collision)
     lines.emplace_back("self-collision", std::string(params.choice("self")));
   return lines;
