@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "experiments/metrics/crossings.hpp"
+#include "core/model/crossings.hpp"
 
 namespace taut {
 namespace {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/model/cloth_io.hpp"
+#include "core/model/contact_judge.hpp"
 #include "core/model/motion_io.hpp"
 #include "core/model/section.hpp"
 
@@ -44,10 +45,11 @@ Wind read_wind(Section& section) {
   return wind;
 }
 
-SelfCollision read_self_collision(Section& section) {
+SelfCollision read_self_collision(Section& section, ContactWishes& wishes) {
   if (!section.find("radius")) section.missing("radius");
   SelfCollision self;
   self.radius = section.number("radius", Range::positive(kFar), 1);
+  wishes.overlap = section.boolean("overlap", false);
   section.finish();
   return self;
 }
@@ -95,6 +97,8 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   const LinkChoice choice = read_links(links);
   Section cloth(judge, part(root, "cloth"), "[cloth]");
   const bool built = root.table("cloth") && read_cloth(cloth, path.parent_path(), choice, scene);
+  ContactWishes wishes;
+  wishes.resolve = cloth.choice("start_inside", {"error", "resolve"}, "error") == "resolve";
   if (root.table("cloth")) cloth.finish();
   Section forces(judge, part(root, "forces"), "[forces]");
   read_forces(forces, scene);
@@ -104,7 +108,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   }
   if (const Value* table = root.table("self_collision")) {
     Section self(judge, *table, "[self_collision]");
-    scene.self_collision = read_self_collision(self);
+    scene.self_collision = read_self_collision(self, wishes);
   }
   read_colliders(root, scene);
   read_pin_motions(root, built, scene);
@@ -112,6 +116,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   read_time(time, scene);
   root.finish();
   if (built) judge_whole(root, judge, scene);
+  if (built && judge.clean()) judge_contact(root, wishes, scene);
   judge.verdict();
   return scene;
 }

@@ -32,6 +32,13 @@ bool pierces(const Vec3& p, const Vec3& q, const Corners& t) {
   return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
 }
 
+/// True if the plane of t has corners of s strictly on both sides.
+bool straddles(const Corners& s, const Corners& t) {
+  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  const Vec3 heights(normal.dot(s[0] - t[0]), normal.dot(s[1] - t[0]), normal.dot(s[2] - t[0]));
+  return heights.minCoeff() < 0 && heights.maxCoeff() > 0;
+}
+
 /// Depths below the six faces of a box, each linear over the triangle: [face][corner].
 using Depths = std::array<Vec3, 6>;
 
@@ -134,6 +141,7 @@ double enclosing_radius(const Corners& t) {
 }
 
 bool cross(const Corners& s, const Corners& t) {
+  if (!straddles(s, t) && !straddles(t, s)) return false;
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t b = (a + 1) % 3;
     if (pierces(s[a], s[b], t) || pierces(t[a], t[b], s)) return true;

@@ -1,4 +1,4 @@
-#include "experiments/metrics/crossings.hpp"
+#include "core/model/crossings.hpp"
 #include "experiments/metrics/summary.hpp"
 
 namespace taut {
