@@ -76,18 +76,22 @@ void strips(const StripSweep<Real>& sweep, Real* x, int begin, int end) {
     const StripRow<Real> row = d.row[j];
     const int vectors = sweep.vectors, columns = d.columns;
     const T rest(d.rest), half(d.half);
-    visit_vectors(sweep, d, [&](int k) {
-      Real* const a = left + k * vector;
-      const Real* const shares = row.shares + 2 * lanes * k;
-      const auto own = [&](int l) { return load<T>(shares + l); };
-      if (k >= row.plain_begin && k < row.plain_end)
-        project_vectors<T, lanes, kind>(a, right + (k + columns) * vector, rest,
-                                        [&](int) { return half; });
-      else if (k + columns < vectors)
-        project_vectors<T, lanes, kind>(a, right + (k + columns) * vector, rest, own);
-      else
-        project_seam<T, lanes, kind>(a, right + (k + columns - vectors) * vector, rest, own);
-    });
+    visit_vectors(
+        sweep, d, [&](int k) __attribute__((always_inline)) {
+          Real* const a = left + k * vector;
+          const Real* const shares = row.shares + 2 * lanes * k;
+          const auto own = [&](int l) __attribute__((always_inline)) {
+            return load<T>(shares + l);
+          };
+          if (k >= row.plain_begin && k < row.plain_end)
+            project_vectors<T, lanes, kind>(
+                a, right + (k + columns) * vector,
+                rest, [&](int) __attribute__((always_inline)) { return half; });
+          else if (k + columns < vectors)
+            project_vectors<T, lanes, kind>(a, right + (k + columns) * vector, rest, own);
+          else
+            project_seam<T, lanes, kind>(a, right + (k + columns - vectors) * vector, rest, own);
+        });
   });
 }
 
