@@ -19,23 +19,25 @@ SANITIZED = "asan" in BINARIES.name  # its allocator knows no limit on address s
 class FaultySolvers(CommandLine):
     def run_modes(self, *modes):
         study = self.study(solvers=["jakobsen:precision=double"] + [f"faulty:mode={mode}" for mode in modes])
-        run = self.taut("run", study, "--timeout", 2, "--memory", 300, "-j", 2, program="taut-faulty")
+        run = self.taut("run", study, "--timeout", 1, "--memory", 300, "-j", 2, program="taut-faulty")
         self.assertIn(f"{len(modes) + 1}/{len(modes) + 1} cases", run.err)
         statuses = {r["params"].get("mode", "jakobsen"): r["status"] for r in self.records()}
         self.assertEqual(statuses["jakobsen"]["kind"], "ok")
         return statuses
 
     def test_each_costs_one_case(self):
-        modes = ["crash", "abort", "nan", "hang", "throw", "exit", "refuse", "sound"]
+        modes = ["crash", "abort", "nan", "hang", "spin", "throw", "exit", "refuse", "sound"]
         status = self.run_modes(*modes)
         self.assertEqual({mode: status[mode]["kind"] for mode in modes},
-                         {"crash": "crash", "abort": "crash", "nan": "exploded", "hang": "timeout", "throw": "error",
+                         {"crash": "crash", "abort": "crash", "nan": "exploded", "hang": "timeout", "spin": "timeout", "throw": "error",
                           "exit": "error", "refuse": "unsupported", "sound": "ok"})
         self.assertIn("SIGSEGV", status["crash"]["reason"])
         self.assertIn("SIGABRT", status["abort"]["reason"])
+        self.assertEqual(status["hang"]["reason"], "wall time")
+        self.assertIn(status["spin"]["reason"], ("CPU time", "wall time"))  # a machine may be too busy for the first
         self.assertEqual(status["throw"]["reason"], "faulty: threw as told")
         self.assertEqual(status["refuse"]["reason"], "refuses, as told")
-        for mode in ["crash", "abort", "hang", "exit"]:
+        for mode in ["crash", "abort", "hang", "spin", "exit"]:
             self.assertEqual(status[mode]["step"], 4, f"{mode}: the last good step is that before the fifth")
         self.assertEqual((status["nan"]["step"], status["nan"]["vertex"]), (5, 2))
 

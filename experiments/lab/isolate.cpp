@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -38,7 +39,7 @@ void restrict_child(const Limits& limits, pid_t parent, int out) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
   const auto limit = [](auto what, rlim_t most) {
-    const rlimit both{most, most};
+    const rlimit both{most, most + (what == RLIMIT_CPU ? 1 : 0)};  // SIGXCPU first, then SIGKILL
     setrlimit(what, &both);
   };
 #ifndef __SANITIZE_ADDRESS__  // its shadow alone is terabytes of address space
@@ -46,6 +47,7 @@ void restrict_child(const Limits& limits, pid_t parent, int out) {
 #else
   static_cast<void>(limits);
 #endif
+  limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
   limit(RLIMIT_FSIZE, kFileBytes);
   limit(RLIMIT_CORE, 0);
   const int null = open("/dev/null", O_RDWR);
@@ -92,7 +94,7 @@ IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limit
       folder_(std::move(folder)),
       deadline_(std::chrono::steady_clock::now() +
                 std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                    std::chrono::duration<double>(limits.seconds))) {
+                    std::chrono::duration<double>(5 * limits.seconds))) {
   const auto program_of = case_.choice.entry->program;
   const std::string program =
       sibling_program(std::string(program_of ? program_of(case_.choice.params) : ""));
@@ -156,6 +158,7 @@ Record IsolatedCase::record_of(int wait_status, bool timed_out) const {
   if (timed_out) return failed(Kind::timeout, "wall time");
   if (WIFSIGNALED(wait_status)) {
     const int signal = WTERMSIG(wait_status);
+    if (signal == SIGXCPU) return failed(Kind::timeout, "CPU time");
     if (signal == SIGKILL) return failed(Kind::oom, "killed by the system");
     return failed(Kind::crash, signal_name(signal) + (said.empty() ? "" : ": " + said));
   }

@@ -11,7 +11,7 @@ namespace taut {
 
 /// What one case may use.
 struct Limits {
-  double seconds = 120;                      ///< wall time
+  double seconds = 120;  ///< CPU time; wall time may be five times as much (a busy machine)
   std::size_t bytes = std::size_t{2} << 30;  ///< address space
 };
 

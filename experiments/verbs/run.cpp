@@ -127,7 +127,8 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--only", options->only, "failed: run stored failures again, nothing else")
       ->check(CLI::IsMember({"failed"}));
   app.add_option("--out", options->out, "Results folder (default: " + options->out + ")");
-  app.add_option("--timeout", options->seconds, "Wall time limit of a case [s] (default: 120)")
+  app.add_option("--timeout", options->seconds,
+                 "CPU time limit of a case [s] (default: 120); wall time: five times that")
       ->check(CLI::PositiveNumber);
   app.add_option("--memory", options->megabytes, "Memory limit of a case [MB] (default: 2048)")
       ->check(CLI::Range(64.0, 1e9));

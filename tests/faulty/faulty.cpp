@@ -17,7 +17,7 @@ constexpr ParamSpec kParams[] = {
     {.name = "mode",
      .kind = ParamSpec::Kind::choice,
      .default_value = "sound",
-     .choices = "sound|crash|abort|hang|memory|nan|throw|exit|print|slow|refuse|random",
+     .choices = "sound|crash|abort|hang|spin|memory|nan|throw|exit|print|slow|refuse|random",
      .help = "what it does at that step"},
     {.name = "at",
      .kind = ParamSpec::Kind::integer,
@@ -60,6 +60,7 @@ class Faulty final : public Solver {
     if (mode_ == "exit") std::_Exit(3);
     if (mode_ == "random") state_.x[0].x() += 1e-3 * static_cast<double>(getpid() % 1000);
     while (mode_ == "hang") usleep(1000);
+    for (volatile int spun = 0; mode_ == "spin";) spun = spun + 1;
     while (mode_ == "print") std::cerr << std::string(1 << 20, 'x');
     while (mode_ == "memory") hoard_.emplace_back(std::size_t{1} << 20, 'x');
   }
