@@ -84,7 +84,7 @@ TEST(Report, EverySectionIsThereAndEveryChartHasItsNumbers) {
 
 TEST(Report, AbsentDataNameTheCommandThatMakesThem) {
   const std::string html = make_report(example());
-  for (const char* command : {"taut truths", "taut check", "taut bench", "taut render ball"})
+  for (const char* command : {"taut verify", "taut check", "taut bench", "taut render ball"})
     EXPECT_NE(html.find(command), std::string::npos) << command;
 }
 
@@ -181,6 +181,15 @@ TEST(Comparison, RatiosPairOnlyCasesThatBothEndedWell) {
   const auto dt = largest_stable_dt(facts.contenders[1], "hang", 4);
   ASSERT_TRUE(dt);
   EXPECT_LT(*dt, 0.1);
+}
+
+TEST(Comparison, RoundingInFreeFallDecidesNothing) {
+  ReportInput input = example();
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records) r.values["stretch.rms"] = r.solver == "bullet" ? 1e-13 : 1e-17;
+  const Comparison facts = compare(input);
+  ASSERT_TRUE(facts.stretch[1]);
+  EXPECT_DOUBLE_EQ(facts.stretch[1]->mean, 1);
 }
 
 TEST(InlineSvg, KeepsContentDropsIdsAndTakesTheThemesColours) {

@@ -36,11 +36,13 @@ struct Comparison {
 
 Comparison compare(const ReportInput&);
 
-/// y over y of the first contender's matching cases; nullopt without a pair.
-std::optional<Ratio> ratio_of(const Contender&, const Contender& first, const std::string& value);
+/// y over y of the first contender's matching cases, values below `floor` counting as `floor`;
+/// nullopt without a pair. NaN never counts.
+std::optional<Ratio> ratio_of(const Contender&, const Contender& first, const std::string& value,
+                              double floor);
 
 /// The largest dt [s] of a contender's cases on `scene` at `sweeps` below which (itself included)
-/// every tried dt ended ok or unsettled; nullopt if fewer than two were tried, 0 if the smallest
+/// every tried dt ended ok or unsettled; nullopt if fewer than three were tried, 0 if the smallest
 /// failed.
 std::optional<double> largest_stable_dt(const Contender&, const std::string& scene, int sweeps);
 

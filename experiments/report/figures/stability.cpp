@@ -73,7 +73,8 @@ std::string make_csv(const Map& map) {
 
 std::string tick_text(const Quantity& q, double si) {
   const double shown = si * q.scale;
-  return shown == std::round(shown) && shown < 1e5 ? exact(shown) : significant(shown, 2);
+  const bool whole = std::abs(shown - std::round(shown)) < 1e-6 * shown && shown < 1e5;
+  return whole ? exact(std::round(shown)) : significant(shown, 2);
 }
 
 std::string muted() { return "'" + std::string(neutral("muted").light) + "'"; }

@@ -42,7 +42,10 @@ std::string panel(const std::vector<const Record*>& examples, const Comparison& 
     out += "<th scope=\"col\">" + solver_dot(c.solver) + solver_name(c) + "</th>";
   out += "</tr></thead><tbody>";
   const auto row = [&](const std::string& name, const std::vector<std::string>& cells) {
-    const bool same = std::ranges::all_of(cells, [&](const auto& c) { return c == cells.front(); });
+    // A dash says that the solver has no such setting, not that it differs.
+    const bool same = std::ranges::all_of(cells, [&](const auto& c) {
+      return c == cells.front() || c == "–" || cells.front() == "–";
+    });
     out += std::string("<tr") + (same ? "" : " class=\"differs\"") + "><th scope=\"row\">" +
            escape_html(name) + (same ? "" : "<span class=\"sr\"> (differs)</span>") + "</th>";
     for (const std::string& cell : cells) out += "<td>" + escape_html(cell) + "</td>";

@@ -17,9 +17,9 @@ std::string legend(const std::vector<Record>& records) {
 
 std::string render(Page& page, const std::string& scene) {
   const auto records = page.sweep(scene, "dt", "");
-  std::set<double> sweeps;
-  for (const Record& r : records) sweeps.insert(value_of(r, "iterations"));
-  if (records.empty() || sweeps.size() < 2) return "";
+  std::set<double> sweeps, steps;
+  for (const Record& r : records) sweeps.insert(value_of(r, "iterations")), steps.insert(r.dt);
+  if (steps.size() < 3 || sweeps.size() < 3) return "";  // no map, only a few cells
   std::string out;
   for (const Curve& curve : make_curves(records, "dt", "iterations", "dt")) {
     const std::string& solver = curve.solver;

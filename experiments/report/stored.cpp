@@ -1,0 +1,88 @@
+#include "experiments/report/stored.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "experiments/report/axis.hpp"
+#include "experiments/report/comparison.hpp"
+#include "experiments/report/curves.hpp"
+
+namespace taut::report {
+
+namespace {
+
+/// Scenes that show most come first when one has to stand on top.
+constexpr std::array<std::string_view, 4> kShowpieces{"ball", "drape", "flag", "hang"};
+
+TimeSeries column(const Series& table, const Record& record, const std::string& label,
+                  const std::string& value) {
+  TimeSeries series{record.scene, record.solver, label, value, {}, {}};
+  const auto index = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(table.columns, name) - table.columns.begin());
+  };
+  const std::size_t t = index("t"), y = index(value);
+  if (t == table.columns.size() || y == table.columns.size()) return series;
+  for (const auto& row : table.rows) {
+    series.t.push_back(row[t]);
+    series.y.push_back(row[y]);
+  }
+  return series;
+}
+
+/// Stretch over time of one scene: each contender at the quoted sweeps, if all of them have it.
+std::vector<TimeSeries> series_of(const std::string& scene, const Comparison& facts,
+                                  const Store& store) {
+  std::vector<TimeSeries> all;
+  for (const Contender& contender : facts.contenders) {
+    std::vector<Record> here;
+    for (const Record& r : contender.records)
+      if (r.scene == scene && value_of(r, "iterations") == facts.sweeps) here.push_back(r);
+    for (const Record& r : most_common(here, "dt", 1.0 / 64).records) {
+      TimeSeries series = column(store.series(r.key), r, contender.label, "stretch.rms");
+      if (series.t.size() < 2) continue;
+      all.push_back(std::move(series));
+      break;
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::optional<double> theory_slope(const Scene& scene) {
+  const bool bends = std::ranges::any_of(
+      scene.links, [](const Link& link) { return link.family == Family::bend; });
+  if (scene.pins.empty() || !scene.pin_motions.empty() || !scene.colliders.empty() || scene.wind ||
+      scene.self_collision || bends)
+    return std::nullopt;
+  return -1;
+}
+
+ReportInput stored_results(const std::vector<Study>& studies, const Store& store) {
+  ReportInput input;
+  std::set<std::string> seen;
+  for (const Study& study : studies) {
+    StudyRecords known = collect(study, store);
+    StudyResult result{
+        study.name, study.question, std::move(known.records), known.cases.size(), {}};
+    for (const Case& one : known.cases) {
+      if (!seen.insert(one.scene->name).second) continue;
+      input.scenes.push_back({one.scene->name, one.scene->summary});
+    }
+    for (const Case& one : known.cases)
+      if (const auto slope = theory_slope(*one.scene)) result.slopes[one.scene->name] = *slope;
+    input.studies.push_back(std::move(result));
+  }
+  const Comparison facts = compare(input);
+  std::vector<std::string> order(kShowpieces.begin(), kShowpieces.end());
+  for (const SceneInfo& scene : input.scenes) order.push_back(scene.name);
+  for (const std::string& scene : order)
+    if (input.series = series_of(scene, facts, store);
+        !input.series.empty() && input.series.size() == facts.contenders.size())
+      break;
+  return input;
+}
+
+}  // namespace taut::report

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/lab/campaign.hpp"
+#include "experiments/report/input.hpp"
+
+namespace taut::report {
+
+/// What the store has of these studies, as the report wants it: records, scenes with their
+/// summaries, the theory's exponents, values over time of one case per solver. Throws InputError
+/// as load_scene() does.
+ReportInput stored_results(const std::vector<Study>&, const Store&);
+
+/// -1 where theory has stretch fall as 1 / sweeps: pinned links at rest, e ~ (dt^2/k) U f, with
+/// neither contact nor wind nor bending. nullopt elsewhere.
+std::optional<double> theory_slope(const Scene&);
+
+}  // namespace taut::report

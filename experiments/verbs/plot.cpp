@@ -1,0 +1,115 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/curves.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/verbs/verb.hpp"
+
+namespace taut {
+
+namespace {
+
+using report::FigureSpec;
+
+struct Options {
+  std::string study, preset, kind, x, y, title, results = default_results(), out;
+};
+
+/// What the command line asks for; without --kind, --x and --y the pictures that the study asks
+/// for.
+std::vector<FigureSpec> wanted(const Options& options, const Study& study) {
+  if (!options.kind.empty() || !options.x.empty() || !options.y.empty())
+    return {{.kind = options.kind.empty() ? "work-precision" : options.kind,
+             .x = options.x,
+             .y = options.y,
+             .title = options.title}};
+  std::vector<FigureSpec> specs;
+  for (const Plot& plot : study.plots) {
+    const auto option = [&](const char* name) {
+      const auto at = plot.options.find(name);
+      return at == plot.options.end() ? std::string() : at->second;
+    };
+    specs.push_back(
+        {.kind = plot.kind, .x = option("x"), .y = option("y"), .title = option("title")});
+  }
+  if (specs.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
+  return specs;
+}
+
+/// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
+int draw(FigureSpec spec, const report::StudyResult& study, const std::string& scene,
+         const std::filesystem::path& out) {
+  const report::FigureEntry& entry = report::find_figure(spec.kind);
+  if (spec.x.empty()) spec.x = entry.x;
+  if (spec.y.empty()) spec.y = entry.y;
+  std::vector<Record> records;
+  for (const Record& r : study.records)
+    if (r.scene == scene) records.push_back(r);
+  if (spec.kind != "stability")
+    records = spec.x == "dt" ? report::most_common(records, "iterations", 8).records
+                             : report::most_common(records, "dt", 1.0 / 64).records;
+  if (const auto slope = study.slopes.find(scene);
+      slope != study.slopes.end() && spec.kind == "error-iterations")
+    spec.slope = slope->second;
+  spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene;
+  spec.file = report::slug(scene + "-" + spec.kind + "-" + spec.y + "-over-" + spec.x);
+  const report::Figure figure = report::make_figure(spec, {records, {}}, out);
+  std::cout << figure.svg.string() << '\n' << figure.pdf.string() << '\n';
+  return 1;
+}
+
+int run(const Options& options) {
+  if (!options.kind.empty()) report::find_figure(options.kind);
+  const Study study = load_study(options.study, options.preset);
+  const report::ReportInput input = report::stored_results({study}, Store(options.results));
+  const report::StudyResult& result = input.studies.front();
+  const std::filesystem::path out =
+      options.out.empty() ? std::filesystem::path(options.results) / "figures" / study.name
+                          : std::filesystem::path(options.out);
+  int drawn = 0;
+  try {
+    for (const FigureSpec& spec : wanted(options, study))
+      for (const report::SceneInfo& scene : input.scenes) try {
+          drawn += draw(spec, result, scene.name, out);
+        } catch (const InputError& error) {
+          std::cerr << scene.name << ": " << error.what() << '\n';
+        }
+  } catch (const report::PlotError& error) {
+    std::cerr << error.what() << '\n';
+    return kEnvironment;
+  }
+  return drawn > 0 ? kPass : kNothing;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  std::string kinds;
+  for (const report::FigureEntry* entry : report::figures())
+    kinds += (kinds.empty() ? "" : ", ") + std::string(entry->name);
+  app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
+  app.add_option("--preset", options->preset, "The preset under which it was run");
+  app.add_option("--kind", options->kind,
+                 "One of: " + kinds + " (default: what the study asks for)");
+  app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
+  app.add_option("--y", options->y, "Value on y, such as stretch.rms");
+  app.add_option("--title", options->title, "Title above the figure");
+  app.add_option("--results", options->results,
+                 "Results folder (default: " + options->results + ")");
+  app.add_option("--out", options->out, "Where figures go (default: figures/STUDY in the results)");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_VERB(plot) = {.name = "plot",
+                   .summary = "Draws the figures of a study: SVG, PDF, gnuplot script and CSV",
+                   .example =
+                       "taut plot iterations --preset quick\n  taut plot time-steps --kind "
+                       "stability --out figures\n  taut plot iterations --x projections "
+                       "--y stretch.max",
+                   .bind = taut::bind};

@@ -1,0 +1,68 @@
+#include "experiments/report/report.hpp"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/verbs/verb.hpp"
+
+namespace taut {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> studies;
+  std::string preset, results = default_results(), out = "report.html";
+};
+
+std::string command_line(const Options& options) {
+  std::string run = "./taut run";
+  if (options.studies.empty()) return run;
+  for (const std::string& study : options.studies) run += " " + study;
+  if (!options.preset.empty()) run += " --preset " + options.preset;
+  std::string report = "./taut report";
+  for (const std::string& study : options.studies) report += " " + study;
+  if (!options.preset.empty()) report += " --preset " + options.preset;
+  return run + " && " + report;
+}
+
+int run(Options options) {
+  const std::string command = command_line(options);
+  if (options.studies.empty()) {
+    options.studies = {"iterations", "time-steps", "penetration"};
+    if (options.preset.empty()) options.preset = "quick";
+  }
+  std::vector<Study> studies;
+  for (const std::string& name : options.studies)
+    studies.push_back(load_study(name, options.preset));
+  report::ReportInput input = report::stored_results(studies, Store(options.results));
+  input.command = command;
+  for (const SolverEntry* entry : solvers())
+    input.solvers.push_back(
+        {std::string(entry->name), std::string(entry->summary), std::string(entry->source)});
+  input.provenance = {{"compiler", __VERSION__}, {"preset", options.preset}};
+  if (options.preset.empty()) input.provenance.pop_back();
+  std::cout << report::write_report(input, options.out).string() << '\n';
+  return kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("STUDY", options->studies,
+                 "Names or paths of studies; none: the main job, preset quick");
+  app.add_option("--preset", options->preset, "The preset under which the studies were run");
+  app.add_option("--results", options->results,
+                 "Results folder (default: " + options->results + ")");
+  app.add_option("-o,--out", options->out, "The page (default: report.html)");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_VERB(report) = {.name = "report",
+                     .summary = "Writes the comparison of stored results as one HTML page",
+                     .example = "taut report\n  taut report iterations --preset quick -o hang.html",
+                     .bind = taut::bind};
