@@ -27,11 +27,12 @@ void resolve(Scene& scene) {
 /// A pinned vertex may be inside: that is how a cloth is fixed to an obstacle.
 void judge_start(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
   const Shape shape = shape_at(collider, 0);
-  double deepest = 1e-9 * extent(scene);  // rounding of what the file says
+  const double rounding = 1e-9 * extent(scene);  // of what the file says
+  double deepest = 0;
   std::size_t vertex = 0, count = 0;
   for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
     const double depth = -surface(shape, scene.start.x[i]).distance;
-    if (pinned(scene, i) || depth <= 1e-9 * extent(scene)) continue;
+    if (pinned(scene, i) || depth <= rounding) continue;
     ++count;
     if (depth > deepest) deepest = depth, vertex = i;
   }
@@ -45,10 +46,11 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
 
 void judge_path(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
   const auto& path = collider.motion.path;
+  const double farthest = extent(scene);  // m, in one time step
   for (std::size_t k = 1; k < path.size(); ++k) {
     const double speed =
         (path[k].displacement - path[k - 1].displacement).norm() / (path[k].t - path[k - 1].t);
-    if (speed * scene.dt <= extent(scene)) continue;
+    if (speed * scene.dt <= farthest) continue;
     root.judge().report(item.place, "the path jumps: from key " + std::to_string(k) + " to key " +
                                         std::to_string(k + 1) + " it makes " +
                                         shortest(speed * scene.dt) +

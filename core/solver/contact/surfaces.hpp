@@ -20,6 +20,7 @@ struct Tangent {
 // precision, one type for each shape. surface() of core/model/collider.hpp is their oracle.
 //
 //   clear(x, t)       quick and conservative: true only if x is at least t from the surface
+//   beyond(x, w2, t)  the same for all of a path that ends in x and whose squared length is w2
 //   nearest(x)        tangent at the surface point nearest to x
 //   entry(from, to)   tangent where a straight path first meets the solid; the one nearest to
 //                     `from` if it starts inside; empty if it misses
@@ -36,6 +37,7 @@ class PlaneSurface {
   bool clear(const Point& x, Real thickness) const {
     return tangent_.normal.dot(x) >= tangent_.offset + thickness;
   }
+  bool beyond(const Point& x, Real, Real thickness) const { return clear(x, thickness); }
   Tangent<Real> nearest(const Point&) const { return tangent_; }
   /// A half-space has no other side: nearest() says all.
   std::optional<Tangent<Real>> entry(const Point&, const Point&) const { return {}; }
@@ -56,6 +58,11 @@ class BallSurface {
   bool clear(const Point& x, Real thickness) const {
     const Real reach = radius_ + thickness;
     return (x - center_).squaredNorm() >= reach * reach;
+  }
+  /// (reach + way)^2 <= 2 (reach^2 + way^2).
+  bool beyond(const Point& x, Real way2, Real thickness) const {
+    const Real reach = radius_ + thickness;
+    return (x - center_).squaredNorm() >= 2 * (reach * reach + way2);
   }
   Tangent<Real> nearest(const Point& x) const {
     const Point out = x - center_;
@@ -97,6 +104,10 @@ class BoxSurface {
     if (out.squaredNorm() >= reach * reach) return true;
     return ((axes_.transpose() * out).cwiseAbs() - half_).maxCoeff() >= thickness;
   }
+  bool beyond(const Point& x, Real way2, Real thickness) const {
+    const Real reach = far_ + thickness;
+    return (x - center_).squaredNorm() >= 2 * (reach * reach + way2);
+  }
   Tangent<Real> nearest(const Point& x) const {
     const Point local = axes_.transpose() * (x - center_);
     const Point excess = local.cwiseAbs() - half_;
@@ -107,9 +118,6 @@ class BoxSurface {
     return {normal, normal.dot(center_ + axes_ * corner)};
   }
   std::optional<Tangent<Real>> entry(const Point& from, const Point& to) const {
-    if (std::min((from - center_).squaredNorm(), (to - center_).squaredNorm()) >=
-        2 * (far_ * far_ + (to - from).squaredNorm()))
-      return {};  // both ends are too far for a path of this length
     const Point a = axes_.transpose() * (from - center_), d = axes_.transpose() * (to - from);
     if ((a.cwiseAbs() - half_).maxCoeff() <= 0) return nearest(from);
     Real in = -std::numeric_limits<Real>::infinity(), out = 1;

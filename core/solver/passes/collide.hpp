@@ -35,7 +35,9 @@ class Contact {
   /// The same, but back to the side from which the particle came in, even if it has passed through
   /// since.
   bool project_swept(Point& x, const Point& previous) const {
-    const auto entry = surface_.entry(carry_(previous), x);
+    const Point from = carry_(previous);
+    if (surface_.beyond(x, (x - from).squaredNorm(), thickness_)) return false;
+    const auto entry = surface_.entry(from, x);
     if (!entry) return !clear(x) && project(x, previous);
     const Tangent<Real> nearest = surface_.nearest(x);
     const bool same_side = !surface_.clear(x, 0) && nearest.normal.dot(entry->normal) > 0;
