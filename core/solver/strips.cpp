@@ -97,11 +97,11 @@ StripPlan<Real>::StripPlan(const RegularLinks& links, std::span<const double> w,
           .half = 0,
           .row = nullptr};
     std::map<Real, int> votes;  // equal shares, by how many links have them
-    const auto shares = [&](int i, int j, bool left) {
+    const auto shares = [&, kind = family](int i, int j, bool left) {  // clang 14: no binding
       const double wl = w[at(grid.index(i, j + to.left))],
                    wr = w[at(grid.index(i + to.columns, j + to.right))];
       if (wl + wr == 0) return Real(0);
-      return static_cast<Real>(softened(firm, family, wl + wr) * ((left ? wl : wr) / (wl + wr)));
+      return static_cast<Real>(softened(firm, kind, wl + wr) * ((left ? wl : wr) / (wl + wr)));
     };
     for (int j = 0; j < to.rows; ++j) {
       std::vector<Real> row(at(2 * lanes * sweep_.vectors), Real(0));
