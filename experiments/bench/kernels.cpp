@@ -1,0 +1,168 @@
+#include "experiments/bench/kernels.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <memory>
+
+#include "core/model/solver.hpp"
+#include "experiments/bench/textbook_kernel.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr int kFewSweeps = 2, kManySweeps = 18;
+
+double now(bool cpu) {
+  timespec t;
+  clock_gettime(cpu ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Does a number of sweeps, few or many.
+using Work = std::function<void(bool many)>;
+
+struct Kernel {
+  KernelRow row;
+  Work work;
+  double projections = 0;  ///< between few and many
+  int repeats = 1;         ///< in one sample
+};
+
+Scene sheet(int side) {
+  Scene scene;
+  scene.mesh = make_sheet({.nu = side, .nv = side, .width = 1, .height = 1, .mass = 0.2});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
+  scene.links = grid_links(scene.mesh, {.structural = true, .shear = true, .bend = true});
+  scene.pins = {0, side - 1};
+  scene.dt = 1.0 / 64;
+  scene.steps = 1;
+  return scene;
+}
+
+template <class Real>
+Kernel textbook(const Scene& scene, const std::string& name) {
+  const auto w = inverse_masses(scene);
+  const auto kernel = std::make_shared<TextbookKernel<Real>>(scene.start.x, w, scene.links);
+  // 3 differences, 5 for the square, root, 2 for w1 + w2 and its product, 2 for diff, 2 + 12 to
+  // move
+  return {.row = {.name = name, .flops = 27, .bytes = 15 * static_cast<int>(sizeof(Real)) + 8},
+          .work =
+              [kernel](bool many) {
+                for (int k = 0; k < (many ? kManySweeps : kFewSweeps); ++k) kernel->sweep();
+              },
+          .projections = static_cast<double>(kernel->links()) * (kManySweeps - kFewSweeps)};
+}
+
+/// A solver; `name` is its text without iterations.
+Kernel of_solver(const Scene& scene, const std::string& name, int flops, int bytes) {
+  const auto make = [&](int iterations) {
+    const SolverChoice choice =
+        parse_solver(name + (name.find(':') == std::string::npos ? ":" : ",") +
+                     "iterations=" + std::to_string(iterations));
+    std::shared_ptr<Solver> solver = choice.entry->make(scene, choice.params);
+    solver->load(scene.start);
+    return solver;
+  };
+  const auto few = make(kFewSweeps), many = make(kManySweeps);
+  const double h = scene.dt;
+  const auto projections = [](const Solver& s) {
+    return static_cast<double>(projections_per_step(s));
+  };
+  const bool threads = name.find("threads=2") != std::string::npos;
+  return {.row = {.name = name, .threads = threads ? 2 : 1, .flops = flops, .bytes = bytes},
+          .work = [few, many, h](bool all) { (all ? many : few)->step(0, h); },
+          .projections = projections(*many) - projections(*few)};
+}
+
+/// Additions, multiplications, division (and root) of project_distance between equal masses.
+constexpr int kSqrtFree = 21, kExact = 22;
+
+std::vector<Kernel> kernels_of(const Scene& scene, bool bullet) {
+  // Bullet's float and double builds are different programs; this one has one of them.
+  const auto linked = [](const char* precision) {
+    const SolverChoice choice = parse_solver(std::string("bullet:precision=") + precision);
+    try {
+      choice.entry->make(sheet(2), choice.params);
+    } catch (const std::exception&) {
+      return false;
+    }
+    return true;
+  };
+  std::vector<Kernel> all;
+  all.push_back(textbook<float>(scene, "textbook, float"));
+  all.push_back(textbook<double>(scene, "textbook, double"));
+  const auto add = [&](const std::string& name, const std::string& layout, bool exact, bool single,
+                       int threads) {
+    const int word = single ? 4 : 8, flops = exact ? kExact : kSqrtFree;
+    const int points = layout == "strips" ? 12 : 16;  // numbers read and written
+    const int list = layout == "strips" ? 0 : 8 + word;
+    all.push_back(of_solver(scene,
+                            "jakobsen:order=coloured,layout=" + layout +
+                                ",projection=" + (exact ? "exact" : "sqrt-free") +
+                                ",precision=" + (single ? "float" : "double") +
+                                (threads > 1 ? ",threads=" + std::to_string(threads) : "") + name,
+                            flops, points * word + list));
+  };
+  for (const bool single : {true, false})
+    for (const bool exact : {true, false}) {
+      add(",simd=scalar", "packed", exact, single, 1);
+      add("", "packed", exact, single, 1);
+      if (scene.mesh.grid->nu >= 17) add("", "strips", exact, single, 1);
+    }
+  add("", "packed", false, true, 2);
+  if (scene.mesh.grid->nu >= 17) add("", "strips", false, true, 2);
+  if (bullet)
+    for (const char* precision : {"float", "double"})
+      if (linked(precision))
+        all.push_back(of_solver(scene, std::string("bullet:precision=") + precision, 27,
+                                precision[0] == 'f' ? 76 : 152));
+  return all;
+}
+
+double time_once(Kernel& kernel, bool many) {
+  const bool cpu = kernel.row.threads == 1;
+  const double begin = now(cpu);
+  for (int r = 0; r < kernel.repeats; ++r) kernel.work(many);
+  return (now(cpu) - begin) / kernel.repeats;
+}
+
+double sample(Kernel& kernel, bool back) {
+  const double first = time_once(kernel, back), second = time_once(kernel, !back);
+  return 1e9 * (back ? first - second : second - first) / kernel.projections;
+}
+
+}  // namespace
+
+Interval KernelBench::ratio(std::size_t i, std::size_t j) const {
+  std::vector<double> ratios;
+  for (std::size_t r = 0; r < rows[i].samples.size(); ++r)
+    ratios.push_back(rows[i].samples[r] / rows[j].samples[r]);
+  return bootstrap_median(ratios);
+}
+
+KernelBench bench_kernels(const KernelBenchOptions& options) {
+  const Scene scene = sheet(options.side);
+  std::vector<Kernel> kernels = kernels_of(scene, options.bullet);
+  const double flop[] = {seconds_per_flop(true), seconds_per_flop(false)};
+  for (Kernel& kernel : kernels) {
+    const bool single = kernel.row.name.find("float") != std::string::npos;
+    kernel.row.floor = 1e9 * flop[single ? 0 : 1] * kernel.row.flops / kernel.row.threads;
+    kernel.work(true);
+    const double once = time_once(kernel, true);
+    kernel.repeats =
+        std::clamp(static_cast<int>(options.seconds / std::max(once, 1e-9)), 1, 100000);
+  }
+  for (int round = 0; round < options.rounds; ++round) {
+    std::vector<double> forth, back(kernels.size());
+    for (Kernel& kernel : kernels) forth.push_back(sample(kernel, false));
+    for (std::size_t i = kernels.size(); i-- > 0;) back[i] = sample(kernels[i], true);
+    for (std::size_t i = 0; i < kernels.size(); ++i)
+      kernels[i].row.samples.push_back((forth[i] + back[i]) / 2);
+  }
+  KernelBench bench{options.side, {}};
+  for (Kernel& kernel : kernels) bench.rows.push_back(std::move(kernel.row));
+  return bench;
+}
+
+}  // namespace taut

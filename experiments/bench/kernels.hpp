@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiments/lab/statistics.hpp"
+
+namespace taut {
+
+/// One way to project links, on one size of sheet.
+struct KernelRow {
+  std::string name;
+  int threads = 1;
+  int flops = 0;     ///< additions, multiplications, divisions and roots of one projection
+  int bytes = 0;     ///< read and written in one projection, as the program asks for them
+  double floor = 0;  ///< ns: flops at the machine's measured rate
+  std::vector<double> samples;  ///< ns per projection, one of each round
+  Interval cost() const { return bootstrap_median(samples); }
+};
+
+struct KernelBench {
+  int side = 0;                 ///< vertices of the square sheet's side
+  std::vector<KernelRow> rows;  ///< the first is the textbook
+  /// Median over rounds of rows[i]'s cost over rows[j]'s cost.
+  Interval ratio(std::size_t i, std::size_t j) const;
+};
+
+struct KernelBenchOptions {
+  int side = 32;
+  int rounds = 11;
+  double seconds = 0.005;  ///< of one sample
+  bool bullet = true;
+};
+
+/// All kernels interleaved: each round times every one of them, forth and then back. A projection's
+/// time is the difference between steps of 18 and of 2 sweeps, so that what a step costs besides
+/// drops out. One thread: CPU time; several: wall time.
+KernelBench bench_kernels(const KernelBenchOptions&);
+
+/// Seconds of one addition or multiplication of floats (doubles) on this machine's widest vectors
+/// when nothing stands in the way.
+double seconds_per_flop(bool single);
+
+}  // namespace taut

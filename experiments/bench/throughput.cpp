@@ -1,0 +1,77 @@
+// How fast this machine adds and multiplies when nothing stands in the way: twelve independent
+// chains of alternating multiplications and additions in vectors of the widest kind.
+#include <algorithm>
+#include <ctime>
+
+#include "core/solver/simd/kernels.hpp"
+#include "experiments/bench/kernels.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr int kChains = 12, kRounds = 20000;
+
+template <class Real, int lanes>
+struct Vectors {
+  using V [[gnu::vector_size(lanes * sizeof(Real))]] = Real;
+
+  [[gnu::always_inline]] static Real chains(Real factor) {
+    V c[kChains];
+#pragma GCC unroll 12
+    for (int i = 0; i < kChains; ++i) c[i] = static_cast<Real>(i) - V{};
+    const V f = factor - V{};
+    for (int r = 0; r < kRounds; ++r) {
+#pragma GCC unroll 12
+      for (int i = 0; i < kChains; ++i) c[i] = c[i] * f;
+#pragma GCC unroll 12
+      for (int i = 0; i < kChains; ++i) c[i] = c[i] + f;
+    }
+    Real sum = 0;
+#pragma GCC unroll 12
+    for (int i = 0; i < kChains; ++i) sum += c[i][0];
+    return sum;
+  }
+};
+
+template <class Real>
+[[gnu::target("avx512f,avx512vl")]] Real widest_avx512(Real f) {
+  return Vectors<Real, 64 / sizeof(Real)>::chains(f);
+}
+template <class Real>
+[[gnu::target("avx2")]] Real widest_avx2(Real f) {
+  return Vectors<Real, 32 / sizeof(Real)>::chains(f);
+}
+template <class Real>
+Real widest_sse2(Real f) {
+  return Vectors<Real, 16 / sizeof(Real)>::chains(f);
+}
+
+template <class Real>
+double measure() {
+  const Simd simd = widest();
+  const auto run = simd == Simd::avx512 ? widest_avx512<Real>
+                   : simd == Simd::avx2 ? widest_avx2<Real>
+                                        : widest_sse2<Real>;
+  const std::size_t lanes = (simd == Simd::avx512 ? 64
+                             : simd == Simd::avx2 ? 32
+                                                  : 16) /
+                            sizeof(Real);
+  double best = 1;
+  volatile Real factor = static_cast<Real>(0.5);
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    timespec from, to;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &from);
+    factor = factor + 0 * run(factor);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &to);
+    best = std::min(best, static_cast<double>(to.tv_sec - from.tv_sec) +
+                              1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec));
+  }
+  return best / (2.0 * kChains * kRounds * static_cast<double>(lanes));
+}
+
+}  // namespace
+
+double seconds_per_flop(bool single) { return single ? measure<float>() : measure<double>(); }
+
+}  // namespace taut

@@ -1,0 +1,75 @@
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "core/solver/simd/kernels.hpp"
+#include "experiments/bench/kernels.hpp"
+#include "experiments/verbs/verb.hpp"
+
+namespace taut {
+
+namespace {
+
+struct Options {
+  std::vector<int> sizes{32, 128, 512};
+  int rounds = 11;
+  double seconds = 0.005;
+  int largest_bullet = 256;
+};
+
+std::string times(const Interval& ratio) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%6.2f [%.2f %.2f]", 1 / ratio.mid, 1 / ratio.high,
+                1 / ratio.low);
+  return text;
+}
+
+void print(const KernelBench& bench) {
+  std::printf("\n%d x %d, %s: structural, shear and bend links; ns per projection\n", bench.side,
+              bench.side, std::string(to_string(widest())).c_str());
+  std::printf("%-78s %7s %-15s %-22s %-22s %5s %5s %6s\n", "", "median", "[95 %]",
+              "x faster than textbook", "x faster than Bullet", "flops", "bytes", "floor");
+  std::size_t bullet = bench.rows.size();
+  for (std::size_t i = 0; i < bench.rows.size() && bullet == bench.rows.size(); ++i)
+    if (bench.rows[i].name.starts_with("bullet")) bullet = i;
+  for (std::size_t i = 0; i < bench.rows.size(); ++i) {
+    const KernelRow& row = bench.rows[i];
+    const Interval cost = row.cost();
+    std::printf("%-78s %7.3f [%.3f %.3f]  %-22s %-22s %5d %5d %6.3f\n", row.name.c_str(), cost.mid,
+                cost.low, cost.high, times(bench.ratio(i, 0)).c_str(),
+                bullet < bench.rows.size() ? times(bench.ratio(i, bullet)).c_str() : "-", row.flops,
+                row.bytes, row.floor);
+  }
+  std::fflush(stdout);
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  app.add_option("--sizes", o->sizes, "Vertices along a side (default: 32,128,512)")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 4096));
+  app.add_option("--rounds", o->rounds, "Interleaved rounds forth and back (default: 11)")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--seconds", o->seconds, "Of one sample (default: 0.005)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--largest-bullet", o->largest_bullet,
+                 "Largest side for Bullet, whose steps take seconds beyond (default: 256)")
+      ->check(CLI::Range(0, 4096));
+  return [o] {
+    for (const int side : o->sizes)
+      print(bench_kernels({.side = side,
+                           .rounds = o->rounds,
+                           .seconds = o->seconds,
+                           .bullet = side <= o->largest_bullet}));
+    return kPass;
+  };
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_VERB(bench_kernels) = {
+    .name = "bench-kernels",
+    .summary = "Measures one link projection: textbook, packed, strips, Bullet, in one session",
+    .example = "taut bench kernels --sizes 32,1024\n  taut-f32 bench kernels   (Bullet in float)",
+    .bind = taut::bind};
