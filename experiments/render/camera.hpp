@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/model/scene.hpp"
+
+namespace taut {
+
+using Vec3f = Eigen::Vector3f;
+
+/// From where the scene is seen, relative to its up direction: azimuth turns from +z towards +x.
+struct View {
+  double azimuth = 32;      ///< degrees
+  double elevation = 20;    ///< degrees, in (-90, 90)
+  bool either_side = true;  ///< azimuth may change its sign if that shows more of the cloth
+};
+
+/// "three-quarter" (the default), "front", "back", "left", "right", "top", or "AZIMUTH,ELEVATION"
+/// in degrees; throws InputError.
+View parse_view(const std::string&);
+
+/// A perspective camera.
+struct Camera {
+  Vec3f eye = Vec3f::Zero(), right = Vec3f::UnitX(), up = Vec3f::UnitY(), back = Vec3f::UnitZ();
+  float tan_half_height = 0.2f;  ///< tangent of half the vertical field of view
+  float near_plane = 0.01f, far_plane = 100;
+
+  /// World to clip space for a picture of this width / height.
+  Eigen::Matrix4f world_to_clip(float aspect) const;
+};
+
+/// The scene's up direction: against gravity, +y without it.
+Vec3 up_direction(const Scene&);
+
+/// The part of the picture that the points have to fill: [-1, 1], y upwards.
+struct Frame {
+  double left = -0.8, right = 0.8, bottom = -0.62, top = 0.8;
+};
+
+/// Places the camera so that the points just fit into the frame. Precondition: points not empty.
+Camera fit_camera(const std::vector<Vec3>& points, const Vec3& up, const View&, double aspect,
+                  const Frame&);
+
+}  // namespace taut

@@ -1,0 +1,116 @@
+#include <algorithm>
+
+#include "experiments/render/skin.hpp"
+
+namespace taut {
+
+namespace {
+
+Skin ball_skin(const Ball& ball, double inset) {
+  Skin skin;
+  append_ball(skin, ball.center.cast<float>(),
+              static_cast<float>(std::max(ball.radius - inset, 0.5 * ball.radius)), 72, 0);
+  return skin;
+}
+
+/// A box whose edges are rounded by `radius`: points of the cube's faces, pulled to within the
+/// smaller box and pushed out by the radius.
+Skin box_skin(const Box& box, double inset, double rounding) {
+  constexpr int kPieces = 28;
+  const Vec3 half = (box.half_extents.array() - inset).max(box.half_extents.array() * 0.5);
+  const double radius = std::min(rounding, 0.4 * half.minCoeff());
+  const Vec3 inner = half.array() - radius;
+  Skin skin;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      const auto first = static_cast<std::uint32_t>(skin.position.size());
+      // Points crowd towards the edges, where the rounding is.
+      const auto place = [](int k) {
+        const double s = 2.0 * k / kPieces - 1;
+        return s * (1.5 - 0.5 * s * s);
+      };
+      for (int j = 0; j <= kPieces; ++j)
+        for (int i = 0; i <= kPieces; ++i) {
+          Vec3 p;
+          p[axis] = sign * half[axis];
+          p[(axis + 1) % 3] = place(i) * half[(axis + 1) % 3];
+          p[(axis + 2) % 3] = place(j) * half[(axis + 2) % 3];
+          const Vec3 core = p.cwiseMax(-inner).cwiseMin(inner);
+          const Vec3 out = (p - core).normalized();
+          skin.position.push_back(
+              (box.center + box.rotation * (core + radius * out)).cast<float>());
+          skin.normal.push_back((box.rotation * out).cast<float>());
+          skin.value.push_back(0);
+        }
+      constexpr std::uint32_t row = kPieces + 1;
+      for (std::uint32_t j = 0; j < kPieces; ++j)
+        for (std::uint32_t i = 0; i < kPieces; ++i) {
+          const std::uint32_t a = first + j * row + i;
+          skin.triangles.push_back({a, a + 1, a + row});
+          skin.triangles.push_back({a + 1, a + row + 1, a + row});
+        }
+    }
+  return skin;
+}
+
+Skin plane_skin(const Plane& plane, double inset, const Vec3& centre, double reach) {
+  constexpr int kPieces = 48;
+  const Vec3 u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
+  const Vec3 foot = centre - plane.normal * (plane.normal.dot(centre) - plane.offset + inset);
+  Skin skin;
+  for (int j = 0; j <= kPieces; ++j)
+    for (int i = 0; i <= kPieces; ++i) {
+      const double a = reach * (2.0 * i / kPieces - 1), b = reach * (2.0 * j / kPieces - 1);
+      skin.position.push_back((foot + a * u + b * v).cast<float>());
+      skin.normal.push_back(plane.normal.cast<float>());
+      skin.value.push_back(0);
+    }
+  constexpr std::uint32_t row = kPieces + 1;
+  for (std::uint32_t j = 0; j < kPieces; ++j)
+    for (std::uint32_t i = 0; i < kPieces; ++i) {
+      const std::uint32_t a = j * row + i;
+      skin.triangles.push_back({a, a + 1, a + row});
+      skin.triangles.push_back({a + 1, a + row + 1, a + row});
+    }
+  return skin;
+}
+
+/// The depth [m] up to which it is clear on which side of the collider cloth belongs.
+double liftable(const Ball& ball, const Scene&) { return 0.2 * ball.radius; }
+double liftable(const Box& box, const Scene&) { return 0.2 * box.half_extents.minCoeff(); }
+double liftable(const Plane&, const Scene& scene) { return 0.04 * extent(scene); }
+
+}  // namespace
+
+Skin collider_skin(const Collider& collider, double t, const ColliderLook& look) {
+  const Shape shape = shape_at(collider, t);
+  Skin skin;
+  if (const auto* ball = std::get_if<Ball>(&shape))
+    skin = ball_skin(*ball, look.inset);
+  else if (const auto* box = std::get_if<Box>(&shape))
+    skin = box_skin(*box, look.inset, look.rounding);
+  else
+    skin = plane_skin(std::get<Plane>(shape), look.inset, look.centre, look.reach);
+  skin.uv.assign(skin.position.size(), Eigen::Vector2f::Zero());
+  skin.hidden.assign(skin.position.size(), 0);
+  return skin;
+}
+
+void lift_out_of_colliders(Skin& skin, const Scene& scene, double t, double clearance) {
+  skin.hidden.assign(skin.position.size(), 0);
+  bool lifted = false;
+  for (const Collider& collider : scene.colliders) {
+    const Shape shape = shape_at(collider, t);
+    const double deepest = std::visit([&](const auto& s) { return liftable(s, scene); }, shape);
+    for (std::size_t i = 0; i < skin.position.size(); ++i) {
+      const auto [distance, normal] = surface(shape, skin.position[i].cast<double>());
+      if (distance >= clearance || distance < -deepest) continue;
+      skin.position[i] += (normal * (clearance - distance)).cast<float>();
+      skin.hidden[i] = std::max(skin.hidden[i], static_cast<float>(-distance));
+      lifted = true;
+    }
+  }
+  if (lifted) skin.compute_normals();
+}
+
+}  // namespace taut

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "experiments/render/canvas.hpp"
+#include "experiments/render/studio.hpp"
+
+namespace taut {
+
+/// Where the parts of a picture go; all in pixels.
+struct Layout {
+  int width = 1920, height = 1080;
+  int columns = 1, rows = 1;
+  double unit = 1;  ///< 1 at a height of 1080
+  int header = 0, footer = 0;
+  int panel_width = 0, panel_height = 0;
+
+  /// One to four panels: side by side, four in two rows.
+  Layout(int width, int height, int panels);
+};
+
+/// A picture of all takes at one moment: captions with live figures, panels, material space, the
+/// colour bar. Sizes come from the layout that the studio was made for.
+Image compose(const Studio&, const Layout&, double t);
+
+/// A contact sheet: a row for each moment, a column for each take. Precondition: times not empty.
+Image compose_sheet(const Studio&, const std::vector<double>& times);
+
+/// The colour bar with ticks, and arrows for what lies beyond its ends, in a band of the canvas.
+/// The two outermost pixel columns of the bar itself have the exact colours of the ends.
+struct BarPlace {
+  double x = 0, y = 0, width = 0, height = 0;
+};
+void draw_colour_bar(Canvas&, const ColourScale&, const BarPlace&, double unit);
+
+/// Says on a panel that the run ended before this moment.
+void mark_stop(Image& panel, const Take::Stop&, double unit);
+
+}  // namespace taut

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+
+#include "experiments/render/studio.hpp"
+#include "experiments/render/video.hpp"
+
+namespace taut {
+
+/// What a report wants of a scene. Panels stand side by side on the dark stage, without text: the
+/// page writes captions and the colour bar itself, in its own fonts and themes.
+struct MediaOptions {
+  int width = 960, height = 400;  ///< of all panels together; even
+  double duration = 4;            ///< s of the scene's beginning, played in real time
+  double fps = 22;                ///< frames are whole steps: the nearest rate that dt allows
+  Quantity quantity = Quantity::strain;
+  View view;
+  RenderQuality quality = RenderQuality::video();
+  int crf = 25;
+};
+
+/// Pictures and numbers of one scene, moment by moment the same for all takes.
+struct Media {
+  std::string mp4;          ///< H.264; "" without ffmpeg
+  std::string poster;       ///< the moment of the greatest difference
+  std::string poster_type;  ///< "image/jpeg", or "image/png" without ffmpeg
+  std::string strip_png;    ///< five moments one above the other, only without ffmpeg
+  int width = 0, height = 0;
+  FrameRate rate;
+  /// Material space of all takes side by side, without light, at a few moments in order of time.
+  struct Flat {
+    double t = 0;  ///< s
+    std::string png;
+  };
+  std::vector<Flat> material;                    ///< empty for meshes that are no sheets
+  double poster_t = 0;                           ///< s
+  std::vector<double> t;                         ///< s, of each frame
+  std::vector<std::vector<double>> rms_strain;   ///< [take][frame]
+  std::vector<std::optional<Take::Stop>> stops;  ///< [take]
+  ColourScale scale;                             ///< of the pictures
+};
+
+/// Draws the takes. `progress(done, total)` is told after each frame. Throws InputError without a
+/// renderer. Preconditions: one to four takes.
+Media render_media(const Scene&, const std::vector<Take>&, const MediaOptions& = {},
+                   const std::function<void(int, int)>& progress = {});
+
+}  // namespace taut

@@ -1,0 +1,54 @@
+#include <cmath>
+#include <cstdio>
+
+#include "experiments/render/figure.hpp"
+
+namespace taut {
+
+Image compose_sheet(const Studio& studio, const std::vector<double>& times) {
+  constexpr Rgb8 kInk = rgb(0x1B1F27), kMuted = rgb(0x5A6474), kPage = rgb(0xFFFFFF);
+  const int wide = studio.options().width, high = studio.options().height, gap = 6;
+  const double u = high / 400.0;
+  const Rgb8 stage = studio.options().theme.top;
+  const Rgb8 on_stage = stage.g > 128 ? kMuted : rgb(0xC3CBD8);
+  const int head = static_cast<int>(64 * u), foot = static_cast<int>(96 * u);
+  const int columns = static_cast<int>(studio.takes().size());
+  const int rows = static_cast<int>(times.size());
+  Image picture(columns * (wide + gap) - gap, head + rows * (high + gap) + foot, kPage);
+  Canvas canvas(picture);
+  for (int column = 0; column < columns; ++column) {
+    const auto index = static_cast<std::size_t>(column);
+    const Take& take = studio.takes()[index];
+    const double x = column * (wide + gap) + 18 * u;
+    canvas.disc({x + 8 * u, 34 * u}, 7 * u, take.colour);
+    const double room = wide - 60 * u, gap_width = 14 * u;
+    const double needed = text_width(take.title, 21 * u, Weight::bold) + gap_width +
+                          text_width(take.settings, 15 * u);
+    const double shrink = std::min(1.0, room / needed);
+    const double advance =
+        canvas.text({x + 26 * u, 41 * u}, take.title, {21 * u * shrink, kInk, Weight::bold});
+    canvas.text({x + 26 * u + advance + gap_width, 41 * u}, take.settings,
+                {15 * u * shrink, kMuted});
+    for (int row = 0; row < rows; ++row) {
+      const double t = times[static_cast<std::size_t>(row)];
+      Image panel = studio.panel(index, t);
+      if (take.stop && t > take.stop->t) mark_stop(panel, *take.stop, u * 0.8);
+      const auto& frame = take.at(t);
+      const LiveFigures live = live_figures(studio.scene(), frame.state, frame.t);
+      char text[80];
+      std::snprintf(text, sizeof text, "t = %.2f s    max |ε| = %.2f %%", frame.t,
+                    100 * live.max_strain);
+      Canvas(panel).text({18 * u, 30 * u}, text, {15 * u, on_stage});
+      picture.paste(panel, column * (wide + gap), head + row * (high + gap));
+    }
+  }
+  const double bar = std::min(460 * u, 0.6 * picture.width());
+  const double top = head + rows * (high + gap);
+  canvas.text({picture.width() / 2.0, top + 22 * u}, studio.scale().title(),
+              {13.5 * u, kMuted, Weight::regular, Align::centre});
+  draw_colour_bar(canvas, studio.scale(), {(picture.width() - bar) / 2, top + 34 * u, bar, 15 * u},
+                  0.72 * u);
+  return picture;
+}
+
+}  // namespace taut

@@ -1,0 +1,87 @@
+#include "experiments/render/studio.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut {
+
+Studio::Studio(const Scene& scene, const std::vector<Take>& takes, const StudioOptions& options)
+    : scene_(scene),
+      takes_(takes),
+      options_(options),
+      scale_{options.quantity, options.range},
+      tailor_(scene, options.quality.finest_sheet),
+      stage_(gl_, options.width, options.height, options.quality.supersampling) {
+  options_.to = std::min(options_.to, scene.duration());
+  choose_scale();
+  placing_ =
+      place(scene, takes, sampled_times(), options_.view,
+            static_cast<double>(options.width) / options.height, 0.05 * tailor_.mean_rest_length());
+  lights_ = studio_lights(options.quality.light.lights, placing_.up.cast<float>(), placing_.camera);
+}
+
+std::vector<double> Studio::sampled_times() const {
+  const int samples = options_.to > options_.from ? 24 : 0;
+  std::vector<double> times{options_.from};
+  for (int k = 1; k <= samples; ++k)
+    times.push_back(options_.from + (options_.to - options_.from) * k / samples);
+  return times;
+}
+
+/// The bar ends at a round number that 98 of 100 vertices do not exceed.
+void Studio::choose_scale() {
+  if (scale_.high > 0) return;
+  std::vector<double> magnitudes;
+  for (const double t : sampled_times())
+    for (const Take& take : takes_)
+      for (const double v : vertex_values(scene_, scale_.quantity, take.at(t).state, take.at(t).t))
+        if (std::isfinite(v)) magnitudes.push_back(std::abs(v));
+  const auto rank = static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(magnitudes.size() - 1));
+  std::nth_element(magnitudes.begin(), magnitudes.begin() + rank, magnitudes.end());
+  const double least = scale_.quantity == Quantity::strain        ? 1e-3
+                       : scale_.quantity == Quantity::penetration ? 1e-3 * extent(scene_)
+                                                                  : 0.1;
+  scale_.high = round_up(magnitudes[static_cast<std::size_t>(rank)], least);
+}
+
+std::vector<Skin> Studio::skins(const TrajectoryReader::Frame& frame, const Vec3& centre) const {
+  std::vector<Skin> skins{
+      tailor_.skin(frame.state.x, vertex_values(scene_, scale_.quantity, frame.state, frame.t))};
+  lift_out_of_colliders(skins[0], scene_, frame.t, placing_.inset);
+  const ColliderLook look{placing_.inset, 0.7 * tailor_.mean_rest_length(), centre,
+                          1.2 * placing_.radius};
+  for (const Collider& collider : scene_.colliders)
+    if (&collider != placing_.floor) skins.push_back(collider_skin(collider, frame.t, look));
+  Skin& pins = skins.emplace_back();
+  for (const int pin : scene_.pins)
+    append_ball(pins, frame.state.x[static_cast<std::size_t>(pin)].cast<float>(),
+                static_cast<float>(0.009 * extent(scene_)), 16, 0);
+  pins.uv.assign(pins.position.size(), Eigen::Vector2f::Zero());
+  pins.hidden.assign(pins.position.size(), 0);
+  return skins;
+}
+
+Image Studio::panel(std::size_t index, double t) const {
+  const auto& frame = takes_[index].at(t);
+  const Vec3 moved = placing_.follows ? centroid(takes_, frame.t) : Vec3::Zero();
+  const Vec3 centre = placing_.centre + moved;
+  std::vector<Skin> skins = this->skins(frame, centre);
+  GroundLight ground = placing_.follows ? placing_.wall(centre) : placing_.floor_below(centre);
+  bake_light(lights_, options_.quality.light,
+             {centre.cast<float>(), static_cast<float>(1.02 * placing_.radius)}, skins, ground);
+  Panel panel{.camera = placing_.camera,
+              .theme = options_.theme,
+              .scale = scale_,
+              .ground = &ground,
+              .ground_cell = static_cast<float>(placing_.cell),
+              .hatch_depth = static_cast<float>(hatch_depth())};
+  panel.camera.eye += moved.cast<float>();
+  panel.painted.push_back({&skins.front(), {}, tailor_.grid_spacing()});
+  for (std::size_t i = 1; i + 1 < skins.size(); ++i)
+    panel.painted.push_back({&skins[i], options_.theme.collider, 0});
+  if (!skins.back().triangles.empty())
+    panel.painted.push_back({&skins.back(), options_.theme.pin, 0});
+  return stage_.draw(panel);
+}
+
+}  // namespace taut

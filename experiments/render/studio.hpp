@@ -1,0 +1,65 @@
+#pragma once
+
+#include <limits>
+
+#include "experiments/render/placing.hpp"
+#include "experiments/render/quantity.hpp"
+#include "experiments/render/stage.hpp"
+#include "experiments/render/take.hpp"
+
+namespace taut {
+
+/// Presets of cost and beauty.
+struct RenderQuality {
+  LightQuality light;
+  int supersampling = 1;
+  int finest_sheet = 64;  ///< quads along a side after refinement
+
+  static RenderQuality draft() { return {{6, 192, 64}, 1, 33}; }
+  static RenderQuality video() { return {{32, 256, 112}, 1, 66}; }
+  static RenderQuality still() { return {{96, 512, 224}, 2, 132}; }
+};
+
+struct StudioOptions {
+  int width = 960, height = 836;  ///< of one panel, pixels
+  StageTheme theme = StageTheme::paper();
+  RenderQuality quality = RenderQuality::still();
+  View view;
+  Quantity quantity = Quantity::strain;
+  double range = 0;  ///< end of the colour bar, SI; 0: chosen from the takes
+  /// s: what the camera and the colour bar have to fit
+  double from = 0, to = std::numeric_limits<double>::infinity();
+};
+
+/// Draws any moment of several takes of one scene under the same camera, light and colour scale.
+class Studio {
+ public:
+  /// The scene and the takes outlive the studio. Throws InputError without a renderer.
+  Studio(const Scene&, const std::vector<Take>&, const StudioOptions&);
+  const ColourScale& scale() const { return scale_; }
+  const std::vector<Take>& takes() const { return takes_; }
+  const Scene& scene() const { return scene_; }
+  const StudioOptions& options() const { return options_; }
+  /// Depth [m] below a collider from which cloth is hatched: 0.2 % of the scene's extent.
+  double hatch_depth() const { return 0.002 * extent(scene_); }
+  Image panel(std::size_t take, double t) const;
+  /// Colours of a sheet laid flat: one pixel block per vertex, no light. Empty image: no sheet.
+  Image material_space(std::size_t take, double t, int longest_side) const;
+
+ private:
+  void choose_scale();
+  std::vector<double> sampled_times() const;
+  /// Cloth, colliders, pins; in this order.
+  std::vector<Skin> skins(const TrajectoryReader::Frame&, const Vec3& centre) const;
+  const Scene& scene_;
+  const std::vector<Take>& takes_;
+  StudioOptions options_;
+  ColourScale scale_;
+  Tailor tailor_;
+  GlContext gl_;
+  Stage stage_;
+  Placing placing_;
+  std::vector<Light> lights_;
+};
+
+}  // namespace taut
