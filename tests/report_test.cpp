@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <fstream>
+#include <cstdlib>
 #include <limits>
 
 #include "core/model/input_error.hpp"
@@ -62,8 +62,6 @@ TEST(Report, OneFileThatAsksForNothing) {
       fs::temp_directory_path() / ("taut_report_" + std::to_string(getpid()) + ".html");
   EXPECT_EQ(write_report(example(), path), path);
   const std::string html = read_file(path);
-  if (const char* keep = getenv("TAUT_KEEP_REPORT"))
-    fs::copy_file(path, keep, fs::copy_options::overwrite_existing);
   fs::remove(path);
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
   for (const char* request : {"src=\"http", "href=\"http", "url(", "@import", "<link", "fetch("})
@@ -142,6 +140,35 @@ TEST(Report, MediaThatWouldBurstTheLimitAreLeftOutAndSaidSo) {
   EXPECT_NE(html.find("left out"), std::string::npos);
   input.media[0].clips[0].bytes.resize(1000);
   EXPECT_NE(make_report(input).find("src=\"data:video/mp4;base64,eHh4"), std::string::npos);
+}
+
+/// A test picture as video, if ffmpeg is here; tests/browser uses it to try the slider.
+std::string test_video(const fs::path& path) {
+  const std::string command =
+      "ffmpeg -v error -y -f lavfi -i testsrc=size=320x180:rate=30:duration=2 "
+      "-pix_fmt yuv420p -g 15 '" +
+      path.string() + "' </dev/null";
+  if (std::system(command.c_str()) != 0) return "";
+  const std::string bytes = read_file(path);
+  fs::remove(path);
+  return bytes;
+}
+
+// Not a test by itself: writes the page that tests/browser/report.py opens.
+TEST(Report, SampleForTheBrowser) {
+  const char* path = getenv("TAUT_SAMPLE_REPORT");
+  if (path == nullptr) GTEST_SKIP() << "TAUT_SAMPLE_REPORT names no file";
+  fs::create_directories(fs::path(path).parent_path());
+  ReportInput input = example();
+  if (const std::string video = test_video(std::string(path) + ".mp4"); !video.empty()) {
+    const Clip clip{
+        "video/mp4", video, "", "A sheet on a ball, two solvers", {{"jakobsen", "16 sweeps"}}};
+    Clip other = clip;
+    other.panels = {{"bullet", "16 sweeps"}};
+    input.media = {{"ball", {clip, other}, 2.5, 1.25, {}}};
+  }
+  write_report(input, path);
+  EXPECT_TRUE(fs::exists(path));
 }
 
 TEST(Verdict, NamesTheWinnerWhicheverItIs) {

@@ -98,7 +98,7 @@ std::string scenes_part(Page& page, const std::vector<const SectionEntry*>& part
 
 std::string make_report(const ReportInput& input) {
   if (std::ranges::all_of(input.studies, [](const auto& s) { return s.records.empty(); }))
-    throw InputError("there is no result to report; `taut run` makes some");
+    throw InputError("there is no result of this build to report; `taut run` makes some");
   const Scratch scratch;
   Page page(input, scratch.path());
   std::vector<const SectionEntry*> parts(sections().begin(), sections().end());

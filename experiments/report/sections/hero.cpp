@@ -10,6 +10,8 @@ namespace taut::report {
 
 namespace {
 
+constexpr int kWidth = 1100;  ///< px of the chart over time
+
 std::string data_uri(const std::string& type, const std::string& bytes) {
   return "data:" + type + ";base64," + base64(bytes);
 }
@@ -49,15 +51,15 @@ std::string timeline(Page& page, const std::string& value) {
     const Figure figure = page.draw({.kind = "series",
                                      .y = value,
                                      .title = q.title + " over time, " + page.hero(),
-                                     .width = 1100,
+                                     .width = kWidth,
                                      .height = 190},
                                     {{}, here}, svg);
     const PlotArea& a = figure.area;
     const auto attribute = [](const char* name, double v) {
       return std::string(" data-") + name + "=\"" + exact(v) + "\"";
     };
-    return "<div class=\"timeline\"" + attribute("left", a.left / 1100) +
-           attribute("right", a.right / 1100) + attribute("low", a.low) +
+    return "<div class=\"timeline\"" + attribute("left", a.left / kWidth) +
+           attribute("right", a.right / kWidth) + attribute("low", a.low) +
            attribute("high", a.high) +
            "><div class=\"scroll\" tabindex=\"0\" role=\"group\" "
            "aria-label=\"" +
@@ -65,6 +67,9 @@ std::string timeline(Page& page, const std::string& value) {
            "<div class=\"playhead\" hidden></div></div></div>" +
            "<input type=\"range\" class=\"scrub\" min=\"" + exact(a.low) + "\" max=\"" +
            exact(a.high) + "\" step=\"any\" value=\"" + exact(a.low) +
+           // Below the plot area, half a thumb wider at either end: thumb and playhead stay in
+           // line.
+           "\" style=\"--from:" + exact(a.left / kWidth) + ";--to:" + exact(a.right / kWidth) +
            "\" aria-label=\"Simulated time in seconds\" hidden>" +
            html_data(figure.table, q.title + " over time", read_file(figure.csv),
                      page.hero() + "-series.csv") +

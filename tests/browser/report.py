@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+"""Opens a report in headless Chromium and uses it: no request leaves, no error is logged, the theme
+switches, every chart has its numbers, texts have contrast, the slider moves the videos, phones need no
+sideways scrolling. Pictures for a human look go to OUT.
+
+    report.py REPORT.html OUT        exit 0: all is well; 1: it is not; 77: there is no Chromium
+"""
+
+import os
+import subprocess
+import sys
+
+import chromium
+
+# Texts whose contrast with the background behind them is below WCAG AA, as "text: ratio".
+CONTRAST = r"""
+(() => {
+  const parse = c => { const m = c.match(/[\d.]+/g).map(Number); return m.length < 4 ? [...m, 1] : m; };
+  const light = c => c.slice(0, 3).map(v => v / 255)
+      .map(v => v <= .04045 ? v / 12.92 : ((v + .055) / 1.055) ** 2.4)
+      .reduce((s, v, i) => s + v * [.2126, .7152, .0722][i], 0);
+  const behind = e => {
+    for (; e; e = e.parentElement) {
+      const c = parse(getComputedStyle(e).backgroundColor);
+      if (c[3] > .99) return c;
+    }
+    return [255, 255, 255];
+  };
+  const bad = new Set();
+  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (walk.nextNode()) {
+    const text = walk.currentNode.textContent.trim(), e = walk.currentNode.parentElement;
+    if (!text || !e.checkVisibility() || e.closest('script, style, .sr, .skip, title, desc')) continue;
+    const style = getComputedStyle(e), svg = e.closest('svg.chart');
+    if (svg && !e.closest('text')) continue;
+    const [a, b] = [light(parse(svg ? style.fill : style.color)), light(behind(svg ? svg.parentElement : e))];
+    const ratio = (Math.max(a, b) + .05) / (Math.min(a, b) + .05);
+    // Glyphs lie on cells, not on the page: their colours are tested with the palette.
+    if (svg && /^[×~–TM!E]$/.test(text)) continue;
+    const large = parseFloat(style.fontSize) >= 24 ||
+                  (parseFloat(style.fontSize) >= 18.6 && style.fontWeight >= 600);
+    if (ratio < (large ? 3 : 4.5)) bad.add(text.slice(0, 40) + ': ' + ratio.toFixed(2));
+  }
+  return [...bad];
+})()
+"""
+
+BARE_CHARTS = """
+[...document.querySelectorAll('svg.chart')].filter(svg => {
+  const box = svg.closest('figure, .timeline');
+  return !svg.querySelector('title')?.textContent || !svg.querySelector('desc')?.textContent ||
+         !box || !box.querySelector('details table tbody tr') || svg.querySelectorAll('path').length < 2;
+}).map(svg => svg.querySelector('title')?.textContent || '?')
+"""
+
+REPEATED_IDS = """
+[...document.querySelectorAll('[id]')].map(e => e.id).filter((id, i, all) => all.indexOf(id) !== i)
+"""
+
+# Texts of a chart that its viewBox cuts off.
+CUT_TEXTS = """
+[...document.querySelectorAll('svg.chart')].flatMap(svg => {
+  const box = svg.getBoundingClientRect();
+  return box.width === 0 ? [] : [...svg.querySelectorAll('text')].filter(text => {
+    const t = text.getBoundingClientRect();
+    return t.left < box.left - 1 || t.right > box.right + 1 || t.top < box.top - 1 || t.bottom > box.bottom + 1;
+  }).map(text => text.textContent.trim() + ' in ' + svg.querySelector('title').textContent);
+})
+"""
+
+SCRUB = """
+(async () => {
+  const videos = [...document.querySelectorAll('.stage video')];
+  await Promise.all(videos.map(v => v.readyState > 1 || new Promise(r => v.addEventListener('canplay', r))));
+  const scrub = document.querySelector('.scrub'), head = document.querySelector('.playhead');
+  document.getElementById('play').textContent === 'pause' && document.getElementById('play').click();
+  const at = async share => {
+    scrub.value = Number(scrub.min) + share * (scrub.max - scrub.min);
+    scrub.dispatchEvent(new Event('input'));
+    await Promise.all(videos.map(v => !v.seeking || new Promise(r => v.addEventListener('seeked', r))));
+    return [head.getBoundingClientRect().left, ...videos.map(v => v.currentTime)];
+  };
+  return [await at(.2), await at(.8)];
+})()
+"""
+
+
+class Checks:
+    def __init__(self):
+        self.failures = []
+
+    def empty(self, found, what):
+        print(("ok      " if not found else "FAILED  ") + what)
+        if found:
+            self.failures.append(what)
+            for line in found[:12]:
+                print("        " + str(line))
+
+    def true(self, holds, what, detail=""):
+        self.empty([] if holds else [detail or "does not hold"], what)
+
+
+def logged(events):
+    requests, errors = [], []
+    for event in events:
+        kind, params = event.get("method"), event.get("params", {})
+        if kind == "Network.requestWillBeSent":
+            url = params["request"]["url"]
+            if not url.startswith(("data:", "blob:")) and params.get("type") != "Document":
+                requests.append(url)
+        elif kind == "Runtime.exceptionThrown":
+            errors.append(params["exceptionDetails"].get("text"))
+        elif kind == "Runtime.consoleAPICalled" and params["type"] in ("error", "warning", "assert"):
+            errors.append(str(params["args"])[:300])
+        elif kind == "Log.entryAdded" and params["entry"]["level"] in ("error", "warning"):
+            errors.append(params["entry"]["text"][:300])
+    return requests, errors
+
+
+def axe_core():
+    """The text of axe.min.js if the machine has it ($AXE_CORE, or installed for npm), else None."""
+    places = [os.environ.get("AXE_CORE", "")]
+    try:
+        root = subprocess.run(["npm", "root", "-g"], capture_output=True, text=True, timeout=20).stdout
+        places.append(os.path.join(root.strip(), "axe-core", "axe.min.js"))
+    except (OSError, subprocess.SubprocessError):
+        pass
+    for place in places:
+        if place and os.path.isfile(place):
+            with open(place, encoding="utf-8") as file:
+                return file.read()
+    return None
+
+
+def check_theme(page, checks, out):
+    colour = "getComputedStyle(document.body).backgroundColor"
+    first = page.run(colour)
+    for theme in ("first", "switched"):
+        checks.empty(page.run(CONTRAST), f"texts have contrast, theme {theme}")
+        page.screenshot(os.path.join(out, f"desktop-{theme}.png"))
+        page.run("document.getElementById('theme').click()")
+        if theme == "first":
+            checks.true(page.run(colour) != first, "the button switches the theme")
+    checks.true(page.run(colour) == first, "pressed again it switches back")
+
+
+def check_media(page, checks):
+    if not page.run("document.querySelectorAll('.stage video').length"):
+        print("skipped the slider: this report has no video")
+        return
+    early, late = page.run(SCRUB)
+    checks.true(late[0] > early[0] + 50, "the slider moves the playhead", f"{early} {late}")
+    checks.true(all(b > a for a, b in zip(early[1:], late[1:])), "the slider moves every video",
+                f"{early} {late}")
+    checks.true(max(late[1:]) - min(late[1:]) < 0.05, "the videos stay together", f"{late}")
+
+
+def check_axe(page, checks):
+    script = axe_core()
+    if script is None:
+        print("SKIPPED axe-core: not on this machine (npm install -g axe-core, or set AXE_CORE)")
+        return
+    page.run(script + ";0")
+    found = page.run("""axe.run(document, {resultTypes: ['violations']}).then(r => r.violations
+        .filter(v => v.impact === 'serious' || v.impact === 'critical')
+        .map(v => v.id + ' x' + v.nodes.length + ': ' + v.nodes[0].target))""")
+    checks.empty(found, "axe-core finds no serious violation")
+
+
+def main(report, out):
+    program = chromium.find()
+    if program is None:
+        print("SKIPPED: no chromium on this machine")
+        return 77
+    os.makedirs(out, exist_ok=True)
+    checks, page = Checks(), chromium.Browser(program)
+    try:
+        page.size(1280, 900)
+        page.open(report)
+        checks.true(page.run("document.querySelectorAll('svg.chart').length") > 0, "there are charts")
+        checks.empty(page.run(BARE_CHARTS), "every chart has title, description and a data table")
+        checks.empty(page.run(REPEATED_IDS), "no id is used twice")
+        checks.empty(page.run(CUT_TEXTS), "no text of a chart is cut off")
+        checks.true(page.run("document.documentElement.scrollWidth") <= 1280, "desktop: no sideways scrolling")
+        check_theme(page, checks, out)
+        check_media(page, checks)
+        check_axe(page, checks)
+        page.size(390, 844)
+        checks.true(page.run("document.documentElement.scrollWidth") <= 390, "phone: no sideways scrolling",
+                    page.run("document.documentElement.scrollWidth"))
+        page.screenshot(os.path.join(out, "phone.png"))
+        page.pdf(os.path.join(out, "print.pdf"))
+        requests, errors = logged(page.events)
+        checks.empty(requests, "no request leaves the page")
+        checks.empty(errors, "nothing is logged as error or warning")
+    finally:
+        page.close()
+    print(f"{len(checks.failures)} failures; pictures in {out}")
+    return 1 if checks.failures else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    sys.exit(main(sys.argv[1], sys.argv[2]))
