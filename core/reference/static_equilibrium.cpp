@@ -189,6 +189,27 @@ bool polish(const Problem& p, const std::vector<int>& pulling, Point& point) {
   return true;
 }
 
+/// Polishes, drops links that turn out to push, takes in links that turn out too long, until the
+/// set of pulling links stays.
+bool polish_active(const Problem& p, std::vector<int>& pulling, Point& point) {
+  for (int round = 0; round < 20; ++round) {
+    if (!polish(p, pulling, point)) return false;
+    const double strongest = point.lambda.maxCoeff();
+    std::vector<int> next;
+    for (int j = 0; j < p.links(); ++j) {
+      const bool was = std::binary_search(pulling.begin(), pulling.end(), j);
+      const bool pulls = point.lambda[j] > 1e-10 * strongest;
+      if (was ? pulls : p.constraint(point.y, j) > 1e-10 * p.link(j).rest)
+        next.push_back(j);
+      else
+        point.lambda[j] = 0;
+    }
+    if (next == pulling) return true;
+    pulling = std::move(next);
+  }
+  return true;  // solve() judges what it has become
+}
+
 /// Does the energy grow in every direction that the pulling links leave open?
 bool strictly_convex(const Problem& p, const std::vector<int>& pulling, const Point& point) {
   const double scale = point.lambda.maxCoeff();
@@ -222,7 +243,7 @@ Solution solve(const Problem& p, const std::vector<Vec3>& start, double mu_facto
     else
       s.point.lambda[j] = 0;
   }
-  if (!polish(p, pulling, s.point)) {
+  if (!polish_active(p, pulling, s.point)) {
     s.reason = "the KKT system is singular";
     return s;
   }

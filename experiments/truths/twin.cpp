@@ -58,7 +58,7 @@ void binary32_dt(Ledger& ledger) {
   const Gap g = gap(sixty, ours, theirs);
   const double cast_dt = static_cast<double>(1.0F / 60);
   ledger.deviates(theirs, "distance from jakobsen after one step of 1/60 s in double", "m", g.first,
-                  0, kG * (cast_dt * cast_dt - sixty.dt * sixty.dt), 1e-14,
+                  0, kG * (cast_dt * cast_dt - sixty.dt * sixty.dt), 2e-12,
                   "Bullet casts dt to float even in its double build");
   const Gap cast = gap(hanging_sheet(cast_dt), ours, theirs);
   ledger.below(theirs, "the same with float(1/60) for both", "m", cast.first, 2e-15);
