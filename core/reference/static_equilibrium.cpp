@@ -140,6 +140,7 @@ void minimise(const Problem& p, Point& point, double mu, double tolerance) {
   }
 }
 
+/// To about six digits: Newton on the KKT system does the rest.
 void augmented_lagrangian(const Problem& p, Point& point, double mu) {
   const double force = p.weight().lpNorm<Eigen::Infinity>();
   double tolerance = force;
@@ -151,8 +152,8 @@ void augmented_lagrangian(const Problem& p, Point& point, double mu) {
       change = std::max(change, std::abs(next - point.lambda[j]));
       point.lambda[j] = next;
     }
-    if (tolerance <= 1e-10 * force && change < 1e-9 * point.lambda.maxCoeff()) return;
-    tolerance = std::max(tolerance / 10, 1e-10 * force);
+    if (tolerance <= 1e-8 * force && change < 1e-6 * point.lambda.maxCoeff()) return;
+    tolerance = std::max(tolerance / 10, 1e-8 * force);
   }
 }
 
