@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "core/model/input_error.hpp"
+#include "core/model/scene_io.hpp"
+#include "core/reference/shake.hpp"
+#include "core/reference/static_equilibrium.hpp"
+#include "experiments/lab/digest.hpp"
+#include "experiments/lab/reference_store.hpp"
+#include "experiments/verbs/verb.hpp"
+
+namespace taut {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> scenes;
+  bool all = false;
+  std::string folder = "experiments/scenes", out = "results/references";
+};
+
+std::vector<fs::path> chosen(const Options& options) {
+  std::vector<fs::path> files;
+  for (const std::string& scene : options.scenes)
+    files.push_back(fs::exists(scene) ? fs::path(scene)
+                                      : fs::path(options.folder) / (scene + ".toml"));
+  if (options.all && fs::is_directory(options.folder))
+    for (const auto& entry : fs::directory_iterator(options.folder))
+      if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  if (files.empty()) throw InputError("reference: name a scene, or give --all");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// A static reference, or why there is none; true if one was written.
+bool write_static(const Scene& scene, const std::string& hash, const fs::path& out) {
+  const reference::Equilibrium rest = reference::static_equilibrium(scene);
+  std::cout << scene.name << "\tstatic\t";
+  if (!rest.unique) {
+    std::cout << "refused: " << rest.reason << '\n';
+    return false;
+  }
+  write_reference({scene.name, hash, "static", 0, rest.derivation, rest.floor, rest.x},
+                  out / scene.name);
+  std::cout << "floor " << rest.floor << " m\t" << rest.derivation << '\n';
+  return true;
+}
+
+/// The same for the state after half a second, before any chaos.
+bool write_motion(const Scene& scene, const std::string& hash, const fs::path& out) {
+  const double t = 0.5;
+  const reference::Trajectory motion = reference::converged_motion(scene, {t}, 1.0 / 1024);
+  std::cout << scene.name << "\tmotion\t";
+  if (!motion.unique) {
+    std::cout << "refused: " << motion.reason << '\n';
+    return false;
+  }
+  write_reference(
+      {scene.name, hash, "motion", t, motion.derivation, motion.floor[0], motion.states[0].x},
+      out / scene.name);
+  std::cout << "floor " << motion.floor[0] << " m at " << t << " s\t" << motion.derivation << '\n';
+  return true;
+}
+
+int run(const Options& options) {
+  int written = 0;
+  for (const fs::path& file : chosen(options)) {
+    const Scene scene = load_scene(file);
+    const std::string hash = digest(scene);
+    written += write_static(scene, hash, options.out);
+    written += write_motion(scene, hash, options.out);
+  }
+  std::cerr << written << " references in " << options.out << '\n';
+  return written > 0 || options.all ? kPass : kNothing;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("SCENE", options->scenes, "Names of shipped scenes, or scene files");
+  app.add_flag("--all", options->all, "Every shipped scene");
+  app.add_option("--scenes", options->folder, "Folder of the shipped scenes")
+      ->capture_default_str();
+  app.add_option("-o,--out", options->out, "Where references are kept")->capture_default_str();
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_VERB(reference) = {.name = "reference",
+                        .summary =
+                            "Rebuilds the converged references of scenes that have a unique "
+                            "truth, and says why the others have none",
+                        .example = "taut reference drape\n  taut reference --all",
+                        .bind = taut::bind};
