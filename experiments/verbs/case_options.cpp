@@ -18,12 +18,14 @@ void CaseOptions::bind(CLI::App& app) {
       ->allow_extra_args(false);
 }
 
-Case CaseOptions::make() const {
+CaseSpec CaseOptions::spec() const {
   CaseSpec spec{scene_, settings_, solver_};
   if (!dt_.empty()) spec.overrides.push_back("time.dt=\"" + dt_ + "\"");
   if (!duration_.empty()) spec.overrides.push_back("time.duration=\"" + duration_ + "\"");
-  return make_case(spec);
+  return spec;
 }
+
+Case CaseOptions::make() const { return make_case(spec()); }
 
 void continue_in_right_program(const SolverChoice& choice) {
   const std::string needed(choice.entry->program ? choice.entry->program(choice.params) : "");

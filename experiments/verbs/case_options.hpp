@@ -13,6 +13,7 @@ namespace taut {
 class CaseOptions {
  public:
   void bind(CLI::App&);
+  CaseSpec spec() const;  ///< as typed
   /// Throws InputError.
   Case make() const;
 
