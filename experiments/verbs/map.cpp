@@ -1,0 +1,100 @@
+#include "experiments/lab/map.hpp"
+
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "experiments/verbs/progress.hpp"
+#include "experiments/verbs/verb.hpp"
+
+namespace taut {
+
+namespace {
+
+struct Options {
+  std::string study, preset, out = default_results();
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  double seconds = Limits{}.seconds;
+};
+
+/// A letter per class: what was run, and, beside it, what its block says.
+std::pair<char, char> glyphs(int status) {
+  switch (static_cast<Status::Kind>(status)) {
+    case Status::Kind::ok:
+      return {'o', '.'};
+    case Status::Kind::exploded:
+      return {'X', 'x'};
+    case Status::Kind::unsettled:
+      return {'U', 'u'};
+    case Status::Kind::unsupported:
+      return {'N', 'n'};
+    case Status::Kind::timeout:
+    case Status::Kind::oom:
+      return {'T', 't'};
+    default:
+      return {'C', 'c'};
+  }
+}
+
+char glyph(const StudyMap& map, const MapPanel& panel, const MapCell& cell) {
+  const std::optional<int> inferred = panel.found.inferred(cell);
+  if (!map.cell(panel, cell) || !inferred) return ' ';
+  const auto [run, guessed] = glyphs(*inferred);
+  return panel.found.measured(cell) ? run : guessed;
+}
+
+void print_panel(const StudyMap& map, const MapPanel& panel) {
+  std::cout << '\n' << panel.scene << "  " << panel.solver << '\n';
+  for (std::size_t j = map.y.values.size(); j-- > 0;) {
+    std::cout << "  " << std::setw(12) << std::right << map.y.values[j] << "  ";
+    for (std::size_t i = 0; i < map.x.values.size(); ++i)
+      std::cout << glyph(map, panel, {i, j}) << ' ';
+    std::cout << '\n';
+  }
+  std::cout << "  " << std::setw(12) << map.y.name << "  " << map.x.name << " "
+            << map.x.values.front() << " to " << map.x.values.back() << '\n';
+}
+
+int run(const Options& options) {
+  StudyMap map = map_of(load_study(options.study, options.preset));
+  const Store store(options.out);
+  store.prepare();
+  const Session session(store, "taut map " + options.study, {}, {});
+  Progress progress;
+  explore(map, store, session,
+          {.jobs = options.jobs,
+           .limits = {.seconds = options.seconds},
+           .shard = {},
+           .only_failed = false,
+           .progress = [&](const Tally& t, const Record* record) {
+             if (record) progress.show(t, record);
+           }});
+  for (const MapPanel& panel : map.panels) print_panel(map, panel);
+  std::cout << "\no ok  X exploded  U unsettled  N unsupported  T no time or memory  C crash or "
+               "error; . x u n t c: not run, its neighbours all say so\n"
+            << map.known() << " of the " << map.dense() << " cases of the dense grid were needed ("
+            << map.ran << " were run now): " << map.dense() - map.known() << " saved\n";
+  return map.interrupted ? kInterrupted : kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("STUDY", options->study, "Name or path of a study with two sweeps")->required();
+  app.add_option("--preset", options->preset, "A smaller or larger version that the study defines");
+  app.add_option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--timeout", options->seconds, "Wall time limit of a case [s] (default: 120)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--out", options->out, "Results folder (default: " + options->out + ")");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_VERB(map) = {
+    .name = "map",
+    .summary = "Runs a study of two sweeps along the borders between outcomes, not densely",
+    .example = "taut map map-dt-iterations --preset quick",
+    .bind = taut::bind};
