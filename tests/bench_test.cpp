@@ -19,8 +19,12 @@ BenchedCase benched(const std::string& solver, double stretch, double cost_per_s
   c.record.dt = dt;
   c.record.steps = 10;
   c.record.values["stretch.rms"] = stretch;
-  c.timing = {
-      c.record.spec, {cost_per_step, cost_per_step, cost_per_step, cost_per_step}, 1000, ""};
+  const std::vector<double> samples(4, cost_per_step);
+  c.timing = {.spec = c.record.spec,
+              .samples = samples,
+              .wall = samples,
+              .peak_bytes = 1000,
+              .failure = ""};
   return c;
 }
 
@@ -58,7 +62,7 @@ TEST(Bench, AFileGivesBackEverySample) {
   const BenchSession again = bench_from_json(to_json(session), "bench.json");
   EXPECT_EQ(to_json(again), to_json(session));
   EXPECT_EQ(again.scenes[0].cases[1].timing.samples, session.scenes[0].cases[1].timing.samples);
-  EXPECT_THROW(bench_from_json("{\"schema\": 1}", "bench.json"), InputError);
+  EXPECT_THROW(bench_from_json("{\"schema\": 2}", "bench.json"), InputError);
   EXPECT_THROW(bench_from_json("{", "bench.json"), InputError);
 }
 

@@ -11,7 +11,7 @@ namespace taut {
 
 namespace {
 
-constexpr int kBenchSchema = 1;
+constexpr int kBenchSchema = 2;
 
 Interval scaled(const Interval& i, double factor) {
   return {i.low * factor, i.mid * factor, i.high * factor};
@@ -77,6 +77,7 @@ std::vector<Record> BenchSession::records() const {
       if (!c.timing.failure.empty()) continue;
       records.back().values["cpu.per_step"] = median(c.timing.samples);
       records.back().values["cpu.per_second"] = c.cost().mid;
+      records.back().values["wall.per_step"] = median(c.timing.wall);
       records.back().values["memory.peak"] = static_cast<double>(c.timing.peak_bytes);
     }
   return records;
@@ -90,6 +91,7 @@ std::string to_json(const BenchSession& session) {
     for (const auto& [record, timing] : scene.cases)
       one["cases"].push_back({{"record", nlohmann::json::parse(to_json(record))},
                               {"cpu_seconds_per_step", timing.samples},
+                              {"wall_seconds_per_step", timing.wall},
                               {"peak_bytes", timing.peak_bytes},
                               {"failure", timing.failure}});
     all["scenes"].push_back(std::move(one));
@@ -100,14 +102,17 @@ std::string to_json(const BenchSession& session) {
 BenchSession bench_from_json(std::string_view text, const std::string& where) try {
   const auto all = nlohmann::json::parse(text);
   if (all.at("schema") != kBenchSchema)
-    throw InputError(where + ": not a bench of schema 1; run `taut bench` again");
+    throw InputError(where + ": not a bench of schema 2; run `taut bench` again");
   BenchSession session{all.at("study"), all.at("machine"), {}};
   for (const auto& one : all.at("scenes")) {
     SceneBench scene{one.at("scene"), interval_of(one.at("control")), {}};
     for (const auto& c : one.at("cases")) {
       BenchedCase benched{record_from_json(c.at("record").dump(), where), {}};
-      benched.timing = {benched.record.spec, c.at("cpu_seconds_per_step"), c.at("peak_bytes"),
-                        c.at("failure")};
+      benched.timing = {.spec = benched.record.spec,
+                        .samples = c.at("cpu_seconds_per_step"),
+                        .wall = c.at("wall_seconds_per_step"),
+                        .peak_bytes = c.at("peak_bytes"),
+                        .failure = c.at("failure")};
       scene.cases.push_back(std::move(benched));
     }
     session.scenes.push_back(std::move(scene));

@@ -40,8 +40,8 @@ struct BenchSession {
   std::string machine;  ///< processor and number of cores
   std::vector<SceneBench> scenes;
 
-  /// The records, each with its cost as further values: "cpu.per_second", "cpu.per_step" [s],
-  /// "memory.peak" [bytes].
+  /// The records, each with its cost as further values: "cpu.per_second", "cpu.per_step",
+  /// "wall.per_step" [s], "memory.peak" [bytes].
   std::vector<Record> records() const;
 };
 

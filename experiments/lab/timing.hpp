@@ -11,10 +11,39 @@
 
 namespace taut {
 
+/// What one sample says of a step.
+struct StepTime {
+  double cpu = 0;   ///< s, of all threads together
+  double wall = 0;  ///< s; longer than cpu / threads on a busy machine, so only for display
+};
+
 /// CPU seconds per step that `solver` needs for the first `steps` steps of the scene, as this
 /// process's CPU clock counts them: only Solver::step is inside the clock. One untimed step comes
 /// first (caches, first touch). With several threads it is the CPU time of all of them.
 double time_steps(const Scene&, Solver&, int steps);
+
+/// A run that was seen once, so that samples can begin anywhere in it: the first steps alone would
+/// miss the contacts, which come later. Up to four states, evenly spaced, at least eight steps
+/// apart.
+class Rehearsal {
+ public:
+  /// Runs the first `steps` steps.
+  Rehearsal(const Scene&, Solver&, int steps);
+  const StepTime& whole() const { return whole_; }
+  /// Time of a step over `steps` steps (at least one from each state); before each state's
+  /// share one untimed step warms the caches.
+  StepTime sample(Solver&, int steps) const;
+
+ private:
+  struct Start {
+    int step;
+    State state;
+  };
+  double dt_;
+  int length_;  ///< steps between two starts: a share never runs into the next
+  std::vector<Start> starts_;
+  StepTime whole_;
+};
 
 /// Samples of one case, taken in a process of its own that stays alive between them.
 class TimingWorker {
@@ -25,13 +54,15 @@ class TimingWorker {
   TimingWorker(const TimingWorker&) = delete;
   TimingWorker& operator=(const TimingWorker&) = delete;
 
-  /// CPU seconds per step over the first `steps` steps. Throws std::runtime_error if the worker
-  /// died.
-  double sample(int steps);
-  std::size_t peak_bytes();  ///< resident set of the worker so far
+  /// Runs the first `steps` steps once and gives their mean; required before sample(). Both throw
+  /// std::runtime_error if the worker died.
+  StepTime rehearse(int steps);
+  StepTime sample(int steps);  ///< see Rehearsal::sample
+  std::size_t peak_bytes();    ///< resident set of the worker so far
 
  private:
   std::string ask(const std::string& line);
+  StepTime ask_time(const std::string& line);
   int pid_ = -1;
   int to_ = -1;
   int from_ = -1;
@@ -43,7 +74,8 @@ int serve_timing(const Scene&, const SolverChoice&);
 /// What was measured of one case.
 struct Timing {
   CaseSpec spec;
-  std::vector<double> samples;  ///< CPU seconds per step, in the order taken: two per round
+  std::vector<double> samples;    ///< CPU seconds per step, in the order taken: two per round
+  std::vector<double> wall = {};  ///< the same in wall time
   std::size_t peak_bytes = 0;
   std::string failure;  ///< why it could not be timed; empty: it was
 };
@@ -61,7 +93,8 @@ struct Bench {
 
 struct BenchOptions {
   int rounds = 5;         ///< each gives two samples of every case
-  double seconds = 0.05;  ///< CPU time of one sample: as many steps as fit, all the steps at most
+  double seconds = 0.05;  ///< CPU time of one sample: as many steps as fit, all the steps at most;
+                          ///< they are spread over the whole run
   std::function<std::filesystem::path(const CaseSpec&)>
       program;                                ///< which executable times the case
   std::function<int(const CaseSpec&)> steps;  ///< how many steps the case has (or survived)

@@ -27,6 +27,10 @@ constexpr std::array kTitles{
     Titled{"projections", "constraint projections per step", ""},
     Titled{"vertices", "vertices", ""},
     Titled{"links", "links", ""},
+    Titled{"cpu.per_second", "CPU time per simulated second", "s"},
+    Titled{"cpu.per_step", "CPU time per step", "s"},
+    Titled{"wall.per_step", "wall time per step", "s"},
+    Titled{"memory.peak", "peak memory of the process", "MB"},
 };
 
 std::string metric_title(std::string_view name) {
@@ -57,6 +61,8 @@ void set_unit(Quantity& q, std::string_view si) {
     q.unit = "mm", q.scale = 1e3;
   } else if (si == "s" && q.name != "t" && !q.name.starts_with("settle")) {
     q.unit = "ms", q.scale = 1e3;
+  } else if (si == "MB") {
+    q.unit = si, q.scale = 1e-6;
   } else {
     q.unit = si;
   }

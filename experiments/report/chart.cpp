@@ -184,8 +184,9 @@ std::string plot_commands(const Chart& chart, const std::string& slope) {
     const auto where = [&](const std::string& condition, const std::string& value) {
       return "(" + condition + " ? " + value + " : 1/0)";
     };
-    out += source + where("measured(strcol(6))", zero) + " with lines lw 2.2" + dash + colour +
-           " notitle";
+    if (chart.lines)
+      out += source + where("measured(strcol(6))", zero) + " with lines lw 2.2" + dash + colour +
+             " notitle";
     if (!chart.markers) continue;
     const auto points = [&](const std::string& condition, const std::string& value, int marker,
                             double size) {
@@ -210,7 +211,8 @@ std::string point_names(const Chart& chart, const PlotArea& area) {
       const Point& p = *points[i];
       const double x = chart.x.position(p.x * chart.x.quantity.scale);
       const double y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));
-      out += "set label " + gnuplot_string(quantity("iterations").text(p.along, 2)) + " at " +
+      const std::string name = p.name.empty() ? quantity("iterations").text(p.along, 2) : p.name;
+      out += "set label " + gnuplot_string(name) + " at " +
              screen(area.left + x * (area.right - area.left) + 10,
                     area.bottom - y * (area.bottom - area.top) - 10, chart) +
              " center tc rgb " + quoted(solver_style(curve.solver).colour.light) +

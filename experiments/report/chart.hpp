@@ -20,6 +20,7 @@ struct Chart {
   bool stair = false;           ///< the Pareto front behind the curves
   bool name_points = false;     ///< the swept setting beside every other point
   bool markers = true;
+  bool lines = true;
 };
 
 /// Script, data, table and plot area. Failures become glyphs in a strip above the plot, in the row

@@ -13,6 +13,25 @@ namespace taut::report {
 
 namespace {
 
+constexpr const char* kKnobs[] = {
+    "substeps", "iterations", "newton",   "stiffness", "structural_stiffness",
+    "omega",    "levels",     "precision"};
+
+/// The knobs of this record that take several values among its solver's: their values, as a label.
+std::string knob_label(const Record& record, std::span<const Record> records) {
+  std::string text;
+  for (const char* knob : kKnobs) {
+    const auto at = record.params.find(knob);
+    if (at == record.params.end()) continue;
+    const bool varies = std::ranges::any_of(records, [&](const Record& r) {
+      return r.solver == record.solver && r.params.contains(knob) &&
+             r.params.at(knob) != at->second;
+    });
+    if (varies) text += (text.empty() ? "" : " × ") + at->second;
+  }
+  return text;
+}
+
 /// Everything that tells two cases of one solver apart, by name.
 std::map<std::string, std::string> settings(const Record& record, const std::string& along) {
   std::map<std::string, std::string> all = record.params;
@@ -23,6 +42,8 @@ std::map<std::string, std::string> settings(const Record& record, const std::str
       if (const auto equals = text.find('='); equals != std::string::npos)
         all[text.substr(0, equals)] = text.substr(equals + 1);
   all.erase(along);
+  if (along == "setting")
+    for (const char* knob : kKnobs) all.erase(knob);
   return all;
 }
 
@@ -61,8 +82,9 @@ std::vector<Curve> make_curves(std::span<const Record> records, const std::strin
           curve.label += " " + (is_number(value) ? key + "=" + value : value);
       curves.push_back(std::move(curve));
     }
-    curves[where->second].points.push_back(
-        {value_of(record, x), value_of(record, y), value_of(record, along), &record});
+    Point point{value_of(record, x), value_of(record, y), value_of(record, along), &record};
+    if (along == "setting") point.along = point.x, point.name = knob_label(record, records);
+    curves[where->second].points.push_back(std::move(point));
   }
   for (Curve& curve : curves)
     std::ranges::stable_sort(curve.points, {}, [](const Point& p) {

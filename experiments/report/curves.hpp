@@ -13,6 +13,7 @@ struct Point {
   double x = 0, y = 0;
   double along = 0;  ///< the swept setting that orders the curve
   const Record* record = nullptr;
+  std::string name = {};  ///< under "setting": the accuracy knobs, "16 × 2" for substeps x sweeps
 
   /// It has a value that may be compared; everything else is drawn as a glyph.
   bool measured() const;
@@ -27,7 +28,9 @@ struct Curve {
 };
 
 /// Groups records into curves of y over x: those that differ in nothing but `along` ("iterations",
-/// "dt", ...) share a curve. Labels name only the settings that vary among the records.
+/// "dt", ...) share a curve. Labels name only the settings that vary among the records. `along` =
+/// "setting" frees every accuracy knob at once (sweeps, substeps, stiffness, Newton steps,
+/// over-relaxation, levels, precision): one curve per solver, ordered by x.
 std::vector<Curve> make_curves(std::span<const Record>, const std::string& x, const std::string& y,
                                const std::string& along);
 

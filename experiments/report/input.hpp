@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/lab/bench.hpp"
 #include "experiments/lab/record.hpp"
 #include "experiments/report/figures.hpp"
 
@@ -70,11 +71,12 @@ struct ReportInput {
   std::vector<StudyResult> studies;
   std::vector<TimeSeries> series;  ///< over time, for the scene on top and its playhead
   std::vector<SceneMedia> media;
-  std::optional<std::vector<TruthRow>> truths;            ///< nullopt: not run
+  std::optional<BenchSession> bench;            ///< what accuracy costs; nullopt: not timed
+  std::optional<std::vector<TruthRow>> truths;  ///< nullopt: not run
   std::optional<std::vector<RegressionRow>> regressions;  ///< nullopt: not checked
 };
 
 /// The value under which timing puts its result into a record [s per step].
-inline constexpr const char* kCpuValue = "cpu.step";
+inline constexpr const char* kCpuValue = "cpu.per_step";
 
 }  // namespace taut::report

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <set>
 
+#include "core/model/input_error.hpp"
 #include "experiments/report/axis.hpp"
 #include "experiments/report/comparison.hpp"
 #include "experiments/report/curves.hpp"
+#include "experiments/report/gnuplot.hpp"
 
 namespace taut::report {
 
@@ -49,7 +51,34 @@ std::vector<TimeSeries> series_of(const std::string& scene, const Comparison& fa
   return all;
 }
 
+/// The cost of those cases that were also timed, as further values of their records.
+void add_costs(const BenchSession& bench, std::vector<Record>& records) {
+  std::map<std::string, Record> timed;
+  for (const Record& r : bench.records()) timed[r.key] = r;
+  for (Record& r : records)
+    if (const auto at = timed.find(r.key); at != timed.end())
+      for (const auto& [name, value] : at->second.values) r.values.try_emplace(name, value);
+}
+
 }  // namespace
+
+std::optional<BenchSession> stored_bench(const Store& store, const std::string& study) {
+  const std::filesystem::path file = bench_file(store.root(), study);
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  BenchSession bench = bench_from_json(read_file(file), file.string());
+  CaseMaker maker;
+  for (SceneBench& scene : bench.scenes)
+    std::erase_if(scene.cases, [&](const BenchedCase& c) {
+      try {
+        return maker.make(c.record.spec).key != c.record.key;
+      } catch (const InputError&) {
+        return true;  // the scene or the solver is no longer there
+      }
+    });
+  std::erase_if(bench.scenes, [](const SceneBench& scene) { return scene.cases.empty(); });
+  if (bench.scenes.empty()) return std::nullopt;
+  return bench;
+}
 
 std::optional<double> theory_slope(const Scene& scene) {
   const bool bends = std::ranges::any_of(
@@ -63,8 +92,11 @@ std::optional<double> theory_slope(const Scene& scene) {
 ReportInput stored_results(const std::vector<Study>& studies, const Store& store) {
   ReportInput input;
   std::set<std::string> seen;
+  input.bench = stored_bench(store, "trade");
   for (const Study& study : studies) {
     StudyRecords known = collect(study, store);
+    if (const auto bench = stored_bench(store, study.name)) add_costs(*bench, known.records);
+    if (input.bench) add_costs(*input.bench, known.records);
     StudyResult result{
         study.name, study.question, std::move(known.records), known.cases.size(), {}};
     for (const Case& one : known.cases) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,10 @@ namespace taut::report {
 /// summaries, the theory's exponents, values over time of one case per solver. Throws InputError
 /// as load_scene() does.
 ReportInput stored_results(const std::vector<Study>&, const Store&);
+
+/// What `taut bench STUDY` left in this store's folder: the cases that this build would run alike,
+/// in scenes that have any; nullopt: none. Throws InputError if the file is damaged.
+std::optional<BenchSession> stored_bench(const Store&, const std::string& study);
 
 /// -1 where theory has stretch fall as 1 / sweeps: pinned links at rest, e ~ (dt^2/k) U f, with
 /// neither contact nor wind nor bending. nullopt elsewhere.

@@ -28,7 +28,7 @@ struct Options {
   int rounds = 5;
   double seconds = 0.05;
   double tolerance = 0.05;
-  bool json = false, worker = false;
+  bool json = false, quiet = false, worker = false;
 };
 
 std::string machine() {
@@ -195,6 +195,7 @@ void bench_study(const std::string& name, const Options& options) {
     std::cout << to_json(session);
     return;
   }
+  if (options.quiet) return;
   for (const SceneBench& scene : session.scenes) {
     std::cout << scene.scene << '\n';
     print_control(scene, options.tolerance);
@@ -263,6 +264,7 @@ std::function<int()> bind(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   app.add_option("--out", o->out, "Results folder (default: " + o->out + ")");
   app.add_flag("--json", o->json, "Everything measured, every sample, as JSON");
+  app.add_flag("--quiet", o->quiet, "Measure and keep; print nothing of it");
   app.add_flag("--worker", o->worker, "Serve samples of one case over stdin and stdout (internal)")
       ->group("");
   return [o] { return run(*o); };

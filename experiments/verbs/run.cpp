@@ -15,6 +15,7 @@ namespace {
 /// What a bare `taut run` answers.
 const std::vector<std::string> kMainJob{"iterations", "time-steps", "penetration"};
 constexpr const char* kMainPreset = "quick";
+constexpr const char* kMainBench = "trade";
 
 struct Options {
   std::vector<std::string> studies;
@@ -73,6 +74,14 @@ int exit_code(const Tally& tally) {
   return kPass;
 }
 
+/// What accuracy costs: exclusive, so after everything else has ended. A machine too noisy to judge
+/// still gives numbers; the report shows how noisy.
+void bench(const Options& options) {
+  if (!options.no_report && has_verb("bench"))
+    invoke("bench", {kMainBench, "--preset", kMainPreset, "--seconds", "0.015", "--quiet", "--out",
+                     options.out});
+}
+
 int report(const Options& options) {
   if (options.no_report || !has_verb("report")) {
     std::cout << options.out << '\n';
@@ -112,7 +121,12 @@ int run(Options options) {
   std::cerr << "store " << store.digest() << '\n';
   if (const int code = exit_code(tally); code != kPass) return code;
   if (tally.cases == 0 && options.only == "failed") std::cerr << "no stored failure to run again\n";
-  return bare ? report(options) : (std::cout << options.out << '\n', kPass);
+  if (!bare) {
+    std::cout << options.out << '\n';
+    return kPass;
+  }
+  bench(options);
+  return report(options);
 }
 
 std::function<int()> bind(CLI::App& app) {

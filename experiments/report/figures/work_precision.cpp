@@ -8,6 +8,10 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
   Chart chart = curves_chart(spec, data.records);
   chart.stair = true;
   chart.name_points = true;
+  // A line through settings that differ in two knobs would join what nobody would try in a row.
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points)
+      if (p.name.find("×") != std::string::npos) chart.lines = false;
   return draw_chart(chart);
 }
 
@@ -19,5 +23,5 @@ TAUT_FIGURE(work_precision) = {
     .summary = "An error over what it cost (any value on either axis), with the Pareto front",
     .x = "projections",
     .y = "stretch.rms",
-    .along = "iterations",
+    .along = "setting",
     .draw = taut::report::draw};

@@ -1,0 +1,132 @@
+#include <algorithm>
+
+#include "experiments/report/axis.hpp"
+#include "experiments/report/html.hpp"
+#include "experiments/report/section.hpp"
+
+namespace taut::report {
+
+namespace {
+
+constexpr const char* kMetric = "stretch.rms";
+constexpr double kQuestion = 0.01;  ///< the level of "which solver at which setting?"
+
+std::string span_text(const Interval& i, const char* unit, double scale = 1) {
+  return significant(i.mid * scale, 3) + unit + " (" + significant(i.low * scale, 3) + "–" +
+         significant(i.high * scale, 3) + ")";
+}
+
+std::string setting(const BenchedCase& c) {
+  const std::string text = parse_solver(c.record.spec.solver).brief();
+  const auto colon = text.find(':');
+  return colon == std::string::npos ? "defaults" : text.substr(colon + 1);
+}
+
+/// The rivals of the cheapest, nearest first.
+std::vector<const Reached*> rivals(const std::vector<Reached>& row, const Reached& best) {
+  std::vector<const Reached*> others;
+  for (const Reached& r : row)
+    if (&r != &best && r.times) others.push_back(&r);
+  std::ranges::sort(others, {}, [](const Reached* r) { return r->times->mid; });
+  return others;
+}
+
+/// One row of the summary: who is cheapest for the level, by how much, and how to ask again.
+std::vector<std::string> answer(const SceneBench& scene) {
+  const std::vector<Reached> row = equal_error(scene, kMetric, kQuestion);
+  const auto best = cheapest_within(scene.offers(kMetric), "", kQuestion);
+  if (!best) return {scene.scene, "never reached", "–", "–"};
+  const BenchedCase& c = scene.cases[*best];
+  const auto& first = *std::ranges::find_if(row, [&](const Reached& r) { return r.at == best; });
+  std::string ratios;
+  for (const Reached* r : rivals(row, first))
+    ratios +=
+        (ratios.empty() ? "" : ", ") + solver_title(r->solver) + " " + span_text(*r->times, " ×");
+  for (const Reached& r : row)
+    if (!r.at) ratios += (ratios.empty() ? "" : ", ") + solver_title(r.solver) + ": never reached";
+  return {scene.scene, solver_title(c.record.solver) + " " + setting(c),
+          span_text(c.cost(), " ms", 1e3), ratios.empty() ? "no rival timed" : ratios};
+}
+
+Table levels(const SceneBench& scene) {
+  Table table{{"to reach"}, {}};
+  for (const std::string& solver : solvers_of(scene)) table.header.push_back(solver_title(solver));
+  for (const double level : kErrorLevels) {
+    table.rows.push_back({quantity(kMetric).text(level, 1)});
+    for (const Reached& r : equal_error(scene, kMetric, level))
+      table.rows.back().push_back(
+          !r.at ? "never reached"
+                : span_text(scene.cases[*r.at].cost(), " ms", 1e3) +
+                      (r.times && r.times->mid > 1 ? ", " + span_text(*r.times, " ×") : "") + ", " +
+                      setting(scene.cases[*r.at]));
+  }
+  return table;
+}
+
+Table budgets(const SceneBench& scene) {
+  Table table{{"within, per frame"}, {}};
+  const std::vector<Offer> offers = scene.offers(kMetric);
+  for (const std::string& solver : solvers_of(scene)) table.header.push_back(solver_title(solver));
+  for (const double budget : kFrameBudgets) {
+    table.rows.push_back({significant(1e3 * budget, 2) + " ms"});
+    for (const std::string& solver : solvers_of(scene)) {
+      const auto at = best_within(offers, solver, budget * 60);
+      table.rows.back().push_back(at ? quantity(kMetric).text(offers[*at].error) + ", " +
+                                           setting(scene.cases[*at])
+                                     : "nothing that cheap");
+    }
+  }
+  return table;
+}
+
+std::string scroll(const std::string& label, const std::string& inner) {
+  return "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" + label + "\">" +
+         inner + "</div>";
+}
+
+std::string scene_part(Page& page, const SceneBench& scene, const std::vector<Record>& records) {
+  const std::string name = escape_html(scene.scene);
+  const std::string control = "the same code against itself: " + span_text(scene.control, " ×");
+  return "<h3>" + escape_html(solver_title(scene.scene)) + "</h3><div class=\"cards\">" +
+         page.figure({.kind = "work-precision",
+                      .x = "cpu.per_second",
+                      .y = kMetric,
+                      .title = "Error over cost, " + scene.scene,
+                      .width = 540,
+                      .height = 380},
+                     {records, {}}, "Error over cost",
+                     "down and left is better; labels are substeps × sweeps; " + control) +
+         "<div class=\"card\"><h4>Cost of an error</h4><p>CPU time per simulated second, its 95 % "
+         "interval, and the ratio to the cheapest.</p>" +
+         scroll("Cost of an error, " + name, html_table(levels(scene), "Cost of an error")) +
+         "<h4>Error within a budget</h4>" +
+         scroll("Error within a budget, " + name,
+                html_table(budgets(scene), "Error within a budget of CPU time per frame")) +
+         "</div></div>\n";
+}
+
+std::string render(Page& page, const std::string&) {
+  const std::string head = "<section id=\"trade\"><h2>What accuracy costs</h2>";
+  if (!page.input().bench)
+    return head + absent("No cost was measured.", "taut bench trade --preset quick") +
+           "</section>\n";
+  const BenchSession& bench = *page.input().bench;
+  Table table{{"scene", "cheapest setting", "CPU per simulated second", "the others"}, {}};
+  std::string parts;
+  for (const SceneBench& scene : bench.scenes) {
+    table.rows.push_back(answer(scene));
+    parts += scene_part(page, scene, BenchSession{bench.study, bench.machine, {scene}}.records());
+  }
+  return head + "<p class=\"lead\">Which solver at which setting for " +
+         quantity(kMetric).text(kQuestion, 1) + " " + quantity(kMetric).title + "? Measured on " +
+         escape_html(bench.machine) +
+         ", CPU time of a step alone, forth and back between processes; intervals are 95 %. Any "
+         "scene and level: <code>taut advise SCENE --error 0.01</code>.</p><div class=\"card\">" +
+         scroll("Cheapest settings", html_table(table, "Cheapest setting for the level")) +
+         "</div>" + parts + "</section>\n";
+}
+
+}  // namespace
+}  // namespace taut::report
+
+TAUT_SECTION(trade) = {.name = "trade", .order = 35, .render = taut::report::render};
