@@ -45,7 +45,7 @@ std::vector<std::string> answer(const SceneBench& scene) {
   for (const Reached& r : row)
     if (!r.at) ratios += (ratios.empty() ? "" : ", ") + solver_title(r.solver) + ": never reached";
   return {scene.scene, solver_title(c.record.solver) + " " + setting(c),
-          span_text(c.cost(), " ms", 1e3), ratios.empty() ? "no rival timed" : ratios};
+          span_text(c.cost(), " ms", 1e3), ratios.empty() ? "no rival can run this scene" : ratios};
 }
 
 Table levels(const SceneBench& scene) {
