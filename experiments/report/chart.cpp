@@ -35,12 +35,10 @@ PlotArea layout(const Chart& chart) {
   for (const Curve& curve : chart.curves) widest = std::max(widest, text_width(curve.label));
   const double right = std::min(widest + 22, chart.width * 0.42);
   const double strip = static_cast<double>(failing_curves(chart)) * kStripRow;
-  return {68,
-          chart.width - right,
-          (chart.title.empty() ? 14 : 48) + strip,
-          chart.height - 54.0,
-          chart.x.low,
-          chart.x.high};
+  double ticks = 0;
+  for (const auto& tick : chart.y.ticks) ticks = std::max(ticks, text_width(tick.second));
+  return {std::max(68.0, ticks + 34), chart.width - right, (chart.title.empty() ? 14 : 48) + strip,
+          chart.height - 54.0,        chart.x.low,         chart.x.high};
 }
 
 /// Positions in the script: the last measured point of a curve, in px from the top.
