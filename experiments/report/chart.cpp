@@ -205,7 +205,8 @@ std::string point_names(const Chart& chart, const PlotArea& area) {
     std::vector<const Point*> points;
     for (const Point& p : curve.points)
       if (p.measured() && std::isfinite(p.along)) points.push_back(&p);
-    for (std::size_t i = 0; i<points.size(); i += points.size()> 4 ? 2 : 1) {
+    for (std::size_t i = 0;
+         i<points.size(); i += points.size()> 4 && points[i]->name.empty() ? 2 : 1) {
       const Point& p = *points[i];
       const double x = chart.x.position(p.x * chart.x.quantity.scale);
       const double y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));

@@ -14,8 +14,8 @@ namespace taut::report {
 namespace {
 
 constexpr const char* kKnobs[] = {
-    "substeps", "iterations", "newton",   "stiffness", "structural_stiffness",
-    "omega",    "levels",     "precision"};
+    "substeps", "iterations", "newton",  "stiffness", "structural_stiffness",
+    "omega",    "order",      "tethers", "levels",    "precision"};
 
 /// The knobs of this record that take several values among its solver's: their values, as a label.
 std::string knob_label(const Record& record, std::span<const Record> records) {
