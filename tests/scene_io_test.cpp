@@ -54,6 +54,17 @@ double start_strain(const Scene& scene, Family family) {
   return worst;
 }
 
+TEST(SceneFiles, StretchMovesTheStartAndWeightsTheMasses) {
+  const Scene plain = shipped("hang"), scene = shipped("hang", {"cloth.stretch=100"});
+  EXPECT_NEAR(start_strain(scene, Family::structural), 99, 1e-6);
+  EXPECT_EQ(scene.links[0].rest, plain.links[0].rest);
+  const Scene heavy = shipped("hang", {"cloth.weights=[{ vertices = [0, 5], factor = 1e6 }]"});
+  for (const std::size_t i : {0u, 5u}) EXPECT_EQ(heavy.mesh.mass[i], 1e6 * plain.mesh.mass[i]);
+  EXPECT_EQ(heavy.mesh.mass[1], plain.mesh.mass[1]);
+  EXPECT_THROW(shipped("hang", {"cloth.weights=[{ vertices = [0] }]"}), InputError);
+  EXPECT_THROW(shipped("hang", {"cloth.stretch=0"}), InputError);
+}
+
 TEST(SceneFiles, EveryShippedSceneLoadsAndStartsUnstretched) {
   EXPECT_GE(shipped_files().size(), 11u);
   for (const auto& file : shipped_files()) {

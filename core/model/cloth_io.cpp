@@ -170,6 +170,27 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Lin
   return true;
 }
 
+/// The shape at the start as a multiple of the rest shape: every link is strained alike.
+void stretch_start(Section& cloth, Scene& scene) {
+  const double factor = cloth.number("stretch", {1e-3, 1e3}, 1);
+  if (factor == 1 || scene.start.x.empty()) return;
+  const Vec3 fixed = scene.start.x.front();
+  for (Vec3& x : scene.start.x) x = fixed + factor * (x - fixed);
+}
+
+/// Vertices that are heavier or lighter than the lumping says.
+void read_weights(Section& cloth, Scene& scene) {
+  for (const Value* entry : cloth.tables("weights")) {
+    Section weight(cloth.judge(), *entry, "'weights' in [cloth]");
+    for (const char* key : {"vertices", "factor"})
+      if (!weight.find(key)) weight.missing(key);
+    const double factor = weight.number("factor", {1e-9, 1e9}, 1);
+    for (const int vertex : read_vertices(weight, "vertices", scene.mesh))
+      scene.mesh.mass[at(vertex)] *= factor;
+    weight.finish();
+  }
+}
+
 /// Vertices that start elsewhere than the shape says.
 void read_placed(Section& cloth, Scene& scene) {
   for (const Value* entry : cloth.tables("placed")) {
@@ -215,11 +236,14 @@ bool read_cloth(Section& cloth, const std::filesystem::path& folder, const LinkC
   const Vec3 velocity = cloth.vec3("velocity", kFar, Vec3::Zero());
   const bool built =
       surface ? read_surface(cloth, folder, links, scene) : read_sheet(cloth, links, scene);
-  for (const char* key : {"span", "tilt", "pins", "placed"}) cloth.find(key);  // known in any case
+  for (const char* key : {"span", "tilt", "stretch", "weights", "pins", "placed"})
+    cloth.find(key);  // known in any case
   if (!built) return false;
   scene.start.v.assign(scene.start.x.size(), velocity);
   scene.pins = read_vertices(cloth, "pins", scene.mesh);
   for (const int pin : scene.pins) scene.start.v[at(pin)].setZero();
+  stretch_start(cloth, scene);
+  read_weights(cloth, scene);
   read_placed(cloth, scene);
   return true;
 }
