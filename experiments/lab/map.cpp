@@ -1,6 +1,7 @@
 #include "experiments/lab/map.hpp"
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/data.hpp"
 
 namespace taut {
 
@@ -24,6 +25,18 @@ std::vector<std::optional<Case>> cells_of(const Study& study, const MapPanel& pa
   return cells;
 }
 
+/// Tells the panel what the store has; false if it lacks a cell that refinement asks for.
+bool replay(const StudyMap& map, MapPanel& panel, const Store& store) {
+  for (auto cells = panel.found.next(); !cells.empty(); cells = panel.found.next())
+    for (const MapCell& c : cells) {
+      const auto& one = map.cell(panel, c);
+      const auto record = one ? store.find(*one) : std::nullopt;
+      if (one && !record) return false;
+      panel.found.tell(c, record ? static_cast<int>(record->status.kind) : kNoResult);
+    }
+  return true;
+}
+
 }  // namespace
 
 std::size_t StudyMap::dense() const {
@@ -42,6 +55,12 @@ std::size_t StudyMap::known() const {
   return count;
 }
 
+std::vector<std::string> shipped_maps() {
+  std::vector<std::string> names = shipped("studies");
+  std::erase_if(names, [](const std::string& name) { return !name.starts_with("map-"); });
+  return names;
+}
+
 StudyMap map_of(const Study& study) {
   if (study.sweeps.size() != 2)
     throw InputError("study '" + study.name + "' has " + std::to_string(study.sweeps.size()) +
@@ -54,6 +73,24 @@ StudyMap map_of(const Study& study) {
       map.panels.push_back(std::move(panel));
     }
   return map;
+}
+
+std::vector<Record> inferred_records(const Study& study, const Store& store) {
+  std::vector<Record> records;
+  if (study.sweeps.size() != 2) return records;
+  StudyMap map = map_of(study);
+  for (MapPanel& panel : map.panels) {
+    if (!replay(map, panel, store)) continue;
+    for (std::size_t j = 0; j < map.y.values.size(); ++j)
+      for (std::size_t i = 0; i < map.x.values.size(); ++i) {
+        const auto& one = map.cell(panel, {i, j});
+        const std::optional<int> said = panel.found.inferred({i, j});
+        if (!one || panel.found.measured({i, j}) || !said || *said == kNoResult || store.find(*one))
+          continue;
+        records.push_back(unfinished(*one, {static_cast<Status::Kind>(*said), kInferred, -1, -1}));
+      }
+  }
+  return records;
 }
 
 void explore(StudyMap& map, const Store& store, const Session& session,

@@ -29,10 +29,18 @@ struct StudyMap {
   }
 };
 
+/// Names of the shipped studies that are maps ("map-..."), sorted.
+std::vector<std::string> shipped_maps();
+
 /// Nothing is run yet. Throws InputError if the study has not exactly two sweeps.
 StudyMap map_of(const Study&);
 
 /// Runs the cells that refinement asks for, all panels at once; the others stay without a record.
 void explore(StudyMap&, const Store&, const Session&, const CampaignOptions&);
+
+/// The cells of a finished map that were not run, with the outcome that their blocks say; reason
+/// kInferred. Empty if the study is no map; a panel that the store does not have yet gives none.
+std::vector<Record> inferred_records(const Study&, const Store&);
+inline constexpr const char* kInferred = "not run: its neighbours say so";
 
 }  // namespace taut

@@ -31,7 +31,26 @@ constexpr std::array kTitles{
     Titled{"cpu.per_step", "CPU time per step", "s"},
     Titled{"wall.per_step", "wall time per step", "s"},
     Titled{"memory.peak", "peak memory of the process", "MB"},
+    Titled{"structural", "stiffness of structural springs", "N/m"},
+    Titled{"omega", "relaxation factor", ""},
+    Titled{"cloth.weights.0.factor", "mass ratio", ""},
 };
+
+/// The number that makes up all of the text; NaN if none does.
+double number(const std::string& text) {
+  double value = kNaN;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  return parsed.ec == std::errc() && parsed.ptr == end ? value : kNaN;
+}
+
+/// The last number that the case gives a scene key; NaN if none.
+double overridden(const Record& record, const std::string& key) {
+  double value = kNaN;
+  for (const std::string& text : record.spec.overrides)
+    if (text.starts_with(key + "=")) value = number(text.substr(key.size() + 1));
+  return value;
+}
 
 std::string metric_title(std::string_view name) {
   std::string title(name);
@@ -80,11 +99,7 @@ double value_of(const Record& record, std::string_view name) {
   if (const auto value = record.values.find(key); value != record.values.end())
     return value->second;
   const auto param = record.params.find(key);
-  if (param == record.params.end()) return kNaN;
-  double value = kNaN;
-  const char* end = param->second.data() + param->second.size();
-  const auto parsed = std::from_chars(param->second.data(), end, value);
-  return parsed.ec == std::errc() && parsed.ptr == end ? value : kNaN;
+  return param == record.params.end() ? overridden(record, key) : number(param->second);
 }
 
 std::string Quantity::text(double si, int digits) const {
@@ -122,7 +137,7 @@ void log_ticks(Axis& axis) {
   const int first = static_cast<int>(std::floor(std::log10(axis.low)));
   const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
   const bool few = std::log10(axis.high / axis.low) < 2.2;
-  const int stride = std::max(1, (last - first) / 5);
+  const int stride = std::max(1, (last - first) / 7);
   for (int e = first; e <= last; ++e)
     for (int m = 1; m < 10; ++m) {
       const double at = m * std::pow(10.0, e);

@@ -10,8 +10,8 @@
 namespace taut::report {
 
 /// What a record holds under `name`: "dt" [s], "steps", "vertices", "links", "projections" (per
-/// step), any numeric parameter of its solver ("iterations"), any metric value ("stretch.rms").
-/// NaN if it has none.
+/// step), any numeric parameter of its solver ("iterations"), any metric value ("stretch.rms"),
+/// any scene key that its case sets to a number ("wind.strength"). NaN if it has none.
 double value_of(const Record&, std::string_view name);
 
 /// How a quantity is shown: `shown = scale * SI value`, in `unit`.

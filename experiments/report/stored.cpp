@@ -1,10 +1,12 @@
 #include "experiments/report/stored.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/map.hpp"
 #include "experiments/report/axis.hpp"
 #include "experiments/report/comparison.hpp"
 #include "experiments/report/curves.hpp"
@@ -13,6 +15,9 @@
 namespace taut::report {
 
 namespace {
+
+/// Scenes that show most come first when one has to stand on top.
+constexpr std::array<std::string_view, 4> kShowpieces{"ball", "drape", "flag", "hang"};
 
 TimeSeries column(const Series& table, const Record& record, const std::string& label,
                   const std::string& value) {
@@ -29,7 +34,7 @@ TimeSeries column(const Series& table, const Record& record, const std::string& 
   return series;
 }
 
-/// Stretch over time of one scene: each contender at the quoted sweeps.
+/// Stretch over time of one scene: each contender at the quoted sweeps, if all of them have it.
 std::vector<TimeSeries> series_of(const std::string& scene, const Comparison& facts,
                                   const Store& store) {
   std::vector<TimeSeries> all;
@@ -85,6 +90,26 @@ std::optional<double> theory_slope(const Scene& scene) {
   return -1;
 }
 
+std::vector<MapResult> stored_maps(const std::vector<Study>& studies, const Store& store) {
+  std::vector<MapResult> maps;
+  for (const Study& study : studies) {
+    const auto plot = std::ranges::find(study.plots, "stability", &Plot::kind);
+    if (plot == study.plots.end() || study.sweeps.size() != 2) continue;
+    const auto axis = [&](const char* name, const char* otherwise) {
+      const auto option = plot->options.find(name);
+      return option == plot->options.end() ? std::string(otherwise) : option->second;
+    };
+    MapResult map{study.name,
+                  study.question,
+                  axis("x", "dt"),
+                  axis("y", "iterations"),
+                  collect(study, store).records,
+                  inferred_records(study, store)};
+    if (!map.records.empty()) maps.push_back(std::move(map));
+  }
+  return maps;
+}
+
 ReportInput stored_results(const std::vector<Study>& studies, const Store& store) {
   ReportInput input;
   std::set<std::string> seen;
@@ -104,9 +129,12 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
     input.studies.push_back(std::move(result));
   }
   const Comparison facts = compare(input);
-  for (const SceneInfo& scene : input.scenes)
-    for (TimeSeries& series : series_of(scene.name, facts, store))
-      input.series.push_back(std::move(series));
+  std::vector<std::string> order(kShowpieces.begin(), kShowpieces.end());
+  for (const SceneInfo& scene : input.scenes) order.push_back(scene.name);
+  for (const std::string& scene : order)
+    if (input.series = series_of(scene, facts, store);
+        !input.series.empty() && input.series.size() == facts.contenders.size())
+      break;
   return input;
 }
 

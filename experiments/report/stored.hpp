@@ -10,13 +10,17 @@
 namespace taut::report {
 
 /// What the store has of these studies, as the report wants it: records, scenes with their
-/// summaries, the theory's exponents, costs if they were timed, values over time of one case per
-/// scene and solver. Throws InputError as load_scene() does.
+/// summaries, the theory's exponents, values over time of one case per solver. Throws InputError
+/// as load_scene() does.
 ReportInput stored_results(const std::vector<Study>&, const Store&);
 
 /// What `taut bench STUDY` left in this store's folder: the cases that this build would run alike,
 /// in scenes that have any; nullopt: none. Throws InputError if the file is damaged.
 std::optional<BenchSession> stored_bench(const Store&, const std::string& study);
+
+/// The maps among these studies (two sweeps and a plot of kind "stability") of which the store has
+/// something.
+std::vector<MapResult> stored_maps(const std::vector<Study>&, const Store&);
 
 /// -1 where theory has stretch fall as 1 / sweeps: pinned links at rest, e ~ (dt^2/k) U f, with
 /// neither contact nor wind nor bending. nullopt elsewhere.

@@ -13,9 +13,11 @@ namespace taut {
 namespace {
 
 struct Options {
-  std::string study, preset, out = default_results();
+  std::vector<std::string> studies;
+  std::string preset, out = default_results();
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   double seconds = Limits{}.seconds;
+  bool quiet = false;
 };
 
 /// A letter per class: what was run, and, beside it, what its block says.
@@ -56,11 +58,9 @@ void print_panel(const StudyMap& map, const MapPanel& panel) {
             << map.x.values.front() << " to " << map.x.values.back() << '\n';
 }
 
-int run(const Options& options) {
-  StudyMap map = map_of(load_study(options.study, options.preset));
-  const Store store(options.out);
-  store.prepare();
-  const Session session(store, "taut map " + options.study, {}, {});
+int draw(const std::string& study, const Options& options, const Store& store) {
+  StudyMap map = map_of(load_study(study, options.preset));
+  const Session session(store, "taut map " + study, {}, {});
   Progress progress;
   explore(map, store, session,
           {.jobs = options.jobs,
@@ -70,22 +70,39 @@ int run(const Options& options) {
            .progress = [&](const Tally& t, const Record* record) {
              if (record) progress.show(t, record);
            }});
+  if (options.quiet) return map.interrupted ? kInterrupted : kPass;
+  std::cout << study << '\n';
   for (const MapPanel& panel : map.panels) print_panel(map, panel);
   std::cout << "\no ok  X exploded  U unsettled  N unsupported  T no time or memory  C crash or "
                "error; . x u n t c: not run, its neighbours all say so\n"
             << map.known() << " of the " << map.dense() << " cases of the dense grid were needed ("
-            << map.ran << " were run now): " << map.dense() - map.known() << " saved\n";
+            << map.ran << " were run now): " << map.dense() - map.known() << " saved\n\n";
   return map.interrupted ? kInterrupted : kPass;
+}
+
+int run(Options options) {
+  if (options.studies.empty()) {
+    options.studies = shipped_maps();
+    if (options.preset.empty()) options.preset = "quick";
+  }
+  const Store store(options.out);
+  store.prepare();
+  for (const std::string& study : options.studies)
+    if (const int code = draw(study, options, store); code != kPass) return code;
+  return kPass;
 }
 
 std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("STUDY", options->study, "Name or path of a study with two sweeps")->required();
+  app.add_option(
+      "STUDY", options->studies,
+      "Names or paths of studies with two sweeps; none: every shipped map, preset quick");
   app.add_option("--preset", options->preset, "A smaller or larger version that the study defines");
   app.add_option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
       ->check(CLI::Range(1, 1024));
   app.add_option("--timeout", options->seconds, "Wall time limit of a case [s] (default: 120)")
       ->check(CLI::PositiveNumber);
+  app.add_flag("--quiet", options->quiet, "Do not print the maps");
   app.add_option("--out", options->out, "Results folder (default: " + options->out + ")");
   return [options] { return run(*options); };
 }
@@ -96,5 +113,5 @@ std::function<int()> bind(CLI::App& app) {
 TAUT_VERB(map) = {
     .name = "map",
     .summary = "Runs a study of two sweeps along the borders between outcomes, not densely",
-    .example = "taut map map-dt-iterations --preset quick",
+    .example = "taut map\n  taut map map-dt-iterations --preset quick",
     .bind = taut::bind};

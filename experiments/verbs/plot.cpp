@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/map.hpp"
 #include "experiments/report/curves.hpp"
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
@@ -41,14 +42,20 @@ std::vector<FigureSpec> wanted(const Options& options, const Study& study) {
 }
 
 /// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
-int draw(FigureSpec spec, const report::StudyResult& study, const std::string& scene,
-         const std::filesystem::path& out) {
+int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Record>& inferred,
+         const std::string& scene, const std::filesystem::path& out) {
   const report::FigureEntry& entry = report::find_figure(spec.kind);
   if (spec.x.empty()) spec.x = entry.x;
   if (spec.y.empty()) spec.y = entry.y;
-  std::vector<Record> records;
-  for (const Record& r : study.records)
-    if (r.scene == scene) records.push_back(r);
+  const auto here = [&](const std::vector<Record>& all) {
+    std::vector<Record> chosen;
+    for (const Record& r : all)
+      if (r.scene == scene) chosen.push_back(r);
+    return chosen;
+  };
+  std::vector<Record> records = here(study.records);
+  const std::vector<Record> guessed =
+      spec.kind == "stability" ? here(inferred) : std::vector<Record>{};
   if (spec.kind != "stability")
     records = spec.x == "dt" ? report::most_common(records, "iterations", 8).records
                              : report::most_common(records, "dt", 1.0 / 64).records;
@@ -57,7 +64,7 @@ int draw(FigureSpec spec, const report::StudyResult& study, const std::string& s
     spec.slope = slope->second;
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene;
   spec.file = report::slug(scene + "-" + spec.kind + "-" + spec.y + "-over-" + spec.x);
-  const report::Figure figure = report::make_figure(spec, {records, {}}, out);
+  const report::Figure figure = report::make_figure(spec, {records, {}, guessed}, out);
   std::cout << figure.svg.string() << '\n' << figure.pdf.string() << '\n';
   return 1;
 }
@@ -67,6 +74,7 @@ int run(const Options& options) {
   const Study study = load_study(options.study, options.preset);
   const report::ReportInput input = report::stored_results({study}, Store(options.results));
   const report::StudyResult& result = input.studies.front();
+  const std::vector<Record> inferred = inferred_records(study, Store(options.results));
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path(options.results) / "figures" / study.name
                           : std::filesystem::path(options.out);
@@ -74,7 +82,7 @@ int run(const Options& options) {
   try {
     for (const FigureSpec& spec : wanted(options, study))
       for (const report::SceneInfo& scene : input.scenes) try {
-          drawn += draw(spec, result, scene.name, out);
+          drawn += draw(spec, result, inferred, scene.name, out);
         } catch (const InputError& error) {
           std::cerr << scene.name << ": " << error.what() << '\n';
         }

@@ -12,15 +12,22 @@ namespace taut::report {
 
 namespace {
 
-constexpr double kGap = 0.045;  ///< between cells, in cells
+constexpr double kGap = 0.045;        ///< between cells, in cells
+constexpr double kInferredGap = 0.3;  ///< around a cell that was not run
+
+struct Cell {
+  const Record* record = nullptr;
+  bool inferred = false;  ///< not run: neighbouring cells say so
+};
 
 /// One solver's map: a case for each (column, row).
 struct Panel {
   std::string label, solver;
-  std::map<std::pair<std::size_t, std::size_t>, const Record*> cells;
+  std::map<std::pair<std::size_t, std::size_t>, Cell> cells;
 };
 
 struct Map {
+  std::vector<Record> records;        ///< run ones, then inferred ones
   std::vector<double> columns, rows;  ///< SI values, ascending
   std::vector<Panel> panels;
 };
@@ -28,28 +35,44 @@ struct Map {
 /// "worst" of two cases in one cell, so that nothing hides behind a success.
 bool worse(const Record& a, const Record& b) { return a.status.kind > b.status.kind; }
 
-Map make_map(const FigureSpec& spec, std::span<const Record> records) {
+/// The record without its two swept settings, so that all cells of a panel share the others.
+Record held(Record r, const FigureSpec& spec) {
+  r.dt = 1;
+  for (const std::string& swept : {spec.x, spec.y}) {
+    r.params.erase(swept);
+    const std::string key = swept == "vertices" ? "cloth.grid" : swept == "dt" ? "time.dt" : swept;
+    std::erase_if(r.spec.overrides,
+                  [&](const std::string& text) { return text.starts_with(key + "="); });
+  }
+  return r;
+}
+
+Map make_map(const FigureSpec& spec, const FigureData& data) {
+  Map map;
+  map.records.assign(data.records.begin(), data.records.end());
+  map.records.insert(map.records.end(), data.inferred.begin(), data.inferred.end());
   std::set<double> columns, rows;
-  for (const Record& r : records)
+  for (const Record& r : map.records)
     if (const double x = value_of(r, spec.x), y = value_of(r, spec.y);
         std::isfinite(x) && std::isfinite(y))
       columns.insert(x), rows.insert(y);
-  Map map{{columns.begin(), columns.end()}, {rows.begin(), rows.end()}, {}};
+  map.columns.assign(columns.begin(), columns.end());
+  map.rows.assign(rows.begin(), rows.end());
   const auto index = [](const std::vector<double>& all, double value) {
     return static_cast<std::size_t>(std::ranges::lower_bound(all, value) - all.begin());
   };
   // Curves that share a solver and its settings, whatever the two swept ones are, are one panel.
-  std::vector<Record> flat(records.begin(), records.end());
-  for (Record& r : flat) r.dt = 1;
-  const std::string setting = spec.x == "dt" ? spec.y : spec.x;
-  for (const Curve& curve : make_curves(flat, spec.x, spec.y, setting)) {
+  std::vector<Record> flat;
+  for (const Record& r : map.records) flat.push_back(held(r, spec));
+  for (const Curve& curve : make_curves(flat, spec.x, spec.y, spec.x)) {
     Panel panel{curve.label, curve.solver, {}};
     for (const Point& p : curve.points) {
-      const Record& r = records[static_cast<std::size_t>(p.record - flat.data())];
+      const auto at = static_cast<std::size_t>(p.record - flat.data());
+      const Record& r = map.records[at];
       const double x = value_of(r, spec.x), y = value_of(r, spec.y);
       if (!std::isfinite(x) || !std::isfinite(y)) continue;
-      const Record*& cell = panel.cells[{index(map.columns, x), index(map.rows, y)}];
-      if (cell == nullptr || worse(r, *cell)) cell = &r;
+      Cell& cell = panel.cells[{index(map.columns, x), index(map.rows, y)}];
+      if (cell.record == nullptr || worse(r, *cell.record)) cell = {&r, at >= data.records.size()};
     }
     if (!panel.cells.empty()) map.panels.push_back(std::move(panel));
   }
@@ -59,14 +82,15 @@ Map make_map(const FigureSpec& spec, std::span<const Record> records) {
 }
 
 std::string make_csv(const Map& map) {
-  std::string out = "panel,column,row,x,y,status,reason,case\n";
+  std::string out = "panel,column,row,x,y,status,reason,case,run\n";
   for (const Panel& panel : map.panels) {
     if (&panel != &map.panels.front()) out += "\n\n";
-    for (const auto& [at, record] : panel.cells)
+    for (const auto& [at, cell] : panel.cells)
       out += csv_field(panel.label) + "," + std::to_string(at.first) + "," +
              std::to_string(at.second) + "," + exact(map.columns[at.first]) + "," +
-             exact(map.rows[at.second]) + "," + std::string(to_string(record->status.kind)) + "," +
-             csv_field(record->status.reason) + "," + csv_field(record->id) + "\n";
+             exact(map.rows[at.second]) + "," + std::string(to_string(cell.record->status.kind)) +
+             "," + csv_field(cell.record->status.reason) + "," + csv_field(cell.record->id) + "," +
+             (cell.inferred ? "no" : "yes") + "\n";
   }
   return out;
 }
@@ -108,7 +132,7 @@ std::string panel_titles(const FigureSpec& spec, const PlotArea& area, double le
 std::set<Status::Kind> kinds_in(const Map& map) {
   std::set<Status::Kind> kinds;
   for (const Panel& panel : map.panels)
-    for (const auto& [at, record] : panel.cells) kinds.insert(record->status.kind);
+    for (const auto& [at, cell] : panel.cells) kinds.insert(cell.record->status.kind);
   return kinds;
 }
 
@@ -122,14 +146,15 @@ std::string plot_panel(const Map& map, std::size_t index) {
                                std::to_string(index) + " using (strcol(6) eq '" + name +
                                "' ? $2 : 1/0):3:";
     first = false;
-    const double half = 0.5 - kGap;
-    out += source + "(" + exact(half) + "):(" + exact(half) +
-           ") with boxxyerror fs solid 1 noborder lc rgb '" + std::string(style.colour.light) +
-           "' notitle";
+    const std::string half =
+        "(strcol(9) eq 'no' ? " + exact(0.5 - kInferredGap) + " : " + exact(0.5 - kGap) + ")";
+    out += source + half + ":" + half + " with boxxyerror fs solid 1 noborder lc rgb '" +
+           std::string(style.colour.light) + "' notitle";
     if (!style.glyph.empty())
       out += ", \\\n  '@CSV@' index " + std::to_string(index) + " using (strcol(6) eq '" + name +
-             "' ? $2 : 1/0):3:(" + gnuplot_string(style.glyph) + ") with labels center tc rgb '" +
-             std::string(style.ink.light) + "' font ',13' notitle";
+             "' && strcol(9) eq 'yes' ? $2 : 1/0):3:(" + gnuplot_string(style.glyph) +
+             ") with labels center tc rgb '" + std::string(style.ink.light) +
+             "' font ',13' notitle";
   }
   return out + "\n";
 }
@@ -192,7 +217,7 @@ std::string make_script(const Map& map, const FigureSpec& spec, const PlotArea& 
 }
 
 Drawing draw(const FigureSpec& spec, const FigureData& data) {
-  const Map map = make_map(spec, data.records);
+  const Map map = make_map(spec, data);
   Drawing drawing;
   drawing.area = {64,
                   spec.width - 12.0,
@@ -205,12 +230,15 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
   const Quantity qx = quantity(spec.x), qy = quantity(spec.y);
   drawing.table.header = {"solver", qx.title, qy.title, "status"};
   drawing.description = "Outcome for each " + qx.title + " and " + qy.title + ". ";
+  if (!data.inferred.empty())
+    drawing.description += "Small squares were not run: their neighbours agree. ";
   for (const Panel& panel : map.panels) {
     std::map<Status::Kind, int> counts;
-    for (const auto& [at, record] : panel.cells) {
-      ++counts[record->status.kind];
-      std::string status(to_string(record->status.kind));
-      if (!record->status.reason.empty()) status += ": " + record->status.reason;
+    for (const auto& [at, cell] : panel.cells) {
+      const Status& outcome = cell.record->status;
+      ++counts[outcome.kind];
+      std::string status(to_string(outcome.kind));
+      if (!outcome.reason.empty()) status += ": " + outcome.reason;
       drawing.table.rows.push_back({panel.label, qx.text(map.columns[at.first], 3),
                                     qy.text(map.rows[at.second], 4), status});
     }
