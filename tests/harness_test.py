@@ -117,8 +117,11 @@ class Store(CommandLine):
         whole = self.store_digest(self.taut("run", study))
         for i in (1, 2, 3):
             self.taut("run", study, "--shard", f"{i}/3", "--out", f"shard{i}")
-        partial = self.taut("merge", "shard1", "shard3", "--out", "partial", expect=3)
-        self.assertIn("missing from shards 2/3", partial.out)
+        # Keys depend on the build: with twelve cases one in 43 builds leaves a shard empty, which is no loss.
+        absent = max((1, 2, 3), key=lambda i: len(self.entries(f"shard{i}")))
+        others = [f"shard{i}" for i in (1, 2, 3) if i != absent]
+        partial = self.taut("merge", *others, "--out", "partial", expect=3)
+        self.assertIn(f"missing from shards {absent}/3", partial.out)
         merged = self.taut("merge", "shard1", "shard2", "shard3", "--out", "merged")
         self.assertIn("12/12 cases", merged.out)
         self.assertEqual(self.store_digest(merged), whole)
