@@ -24,6 +24,12 @@ class BadInput(CommandLine):
         self.refuse("run", "iteration", says="unknown study 'iteration'; did you mean 'iterations'?")
         self.refuse("case", "no/such.toml", "jakobsen", says="no/such.toml: no such scene file")
         self.refuse("run", "iterations", "--preset", "quikc", says="did you mean 'quick'?")
+        self.refuse("advise", "hnag", "--error", "1%", says="unknown scene 'hnag'; did you mean 'hang'?")
+        self.refuse("advise", "hang", "--error", "1%", "--metric", "stretch.rsm", says="did you mean 'stretch.rms'?")
+        self.refuse("advise", "hang", says="either --error or --budget")
+        self.refuse("advise", "hang", "--error", "1%", "--budget", 4, says="either --error or --budget")
+        self.refuse("advise", "hang", "--error", "small", says="expected a number such as 0.01 or 1%")
+        self.refuse("advise", "hang", "--error", "1%", "--solver", "bulet", says="did you mean 'bullet'?")
 
     def test_numbers(self):
         for value in ["0", "-3", "many", "nan", "1e9", "1.5"]:
@@ -122,6 +128,37 @@ class Verbs(CommandLine):
         self.taut("run", self.study(solvers=["jakobsen:iterations=4"]))
         alone = json.loads(self.taut("case", "./small.toml", "jakobsen:iterations=4", "--json").out)
         self.assertEqual(self.records(), [alone])
+
+    QUICK = ("--rounds", 4, "--seconds", 0.002, "--json")
+
+    def advise(self, *words, expect=0):
+        return json.loads(self.taut("advise", "./small.toml", *words, *self.QUICK, expect=expect).out)
+
+    def test_advice_holds_when_it_is_followed(self):
+        answer = self.advise("--error", "0.1%", "--solver", "jakobsen", "--solver", "bullet")
+        best, rival = answer["best"], answer["runner_up"]
+        self.assertLessEqual(best["error"], 0.001)
+        self.assertTrue(answer["verified"]["same_bits"])
+        self.assertEqual({best["solver"], rival["solver"]}, {"jakobsen", "bullet"})
+        self.assertGreater(answer["ratio"][1], 1)
+        alone = json.loads(self.taut("case", "./small.toml", best["setting"], "--json").out)
+        self.assertEqual(alone["values"]["stretch.rms"], best["error"])
+        for other in answer["tried"]:  # nothing that was tried and reaches the error is far cheaper
+            if not other["failed"] and other["error"] is not None and other["error"] <= 0.001:
+                self.assertGreater(other["quick_cost"], 0.3 * best["cpu_seconds_per_second"][1])
+
+    def test_the_table_and_the_advice_name_the_same_solver(self):
+        answer = self.advise("--error", "1%", "--solver", "jakobsen", "--solver", "bullet")
+        study = self.study(solvers=[answer["best"]["setting"], answer["runner_up"]["setting"]])
+        table = json.loads(self.taut("bench", study, "--seconds", 0.002, "--json").out)
+        best, rival = (sorted(case["cpu_seconds_per_step"])[5] for case in table["scenes"][0]["cases"])
+        self.assertLess(best, rival)
+
+    def test_a_budget_is_kept_and_what_cannot_be_had_is_said(self):
+        answer = self.advise("--budget", 0.01, "--solver", "jakobsen")
+        self.assertLessEqual(answer["best"]["cpu_seconds_per_second"][1], 0.01e-3 * 60)
+        never = self.advise("--error", "0", "--solver", "xpbd:iterations=1,substeps=2", expect=4)
+        self.assertEqual((never["best"], len(never["tried"]) > 0), (None, True))
 
     def test_plan(self):
         plan = json.loads(self.taut("plan", "./small.toml", "jakobsen:iterations=2", "--json").out)

@@ -68,7 +68,7 @@ def mutate(build, folder, name):
     copy = folder / name.replace(" ", "-")
     (copy / file).parent.mkdir(parents=True)
     (copy / file).write_text(text.replace(there, planted))
-    command = compile_command(build, unit)
+    command = [word for word in compile_command(build, unit) if word != "-Werror"]  # it may be odd
     command[command.index("-o") + 1] = str(copy / "mutant.o")
     command[command.index("-c") + 1] = str(copy / unit if unit == file else ROOT / unit)
     first = next(i for i, word in enumerate(command) if word.startswith("-I"))

@@ -52,7 +52,7 @@ class RowComparison {
  public:
   RowComparison(const BaselineRow& before, const BaselineRow& now, const Tolerances& tolerances,
                 Comparison& result)
-      : before_(before), now_(now), result_(result) {
+      : now_(now), result_(result) {
     ++result_.cases;
     if (before.status != now.status)
       add(Finding::Kind::status_changed, "status " + before.status + " -> " + now.status);
@@ -81,7 +81,6 @@ class RowComparison {
       add(Finding::Kind::value_moved, moved_text(name, before, now->second, tolerance));
   }
 
-  const BaselineRow& before_;
   const BaselineRow& now_;
   Comparison& result_;
 };

@@ -38,6 +38,8 @@ Vec3 up_direction(const Scene&);
 /// The part of the picture that the points have to fill: [-1, 1], y upwards.
 struct Frame {
   double left = -0.8, right = 0.8, bottom = -0.62, top = 0.8;
+  /// Leaves the upper right corner to the inset.
+  static Frame beside_inset() { return {-0.84, 0.66, -0.62, 0.78}; }
 };
 
 /// Places the camera so that the points just fit into the frame. Precondition: points not empty.

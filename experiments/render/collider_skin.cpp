@@ -97,7 +97,6 @@ Skin collider_skin(const Collider& collider, double t, const ColliderLook& look)
 }
 
 void lift_out_of_colliders(Skin& skin, const Scene& scene, double t, double clearance) {
-  skin.hidden.assign(skin.position.size(), 0);
   bool lifted = false;
   for (const Collider& collider : scene.colliders) {
     const Shape shape = shape_at(collider, t);
@@ -106,7 +105,6 @@ void lift_out_of_colliders(Skin& skin, const Scene& scene, double t, double clea
       const auto [distance, normal] = surface(shape, skin.position[i].cast<double>());
       if (distance >= clearance || distance < -deepest) continue;
       skin.position[i] += (normal * (clearance - distance)).cast<float>();
-      skin.hidden[i] = std::max(skin.hidden[i], static_cast<float>(-distance));
       lifted = true;
     }
   }

@@ -80,14 +80,14 @@ const ColourMap& ColourMap::diverging() {
 
 const ColourMap& ColourMap::violet() {
   static const ColourMap map(tabulate([](double s) {
-    return Lch{kLight + (0.36 - kLight) * s, 0.21 * std::pow(s, 0.8), 350 - 45 * s};
+    return Lch{0.9 + (0.36 - 0.9) * s, 0.21 * std::pow(s, 0.8), 350 - 45 * s};
   }));
   return map;
 }
 
 const ColourMap& ColourMap::teal() {
   static const ColourMap map(tabulate([](double s) {
-    return Lch{kLight + (0.36 - kLight) * s, 0.13 * std::pow(s, 0.7), 165 + 80 * s};
+    return Lch{0.9 + (0.36 - 0.9) * s, 0.13 * std::pow(s, 0.7), 165 + 80 * s};
   }));
   return map;
 }

@@ -27,12 +27,24 @@ std::vector<double> frame_times(const Scene& scene, const std::vector<Take>& tak
   return times;
 }
 
+/// The cloth laid flat, in the panel's upper right corner.
+void add_flat(Image& panel, const Studio& studio, std::size_t take, double t) {
+  const int side = panel.height() / 5, margin = panel.height() / 28, pad = 3;
+  const Image flat = studio.material_space(take, t, side);
+  if (flat.width() == 0) return;
+  const int x = panel.width() - margin - flat.width(), y = margin;
+  Canvas(panel).fill_rounded(x - pad, y - pad, flat.width() + 2 * pad, flat.height() + 2 * pad, pad,
+                             rgb(0x4A5361));
+  panel.paste(flat, x, y);
+}
+
 Image side_by_side(const Studio& studio, const MediaOptions& options, double t) {
   const int count = static_cast<int>(studio.takes().size());
   Image picture(options.width, options.height, studio.options().theme.top);
   for (int k = 0; k < count; ++k) {
     const auto index = static_cast<std::size_t>(k);
     Image panel = studio.panel(index, t);
+    add_flat(panel, studio, index, t);
     const auto& stop = studio.takes()[index].stop;
     if (stop && t > stop->t) mark_stop(panel, *stop, options.height / 836.0);
     picture.paste(panel, k * (options.width / count), 0);
@@ -70,22 +82,20 @@ std::string strip(const Studio& studio, const MediaOptions& options, const Media
   return png_bytes(picture);
 }
 
-std::vector<Media::Flat> material_space(const Studio& studio, const std::vector<double>& t) {
-  constexpr int kSide = 168, kGap = 14;
-  std::vector<Media::Flat> moments;
-  for (const std::size_t k : {t.size() / 8, t.size() / 3, t.size() - 1}) {
-    std::vector<Image> parts;
-    for (std::size_t take = 0; take < studio.takes().size(); ++take)
-      parts.push_back(studio.material_space(take, t[k], kSide));
-    const int wide = parts[0].width(), high = parts[0].height();
-    if (wide == 0) return {};
-    const int count = static_cast<int>(parts.size());
-    Image row(count * (wide + kGap) + kGap, high + 2 * kGap, studio.options().theme.top);
-    for (int i = 0; i < count; ++i)
-      row.paste(parts[static_cast<std::size_t>(i)], kGap + i * (wide + kGap), kGap);
-    moments.push_back({t[k], png_bytes(row)});
+/// Four moments: the first motion, two on the way, the end.
+void lay_flat(Media& media, const Studio& studio) {
+  constexpr int kSide = 66;
+  const std::size_t last = media.t.size() - 1;
+  for (std::size_t take = 0; take < studio.takes().size(); ++take) {
+    std::vector<Media::Flat> moments;
+    for (const std::size_t k : {last / 8, last / 3, last * 2 / 3, last}) {
+      const Image flat = studio.material_space(take, media.t[k], kSide);
+      if (flat.width() == 0) return;
+      media.aspect = static_cast<double>(flat.width()) / flat.height();
+      moments.push_back({media.t[k], media.rms_strain[take][k], png_bytes(flat)});
+    }
+    media.material.push_back(std::move(moments));
   }
-  return moments;
 }
 
 }  // namespace
@@ -110,10 +120,11 @@ Media render_media(const Scene& scene, const std::vector<Take>& takes, const Med
   look.quality = options.quality;
   look.view = options.view;
   look.quantity = options.quantity;
+  look.frame = {-0.94, 0.84, -0.66, 0.86};  // the flat may hide a corner of the first moments
   look.to = media.t.back();
   const Studio studio(scene, takes, look);
   media.scale = studio.scale();
-  media.material = material_space(studio, media.t);
+  lay_flat(media, studio);
   const std::size_t poster = most_telling(media);
   media.poster_t = media.t[poster];
   const Image poster_image = side_by_side(studio, options, media.poster_t);

@@ -7,8 +7,9 @@
 
 namespace taut {
 
-/// What a report wants of a scene. Panels stand side by side on the dark stage, without text: the
-/// page writes captions and the colour bar itself, in its own fonts and themes.
+/// What a report wants of a scene. Panels stand side by side on the dark stage, each with its cloth
+/// laid flat in a corner, without text: the page writes captions and the colour bar itself, in its
+/// own fonts and themes.
 struct MediaOptions {
   int width = 960, height = 400;  ///< of all panels together; even
   double duration = 4;            ///< s of the scene's beginning, played in real time
@@ -27,12 +28,14 @@ struct Media {
   std::string strip_png;    ///< five moments one above the other, only without ffmpeg
   int width = 0, height = 0;
   FrameRate rate;
-  /// Material space of all takes side by side, without light, at a few moments in order of time.
+  /// A take's cloth laid flat, without light.
   struct Flat {
-    double t = 0;  ///< s
+    double t = 0;    ///< s
+    double rms = 0;  ///< strain
     std::string png;
   };
-  std::vector<Flat> material;                    ///< empty for meshes that are no sheets
+  std::vector<std::vector<Flat>> material;       ///< [take][moment]; empty: cloth that is no sheet
+  double aspect = 1;                             ///< width / height of a flat
   double poster_t = 0;                           ///< s
   std::vector<double> t;                         ///< s, of each frame
   std::vector<std::vector<double>> rms_strain;   ///< [take][frame]

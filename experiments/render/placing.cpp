@@ -109,7 +109,7 @@ GroundLight Placing::wall(const Vec3& point) const {
 }
 
 Placing place(const Scene& scene, const std::vector<Take>& takes, const std::vector<double>& times,
-              const View& view, double aspect, double inset) {
+              const View& view, const Frame& frame, double aspect, double inset) {
   Placing p;
   p.up = up_direction(scene);
   p.follows = scene.pins.empty() && scene.colliders.empty();
@@ -122,7 +122,7 @@ Placing place(const Scene& scene, const std::vector<Take>& takes, const std::vec
   p.centre = box.center();
   p.radius = 0;
   for (const Vec3& x : points) p.radius = std::max(p.radius, (x - p.centre).norm());
-  p.camera = fit_camera(points, p.up, telling_view(view, cloth, p.up), aspect, Frame{});
+  p.camera = fit_camera(points, p.up, telling_view(view, cloth, p.up), aspect, frame);
   p.floor = level_floor(scene, p.up);
   p.ground = p.floor ? std::get<Plane>(p.floor->shape).offset - inset : lowest - 0.08 * p.radius;
   p.cell = round_up(0.3 * p.radius, 1e-6);

@@ -32,6 +32,6 @@ Vec3 centroid(const std::vector<Take>&, double t);
 /// something to land on is expected to stay near; what slips off or stretches away leaves the
 /// picture rather than shrinking all the rest. `inset` [m] is that of colliders.
 Placing place(const Scene&, const std::vector<Take>&, const std::vector<double>& times, const View&,
-              double aspect, double inset);
+              const Frame&, double aspect, double inset);
 
 }  // namespace taut

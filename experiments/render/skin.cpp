@@ -7,11 +7,11 @@ namespace taut {
 
 namespace {
 
-/// A regular grid of points with a value each.
+/// A regular grid of points with a value and a depth each.
 struct Lattice {
   int nu = 0, nv = 0;
   std::vector<Vec3f> x;
-  std::vector<float> value;
+  std::vector<float> value, depth;
   std::size_t index(int i, int j) const {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(nu) + static_cast<std::size_t>(i);
   }
@@ -20,9 +20,10 @@ struct Lattice {
 /// Refines along u by `pieces`: positions by Catmull-Rom with linear continuation at the ends,
 /// values linearly. The result is transposed, so that two calls refine both directions.
 Lattice refine_and_transpose(const Lattice& in, int pieces) {
-  Lattice out{in.nv, (in.nu - 1) * pieces + 1, {}, {}};
+  Lattice out{in.nv, (in.nu - 1) * pieces + 1, {}, {}, {}};
   out.x.resize(in.x.size() / static_cast<std::size_t>(in.nu) * static_cast<std::size_t>(out.nv));
   out.value.resize(out.x.size());
+  out.depth.resize(out.x.size());
   for (int j = 0; j < in.nv; ++j)
     for (int k = 0; k < out.nv; ++k) {
       const int i = std::min(k / pieces, in.nu - 2);
@@ -33,8 +34,9 @@ Lattice refine_and_transpose(const Lattice& in, int pieces) {
       const float s2 = s * s, s3 = s2 * s;
       out.x[out.index(j, k)] = 0.5f * (2 * b + (c - a) * s + (2 * a - 5 * b + 4 * c - d) * s2 +
                                        (3 * b - a - 3 * c + d) * s3);
-      out.value[out.index(j, k)] =
-          in.value[in.index(i, j)] * (1 - s) + in.value[in.index(i + 1, j)] * s;
+      for (auto channel : {&Lattice::value, &Lattice::depth})
+        (out.*channel)[out.index(j, k)] =
+            (in.*channel)[in.index(i, j)] * (1 - s) + (in.*channel)[in.index(i + 1, j)] * s;
     }
   return out;
 }
@@ -112,21 +114,29 @@ Tailor::Tailor(const Scene& scene, int finest) : scene_(scene) {
   if (!scene.links.empty()) mean_rest_ /= static_cast<double>(scene.links.size());
 }
 
-Skin Tailor::skin(const std::vector<Vec3>& x, const std::vector<double>& values) const {
-  Skin made = is_sheet(scene_)    ? sheet(x, values)
+Skin Tailor::skin(const std::vector<Vec3>& x, const std::vector<double>& values,
+                  const std::vector<double>& depths) const {
+  Skin made = is_sheet(scene_)    ? sheet(x, values, depths)
               : has_faces(scene_) ? mesh(x, values)
                                   : tube(x, values);
   made.uv.resize(made.position.size(), Eigen::Vector2f::Zero());
+  made.hidden.resize(made.position.size(), 0);
   return made;
 }
 
-Skin Tailor::sheet(const std::vector<Vec3>& x, const std::vector<double>& values) const {
+Skin Tailor::sheet(const std::vector<Vec3>& x, const std::vector<double>& values,
+                   const std::vector<double>& depths) const {
   const Grid& grid = *scene_.mesh.grid;
-  const Lattice coarse{grid.nu, grid.nv, to_float(x), {values.begin(), values.end()}};
+  const Lattice coarse{grid.nu,
+                       grid.nv,
+                       to_float(x),
+                       {values.begin(), values.end()},
+                       {depths.begin(), depths.end()}};
   const Lattice fine = refine_and_transpose(refine_and_transpose(coarse, refinement_), refinement_);
   Skin skin;
   skin.position = fine.x;
   skin.value = fine.value;
+  skin.hidden = fine.depth;
   skin.triangles = lattice_triangles(fine.nu, fine.nv);
   const float step = 1 / static_cast<float>(refinement_);
   for (int j = 0; j < fine.nv; ++j)

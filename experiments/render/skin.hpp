@@ -14,7 +14,7 @@ struct Skin {
   std::vector<Vec3f> position;      ///< m
   std::vector<Vec3f> normal;        ///< unit
   std::vector<Eigen::Vector2f> uv;  ///< material coordinates in quads; (0, 0) where there is none
-  std::vector<float> hidden;        ///< depth below a collider that was lifted away [m]
+  std::vector<float> hidden;        ///< particles' depth below a collider [m]
   std::vector<float> value;         ///< the quantity that colours it, SI
   std::vector<float> front, back;   ///< baked light on either side; 1: open, facing the sky
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -30,15 +30,17 @@ class Tailor {
  public:
   /// `finest`: at most this many quads along a side; coarser sheets are refined towards it.
   Tailor(const Scene&, int finest);
-  /// Preconditions: x and values have the scene's size; x is finite.
-  Skin skin(const std::vector<Vec3>& x, const std::vector<double>& values) const;
+  /// Preconditions: x, values and depths (below colliders, m) have the scene's size; x is finite.
+  Skin skin(const std::vector<Vec3>& x, const std::vector<double>& values,
+            const std::vector<double>& depths) const;
   /// Quads between two lines of the material grid; 0: no grid.
   int grid_spacing() const { return grid_spacing_; }
   /// Of a link [m].
   double mean_rest_length() const { return mean_rest_; }
 
  private:
-  Skin sheet(const std::vector<Vec3>& x, const std::vector<double>& values) const;
+  Skin sheet(const std::vector<Vec3>& x, const std::vector<double>& values,
+             const std::vector<double>& depths) const;
   Skin mesh(const std::vector<Vec3>& x, const std::vector<double>& values) const;
   Skin tube(const std::vector<Vec3>& x, const std::vector<double>& values) const;
   const Scene& scene_;
@@ -58,8 +60,7 @@ struct ColliderLook {
 Skin collider_skin(const Collider&, double t, const ColliderLook&);
 
 /// Moves what is less than `clearance` [m] outside a collider, or inside but not deep, to just
-/// outside and notes the depth in `hidden`: cloth that sinks into a ball stays visible, the stage
-/// hatches it.
+/// outside: cloth that sinks into a ball stays visible, the stage hatches it by `hidden`.
 void lift_out_of_colliders(Skin&, const Scene&, double t, double clearance);
 
 /// A ball of this radius [m]: a pin, a bead.

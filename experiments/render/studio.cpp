@@ -15,7 +15,7 @@ Studio::Studio(const Scene& scene, const std::vector<Take>& takes, const StudioO
   options_.to = std::min(options_.to, scene.duration());
   choose_scale();
   placing_ =
-      place(scene, takes, sampled_times(), options_.view,
+      place(scene, takes, sampled_times(), options_.view, options_.frame,
             static_cast<double>(options.width) / options.height, 0.05 * tailor_.mean_rest_length());
   lights_ = studio_lights(options.quality.light.lights, placing_.up.cast<float>(), placing_.camera);
 }
@@ -46,7 +46,8 @@ void Studio::choose_scale() {
 
 std::vector<Skin> Studio::skins(const TrajectoryReader::Frame& frame, const Vec3& centre) const {
   std::vector<Skin> skins{
-      tailor_.skin(frame.state.x, vertex_values(scene_, scale_.quantity, frame.state, frame.t))};
+      tailor_.skin(frame.state.x, vertex_values(scene_, scale_.quantity, frame.state, frame.t),
+                   vertex_values(scene_, Quantity::penetration, frame.state, frame.t))};
   lift_out_of_colliders(skins[0], scene_, frame.t, placing_.inset);
   const ColliderLook look{placing_.inset, 0.7 * tailor_.mean_rest_length(), centre,
                           1.2 * placing_.radius};

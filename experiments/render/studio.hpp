@@ -25,6 +25,7 @@ struct StudioOptions {
   StageTheme theme = StageTheme::paper();
   RenderQuality quality = RenderQuality::still();
   View view;
+  Frame frame;  ///< what the scene has to fill of the panel
   Quantity quantity = Quantity::strain;
   double range = 0;  ///< end of the colour bar, SI; 0: chosen from the takes
   /// s: what the camera and the colour bar have to fit

@@ -137,7 +137,7 @@ void log_ticks(Axis& axis) {
   const int first = static_cast<int>(std::floor(std::log10(axis.low)));
   const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
   const bool few = std::log10(axis.high / axis.low) < 2.2;
-  const int stride = std::max(1, (last - first) / 7);
+  const int stride = std::max(1, (last - first) / 5);
   for (int e = first; e <= last; ++e)
     for (int m = 1; m < 10; ++m) {
       const double at = m * std::pow(10.0, e);

@@ -35,12 +35,10 @@ PlotArea layout(const Chart& chart) {
   for (const Curve& curve : chart.curves) widest = std::max(widest, text_width(curve.label));
   const double right = std::min(widest + 22, chart.width * 0.42);
   const double strip = static_cast<double>(failing_curves(chart)) * kStripRow;
-  return {68,
-          chart.width - right,
-          (chart.title.empty() ? 14 : 48) + strip,
-          chart.height - 54.0,
-          chart.x.low,
-          chart.x.high};
+  double ticks = 0;
+  for (const auto& tick : chart.y.ticks) ticks = std::max(ticks, text_width(tick.second));
+  return {std::max(68.0, ticks + 34), chart.width - right, (chart.title.empty() ? 14 : 48) + strip,
+          chart.height - 54.0,        chart.x.low,         chart.x.high};
 }
 
 /// Positions in the script: the last measured point of a curve, in px from the top.
@@ -207,7 +205,8 @@ std::string point_names(const Chart& chart, const PlotArea& area) {
     std::vector<const Point*> points;
     for (const Point& p : curve.points)
       if (p.measured() && std::isfinite(p.along)) points.push_back(&p);
-    for (std::size_t i = 0; i<points.size(); i += points.size()> 4 ? 2 : 1) {
+    for (std::size_t i = 0;
+         i<points.size(); i += points.size()> 4 && points[i]->name.empty() ? 2 : 1) {
       const Point& p = *points[i];
       const double x = chart.x.position(p.x * chart.x.quantity.scale);
       const double y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));

@@ -8,18 +8,11 @@
 #include "experiments/report/axis.hpp"
 #include "experiments/report/curves.hpp"
 #include "experiments/report/format.hpp"
-#include "experiments/report/html.hpp"
+#include "experiments/report/palette.hpp"
 
 namespace taut::report {
 
 namespace {
-
-/// A ratio within this factor of 1 is called equal.
-constexpr double kAlike = 1.05;
-
-/// Strains below a hundredth of a per cent are as good as none: without a floor, one scene in free
-/// fall (1e-17 against 1e-13) would decide the mean of all.
-constexpr double kNoStretch = 1e-4;
 
 bool usable(const Record& r) {
   return r.status.kind == Status::Kind::ok || r.status.kind == Status::Kind::unsettled;
@@ -180,103 +173,6 @@ std::optional<double> value_at(const Contender& contender, const std::string& sc
   for (const Record& r : most_common(here, "dt", 1.0 / 64).records)
     if (usable(r) && std::isfinite(value_of(r, value))) return value_of(r, value);
   return std::nullopt;
-}
-
-namespace {
-
-std::string times(double factor) { return "<b>" + ratio(factor) + " times</b>"; }
-
-/// "at 16 sweeps on hang: 1.2 % against 3.9 %"
-std::string quote(const Comparison& facts, const std::string& scene, std::size_t a, std::size_t b) {
-  const auto one = value_at(facts.contenders[a], scene, facts.sweeps, "stretch.rms");
-  const auto two = value_at(facts.contenders[b], scene, facts.sweeps, "stretch.rms");
-  if (!one || !two) return "";
-  const Quantity q = quantity("stretch.rms");
-  return "; " + escape_html(scene) + " at " + std::to_string(facts.sweeps) +
-         " sweeps: " + q.text(*one) + " against " + q.text(*two) + " RMS";
-}
-
-std::string plural(int n, const std::string& one) {
-  return std::to_string(n) + " " + one + (n == 1 ? "" : "s");
-}
-
-/// Scenes on which the order turns round, at most two of them by name.
-std::string exceptions(const Ratio& ratio, const std::string& other) {
-  std::vector<std::string> against;
-  for (const auto& [scene, r] : ratio.by_scene)
-    if ((ratio.mean >= 1 && r < 1 / kAlike) || (ratio.mean < 1 && r > kAlike))
-      against.push_back(scene);
-  if (against.empty()) return "";
-  const std::string scenes =
-      against.size() > 2 ? plural(static_cast<int>(against.size()), "scene")
-                         : escape_html(against.front()) +
-                               (against.size() == 2 ? " and " + escape_html(against.back()) : "");
-  return ", though on " + scenes + " " + other + " stretches less";
-}
-
-std::string stretch_sentence(const Comparison& facts, const std::string& hero, std::size_t i) {
-  const Ratio& r = *facts.stretch[i];
-  const std::string us = solver_name(facts.contenders.front()),
-                    them = solver_name(facts.contenders[i]);
-  const std::string basis = plural(r.pairs, "pair") + " of cases on " +
-                            plural(static_cast<int>(r.by_scene.size()), "scene");
-  if (r.mean < kAlike && r.mean > 1 / kAlike)
-    return "At equal sweeps " + us + " and " + them + " stretch <b>alike</b> (ratio " +
-           significant(r.mean, 3) + " over " + basis + quote(facts, hero, 0, i) + ")";
-  const bool first_wins = r.mean > 1;
-  const std::size_t winner = first_wins ? 0 : i, loser = first_wins ? i : 0;
-  return "At equal sweeps " + (first_wins ? us : them) + " stretches " +
-         times(first_wins ? r.mean : 1 / r.mean) + " less than " + (first_wins ? them : us) +
-         " (geometric mean over " + basis + quote(facts, hero, winner, loser) + ")" +
-         exceptions(r, first_wins ? them : us);
-}
-
-std::string dt_sentence(const Comparison& facts, const std::vector<std::string>& scenes) {
-  const auto dt = stable_dt(facts, scenes);
-  if (dt.size() < 2 || !dt[0] || !dt[1]) return "";
-  const Quantity q = quantity("dt");
-  const std::size_t better = *dt[0] >= *dt[1] ? 0 : 1;
-  const double factor = *dt[better] / *dt[1 - better];
-  const std::string at = " at " + plural(facts.sweeps, "sweep");
-  if (factor < kAlike) return "; both stand time steps up to " + q.text(*dt[0]) + at;
-  return "; " + solver_name(facts.contenders[better]) + " stands " + times(factor) +
-         " longer time steps" + at + " (" + q.text(*dt[better]) + " against " +
-         q.text(*dt[1 - better]) + ")";
-}
-
-std::string cost_sentence(const Comparison& facts) {
-  if (facts.cost.size() < 2 || !facts.cost[1]) return "";
-  const double r = facts.cost[1]->mean;
-  if (r < kAlike && r > 1 / kAlike) return "; a step costs both the same CPU time";
-  return "; a step of " + solver_name(facts.contenders[r > 1 ? 0 : 1]) + " costs " +
-         times(r > 1 ? r : 1 / r) + " less CPU time";
-}
-
-std::string failure_sentence(const Comparison& facts) {
-  if (std::ranges::all_of(facts.failed, [](int n) { return n == 0; })) return "No case failed.";
-  std::string out = "Failed cases:";
-  for (std::size_t i = 0; i < facts.contenders.size(); ++i)
-    out += (i > 0 ? ", " : " ") + solver_name(facts.contenders[i]) + " " +
-           std::to_string(facts.failed[i]) + " of " + std::to_string(facts.total[i]);
-  return out + ".";
-}
-
-}  // namespace
-
-std::string verdict(const Comparison& facts, const std::string& hero,
-                    const std::vector<std::string>& scenes) {
-  if (facts.contenders.size() < 2)
-    return solver_name(facts.contenders.front()) + " ran " + plural(facts.total.front(), "case") +
-           " alone: there is nothing to compare it with. " + failure_sentence(facts);
-  std::string out;
-  for (std::size_t i = 1; i < facts.contenders.size(); ++i) {
-    if (!facts.stretch[i]) continue;
-    out += (out.empty() ? "" : ". ") + stretch_sentence(facts, hero, i);
-    if (i == 1) out += dt_sentence(facts, scenes) + cost_sentence(facts);
-  }
-  if (out.empty())
-    out = "No case ended well for two solvers under equal settings: stretch cannot be compared";
-  return out + ". " + failure_sentence(facts);
 }
 
 }  // namespace taut::report

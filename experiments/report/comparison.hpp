@@ -34,6 +34,13 @@ struct Comparison {
   std::vector<int> failed, total;  ///< cases by contender; unsupported ones are not failures
 };
 
+/// A ratio within this factor of 1 is called equal.
+inline constexpr double kAlike = 1.05;
+
+/// Strains below a tenth of a per cent are as good as none: without a floor, one scene in free fall
+/// (1e-17 against 1e-13) would decide the mean of all.
+inline constexpr double kNoStretch = 1e-3;
+
 Comparison compare(const ReportInput&);
 
 /// y over y of the first contender's matching cases, values below `floor` counting as `floor`;
@@ -55,7 +62,6 @@ std::optional<double> value_at(const Contender&, const std::string& scene, int s
                                const std::string& value);
 
 /// The verdict: what the data say, as HTML. Never claims what no pair of cases shows.
-std::string verdict(const Comparison&, const std::string& hero,
-                    const std::vector<std::string>& scenes);
+std::string verdict(const Comparison&, const std::vector<std::string>& scenes);
 
 }  // namespace taut::report

@@ -14,8 +14,8 @@ namespace taut::report {
 namespace {
 
 constexpr const char* kKnobs[] = {
-    "substeps", "iterations", "newton",   "stiffness", "structural_stiffness",
-    "omega",    "levels",     "precision"};
+    "substeps", "iterations", "newton",  "stiffness", "structural_stiffness",
+    "omega",    "order",      "tethers", "levels",    "precision"};
 
 /// The knobs of this record that take several values among its solver's: their values, as a label.
 std::string knob_label(const Record& record, std::span<const Record> records) {
@@ -27,7 +27,9 @@ std::string knob_label(const Record& record, std::span<const Record> records) {
       return r.solver == record.solver && r.params.contains(knob) &&
              r.params.at(knob) != at->second;
     });
-    if (varies) text += (text.empty() ? "" : " × ") + at->second;
+    if (!varies || at->second == "off" || at->second == "mesh") continue;
+    const bool count = std::string_view(knob) == "iterations" && !text.empty();
+    text += (text.empty() ? "" : count ? " × " : ", ") + (at->second == "on" ? knob : at->second);
   }
   return text;
 }

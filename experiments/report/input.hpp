@@ -41,31 +41,66 @@ struct SceneInfo {
 struct Clip {
   std::string type;    ///< "video/mp4" or "image/png"
   std::string bytes;   ///< the file
-  std::string poster;  ///< PNG shown before a video plays and in print; may be empty
-  std::string alt;     ///< what is to be seen, for those who cannot see it
+  std::string poster;  ///< picture shown before a video plays and in print; may be empty
+  std::string poster_type = "image/png";  ///< or "image/jpeg"
+  std::string alt;                        ///< what is to be seen, for those who cannot see it
   /// Who is in it, from left to right: solver's name and its settings.
   std::vector<std::pair<std::string, std::string>> panels;
+};
+
+/// The colour bar of a scene's pictures, which the page draws itself.
+struct ColourBar {
+  std::string title;                                  ///< "mean edge strain ε at each vertex"
+  std::vector<std::string> stops;                     ///< "#B00018", evenly spaced, left to right
+  std::vector<std::pair<double, std::string>> ticks;  ///< place in [0, 1] and label
+};
+
+/// One solver's cloth laid flat at a few moments, in order of time.
+struct MaterialRow {
+  struct Moment {
+    double t = 0;     ///< s
+    double rms = 0;   ///< RMS strain
+    std::string png;  ///< colours of the bar, without light
+  };
+  std::string solver;
+  std::vector<Moment> moments;
 };
 
 /// What was rendered of a scene. Videos of one scene start together and last equally long.
 struct SceneMedia {
   std::string scene;
-  std::vector<Clip> clips;
-  double duration = 0;       ///< s of simulated time that a video covers
-  double speed = 1;          ///< simulated seconds per second of video
-  std::vector<Clip> stills;  ///< strain in material space, in order of time; caption in `alt`
+  std::vector<Clip> clips{};
+  double duration = 0;  ///< s of simulated time that a video covers
+  double speed = 1;     ///< simulated seconds per second of video
+  ColourBar bar{};
+  std::vector<MaterialRow> material{};  ///< empty for cloth that is no sheet
+  double aspect = 1;                    ///< width / height of the cloth laid flat
 };
 
-/// A closed form or a published number beside what a solver gave.
+/// A closed form or a published number beside what was measured: of each truth the finding that is
+/// nearest to its tolerance, and every finding that did not simply pass.
 struct TruthRow {
-  std::string name, solver, statement, expected, measured;
-  bool holds = false;
+  std::string section;             ///< "One constraint"
+  std::string statement, source;   ///< of the truth
+  std::string subject;             ///< "jakobsen:iterations=4"
+  std::string expected, measured;  ///< with tolerance and unit
+  std::string verdict;             ///< "passed", "deviates", "not claimed", "broken"
+  std::string why;                 ///< what explains a deviation; may be empty
 };
 
-/// A case whose numbers left the tolerance of the committed baseline.
-struct RegressionRow {
-  std::string id, value, baseline, now;
-  bool worse = true;
+/// What `taut verify` found.
+struct Truths {
+  int truths = 0, findings = 0;
+  std::vector<TruthRow> rows;
+};
+
+/// What `taut check` found: how much was compared with the committed baselines and what moved.
+struct Regressions {
+  struct Row {
+    std::string study, id, change;  ///< "stretch.max 0.012 -> 0.013"
+  };
+  int cases = 0, values = 0;
+  std::vector<Row> rows;
 };
 
 /// Everything that a report is made of. Empty parts become a line that says which command makes
@@ -80,9 +115,9 @@ struct ReportInput {
   std::vector<MapResult> maps;
   std::vector<TimeSeries> series;  ///< over time, for the scene on top and its playhead
   std::vector<SceneMedia> media;
-  std::optional<BenchSession> bench;            ///< what accuracy costs; nullopt: not timed
-  std::optional<std::vector<TruthRow>> truths;  ///< nullopt: not run
-  std::optional<std::vector<RegressionRow>> regressions;  ///< nullopt: not checked
+  std::optional<BenchSession> bench;       ///< what accuracy costs; nullopt: not timed
+  std::optional<Truths> truths;            ///< nullopt: not run
+  std::optional<Regressions> regressions;  ///< nullopt: not checked
 };
 
 /// The value under which timing puts its result into a record [s per step].

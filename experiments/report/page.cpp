@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -21,17 +22,33 @@ std::vector<std::string> scene_names(const ReportInput& input) {
   return names;
 }
 
+/// Scenes that show most come first when one has to stand on top.
+constexpr std::array<std::string_view, 4> kShowpieces{"ball", "drape", "flag", "hang"};
+
 std::string hero_scene(const ReportInput& input, const std::vector<std::string>& scenes) {
-  for (const SceneMedia& media : input.media)
-    if (!media.clips.empty()) return media.scene;
-  if (!input.series.empty()) return input.series.front().scene;
-  return scenes.front();
+  const auto filmed = [&](std::string_view scene) {
+    return std::ranges::any_of(input.media, [&](const SceneMedia& media) {
+      return media.scene == scene && !media.clips.empty();
+    });
+  };
+  const auto curved = [&](std::string_view scene) {
+    return std::ranges::find(input.series, scene, &TimeSeries::scene) != input.series.end();
+  };
+  std::vector<std::string> order;
+  for (const std::string_view scene : kShowpieces)
+    if (std::ranges::find(scenes, scene) != scenes.end()) order.emplace_back(scene);
+  order.insert(order.end(), scenes.begin(), scenes.end());
+  for (const auto& scene : order)
+    if (filmed(scene)) return scene;
+  for (const auto& scene : order)
+    if (curved(scene)) return scene;
+  return order.front();
 }
 
 }  // namespace
 
 Page::Page(const ReportInput& input, std::filesystem::path scratch)
-    : media_budget(kReportLimit * 2 / 3),
+    : media_budget(report_limit(scene_names(input).size()) * 2 / 3),
       input_(input),
       scratch_(std::move(scratch)),
       facts_(compare(input)),

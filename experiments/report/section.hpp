@@ -21,7 +21,8 @@ class Page {
 
   /// Names of all scenes that have records, in the studies' order.
   const std::vector<std::string>& scenes() const { return scenes_; }
-  /// The scene on top: one with media if there is any, else the first with series, else the first.
+  /// The scene on top: one with a film if there is any, else with a curve over time, else the
+  /// first; among equals the one that shows most.
   const std::string& hero() const { return hero_; }
   /// The study with most distinct values of `setting` on `scene`, cut to that scene; empty if none
   /// has two. `needs`: only records with this value count ("": all).

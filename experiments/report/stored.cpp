@@ -1,7 +1,6 @@
 #include "experiments/report/stored.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -15,9 +14,6 @@
 namespace taut::report {
 
 namespace {
-
-/// Scenes that show most come first when one has to stand on top.
-constexpr std::array<std::string_view, 4> kShowpieces{"ball", "drape", "flag", "hang"};
 
 TimeSeries column(const Series& table, const Record& record, const std::string& label,
                   const std::string& value) {
@@ -34,7 +30,7 @@ TimeSeries column(const Series& table, const Record& record, const std::string& 
   return series;
 }
 
-/// Stretch over time of one scene: each contender at the quoted sweeps, if all of them have it.
+/// Stretch over time of one scene: each contender at the quoted sweeps.
 std::vector<TimeSeries> series_of(const std::string& scene, const Comparison& facts,
                                   const Store& store) {
   std::vector<TimeSeries> all;
@@ -129,12 +125,9 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
     input.studies.push_back(std::move(result));
   }
   const Comparison facts = compare(input);
-  std::vector<std::string> order(kShowpieces.begin(), kShowpieces.end());
-  for (const SceneInfo& scene : input.scenes) order.push_back(scene.name);
-  for (const std::string& scene : order)
-    if (input.series = series_of(scene, facts, store);
-        !input.series.empty() && input.series.size() == facts.contenders.size())
-      break;
+  for (const SceneInfo& scene : input.scenes)
+    for (TimeSeries& series : series_of(scene.name, facts, store))
+      input.series.push_back(std::move(series));
   return input;
 }
 

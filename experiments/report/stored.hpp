@@ -10,8 +10,8 @@
 namespace taut::report {
 
 /// What the store has of these studies, as the report wants it: records, scenes with their
-/// summaries, the theory's exponents, values over time of one case per solver. Throws InputError
-/// as load_scene() does.
+/// summaries, the theory's exponents, costs if they were timed, values over time of one case per
+/// scene and solver. Throws InputError as load_scene() does.
 ReportInput stored_results(const std::vector<Study>&, const Store&);
 
 /// What `taut bench STUDY` left in this store's folder: the cases that this build would run alike,

@@ -2,10 +2,13 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/key.hpp"
+#include "experiments/report/gnuplot.hpp"
 #include "experiments/verbs/baseline_study.hpp"
+#include "experiments/verbs/program.hpp"
 #include "experiments/verbs/verb.hpp"
 
 namespace taut {
@@ -15,7 +18,7 @@ namespace {
 struct Options : BaselineOptions {
   std::vector<std::string> studies;
   std::string junit;
-  bool strict = false;
+  bool strict = false, record = false;
 };
 
 /// Names of the studies that have a baseline, sorted.
@@ -69,7 +72,31 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
               << " --why \"...\"\n";
 }
 
-int check_study(const std::string& name, const Options& options, std::string& xml) {
+/// What the report reads: how much was compared, and what differs.
+struct Notes {
+  std::size_t cases = 0, values = 0;
+  nlohmann::ordered_json findings = nlohmann::ordered_json::array();
+
+  void add(const std::string& study, const Comparison& comparison) {
+    cases += comparison.cases, values += comparison.values;
+    for (const Finding& f : comparison.findings)
+      if (f.is_regression() || f.is_mismatch())
+        findings.push_back(
+            {{"study", study}, {"case", f.id.empty() ? f.solver : f.id}, {"change", f.text}});
+  }
+  void write(const std::string& results) const {
+    report::write_file(std::filesystem::path(results) / "check.json",
+                       nlohmann::ordered_json{{"schema", "taut-check-1"},
+                                              {"program", program_digest()},
+                                              {"cases", cases},
+                                              {"values", values},
+                                              {"findings", findings}}
+                               .dump(1) +
+                           "\n");
+  }
+};
+
+int check_study(const std::string& name, const Options& options, std::string& xml, Notes& notes) {
   const BaselineStudy study = baseline_study(name, options, true);
   if (study.before.empty()) {
     std::cout << study.name << ": nothing to compare with: no baseline in " << study.folder.string()
@@ -79,6 +106,7 @@ int check_study(const std::string& name, const Options& options, std::string& xm
   const bool same = same_toolchain(study);
   if (!same && options.strict) return kEnvironment;
   const Comparison comparison = study.compare();
+  notes.add(study.name, comparison);
   print_findings(study, comparison);
   for (const std::string& id : study.not_run)
     std::cout << study.name << ": " << id << ": was not run\n";
@@ -95,14 +123,16 @@ int check(Options options) {
   }
   int code = kPass;
   std::string suites;
+  Notes notes;
   for (const std::string& study : options.studies)
-    code = worse(code, check_study(study, options, suites));
+    code = worse(code, check_study(study, options, suites, notes));
   if (!options.junit.empty()) {
     std::ofstream out(options.junit);
     out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
         << suites << "</testsuites>\n";
     if (!out.flush()) throw InputError(options.junit + ": cannot be written");
   }
+  if (options.record && notes.cases > 0) notes.write(options.out);
   return code;
 }
 
@@ -111,6 +141,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("STUDY", options->studies, "Names or paths; none: all that have a baseline");
   options->bind(app);
   app.add_option("--junit", options->junit, "Also write a JUnit file for continuous integration");
+  app.add_flag("--record", options->record, "Also keep the findings for the report");
   app.add_flag("--strict-env", options->strict,
                "Fail with 5 if the baseline was made with another toolchain");
   return [options] { return check(*options); };

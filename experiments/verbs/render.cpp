@@ -83,6 +83,7 @@ void draw_stills(const Options& options, const TakeSet& set, const std::vector<d
   const auto [width, height] = parse_size(options.size.empty() ? "1920x1080" : options.size);
   const Layout layout(width, height, static_cast<int>(set.takes.size()));
   StudioOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
+  look.frame = Frame::beside_inset();
   look.from = times.front(), look.to = times.back();
   const Studio studio(set.scene, set.takes, look);
   const Countdown countdown("still");
@@ -112,8 +113,9 @@ void draw_sheet(const Options& options, const TakeSet& set, const std::vector<do
 void draw_video(const Options& options, const TakeSet& set, const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
   const Layout layout(width, height, static_cast<int>(set.takes.size()));
-  const Studio studio(set.scene, set.takes,
-                      look_of(options, "video", layout.panel_width, layout.panel_height));
+  StudioOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
+  look.frame = Frame::beside_inset();
+  const Studio studio(set.scene, set.takes, look);
   const double dt = set.scene.dt;
   const int stride = std::max(1, static_cast<int>(1 / (30 * dt) + 0.5));
   const int frames = set.scene.steps / stride + 1;

@@ -5,8 +5,13 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/files.hpp"
+#include "experiments/lab/key.hpp"
 #include "experiments/lab/map.hpp"
+#include "experiments/report/findings.hpp"
 #include "experiments/report/stored.hpp"
+#include "experiments/verbs/film.hpp"
+#include "experiments/verbs/program.hpp"
 #include "experiments/verbs/verb.hpp"
 
 namespace taut {
@@ -16,6 +21,7 @@ namespace {
 struct Options {
   std::vector<std::string> studies;
   std::string preset, results = default_results(), out = "report.html";
+  bool no_media = false;
 };
 
 std::string command_line(const Options& options) {
@@ -48,8 +54,16 @@ int run(Options options) {
   for (const SolverEntry* entry : solvers())
     input.solvers.push_back(
         {std::string(entry->name), std::string(entry->summary), std::string(entry->source)});
-  input.provenance = {{"compiler", __VERSION__}, {"preset", options.preset}};
+  const std::string program = program_digest();
+  input.provenance = {{"version", "program " + program.substr(0, 10)},
+                      {"made", utc_stamp()},
+                      {"built with", std::string(toolchain())},
+                      {"preset", options.preset}};
   if (options.preset.empty()) input.provenance.pop_back();
+  input.truths = report::stored_truths(options.results, program);
+  input.regressions = report::stored_regressions(options.results, program);
+  if (!options.no_media)
+    input.media = film_scenes(input, [](const std::string& news) { std::cerr << news << '\n'; });
   std::cout << report::write_report(input, options.out).string() << '\n';
   return kPass;
 }
@@ -61,6 +75,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--preset", options->preset, "The preset under which the studies were run");
   app.add_option("--results", options->results,
                  "Results folder (default: " + options->results + ")");
+  app.add_flag("--no-media", options->no_media, "Without pictures and videos");
   app.add_option("-o,--out", options->out, "The page (default: report.html)");
   return [options] { return run(*options); };
 }

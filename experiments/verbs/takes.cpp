@@ -3,9 +3,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <cstdio>
-#include <map>
+#include <memory>
 
 #include "core/model/input_error.hpp"
 #include "core/model/scene_io.hpp"
@@ -125,13 +124,9 @@ TakeSet make_takes(const TakeRequest& request, const std::function<void(const st
     say("running " + choices[k].brief() + " on " + set.scene.name);
     processes.push_back(std::make_unique<CaseProcess>(request, choices[k], scratch.file(k)));
   }
-  std::map<std::string_view, int> seen;
   for (std::size_t k = 0; k < choices.size(); ++k) {
     Take& take = set.takes.emplace_back(make_take(set.scene, choices[k], *processes[k]));
-    // The palette tells settings of one solver apart by dashes: here the second is grey.
-    take.colour = seen[choices[k].entry->name]++ == 0
-                      ? colour_of(report::solver_style(choices[k].entry->name).colour.light)
-                      : rgb(0x5A6474);
+    take.colour = colour_of(report::solver_style(choices[k].entry->name).colour.light);
   }
   return set;
 }

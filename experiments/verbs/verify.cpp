@@ -13,6 +13,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/truths/truth.hpp"
+#include "experiments/verbs/program.hpp"
 #include "experiments/verbs/verb.hpp"
 
 namespace taut {
@@ -22,7 +23,7 @@ namespace {
 struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
-  bool json = false, verbose = false;
+  bool json = false, verbose = false, quiet = false;
   std::string out;
 };
 
@@ -102,7 +103,7 @@ nlohmann::ordered_json to_json(const std::vector<Outcome>& outcomes) {
                     {"source", truth->source},
                     {"findings", rows}});
   }
-  return {{"schema", "taut-truths-1"}, {"truths", list}};
+  return {{"schema", "taut-truths-1"}, {"program", program_digest()}, {"truths", list}};
 }
 
 std::string value(double v) {
@@ -189,7 +190,7 @@ int run(const Options& options) {
   }
   if (options.json)
     std::cout << json << '\n';
-  else
+  else if (!options.quiet)
     print_table(outcomes, options.verbose);
   return summary(outcomes);
 }
@@ -214,6 +215,7 @@ std::function<int()> bind(CLI::App& app) {
       ->capture_default_str();
   app.add_option("-o,--out", options->out, "Also write the findings as JSON to this file");
   app.add_flag("--json", options->json, "Findings as JSON instead of a table");
+  app.add_flag("--quiet", options->quiet, "Only the line that sums it up");
   app.add_flag("--verbose", options->verbose, "Every number, with sources and times");
   app.add_flag("--list", *only_list, "Only name the truths");
   return [options, only_list] { return *only_list ? list() : run(*options); };

@@ -2,27 +2,37 @@
 // The theme: the system's until the button is pressed.
 const root = document.documentElement;
 const dark = matchMedia('(prefers-color-scheme: dark)');
-document.getElementById('theme').addEventListener('click', () => {
-  const now = root.dataset.theme || (dark.matches ? 'dark' : 'light');
-  root.dataset.theme = now === 'dark' ? 'light' : 'dark';
+const theme = document.getElementById('theme');
+const shown = () => root.dataset.theme || (dark.matches ? 'dark' : 'light');
+const tell = () => theme.setAttribute('aria-pressed', shown() === 'dark');
+theme.addEventListener('click', () => {
+  root.dataset.theme = shown() === 'dark' ? 'light' : 'dark';
+  tell();
 });
+tell();
 
-// Videos of one scene run together; the first one leads. Times are seconds of simulated time.
-const videos = [...document.querySelectorAll('.stage video')];
-const line = document.querySelector('.timeline');
-if (videos.length) {
+// A player: films of one scene that run together, the first one leads; the playhead of the chart below
+// follows and scrubs them. Times are seconds of simulated time.
+const frame = 1 / 30;
+const players = [];
+let current = null;  // the one that keys move
+
+const makePlayer = (box) => {
+  const videos = [...box.querySelectorAll('video')];
+  if (!videos.length) return;
   const leader = videos[0];
   const speed = Number(leader.dataset.speed) || 1;
-  const play = document.getElementById('play');
-  const clock = document.getElementById('clock');
+  const play = box.querySelector('.play');
+  const label = play.querySelector('span');
+  const clock = box.querySelector('.clock');
+  const line = box.querySelector('.timeline');
   const scrub = line && line.querySelector('.scrub');
   const head = line && line.querySelector('.playhead');
   const place = line && {
     left: Number(line.dataset.left), right: Number(line.dataset.right),
     low: Number(line.dataset.low), high: Number(line.dataset.high)
   };
-  const frame = 1 / 30;
-  document.querySelector('.controls').hidden = false;
+  box.querySelector('.controls').hidden = false;
   if (line) scrub.hidden = head.hidden = false;
 
   const show = (time) => {
@@ -31,27 +41,29 @@ if (videos.length) {
     const share = Math.min(1, Math.max(0, (time - place.low) / (place.high - place.low)));
     head.style.left = 100 * (place.left + share * (place.right - place.left)) + '%';
     scrub.value = time;
+    scrub.setAttribute('aria-valuetext', time.toFixed(2) + ' seconds');
   };
   const seek = (time) => {
-    const end = leader.duration || 0;
-    const at = Math.min(end, Math.max(0, time / speed));
+    current = player;
+    const at = Math.min(leader.duration || 0, Math.max(0, time / speed));
     for (const video of videos) video.currentTime = at;
     show(at * speed);
   };
   const pause = () => {
     for (const video of videos) video.pause();
-    play.textContent = 'play';
+    label.textContent = 'play';
   };
   const start = () => {
+    for (const other of players) if (other !== player) other.pause();
+    current = player;
     for (const video of videos) {
       video.currentTime = leader.currentTime;
       video.play().catch(pause);
     }
-    play.textContent = 'pause';
+    label.textContent = 'pause';
   };
   const toggle = () => leader.paused ? start() : pause();
   const step = (by) => { pause(); seek((leader.currentTime + by * frame) * speed); };
-
   const follow = () => {
     show(leader.currentTime * speed);
     for (const video of videos)
@@ -61,30 +73,40 @@ if (videos.length) {
   };
   leader.addEventListener('play', () => requestAnimationFrame(follow));
   leader.addEventListener('ended', () => { seek(0); start(); });
+  for (const video of videos) video.addEventListener('click', toggle);
   play.addEventListener('click', toggle);
-  document.getElementById('back').addEventListener('click', () => step(-1));
-  document.getElementById('forward').addEventListener('click', () => step(1));
-  document.addEventListener('keydown', (event) => {
-    if (event.target.closest('input, button, a, summary, [tabindex]') || event.ctrlKey ||
-        event.metaKey || event.altKey) return;
-    const act = {' ': toggle, ArrowLeft: () => step(-1), ArrowRight: () => step(1)}[event.key];
-    if (!act) return;
-    event.preventDefault();
-    act();
-  });
+  box.querySelector('.back').addEventListener('click', () => step(-1));
+  box.querySelector('.forward').addEventListener('click', () => step(1));
   if (line) {
     scrub.addEventListener('input', () => { pause(); seek(Number(scrub.value)); });
     const plot = line.querySelector('.plot');
     const drag = (event) => {
       if (!(event.buttons & 1)) return;
-      const box = plot.getBoundingClientRect();
-      const share = ((event.clientX - box.left) / box.width - place.left) / (place.right - place.left);
+      const edge = plot.getBoundingClientRect();
+      const share = ((event.clientX - edge.left) / edge.width - place.left) / (place.right - place.left);
       pause();
       seek(place.low + Math.min(1, Math.max(0, share)) * (place.high - place.low));
     };
     plot.addEventListener('pointerdown', drag);
     plot.addEventListener('pointermove', drag);
   }
+  const player = {box, toggle, step, start, pause};
+  players.push(player);
   show(0);
-  if (!matchMedia('(prefers-reduced-motion: reduce)').matches) start();
+};
+for (const box of document.querySelectorAll('.player')) makePlayer(box);
+
+document.addEventListener('keydown', (event) => {
+  if (!current || event.ctrlKey || event.metaKey || event.altKey ||
+      event.target.closest('input, button, a, summary, [tabindex]')) return;
+  const act = {' ': current.toggle, ArrowLeft: () => current.step(-1),
+               ArrowRight: () => current.step(1)}[event.key];
+  if (!act) return;
+  event.preventDefault();
+  act();
+});
+if (players.length) {
+  current = players[0];
+  if (players[0].box.matches('.leads') && !matchMedia('(prefers-reduced-motion: reduce)').matches)
+    players[0].start();
 }

@@ -11,7 +11,7 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
   // A line through settings that differ in two knobs would join what nobody would try in a row.
   for (const Curve& curve : chart.curves)
     for (const Point& p : curve.points)
-      if (p.name.find("×") != std::string::npos) chart.lines = false;
+      if (p.name.find_first_of(",×") != std::string::npos) chart.lines = false;
   return draw_chart(chart);
 }
 

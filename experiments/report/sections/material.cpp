@@ -1,3 +1,4 @@
+#include "experiments/report/axis.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
@@ -5,36 +6,38 @@ namespace taut::report {
 
 namespace {
 
-/// Stills of this scene and, below the page's top, its video: what the renderer left in `media`.
+std::string moment(const MaterialRow& row, const MaterialRow::Moment& one, double aspect) {
+  const std::string t = significant(one.t, 3) + " s", rms = quantity("stretch.rms").text(one.rms);
+  return "<figure style=\"--aspect:" + significant(aspect, 3) + "\"><img alt=\"" +
+         escape_html(solver_title(row.solver)) + ": strain in material space at " + t + ", RMS " +
+         rms + "\" src=\"data:image/png;base64," + base64(one.png) + "\"><figcaption><span>" + t +
+         "</span><b>" + rms + "</b></figcaption></figure>";
+}
+
+/// The sheet laid flat, without light, in the colours of the bar above: a row for each solver.
 std::string render(Page& page, const std::string& scene) {
-  std::string out;
+  std::string rows;
   for (const SceneMedia& media : page.input().media) {
     if (media.scene != scene) continue;
-    for (const Clip& still : media.stills) {
-      const std::size_t weight = still.bytes.size() * 4 / 3;
-      if (weight > page.media_budget) continue;
-      page.media_budget -= weight;
-      out += "<figure><img alt=\"" + escape_html(still.alt) + "\" src=\"data:" + still.type +
-             ";base64," + base64(still.bytes) + "\"><figcaption>" + escape_html(still.alt) +
-             "</figcaption></figure>";
-    }
-    if (scene == page.hero()) continue;
-    for (const Clip& clip : media.clips) {
-      const std::size_t weight = clip.bytes.size() * 4 / 3;
-      if (weight > page.media_budget || clip.bytes.empty()) continue;
-      page.media_budget -= weight;
-      const std::string source = "data:" + clip.type + ";base64," + base64(clip.bytes);
-      const std::string alt = escape_html(clip.alt);
-      out += clip.type.starts_with("video/")
-                 ? "<figure class=\"film\"><video controls muted playsinline preload=\"metadata\" "
-                   "aria-label=\"" +
-                       alt + "\" src=\"" + source + "\"></video><figcaption>" + alt +
-                       "</figcaption></figure>"
-                 : "<figure class=\"film\"><img alt=\"" + alt + "\" src=\"" + source +
-                       "\"><figcaption>" + alt + "</figcaption></figure>";
+    for (const MaterialRow& row : media.material) {
+      std::string stills;
+      for (const MaterialRow::Moment& one : row.moments) {
+        const std::size_t weight = one.png.size() * 4 / 3;
+        if (weight > page.media_budget) continue;
+        page.media_budget -= weight;
+        stills += moment(row, one, media.aspect);
+      }
+      if (!stills.empty())
+        rows += "<div class=\"row\"><p>" + solver_dot(row.solver) + "<b>" +
+                escape_html(solver_title(row.solver)) + "</b></p>" + stills + "</div>";
     }
   }
-  return out.empty() ? "" : "<div class=\"card wide gallery\">" + out + "</div>";
+  if (rows.empty()) return "";
+  return "<div class=\"card wide material\"><h4>Strain in material space</h4><p>The sheet laid "
+         "flat, unlit, in the colours of the film's bar; the number is RMS strain. The inset of "
+         "the "
+         "film shows the same at every moment.</p>" +
+         rows + "</div>\n";
 }
 
 }  // namespace

@@ -7,14 +7,17 @@ namespace {
 
 std::string body(const ReportInput& input) {
   if (!input.regressions)
-    return absent("Not compared with the committed baselines; this does it:", "taut check");
-  if (input.regressions->empty())
-    return "<p>No case left the tolerances of the committed baselines.</p>";
-  Table table{{"case", "value", "baseline", "now", ""}, {}};
-  for (const RegressionRow& row : *input.regressions)
-    table.rows.push_back(
-        {row.id, row.value, row.baseline, row.now, row.worse ? "worse" : "better"});
-  return html_table(table, "Cases outside the tolerances of the baselines");
+    return absent("Not compared with the committed baselines by this build; this does it:",
+                  "taut check --record");
+  const Regressions& found = *input.regressions;
+  const std::string compared = std::to_string(found.values) + " values of " +
+                               std::to_string(found.cases) +
+                               " cases were compared with the committed baselines";
+  if (found.rows.empty()) return "<p>" + compared + ": none left its tolerance.</p>";
+  Table table{{"case", "study", "change"}, {}};
+  for (const auto& [study, id, change] : found.rows) table.rows.push_back({id, study, change});
+  return "<p>" + compared + "; " + std::to_string(found.rows.size()) + " differ:</p>" +
+         html_table(table, "Differences from the baselines");
 }
 
 std::string render(Page& page, const std::string&) {

@@ -67,8 +67,10 @@ std::vector<std::optional<double>> means(const Page& page, const std::string& va
       if (const auto v = value_at(c, scene, facts.sweeps, value); v && (!geometric || *v > 0))
         here.push_back(*v);
     // A scene without stretch to speak of (free fall) would decide the mean by its rounding.
-    if (value == "stretch.rms" && std::ranges::all_of(here, [](double v) { return v < 1e-4; }))
-      continue;
+    if (value == "stretch.rms") {
+      if (std::ranges::all_of(here, [](double v) { return v < kNoStretch; })) continue;
+      for (double& v : here) v = std::max(v, kNoStretch);
+    }
     if (here.size() == all.size())
       for (std::size_t i = 0; i < here.size(); ++i) all[i].push_back(here[i]);
   }

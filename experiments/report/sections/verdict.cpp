@@ -31,10 +31,11 @@ std::string render(Page& page, const std::string&) {
   return "<header class=\"page\"><div class=\"bar\"><span><b>taut</b> comparison report</span>"
          "<span class=\"grow\"></span><span>" +
          provenance_line(page.input()) +
-         "</span><button id=\"theme\" type=\"button\" title=\"Switch between light and dark\">"
-         "light / dark</button></div>\n<h1>" +
+         "</span><button id=\"theme\" type=\"button\" aria-label=\"Dark theme\" title=\"Switch "
+         "between light and "
+         "dark\">light / dark</button></div>\n<h1>" +
          title(page) + "</h1>\n<p class=\"verdict\" id=\"verdict\">" +
-         verdict(page.facts(), page.hero(), page.scenes()) + "</p></header>\n<main id=\"main\">\n";
+         verdict(page.facts(), page.scenes()) + "</p></header>\n<main id=\"main\">\n";
 }
 
 }  // namespace

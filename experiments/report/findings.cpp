@@ -1,0 +1,102 @@
+#include "experiments/report/findings.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/gnuplot.hpp"
+
+namespace taut::report {
+
+namespace {
+
+using Json = nlohmann::json;
+
+double number(const Json& json) { return json.is_number() ? json.get<double>() : std::nan(""); }
+
+std::string with_unit(double value, const std::string& unit, int digits) {
+  return significant(value, digits) + (unit == "1" ? "" : " " + unit);
+}
+
+/// How far a finding is on the way to its tolerance; 1: at it.
+double strain_of(const Json& finding) {
+  const double off = std::abs(number(finding.at("measured")) - number(finding.at("expected")));
+  const double tolerance = number(finding.at("tolerance"));
+  return tolerance > 0 ? off / tolerance : off;
+}
+
+TruthRow row_of(const Json& truth, const Json& finding) {
+  const std::string unit = finding.at("unit"), verdict = finding.at("verdict");
+  const double expected = number(finding.at("expected")), slack = number(finding.at("tolerance"));
+  TruthRow row{truth.at("section_title"),
+               truth.at("statement"),
+               truth.at("source"),
+               finding.at("subject"),
+               "",
+               "",
+               verdict,
+               finding.at("why")};
+  if (verdict == "not claimed") return row;
+  row.expected = expected == 0 ? "at most " + with_unit(slack, unit, 2)
+                               : significant(expected, 6) + " ± " + with_unit(slack, unit, 2);
+  row.measured = with_unit(number(finding.at("measured")), unit, expected == 0 ? 2 : 6);
+  return row;
+}
+
+std::optional<Json> document(const std::filesystem::path& file, const std::string& schema,
+                             std::string_view program) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  Json json = Json::parse(read_file(file), nullptr, false);
+  if (json.is_discarded() || json.value("schema", "") != schema)
+    throw InputError(file.string() + ": not a file of schema " + schema + "; remove it");
+  if (json.value("program", "") != program) return std::nullopt;
+  return json;
+}
+
+}  // namespace
+
+std::optional<Truths> stored_truths(const std::filesystem::path& results,
+                                    std::string_view program) {
+  const std::filesystem::path file = results / "verify.json";
+  const auto json = document(file, "taut-truths-1", program);
+  if (!json) return std::nullopt;
+  Truths truths;
+  try {
+    for (const Json& truth : json->at("truths")) {
+      const Json* nearest = nullptr;
+      std::vector<TruthRow> apart;
+      for (const Json& finding : truth.at("findings")) {
+        ++truths.findings;
+        if (finding.at("verdict") != "passed")
+          apart.push_back(row_of(truth, finding));
+        else if (!nearest || strain_of(finding) > strain_of(*nearest))
+          nearest = &finding;
+      }
+      ++truths.truths;
+      if (nearest) truths.rows.push_back(row_of(truth, *nearest));
+      for (TruthRow& row : apart) truths.rows.push_back(std::move(row));
+    }
+  } catch (const Json::exception& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+  return truths;
+}
+
+std::optional<Regressions> stored_regressions(const std::filesystem::path& results,
+                                              std::string_view program) {
+  const std::filesystem::path file = results / "check.json";
+  const auto json = document(file, "taut-check-1", program);
+  if (!json) return std::nullopt;
+  Regressions regressions;
+  try {
+    regressions.cases = json->at("cases"), regressions.values = json->at("values");
+    for (const Json& f : json->at("findings"))
+      regressions.rows.push_back({f.at("study"), f.at("case"), f.at("change")});
+  } catch (const Json::exception& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+  return regressions;
+}
+
+}  // namespace taut::report

@@ -1,0 +1,146 @@
+#include "experiments/report/player.hpp"
+
+#include <algorithm>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/axis.hpp"
+#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/html.hpp"
+
+namespace taut::report {
+
+namespace {
+
+constexpr int kWidth = 1100;  ///< px of the chart over time
+
+std::string data_uri(const std::string& type, const std::string& bytes) {
+  return "data:" + type + ";base64," + base64(bytes);
+}
+
+std::string names(const Clip& clip) {
+  std::string out = "<div class=\"who\">";
+  for (const auto& [solver, settings] : clip.panels)
+    out += "<span>" + solver_dot(solver) + "<b>" + escape_html(solver_title(solver)) + "</b> " +
+           escape_html(settings) + "</span>";
+  return out + "</div>";
+}
+
+std::string picture(Page& page, const Clip& clip, const SceneMedia& media, bool leads) {
+  const std::size_t weight = (clip.bytes.size() + clip.poster.size()) * 4 / 3;
+  if (clip.bytes.empty() || weight > page.media_budget)
+    return absent("A picture was left out to keep this page small.", "");
+  page.media_budget -= weight;
+  const std::string alt = escape_html(clip.alt);
+  if (!clip.type.starts_with("video/"))
+    return "<div class=\"clip\">" + names(clip) + "<img alt=\"" + alt + "\" src=\"" +
+           data_uri(clip.type, clip.bytes) + "\"></div>";
+  return "<div class=\"clip\">" + names(clip) + "<video muted playsinline preload=\"" +
+         (leads ? "auto" : "metadata") + "\" aria-label=\"" + alt + "\" data-speed=\"" +
+         exact(media.speed) + "\"" +
+         (clip.poster.empty() ? ""
+                              : " poster=\"" + data_uri(clip.poster_type, clip.poster) + "\"") +
+         " src=\"" + data_uri(clip.type, clip.bytes) + "\"></video></div>";
+}
+
+std::string colour_bar(const ColourBar& bar) {
+  if (bar.stops.empty()) return "";
+  std::string stops, ticks;
+  for (const std::string& stop : bar.stops) stops += "," + stop;
+  for (std::size_t k = 0; k < bar.ticks.size(); ++k) {
+    const auto& [at, label] = bar.ticks[k];
+    // What lies beyond an end has the end's colour.
+    const std::string beyond = k + 1 == bar.ticks.size()    ? "≥ "
+                               : at == 0 && label[0] != '0' ? "≤ "
+                                                            : "";
+    ticks += "<span style=\"left:" + significant(100 * at, 3) + "%\">" + beyond +
+             escape_html(label) + "</span>";
+  }
+  return "<div class=\"scale\"><p>" + escape_html(bar.title) +
+         "</p><i style=\"background:" + "linear-gradient(90deg" + stops +
+         ")\"></i><div class=\"ticks\">" + ticks + "</div></div>";
+}
+
+/// What the film covers of the scene's curves; all of them without a film.
+std::vector<TimeSeries> curves_of(const Page& page, const std::string& scene, double until) {
+  std::vector<TimeSeries> here;
+  for (const TimeSeries& series : page.input().series) {
+    if (series.scene != scene) continue;
+    TimeSeries& part = here.emplace_back(series);
+    const auto past = std::ranges::find_if(part.t, [&](double t) { return t > until + 1e-9; });
+    part.t.erase(past, part.t.end());
+    part.y.resize(std::min(part.y.size(), part.t.size()));
+  }
+  return here;
+}
+
+/// Its plot area becomes attributes by which the playhead finds its place.
+std::string timeline(Page& page, const std::string& scene, const std::string& value, double until) {
+  const std::vector<TimeSeries> here = curves_of(page, scene, until);
+  std::string svg;
+  const Quantity q = quantity(value);
+  try {
+    const Figure figure = page.draw({.kind = "series",
+                                     .y = value,
+                                     .title = q.title + " over time, " + scene,
+                                     .width = kWidth,
+                                     .height = 190},
+                                    {{}, here}, svg);
+    const PlotArea& a = figure.area;
+    const auto attribute = [](const char* name, double v) {
+      return std::string(" data-") + name + "=\"" + exact(v) + "\"";
+    };
+    return "<div class=\"timeline\"" + attribute("left", a.left / kWidth) +
+           attribute("right", a.right / kWidth) + attribute("low", a.low) +
+           attribute("high", a.high) +
+           "><div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"" +
+           escape_html(q.title + " over time, " + scene) + "\"><div class=\"plot\">" + svg +
+           "<div class=\"playhead\" hidden></div></div></div>" +
+           "<input type=\"range\" class=\"scrub\" min=\"" + exact(a.low) + "\" max=\"" +
+           exact(a.high) + "\" step=\"any\" value=\"" + exact(a.low) +
+           // Below the plot area, half a thumb wider at either end: thumb and playhead in line.
+           "\" style=\"--from:" + exact(a.left / kWidth) + ";--to:" + exact(a.right / kWidth) +
+           "\" aria-label=\"Simulated time of " + escape_html(scene) + " in seconds\" hidden>" +
+           html_data(figure.table, q.title + " over time, " + scene, read_file(figure.csv),
+                     slug(scene) + "-series.csv") +
+           "</div>";
+  } catch (const InputError&) {
+    return "";
+  } catch (const PlotError& error) {
+    return absent(error.what(), "");
+  }
+}
+
+std::string controls(const std::string& scene) {
+  const std::string of = "<span class=\"sr\"> " + escape_html(scene) + "</span>";
+  return "<div class=\"controls\" hidden><button type=\"button\" class=\"play\"><span>play</span>" +
+         of + "</button><button type=\"button\" class=\"back\" aria-label=\"One frame back, " +
+         escape_html(scene) +
+         "\">◂</button><button type=\"button\" class=\"forward\" aria-label=\"One frame forward, " +
+         escape_html(scene) +
+         "\">▸</button><span class=\"clock\">0.00 s</span><span class=\"hint\">space plays, ← → "
+         "step a frame, drag the chart to scrub</span></div>";
+}
+
+}  // namespace
+
+std::string scene_player(Page& page, const std::string& scene, bool leads) {
+  std::string stage, bar;
+  double until = 1e300;
+  for (const SceneMedia& media : page.input().media) {
+    if (media.scene != scene) continue;
+    for (const Clip& clip : media.clips) stage += picture(page, clip, media, leads);
+    bar = colour_bar(media.bar);
+    until = media.duration;
+  }
+  const std::string chart = timeline(page, scene, "stretch.rms", until);
+  if (stage.empty() && chart.empty()) return "";
+  const std::string missing = stage.empty() ? absent("No pictures were rendered; this makes them:",
+                                                     "taut render " + scene + " --video")
+                                            : "";
+  return (stage.empty() ? ""
+                        : "<div class=\"stage\"><div class=\"clips\">" + stage + bar + "</div>" +
+                              controls(scene) + "</div>") +
+         chart + missing;
+}
+
+}  // namespace taut::report

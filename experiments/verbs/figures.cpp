@@ -1,0 +1,51 @@
+#include <filesystem>
+#include <memory>
+
+#include "experiments/verbs/invoke.hpp"
+#include "experiments/verbs/verb.hpp"
+
+namespace taut {
+
+namespace {
+
+/// A picture of results/figures and what `taut render` is told to draw it.
+struct Flagship {
+  const char* file;
+  std::vector<std::string> arguments;
+};
+
+std::vector<Flagship> flagships() {
+  return {
+      {"ball.png",
+       {"ball", "--solver", "jakobsen:iterations=16", "--solver", "bullet:iterations=16", "--at",
+        "1", "--size", "1280x720"}},
+      {"hang.png",
+       {"hang", "--solver", "jakobsen:iterations=4", "--solver", "bullet:iterations=4", "--solver",
+        "jakobsen:iterations=64", "--solver", "bullet:iterations=64", "--at", "2", "--size",
+        "1080x1080"}},
+      {"box-penetration.png",
+       {"box", "--solver", "jakobsen:iterations=16", "--solver", "bullet:iterations=16", "--at",
+        "1", "--colour", "penetration", "--size", "1280x720"}},
+  };
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto folder = std::make_shared<std::string>("results/figures");
+  app.add_option("-o,--out", *folder, "Folder (default: results/figures)");
+  return [folder]() -> int {
+    std::filesystem::create_directories(*folder);
+    for (Flagship flagship : flagships()) {
+      flagship.arguments.insert(flagship.arguments.end(), {"-o", *folder + "/" + flagship.file});
+      if (const int code = invoke("render", flagship.arguments); code != kPass) return code;
+    }
+    return kPass;
+  };
+}
+
+}  // namespace
+}  // namespace taut
+
+TAUT_VERB(figures) = {.name = "figures",
+                      .summary = "Draws the pictures of results/figures again",
+                      .example = "taut figures\n  taut figures -o /tmp/figures",
+                      .bind = taut::bind};
