@@ -83,7 +83,8 @@ TEST(SameBits, StripsAreTheGenericPathInTheirOrder) {
         EXPECT_EQ(order.size(), scene.links.size());
         const State strips =
             simulate(scene, "jakobsen:order=coloured,layout=strips,iterations=4," + more, 20);
-        EXPECT_TRUE(same_bits(one_by_one(scene, order, more), strips)) << scene.mesh.grid->nu << more;
+        EXPECT_TRUE(same_bits(one_by_one(scene, order, more), strips))
+            << scene.mesh.grid->nu << more;
       };
       compare(StripPlan<float>(*links, w, firm).order(), "precision=float");
       compare(StripPlan<double>(*links, w, firm).order(), "precision=double,projection=exact");

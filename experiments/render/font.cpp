@@ -43,7 +43,7 @@ std::string read_font(const std::string& file) {
   std::vector<std::string> folders{"/usr/share/fonts/truetype/dejavu",
                                    "/usr/share/fonts/dejavu-sans-fonts", "/usr/share/fonts/TTF",
                                    "/usr/share/fonts/dejavu"};
-  if (const char* own = std::getenv("TAUT_FONTS")) folders.insert(folders.begin(), own);
+  if (const char* own = std::getenv("TAUT_FONTS")) folders = {own};
   std::string tried;
   for (const std::string& folder : folders) {
     std::ifstream in(folder + "/" + file, std::ios::binary);

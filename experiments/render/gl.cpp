@@ -126,6 +126,14 @@ std::unique_ptr<GlContext::Backend> attempt(const char* what, const std::string&
 
 }  // namespace
 
+GlLibraries GlLibraries::of_this_machine() {
+  const auto named = [](const char* variable, const char* usual) {
+    const char* own = std::getenv(variable);
+    return std::string(own ? own : usual);
+  };
+  return {named("TAUT_OSMESA", "libOSMesa.so.8"), named("TAUT_EGL", "libEGL.so.1")};
+}
+
 GlContext::GlContext(const GlLibraries& libraries) {
   std::string tried;
   backend_ = attempt<OsMesa>("OSMesa (package libosmesa6)", libraries.osmesa, tried);

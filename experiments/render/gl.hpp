@@ -76,8 +76,10 @@ struct GlFunctions {
 
 /// Which libraries to try, in this order; "" leaves one out.
 struct GlLibraries {
-  std::string osmesa = "libOSMesa.so.8";
-  std::string egl = "libEGL.so.1";
+  std::string osmesa;  ///< "": never tried
+  std::string egl;
+  /// libOSMesa.so.8 and libEGL.so.1, or what TAUT_OSMESA and TAUT_EGL name instead.
+  static GlLibraries of_this_machine();
 };
 
 /// An off-screen OpenGL 3.3 core context of Mesa's software rasteriser: OSMesa if the machine has
@@ -87,7 +89,7 @@ struct GlLibraries {
 class GlContext {
  public:
   /// Throws InputError that lists what was tried.
-  explicit GlContext(const GlLibraries& = {});
+  explicit GlContext(const GlLibraries& = GlLibraries::of_this_machine());
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;

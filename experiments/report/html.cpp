@@ -169,7 +169,8 @@ std::string theme_css() {
   return ":root{color-scheme:light;" + light + "}\n@media (prefers-color-scheme:dark){:root{" +
          "color-scheme:dark;" + dark + "}}\n:root[data-theme=light]{color-scheme:light;" + light +
          "}\n:root[data-theme=dark]{color-scheme:dark;" + dark +
-         "}\n@media print{:root,:root[data-theme]{" + "color-scheme:light;" + light + "}}\n";
+         "}\n@media print{:root,:root[data-theme]{" + "color-scheme:light;" + light +
+         "--bg:#FFF;}}\n";
 }
 
 }  // namespace taut::report

@@ -42,8 +42,8 @@ struct Known {
 constexpr std::array kKnown{
     Known{"jakobsen", "s-blue", 7, 6, 1.0, ""},
     Known{"bullet", "s-orange", 5, 4, 0.85, "(9,4)"},
-    Known{"mass_spring", "s-purple", 9, 8, 1.05, "(3,3)"},
-    Known{"bullet_deformable", "s-magenta", 13, 12, 1.05, "(9,3,2,3)"},
+    Known{"mass-spring", "s-purple", 9, 8, 1.05, "(3,3)"},
+    Known{"bullet-deformable", "s-magenta", 13, 12, 1.05, "(9,3,2,3)"},
     Known{"reference", "s-green", 11, 10, 1.05, "(6,2)"},
 };
 constexpr std::array kOthers{
@@ -77,6 +77,7 @@ SolverStyle solver_style(std::string_view solver, int variant) {
 std::string solver_title(std::string_view solver) {
   std::string title(solver);
   std::ranges::replace(title, '_', ' ');
+  std::ranges::replace(title, '-', ' ');
   if (!title.empty() && title[0] >= 'a' && title[0] <= 'z')
     title[0] = static_cast<char>(title[0] - 'a' + 'A');
   return title;

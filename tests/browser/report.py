@@ -87,6 +87,66 @@ SCRUB = """
 """
 
 
+# The serious rules of axe-core that apply to such a page, written out: axe-core is no package of Debian 12.
+# What each element breaks, as "rule: element".
+ACCESSIBILITY = r"""
+(() => {
+  const found = [];
+  const all = selector => [...document.querySelectorAll(selector)];
+  const say = (rule, e) => found.push(rule + ': ' + (e ? e.outerHTML.slice(0, 90) : 'page'));
+  const refers = (e, attribute) => (e.getAttribute(attribute) || '').split(/\s+/).filter(Boolean);
+  const named = e => (e.getAttribute('aria-label') || '').trim() ||
+      refers(e, 'aria-labelledby').some(id => document.getElementById(id)?.textContent.trim()) ||
+      (e.labels && e.labels.length) || (e.innerText || e.textContent || '').trim();
+  const hidden = e => !e.checkVisibility() || e.closest('[aria-hidden=true]');
+  if (!document.documentElement.lang) say('html-has-lang');
+  if (!document.title.trim()) say('document-title');
+  if (all('main').length !== 1) say('landmark-one-main');
+  if (all('h1').length !== 1) say('page-has-heading-one');
+  if (/user-scalable=no|maximum-scale=1/.test(document.querySelector('meta[name=viewport]').content)) say('meta-viewport');
+  let level = 0;
+  for (const h of all('h1,h2,h3,h4,h5,h6')) {
+    if (!h.textContent.trim()) say('empty-heading', h);
+    if (+h.tagName[1] > level + 1) say('heading-order', h);
+    level = +h.tagName[1];
+  }
+  for (const e of all('img')) if (!e.hasAttribute('alt')) say('image-alt', e);
+  for (const e of all('video, [role=img], [role=region], [role=group], svg:not([aria-hidden])'))
+    if (!named(e)) say('name of ' + e.tagName, e);
+  for (const e of all('button, a[href], summary, input, select, textarea')) if (!hidden(e) && !named(e)) say('name of control', e);
+  for (const e of all('a')) if (!e.hasAttribute('href')) say('link without target', e);
+  for (const e of all('a[href^="#"]')) if (e.hash && !document.querySelector(e.hash)) say('link to nowhere', e);
+  for (const e of all('[tabindex]')) if (e.tabIndex > 0) say('tabindex', e);
+  for (const e of all('[aria-labelledby], [aria-describedby], [aria-controls]'))
+    for (const a of ['aria-labelledby', 'aria-describedby', 'aria-controls'])
+      for (const id of refers(e, a)) if (!document.getElementById(id)) say(a, e);
+  const roles = new Set(['img', 'region', 'group', 'presentation', 'note']);
+  for (const e of all('[role]')) if (!roles.has(e.getAttribute('role'))) say('role', e);
+  for (const e of all('[aria-hidden=true]'))
+    if (e.querySelector('a[href], button, input, [tabindex]')) say('aria-hidden-focus', e);
+  for (const e of all('button, a[href], summary')) if (e.querySelector('a, button, input, [tabindex]')) say('nested-interactive', e);
+  for (const e of all('table')) {
+    if (!e.caption && !named(e)) say('table-caption', e);
+    if (!e.querySelector('th')) say('table-headers', e);
+  }
+  for (const e of all('th')) if (!['col', 'row', 'colgroup', 'rowgroup'].includes(e.scope)) say('scope', e);
+  for (const e of all('li')) if (!e.parentElement.matches('ul, ol')) say('listitem', e);
+  for (const e of all('ul, ol')) for (const c of e.children) if (c.tagName !== 'LI') say('list', c);
+  for (const e of all('dt, dd')) if (!e.parentElement.matches('dl')) say('dlitem', e);
+  for (const e of all('*'))
+    if (e.checkVisibility() && e.scrollWidth > e.clientWidth + 1 && /auto|scroll/.test(getComputedStyle(e).overflowX) &&
+        e.tabIndex < 0 && !e.querySelector('a[href], button, [tabindex]')) say('scrollable-region-focusable', e);
+  for (const e of all('video[autoplay]')) if (!e.muted) say('no-autoplay-audio', e);
+  return found;
+})()
+"""
+
+# The first player after a fresh start under reduced motion: where it stands and whether it runs.
+STATE = "(v => [v.paused, v.currentTime])(document.querySelector('.player video'))"
+READY = """new Promise(done => { const v = document.querySelector('.player video');
+    v.readyState > 1 ? done(1) : v.addEventListener('canplay', () => done(1)); })"""
+
+
 class Checks:
     def __init__(self):
         self.failures = []
@@ -163,10 +223,33 @@ def check_media(page, checks):
     checks.empty(apart, "the videos of a scene stay together")
 
 
+def check_keys(page, checks, report):
+    """Reduced motion: nothing plays by itself. The arrow steps a frame, the space bar plays and stops."""
+    if not page.run("document.querySelectorAll('.stage video').length"):
+        return
+    page.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
+    page.open(report)
+    page.run(READY)
+    paused, start = page.run(STATE)
+    checks.true(paused and start == 0, "reduced motion: nothing plays by itself", f"{paused} {start}")
+
+    def press(key, code):
+        for kind in ("keyDown", "keyUp"):
+            page.call("Input.dispatchKeyEvent", type=kind, key=key, code=code)
+    press("ArrowRight", "ArrowRight")
+    after = page.run(STATE)
+    checks.true(after[0] and 0 < after[1] < 0.1, "the right arrow steps one frame", f"{after}")
+    press(" ", "Space")
+    checks.true(not page.run(STATE)[0], "the space bar plays")
+    press(" ", "Space")
+    checks.true(page.run(STATE)[0], "and stops")
+    page.call("Emulation.setEmulatedMedia", features=[])
+
+
 def check_axe(page, checks):
     script = axe_core()
     if script is None:
-        print("SKIPPED axe-core: not on this machine (npm install -g axe-core, or set AXE_CORE)")
+        print("axe-core itself: not on this machine (npm install -g axe-core, or set AXE_CORE)")
         return
     page.run(script + ";0")
     found = page.run("""axe.run(document, {resultTypes: ['violations']}).then(r => r.violations
@@ -191,8 +274,10 @@ def main(report, out):
         checks.empty(page.run(CUT_TEXTS), "no text of a chart is cut off")
         checks.true(page.run("document.documentElement.scrollWidth") <= 1280, "desktop: no sideways scrolling")
         check_theme(page, checks, out)
+        checks.empty(page.run(ACCESSIBILITY), "accessibility: the serious rules, written out")
         check_media(page, checks)
         check_axe(page, checks)
+        check_keys(page, checks, report)
         page.size(390, 844)
         checks.true(page.run("document.documentElement.scrollWidth") <= 390, "phone: no sideways scrolling",
                     page.run("document.documentElement.scrollWidth"))

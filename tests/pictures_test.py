@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""`taut render` and the report's pictures where something is missing: no renderer, no fonts, no ffmpeg, a run
+that explodes. Each costs pictures, never the rest, and says what to do."""
+
+import json
+import os
+import pathlib
+import shutil
+
+from command_line import CommandLine, main
+
+SIDE_BY_SIDE = ["--solver", "jakobsen", "--solver", "bullet"]
+SMALL = ["--quality", "draft", "--size", "640x360"]
+
+
+def png_size(file: pathlib.Path):
+    head = file.read_bytes()[:24]
+    return int.from_bytes(head[16:20], "big"), int.from_bytes(head[20:24], "big")
+
+
+class Pictures(CommandLine):
+    def render(self, *words, expect=0, **environment):
+        return self.taut("render", "./small.toml", *words, expect=expect, env={**os.environ, **environment})
+
+    def files(self):
+        return sorted(f.name for f in self.folder.rglob("*") if f.is_file() and f.name != "small.toml")
+
+    def test_stills_carry_their_moments_in_their_names(self):
+        self.render(*SIDE_BY_SIDE, *SMALL, "--at", "0.25", "--at", "0.5", "-o", "two.png")
+        self.assertEqual(self.files(), ["two-t0.25.png", "two-t0.50.png"])
+        self.assertEqual(png_size(self.folder / "two-t0.25.png"), (640, 360))
+
+    def test_the_same_picture_twice_has_the_same_bytes(self):
+        for name in ["a.png", "b.png"]:
+            self.render(*SIDE_BY_SIDE, *SMALL, "-o", name)
+        self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "b.png").read_bytes())
+
+    def test_obj_sequence(self):
+        self.render(*SIDE_BY_SIDE, "--export", "obj", "-o", "frames")
+        files = self.files()
+        self.assertEqual(len(files), 2 * 17)
+        first = (self.folder / "frames" / files[0]).read_text().splitlines()
+        self.assertEqual(sum(line.startswith("v ") for line in first), 16)
+        self.assertEqual(sum(line.startswith("f ") for line in first), 18)
+
+    def test_without_a_renderer_the_error_lists_what_was_tried_and_the_rest_works(self):
+        nothing = {"TAUT_OSMESA": "libNoOSMesa.so", "TAUT_EGL": "libNoEGL.so"}
+        done = self.render(*SIDE_BY_SIDE, *SMALL, "-o", "a.png", expect=2, **nothing)
+        for text in ["libNoOSMesa.so", "libosmesa6", "libNoEGL.so", "libegl1"]:
+            self.assertIn(text, done.err)
+        self.assertEqual(self.files(), [])
+        self.render("--solver", "jakobsen", "--export", "obj", "-o", "frames", **nothing)
+        study = self.study(solvers=["jakobsen:iterations=2", "bullet:iterations=2"])
+        self.taut("run", study)
+        done = self.taut("report", study, env={**os.environ, **nothing})
+        self.assertIn("small not filmed: pictures need an off-screen OpenGL", done.err)
+        page = (self.folder / done.out.splitlines()[-1]).read_text()
+        self.assertIn("No pictures were rendered; this makes them:", page)
+
+    def test_without_fonts_it_says_what_to_install(self):
+        done = self.render(*SIDE_BY_SIDE, *SMALL, "-o", "a.png", expect=2, TAUT_FONTS="/nowhere")
+        self.assertIn("fonts-dejavu-core", done.err)
+        self.assertIn("/nowhere", done.err)
+        self.assertEqual(self.files(), [])
+
+    def test_without_ffmpeg_there_is_a_poster_and_a_strip(self):
+        tools = self.folder / "tools"
+        tools.mkdir()
+        for tool in ["sh", "timeout"]:
+            (tools / tool).symlink_to(shutil.which(tool))
+        done = self.render(*SIDE_BY_SIDE, *SMALL, "--video", "-o", "film.mp4", PATH=str(tools))
+        self.assertIn("ffmpeg", done.err)
+        self.assertEqual(png_size(self.folder / "film.png"), (640, 360))
+        self.assertEqual(png_size(self.folder / "film-strip.png"), (640, 5 * 360))
+        self.assertFalse((self.folder / "film.mp4").exists())
+
+    def test_a_run_that_explodes_is_drawn_up_to_its_last_sound_state(self):
+        exploding, long = "jakobsen:iterations=1,omega=1.9", ["--dt", "1/10", "--duration", "5"]
+        ended = json.loads(self.taut("case", "./small.toml", exploding, *long, "--json").out)["status"]
+        self.assertEqual(ended["kind"], "exploded")
+        self.render("--solver", "jakobsen", "--solver", exploding, *SMALL, *long, "-o", "a.png")
+        self.assertEqual(self.files(), ["a.png"])
+
+
+if __name__ == "__main__":
+    main()
