@@ -93,6 +93,84 @@ class Check(CommandLine):
         (self.folder / "small.toml").write_text(SCENE.replace("mass = 0.1", "mass = 0.2"))
         self.assertIn("the scene changed", self.check(4))
 
+    FRONTIER = """
+[[frontier]]
+scene = "./small.toml"
+solver = "mass-spring:substeps=1"
+of = "dt"
+from = 0.0001
+to = 0.5
+tolerance = 0.1
+"""
+
+    def with_frontier(self):
+        self.baseline.mkdir(parents=True)
+        (self.baseline / "frontiers.toml").write_text(self.FRONTIER)
+        self.update()
+
+    def test_a_frontier_that_moves_is_a_regression_though_every_case_passes(self):
+        self.with_frontier()
+        self.assertIn("study: 5 cases and", self.check(0))
+
+        def plant(rows):
+            rows[0]["values"]["frontier.unstable"] *= 1.2
+            return rows
+        self.edit("mass-spring", plant)
+        out = self.check(1)
+        self.assertRegex(out, r"frontier of dt: frontier.unstable \S+ -> ")
+        command = next(line.strip() for line in out.splitlines() if line.strip().startswith("taut frontier"))
+        self.assertIn("unstable from", self.taut(*shlex.split(command)[1:]).out)
+        (self.baseline / "frontiers.toml").unlink()
+        self.check(4)
+        (self.baseline / "frontiers.toml").write_text(self.FRONTIER.replace("of =", "off ="))
+        self.assertIn("did you mean 'of'?", self.taut("check", "./study.toml", expect=2).err)
+
+    def test_ten_planted_regressions_are_caught_and_a_no_op_is_green(self):
+        self.with_frontier()
+        self.check(0)
+        sound = {file.name: file.read_text() for file in self.baseline.iterdir()}
+
+        def value(name, change):
+            def plant(rows):
+                rows[0]["values"][name] = change(rows[0]["values"][name])
+                return rows
+            return plant
+
+        def field(name, text):
+            return lambda rows: [rows[0] | {name: text}] + rows[1:]
+        plants = [
+            ("a sweep converges 0.1 % slower", "jakobsen", value("stretch.max", lambda x: x * 1.001), 1),
+            ("the frontier is shifted", "mass-spring", value("frontier.stable", lambda x: x / 1.1), 1),
+            ("NaN at one cell", "bullet", value("stretch.rms", lambda _: None), 1),
+            ("more motion at rest", "bullet", value("jitter.rms", lambda x: (x or 0) + 1e-3), 1),
+            ("it explodes", "jakobsen", field("status", "exploded (energy)"), 1),
+            ("more work for the same result", "jakobsen", field("projections", 1), 1),
+            ("a case is missing", "jakobsen", lambda rows: rows[1:], 4),
+            ("a case is renamed", "bullet", field("id", "another"), 4),
+            ("the scene changed", "bullet", field("content", "0" * 64), 4),
+            ("a solver is missing", "mass-spring", lambda _: [], 4),
+        ]
+        for name, solver, plant, code in plants:
+            with self.subTest(name):
+                self.edit(solver, plant)
+                self.check(code)
+                (self.baseline / f"{solver}.jsonl").write_text(sound[f"{solver}.jsonl"])
+        self.check(0)
+
+    def test_a_case_that_does_not_repeat_is_flaky_and_never_compared_by_value(self):
+        self.study(solvers=["faulty:mode=random,at=3", "faulty:mode=sound"])
+
+        def taut(*words, expect=0):
+            return self.taut(*words, program="taut-faulty", expect=expect)
+        said = taut("baseline", "update", "./study.toml", "--why", "the first one").out
+        self.assertEqual(said.count("does not repeat bit for bit"), 1, said)
+        rows = [json.loads(line) for line in (self.baseline / "faulty.jsonl").read_text().splitlines()]
+        self.assertEqual(sorted(row.get("flaky", False) for row in rows), [False, True])
+        for place in ("one", "two"):
+            taut("check", "./study.toml", "--out", place)
+        self.edit("faulty", lambda rows: [row | {"status": "exploded (energy)"} for row in rows])
+        taut("check", "./study.toml", expect=1)
+
     def test_another_toolchain_is_said_and_fails_under_strict_env(self):
         self.update()
         (self.baseline / "toolchain.txt").write_text("an abacus\n")

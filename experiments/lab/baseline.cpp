@@ -56,6 +56,10 @@ class RowComparison {
     ++result_.cases;
     if (before.status != now.status)
       add(Finding::Kind::status_changed, "status " + before.status + " -> " + now.status);
+    if (before.flaky || now.flaky) {
+      if (!before.flaky) add(Finding::Kind::value_new, "does not repeat bit for bit: now flaky");
+      return;
+    }
     if (before.projections != now.projections)
       add(Finding::Kind::value_moved, "projections per step " + std::to_string(before.projections) +
                                           " -> " + std::to_string(now.projections));
@@ -86,7 +90,7 @@ class RowComparison {
 };
 
 bool same_question(const BaselineRow& a, const BaselineRow& b) {
-  return a.scene == b.scene && a.spec.solver == b.spec.solver;
+  return a.scene == b.scene && a.spec.solver == b.spec.solver && a.frontier == b.frontier;
 }
 
 const BaselineRow* find_row(const Baseline& rows, const std::string& id) {

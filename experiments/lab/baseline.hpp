@@ -17,6 +17,8 @@ struct BaselineRow {
   std::string status;           ///< "ok", "exploded (energy)": see status_text
   std::size_t projections = 0;  ///< constraint projections per step
   std::map<std::string, double> values;  ///< by metric value; NaN: no meaning for this case
+  std::string frontier;  ///< options of `taut frontier` if the row is a frontier, else empty
+  bool flaky = false;    ///< two runs differed in a bit: only its status is compared
 
   std::string solver() const { return spec.solver.substr(0, spec.solver.find(':')); }
 };
@@ -86,6 +88,8 @@ struct Comparison {
 /// The command that runs a case in the foreground: "taut case hang jakobsen:iterations=8 --set
 /// ...".
 std::string reproduce(const CaseSpec&);
+/// The same for a row: a case, or "taut frontier ...".
+std::string reproduce(const BaselineRow&);
 
 /// A comparison as a JUnit <testsuite>, a test case for every row and for every finding that has
 /// none.

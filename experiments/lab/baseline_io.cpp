@@ -24,6 +24,8 @@ std::string line_of(const BaselineRow& row) {
             {"content", row.scene},
             {"status", row.status},
             {"projections", row.projections}};
+  if (!row.frontier.empty()) json["frontier"] = row.frontier;
+  if (row.flaky) json["flaky"] = true;
   Json values = Json::object();
   for (const auto& [name, value] : row.values)
     values[name] = std::isnan(value) ? Json() : Json(value);  // null: no meaning
@@ -39,6 +41,8 @@ BaselineRow row_of(const Json& json) {
   row.scene = json.at("content");
   row.status = json.at("status");
   row.projections = json.at("projections");
+  row.frontier = json.value("frontier", "");
+  row.flaky = json.value("flaky", false);
   for (const auto& [name, value] : json.at("values").items())
     row.values[name] = value.is_null() ? std::nan("") : value.get<double>();
   return row;

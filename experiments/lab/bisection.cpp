@@ -120,6 +120,19 @@ class Search {
 
 }  // namespace
 
+std::string_view to_string(Frontier::Kind kind) {
+  switch (kind) {
+    case Frontier::Kind::bracketed:
+      return "bracketed";
+    case Frontier::Kind::all_stable:
+      return "all stable";
+    case Frontier::Kind::none_stable:
+      return "none stable";
+    default:
+      return "not answered";
+  }
+}
+
 const Probed* Frontier::at(double value) const {
   for (const Probed& probe : probes)
     if (probe.value == value) return &probe;

@@ -41,6 +41,9 @@ struct Frontier {
   const Probed* at(double value) const;
 };
 
+/// "bracketed", "all stable", "none stable", "not answered".
+std::string_view to_string(Frontier::Kind);
+
 /// Gives the outcome for each value; fewer if it was interrupted.
 using Trial = std::function<std::vector<Status>(const std::vector<double>&)>;
 

@@ -43,6 +43,13 @@ std::string reproduce(const CaseSpec& spec) {
   return command;
 }
 
+std::string reproduce(const BaselineRow& row) {
+  const std::string command = reproduce(row.spec);
+  if (row.frontier.empty()) return command;
+  return "taut frontier" + command.substr(std::string_view("taut case").size()) + " " +
+         row.frontier;
+}
+
 std::string junit(const std::string& study, const Baseline& now, const Comparison& comparison) {
   std::map<std::string, std::string> failures;  // by test case
   std::set<std::string> names;

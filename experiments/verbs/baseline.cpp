@@ -50,9 +50,10 @@ void note_reason(const BaselineStudy& study, const std::string& why, const Compa
   if (!out.flush()) throw InputError(file.string() + ": cannot be written");
 }
 
-int update(const Options& options) {
+int update(Options options) {
   if (options.why.find_first_not_of(" \t\n") == std::string::npos)
     throw InputError("--why must say in a sentence why the baseline moves");
+  options.repeat = true;
   const BaselineStudy study = baseline_study(options.study, options, false);
   if (const int code = early_exit(study); code != kPass) return code;
   const Comparison changes = study.compare();

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "experiments/lab/digest.hpp"
+#include "experiments/lab/frontier_baseline.hpp"
 #include "experiments/lab/store.hpp"
 #include "experiments/verbs/progress.hpp"
 
@@ -29,6 +30,38 @@ void run_missing(const std::vector<Case>& cases, const Store& store, const Basel
   progress.finish(tally);
   result.conflict = tally.conflicts > 0;
   result.interrupted = tally.interrupted;
+}
+
+/// Runs all cases again, beside the store, and marks those whose result is not the same to the bit.
+void mark_flaky(const std::vector<Case>& cases, const Store& store, const BaselineOptions& options,
+                BaselineStudy& result) {
+  const std::filesystem::path folder = std::filesystem::path(options.out) / "again";
+  std::filesystem::remove_all(folder);
+  const Store second(folder.string());
+  run_missing(cases, second, options, result);
+  for (const Case& one : cases) {
+    const auto a = store.find(one), b = second.find(one);
+    if (!a || !b || (a->digest == b->digest && a->status.step == b->status.step)) continue;
+    for (BaselineRow& row : result.now) row.flaky = row.flaky || row.id == one.id;
+    std::cout << result.name << ": " << one.id << ": does not repeat bit for bit: flaky\n";
+  }
+  std::filesystem::remove_all(folder);
+}
+
+void add_frontiers(const Store& store, const BaselineOptions& options, BaselineStudy& result) {
+  const std::vector<FrontierQuestion> questions = read_frontiers(result.folder);
+  if (questions.empty()) return;
+  const Session session(store, "taut check " + result.name, {}, {});
+  for (const FrontierQuestion& question : questions) {
+    const CaseFrontier found = find_frontier(
+        question, store, session,
+        {.jobs = options.jobs, .limits = {}, .shard = {}, .only_failed = false, .progress = {}});
+    result.interrupted = result.interrupted || found.interrupted;
+    if (found.frontier.kind == Frontier::Kind::not_answered)
+      result.not_run.push_back(frontier_id(question));
+    else
+      result.now.push_back(frontier_row(question, found));
+  }
 }
 
 const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
@@ -81,6 +114,8 @@ BaselineStudy baseline_study(const std::string& name, const BaselineOptions& opt
     if (scene.empty()) scene = digest(*one.scene);
     result.now.push_back(baseline_row(*record, scene));
   }
+  if (options.repeat) mark_flaky(cases, store, options, result);
+  add_frontiers(store, options, result);
   return result;
 }
 
@@ -92,7 +127,7 @@ void print_findings(const BaselineStudy& study, const Comparison& comparison) {
     const bool last =
         i + 1 == comparison.findings.size() || comparison.findings[i + 1].id != finding.id;
     const BaselineRow* row = find_row(study.now, finding.id);
-    if (last && row) std::cout << "    " << reproduce(row->spec) << '\n';
+    if (last && row) std::cout << "    " << reproduce(*row) << '\n';
   }
 }
 

@@ -16,6 +16,7 @@ struct BaselineOptions {
   std::string baselines = "results/baselines";
   std::string out;  ///< results folder
   int jobs = 1;
+  bool repeat = false;  ///< run every case a second time, to mark those that differ as flaky
   void bind(CLI::App&);
 };
 

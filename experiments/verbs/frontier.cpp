@@ -29,19 +29,6 @@ struct Options {
   bool json = false;
 };
 
-std::string_view kind_text(Frontier::Kind kind) {
-  switch (kind) {
-    case Frontier::Kind::bracketed:
-      return "bracketed";
-    case Frontier::Kind::all_stable:
-      return "all stable";
-    case Frontier::Kind::none_stable:
-      return "none stable";
-    default:
-      return "not answered";
-  }
-}
-
 std::string unit_of(const Options& options, const SolverChoice& choice) {
   if (options.of == "dt") return " s";
   for (const ParamSpec& spec : choice.entry->params)
@@ -64,7 +51,7 @@ std::string percent(double ratio) {
 /// How theory and the bracket agree.
 std::string agreement(const Prediction& theory, const Frontier& found) {
   if (theory.kind != found.kind)
-    return std::string("theory says ") + std::string(kind_text(theory.kind)) + " here";
+    return std::string("theory says ") + std::string(to_string(theory.kind)) + " here";
   if (theory.kind != Frontier::Kind::bracketed) return "agrees";
   if (theory.value >= found.stable && theory.value <= found.unstable) return "inside the bracket";
   const double nearest = theory.value < found.stable ? found.stable : found.unstable;
@@ -77,7 +64,7 @@ void print_line(std::string_view label, const std::string& text) {
 
 void print_theory(const Prediction& theory, const Frontier& found, const std::string& unit) {
   std::string text = theory.kind == Frontier::Kind::bracketed ? five_digits(theory.value) + unit
-                                                              : std::string(kind_text(theory.kind));
+                                                              : std::string(to_string(theory.kind));
   print_line("theory", text + ", " + agreement(theory, found) + ": " + theory.law);
   if (theory.growth > 1 + 1e-6 && theory.kind == Frontier::Kind::none_stable)
     print_line("", "growth per step " + five_digits(theory.growth));
@@ -117,12 +104,12 @@ json to_json(const Options& options, const CaseFrontier& result,
                       {"step", found.probes[i].status.step},
                       {"id", result.records[i].id},
                       {"key", result.records[i].key}});
-  json all{{"of", options.of}, {"kind", kind_text(found.kind)}, {"probes", probes}};
+  json all{{"of", options.of}, {"kind", to_string(found.kind)}, {"probes", probes}};
   if (found.kind != Frontier::Kind::none_stable) all["stable"] = found.stable;
   if (found.kind != Frontier::Kind::all_stable) all["unstable"] = found.unstable;
   all["islands"] = found.islands;
   if (theory) {
-    all["theory"] = {{"kind", kind_text(theory->kind)}, {"law", theory->law}};
+    all["theory"] = {{"kind", to_string(theory->kind)}, {"law", theory->law}};
     if (theory->kind == Frontier::Kind::bracketed) all["theory"]["value"] = theory->value;
     if (theory->growth > 0) all["theory"]["growth"] = theory->growth;
   }
@@ -146,7 +133,7 @@ int judge(const Options& options, const Frontier& found) {
                      found.unstable >= options.expected[0] && found.stable <= options.expected[1];
   if (meets) return kPass;
   std::cerr << "the frontier moved: expected between " << shortest(options.expected[0]) << " and "
-            << shortest(options.expected[1]) << ", found " << kind_text(found.kind);
+            << shortest(options.expected[1]) << ", found " << to_string(found.kind);
   if (found.kind == Frontier::Kind::bracketed)
     std::cerr << " between " << shortest(found.stable) << " and " << shortest(found.unstable);
   std::cerr << '\n';
