@@ -5,9 +5,16 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <cmath>
+
 #include "bullet_ref/convert.hpp"
 
 namespace taut {
+
+struct RigidPose {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Vec3 origin = Vec3::Zero();
+};
 
 namespace {
 
@@ -15,18 +22,19 @@ namespace {
 /// to its far side; its solid side is -y. Larger slabs gain nothing and cost GJK digits in float.
 constexpr double kSlabWidth = 50, kSlabDepth = 5;
 
-struct Pose {
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
-  Vec3 origin = Vec3::Zero();
-};
-
-Pose slab_pose(const Plane& plane, const Vec3& above) {
-  const Vec3 top = above - (plane.normal.dot(above) - plane.offset) * plane.normal;
-  return {Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), plane.normal),
-          top - kSlabDepth * plane.normal};
+/// The shortest rotation of y onto a unit vector; half a turn about x onto -y.
+Eigen::Quaterniond tilt(const Vec3& normal) {
+  if (normal.y() < -1 + 1e-12) return {0, 1, 0, 0};
+  const double s = std::sqrt(2 * (1 + normal.y()));
+  return {s / 2, normal.z() / s, 0, -normal.x() / s};
 }
 
-Pose pose_at_start(const Shape& shape, const Vec3& above) {
+RigidPose slab_pose(const Plane& plane, const Vec3& above) {
+  const Vec3 top = above - (plane.normal.dot(above) - plane.offset) * plane.normal;
+  return {tilt(plane.normal), top - kSlabDepth * plane.normal};
+}
+
+RigidPose pose_at_start(const Shape& shape, const Vec3& above) {
   if (const auto* plane = std::get_if<Plane>(&shape)) return slab_pose(*plane, above);
   if (const auto* ball = std::get_if<Ball>(&shape))
     return {Eigen::Quaterniond::Identity(), ball->center};
@@ -73,7 +81,7 @@ struct RigidColliders::Body {
     return to_bullet(motion.rotation(t) * start.rotation, motion.moved(start.origin, t));
   }
 
-  Pose start;
+  RigidPose start;
   Motion motion;
   bool is_plane;
   std::unique_ptr<btCollisionShape> shape;

@@ -13,7 +13,7 @@ namespace taut {
 namespace {
 
 namespace fs = std::filesystem;
-using Kind = Finding::Kind;
+using Kind = Change::Kind;
 
 BaselineRow row(const std::string& scene, const std::string& solver, double stretch) {
   return {scene + " " + solver,
@@ -30,7 +30,7 @@ Baseline two() {
 
 std::vector<Kind> kinds(const Comparison& comparison) {
   std::vector<Kind> all;
-  for (const Finding& finding : comparison.findings) all.push_back(finding.kind);
+  for (const Change& finding : comparison.findings) all.push_back(finding.kind);
   return all;
 }
 

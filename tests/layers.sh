@@ -11,7 +11,7 @@ core/solver         | core/(model|solver)/
 core/reference      | core/(model|reference)/
 bullet_ref          | (core/model|bullet_ref)/
 experiments/metrics | (core/model|experiments/(metrics|lab))/
-experiments/lab     | (core/model|experiments/(metrics|lab))/
+experiments/lab     | (core/(model|reference)|experiments/(metrics|lab))/
 experiments/report  | (core/model|experiments/(metrics|lab|report))/
 experiments/render  | (core/model|experiments/(metrics|lab|render))/
 experiments/truths  | (core/(model|reference)|experiments/(metrics|lab|truths))/
@@ -20,7 +20,7 @@ experiments/truths  | (core/(model|reference)|experiments/(metrics|lab|truths))/
 owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/.*\.cpp
 toml\+\+                | ^(core/model/document|experiments/lab/[a-z_]+)\.cpp
-Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods) | ^core/reference/.*\.cpp
+Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp
 openssl/                | ^experiments/lab/.*\.cpp
 '

@@ -46,8 +46,10 @@ MUTATIONS = {
 
 
 def compile_command(build, unit):
+    """How `unit` is compiled, by itself or in a batch of files (TAUT_UNITY)."""
     for entry in json.loads((build / "compile_commands.json").read_text()):
-        if entry["file"] == str(ROOT / unit):
+        file = pathlib.Path(entry["file"])
+        if file == ROOT / unit or "Unity" in file.parts and f'"{ROOT / unit}"' in file.read_text():
             return shlex.split(entry["command"])
     sys.exit(f"mutation: {unit} is not in {build}/compile_commands.json")
 
@@ -76,8 +78,8 @@ def mutate(build, folder, name):
     subprocess.run(command, cwd=build, check=True)
     link = link_command(build)
     link[link.index("-o") + 1] = str(copy / "taut")
-    # before the libraries, so that their own version of the unit is not taken in
-    link.insert(link.index("-o"), str(copy / "mutant.o"))
+    # Before the libraries: of two definitions the first is taken, and theirs may be in a batch.
+    link[link.index("-o"):link.index("-o")] = ["-Wl,--allow-multiple-definition", str(copy / "mutant.o")]
     subprocess.run(link, cwd=build, check=True)
     verify = subprocess.run([copy / "taut", "verify", "-j1", *truths], capture_output=True, text=True)
     return verify.returncode == 1 and " broken " in verify.stderr + " "

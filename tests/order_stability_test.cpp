@@ -5,11 +5,11 @@
 // of order one that a large sheet has at one sweep per step.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <complex>
 #include <string>
 
+#include "core/reference/modes.hpp"
 #include "core/solver/order.hpp"
 #include "tests/cloths.hpp"
 
@@ -43,8 +43,8 @@ struct Modes {
 
 Modes modes(const Scene& scene, const std::vector<Link>& links) {
   Modes worst;
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(sweep(scene, links), false);
-  for (const std::complex<double> mu : solver.eigenvalues()) {
+  const reference::Modes modes = reference::modes(sweep(scene, links));
+  for (const std::complex<double> mu : modes.eigenvalues) {
     worst.imaginary = std::max(worst.imaginary, std::abs(mu.imag()));
     const std::complex<double> root = std::sqrt(mu * mu - mu);
     for (const auto z : {mu + root, mu - root})

@@ -74,7 +74,7 @@ TEST(PlantedRegressions, EachOfTenIsCaughtAndANoOpIsNot) {
     const Comparison found = compare(study(), now, {});
     EXPECT_EQ(found.regressed(), !plant.mismatch) << plant.name;
     EXPECT_EQ(found.mismatched(), plant.mismatch) << plant.name;
-    for (const Finding& finding : found.findings) EXPECT_FALSE(finding.text.empty()) << plant.name;
+    for (const Change& finding : found.findings) EXPECT_FALSE(finding.text.empty()) << plant.name;
   }
   const Comparison same = compare(study(), study(), {});
   EXPECT_TRUE(same.findings.empty());

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tests/cloths.hpp"
 
@@ -46,7 +47,7 @@ TEST(Stiffness, ASoftChainStretchesAsHookeSays) {
 TEST(Stiffness, AStiffSpringIsAStick) {
   const Scene scene = crumpled(hanging_sheet(6, 6), 0.02);
   const State spring = simulate(scene, soft(1e15, 4), 10);
-  const State stick = simulate(scene, soft(INFINITY, 4), 10);
+  const State stick = simulate(scene, soft(std::numeric_limits<double>::infinity(), 4), 10);
   EXPECT_LT(largest_distance(spring.x, stick.x), 1e-3);
 }
 

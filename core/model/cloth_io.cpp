@@ -3,17 +3,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/model/angle.hpp"
+#include "core/model/index.hpp"
 #include "core/model/mesh_io.hpp"
 #include "core/model/motion_io.hpp"
+#include "core/model/shortest.hpp"
 
 namespace taut {
 
 namespace {
 
 constexpr int kMaxVertices = 1 << 24;
-constexpr double kDegree = std::numbers::pi / 180;
-
-std::size_t at(int vertex) { return static_cast<std::size_t>(vertex); }
 
 std::optional<Grid> read_grid(Section& cloth) {
   if (!cloth.find("grid")) cloth.missing("grid");

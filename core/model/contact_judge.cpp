@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/model/crossings.hpp"
+#include "core/model/shortest.hpp"
 
 namespace taut {
 

@@ -4,13 +4,13 @@
 #include <numbers>
 #include <set>
 
+#include "core/model/angle.hpp"
 #include "core/model/cloth_io.hpp"
+#include "core/model/shortest.hpp"
 
 namespace taut {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<Motion::Key> read_path(Section& section) {
   std::vector<Motion::Key> path;

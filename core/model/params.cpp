@@ -6,18 +6,13 @@
 #include <cstdlib>
 
 #include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
 
 namespace taut {
 
 namespace {
 
-std::string quoted(std::string_view s) { return "'" + std::string(s) + "'"; }
-
-std::string shortest(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return {text, end};
-}
+std::string in_quotes(std::string_view s) { return "'" + std::string(s) + "'"; }
 
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts;
@@ -78,11 +73,11 @@ Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::st
     const std::string key = item.substr(0, eq);
     const std::size_t i = find(key);
     if (eq == std::string::npos || key.empty()) {
-      report(std::string(owner) + ": expected key=value, got " + quoted(item));
+      report(std::string(owner) + ": expected key=value, got " + in_quotes(item));
     } else if (i == specs.size()) {
-      report(std::string(owner) + ": unknown parameter " + quoted(key) + suggestion(key, names));
+      report(std::string(owner) + ": unknown parameter " + in_quotes(key) + suggestion(key, names));
     } else if (seen[i]) {
-      report(std::string(owner) + ": parameter " + quoted(key) + " is given twice");
+      report(std::string(owner) + ": parameter " + in_quotes(key) + " is given twice");
     } else {
       seen[i] = true;
       std::string problem;

@@ -9,11 +9,11 @@
 #include <tuple>
 #include <utility>
 
+#include "core/model/index.hpp"
+
 namespace taut {
 
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).norm() / 2;

@@ -6,6 +6,7 @@
 #include "core/model/contact_judge.hpp"
 #include "core/model/motion_io.hpp"
 #include "core/model/section.hpp"
+#include "core/model/shortest.hpp"
 
 namespace taut {
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/model/scene_io.hpp"
+#include "core/model/shortest.hpp"
 
 namespace taut {
 
@@ -17,12 +18,6 @@ void Judge::verdict() {
            std::tuple(b.file.empty(), b.file, b.line, b.column);
   });
   throw InputError(found_);
-}
-
-std::string shortest(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return {text, end};
 }
 
 std::string Range::text() const {

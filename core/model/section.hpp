@@ -103,7 +103,4 @@ class Section {
 /// neither. May be non-finite.
 std::optional<double> as_number(const Value&);
 
-/// Shortest text that reads back as the same number.
-std::string shortest(double);
-
 }  // namespace taut

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/model/cloth_io.hpp"
+#include "core/model/shortest.hpp"
 
 namespace taut {
 

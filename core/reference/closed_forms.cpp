@@ -1,12 +1,12 @@
 #include "core/reference/closed_forms.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 
 #include "core/model/mesh.hpp"
+#include "core/reference/modes.hpp"
 
 namespace taut::reference {
 
@@ -19,9 +19,7 @@ Eigen::VectorXd laguerre_roots(int n) {
   Eigen::VectorXd diagonal(n), beside(n - 1);
   for (int i = 0; i < n; ++i) diagonal[i] = 2 * i + 1;
   for (int i = 0; i + 1 < n; ++i) beside[i] = i + 1;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues();
+  return tridiagonal_eigenvalues(diagonal, beside);
 }
 
 }  // namespace

@@ -5,14 +5,14 @@
 #include <queue>
 #include <utility>
 
+#include "core/model/index.hpp"
+
 namespace taut::reference {
 
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 1e-9;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 struct Paths {
   std::vector<double> length;  ///< [n] m from the source

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/model/index.hpp"
 #include "core/model/wind.hpp"
 
 namespace taut::reference {
@@ -14,8 +15,6 @@ namespace {
 using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 using Triplet = Eigen::Triplet<double>;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::vector<Vec3> wind_forces(const Scene& scene, const std::vector<Vec3>& x,
                               const std::vector<Vec3>& v) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/index.hpp"
 #include "core/reference/hanging_straight.hpp"
 
 namespace taut::reference {
@@ -13,8 +14,6 @@ namespace {
 using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 using Triplet = Eigen::Triplet<double>;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The free vertices' unknowns and the links between them. C_j = (|d|^2 - r^2) / (2r) [m].
 class Problem {

@@ -4,16 +4,15 @@
 #include <cmath>
 #include <map>
 
-#include "core/solver/neighbours.hpp"
+#include "core/model/index.hpp"
+#include "core/solver/adjacency.hpp"
 
 namespace taut {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Pins and a greedy independent set, in the order of the vertices.
-std::vector<bool> choose(const std::vector<int>& vertices, const Neighbours& neighbours,
+std::vector<bool> choose(const std::vector<int>& vertices, const Adjacency& neighbours,
                          std::span<const double> w) {
   std::vector<bool> coarse(w.size());
   for (const int v : vertices) coarse[at(v)] = w[at(v)] == 0;
@@ -30,7 +29,7 @@ std::vector<bool> choose(const std::vector<int>& vertices, const Neighbours& nei
 /// Links between coarse vertices that are linked or share a finer neighbour. A flat sheet's are
 /// straight; elsewhere the way through the neighbour counts, which a fold can only shorten.
 std::vector<Link> coarse_links(const Mesh& mesh, std::span<const Link> links,
-                               const Neighbours& neighbours, const std::vector<bool>& coarse,
+                               const Adjacency& neighbours, const std::vector<bool>& coarse,
                                const std::vector<int>& vertices) {
   std::map<std::pair<int, int>, double> rest;
   const auto offer = [&](int a, int b, double length) {
@@ -64,7 +63,7 @@ std::vector<Level> make_hierarchy(const Scene& scene, std::span<const double> w,
   for (int v = 0; v < scene.mesh.size(); ++v) vertices[at(v)] = v;
   std::vector<Level> hierarchy;
   while (static_cast<int>(hierarchy.size()) < levels) {
-    const Neighbours neighbours(links, scene.mesh.size());
+    const Adjacency neighbours(links, scene.mesh.size());
     const std::vector<bool> coarse = choose(vertices, neighbours, w);
     Level level;
     for (const int v : vertices) {

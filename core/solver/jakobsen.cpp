@@ -11,7 +11,7 @@
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/team.hpp"
 
-namespace taut {
+namespace taut::solver::jakobsen {
 
 namespace {
 
@@ -160,13 +160,13 @@ std::vector<std::string> cannot(const Scene& scene, const Params& params) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::solver::jakobsen
 
 TAUT_SOLVER(jakobsen) = {
     .name = "jakobsen",
     .summary = "Verlet integration with relaxation of stiff distance constraints",
     .source = "Jakobsen, Advanced Character Physics, GDC 2001",
     .params = taut::kJakobsenParams,
-    .make = taut::make,
-    .cannot = taut::cannot,
+    .make = taut::solver::jakobsen::make,
+    .cannot = taut::solver::jakobsen::cannot,
     .effective = taut::jakobsen_effective};

@@ -10,10 +10,11 @@
 #include <cmath>
 #include <string>
 
+#include "core/model/index.hpp"
 #include "core/model/solver.hpp"
 #include "core/solver/external_forces.hpp"
 
-namespace taut {
+namespace taut::solver::mass_spring {
 
 namespace {
 
@@ -147,8 +148,6 @@ class MassSpring final : public Solver {
   }
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
   /// G = m g, the wind, F = -k x of every spring, F = -c v of every particle; a = F/m.
   void accumulate_forces() {
     const V g = scene_.gravity.template cast<Real>();
@@ -227,12 +226,12 @@ Effective effective(const Scene&, const Params& params) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::solver::mass_spring
 
 TAUT_SOLVER(mass_spring) = {.name = "mass-spring",
                             .summary = "Hooke springs with drag, integrated explicitly",
                             .source = "the report, section 3; Provot 1995; Lander 1999",
-                            .params = taut::kParams,
-                            .make = taut::make,
-                            .cannot = taut::cannot,
-                            .effective = taut::effective};
+                            .params = taut::solver::mass_spring::kParams,
+                            .make = taut::solver::mass_spring::make,
+                            .cannot = taut::solver::mass_spring::cannot,
+                            .effective = taut::solver::mass_spring::effective};

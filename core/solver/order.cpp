@@ -5,7 +5,8 @@
 #include <numeric>
 #include <random>
 
-#include "core/solver/neighbours.hpp"
+#include "core/model/index.hpp"
+#include "core/solver/adjacency.hpp"
 
 namespace taut {
 
@@ -13,8 +14,6 @@ namespace {
 
 constexpr int kTileSide = 32;                         ///< grid vertices
 constexpr int kTileVertices = kTileSide * kTileSide;  ///< 16 KiB of packed float positions
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Tile of each vertex: squares of a grid; runs of a breadth-first walk on any other mesh.
 std::vector<int> tiles_of(std::span<const Link> links, const Mesh& mesh) {
@@ -25,7 +24,7 @@ std::vector<int> tiles_of(std::span<const Link> links, const Mesh& mesh) {
       tile[at(v)] = v / mesh.grid->nu / kTileSide * across + v % mesh.grid->nu / kTileSide;
     return tile;
   }
-  const Neighbours neighbours(links, mesh.size());
+  const Adjacency neighbours(links, mesh.size());
   std::vector<int> queue;
   queue.reserve(tile.size());
   for (int start = 0, next = 0; start < mesh.size(); ++start) {

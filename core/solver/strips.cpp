@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/model/index.hpp"
 #include "core/solver/distance.hpp"
 
 namespace taut {
@@ -21,8 +22,6 @@ constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::str
                                                               {-1, 1, Family::shear, 0},
                                                               {2, 0, Family::bend, 0},
                                                               {0, 2, Family::bend, 0}}};
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 int lanes_of(const Grid& grid) { return grid.nu >= 4 * kWide ? kWide : kNarrow; }
 int vectors_of(const Grid& grid) { return (grid.nu + lanes_of(grid) - 1) / lanes_of(grid); }

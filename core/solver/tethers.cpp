@@ -4,7 +4,8 @@
 #include <limits>
 #include <queue>
 
-#include "core/solver/neighbours.hpp"
+#include "core/model/index.hpp"
+#include "core/solver/adjacency.hpp"
 
 namespace taut {
 
@@ -12,10 +13,8 @@ namespace {
 
 constexpr int kMostGroups = 4;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Pins that links join, group by group.
-std::vector<std::vector<int>> pin_groups(const Scene& scene, const Neighbours& neighbours) {
+std::vector<std::vector<int>> pin_groups(const Scene& scene, const Adjacency& neighbours) {
   std::vector<bool> open(at(scene.mesh.size()));
   for (const int pin : scene.pins) open[at(pin)] = true;
   std::vector<std::vector<int>> groups;
@@ -37,7 +36,7 @@ struct Way {
 
 /// The shortest way along the links from any pin of the group to every vertex (Dijkstra).
 std::vector<Way> ways(const std::vector<int>& group, std::span<const Link> links,
-                      const Neighbours& neighbours, int vertices) {
+                      const Adjacency& neighbours, int vertices) {
   std::vector<Way> way(at(vertices));
   using Item = std::pair<double, int>;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
@@ -60,7 +59,7 @@ std::vector<Way> ways(const std::vector<int>& group, std::span<const Link> links
 std::vector<Tether> make_tethers(const Scene& scene) {
   std::vector<Link> links = scene.links;
   std::erase_if(links, [](const Link& l) { return l.family == Family::bend; });
-  const Neighbours neighbours(links, scene.mesh.size());
+  const Adjacency neighbours(links, scene.mesh.size());
   std::vector<std::vector<Tether>> candidates(at(scene.mesh.size()));
   for (const auto& group : pin_groups(scene, neighbours)) {
     const std::vector<Way> way = ways(group, links, neighbours, scene.mesh.size());

@@ -11,10 +11,11 @@
 #include <cmath>
 #include <string>
 
+#include "core/model/index.hpp"
 #include "core/model/solver.hpp"
 #include "core/solver/external_forces.hpp"
 
-namespace taut {
+namespace taut::solver::xpbd {
 
 namespace {
 
@@ -135,8 +136,6 @@ class Xpbd final : public Solver {
     double compliance;  ///< m/N
     Real lambda;        ///< N s^2, of this substep
   };
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
   void predict(double end, double h) {
     const V g = scene_.gravity.template cast<Real>();
     a_.assign(x_.size(), g);
@@ -211,12 +210,12 @@ Effective effective(const Scene& scene, const Params& params) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::solver::xpbd
 
 TAUT_SOLVER(xpbd) = {.name = "xpbd",
                      .summary = "Compliant position-based dynamics with substeps",
                      .source = "Macklin, Mueller, Chentanez 2016; Macklin et al. 2019",
-                     .params = taut::kParams,
-                     .make = taut::make,
-                     .cannot = taut::cannot,
-                     .effective = taut::effective};
+                     .params = taut::solver::xpbd::kParams,
+                     .make = taut::solver::xpbd::make,
+                     .cannot = taut::solver::xpbd::cannot,
+                     .effective = taut::solver::xpbd::effective};

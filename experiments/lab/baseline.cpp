@@ -55,34 +55,34 @@ class RowComparison {
       : now_(now), result_(result) {
     ++result_.cases;
     if (before.status != now.status)
-      add(Finding::Kind::status_changed, "status " + before.status + " -> " + now.status);
+      add(Change::Kind::status_changed, "status " + before.status + " -> " + now.status);
     if (before.flaky || now.flaky) {
-      if (!before.flaky) add(Finding::Kind::value_new, "does not repeat bit for bit: now flaky");
+      if (!before.flaky) add(Change::Kind::value_new, "does not repeat bit for bit: now flaky");
       return;
     }
     if (before.projections != now.projections)
-      add(Finding::Kind::value_moved, "projections per step " + std::to_string(before.projections) +
-                                          " -> " + std::to_string(now.projections));
+      add(Change::Kind::value_moved, "projections per step " + std::to_string(before.projections) +
+                                         " -> " + std::to_string(now.projections));
     for (const auto& [name, value] : before.values) compare(name, value, tolerances.of(name));
     for (const auto& [name, value] : now.values)
       if (!before.values.count(name) && !tolerances.of(name).ignored && !std::isnan(value))
-        add(Finding::Kind::value_new, name + " has no baseline; now " + readable(value));
+        add(Change::Kind::value_new, name + " has no baseline; now " + readable(value));
   }
 
  private:
-  void add(Finding::Kind kind, const std::string& text) {
+  void add(Change::Kind kind, const std::string& text) {
     result_.findings.push_back({kind, now_.id, now_.solver(), text});
   }
   void compare(const std::string& name, double before, const Tolerance& tolerance) {
     if (tolerance.ignored) return;
     const auto now = now_.values.find(name);
     if (now == now_.values.end()) {
-      add(Finding::Kind::value_missing, name + " " + readable(before) + " -> no such value");
+      add(Change::Kind::value_missing, name + " " + readable(before) + " -> no such value");
       return;
     }
     ++result_.values;
     if (!tolerance.holds(now->second, before))
-      add(Finding::Kind::value_moved, moved_text(name, before, now->second, tolerance));
+      add(Change::Kind::value_moved, moved_text(name, before, now->second, tolerance));
   }
 
   const BaselineRow& now_;
@@ -114,19 +114,19 @@ const BaselineRow* renamed(const BaselineRow& row, const Baseline& in, const Bas
 
 void compare_case(const BaselineRow& row, const Baseline& before, const Baseline& now,
                   const Tolerances& tolerances, Comparison& result) {
-  const auto add = [&](Finding::Kind kind, const std::string& text) {
+  const auto add = [&](Change::Kind kind, const std::string& text) {
     result.findings.push_back({kind, row.id, row.solver(), text});
   };
   const BaselineRow* old = find_row(before, row.id);
   if (!old) {
     const BaselineRow* other = renamed(row, before, now);
     if (other)
-      add(Finding::Kind::case_renamed, "renamed: the baseline calls it '" + other->id + "'");
+      add(Change::Kind::case_renamed, "renamed: the baseline calls it '" + other->id + "'");
     else
-      add(Finding::Kind::case_new, "new: the baseline does not have this case");
+      add(Change::Kind::case_new, "new: the baseline does not have this case");
   } else if (old->scene != row.scene) {
-    add(Finding::Kind::scene_changed, "the scene changed: content " + old->scene.substr(0, 12) +
-                                          " -> " + row.scene.substr(0, 12));
+    add(Change::Kind::scene_changed, "the scene changed: content " + old->scene.substr(0, 12) +
+                                         " -> " + row.scene.substr(0, 12));
   } else {
     RowComparison(*old, row, tolerances, result);
   }
@@ -162,11 +162,11 @@ const Tolerance& Tolerances::of(const std::string& value) const {
 
 bool Comparison::regressed() const {
   return std::any_of(findings.begin(), findings.end(),
-                     [](const Finding& f) { return f.is_regression(); });
+                     [](const Change& f) { return f.is_regression(); });
 }
 bool Comparison::mismatched() const {
   return std::any_of(findings.begin(), findings.end(),
-                     [](const Finding& f) { return f.is_mismatch(); });
+                     [](const Change& f) { return f.is_mismatch(); });
 }
 
 Comparison compare(const Baseline& before, const Baseline& now, const Tolerances& tolerances) {
@@ -174,20 +174,20 @@ Comparison compare(const Baseline& before, const Baseline& now, const Tolerances
   const auto old_solvers = solvers_of(before), new_solvers = solvers_of(now);
   for (const std::string& solver : old_solvers)
     if (!new_solvers.count(solver))
-      result.findings.push_back({Finding::Kind::solver_missing, "", solver,
+      result.findings.push_back({Change::Kind::solver_missing, "", solver,
                                  "the baseline has this solver, the study does not run it"});
   for (const std::string& solver : new_solvers)
     if (!old_solvers.count(solver))
-      result.findings.push_back({Finding::Kind::solver_new, "", solver,
+      result.findings.push_back({Change::Kind::solver_new, "", solver,
                                  "the study runs this solver, which has no baseline"});
   for (const BaselineRow& row : now)
     if (old_solvers.count(row.solver())) compare_case(row, before, now, tolerances, result);
   for (const BaselineRow& row : before)
     if (new_solvers.count(row.solver()) && !find_row(now, row.id) && !renamed(row, now, before))
-      result.findings.push_back({Finding::Kind::case_missing, row.id, row.solver(),
+      result.findings.push_back({Change::Kind::case_missing, row.id, row.solver(),
                                  "missing: the study does not have this case of the baseline"});
   std::stable_sort(result.findings.begin(), result.findings.end(),
-                   [](const Finding& a, const Finding& b) {
+                   [](const Change& a, const Change& b) {
                      return std::tie(a.solver, a.id) < std::tie(b.solver, b.id);
                    });
   return result;

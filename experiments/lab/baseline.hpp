@@ -52,7 +52,7 @@ class Tolerances {
 };
 
 /// One difference between a baseline and what was run.
-struct Finding {
+struct Change {
   enum class Kind {
     // the same question, another answer
     value_moved,
@@ -77,9 +77,9 @@ struct Finding {
 };
 
 struct Comparison {
-  std::vector<Finding> findings;  ///< sorted by solver and id
-  std::size_t cases = 0;          ///< compared
-  std::size_t values = 0;         ///< compared, statuses apart
+  std::vector<Change> findings;  ///< sorted by solver and id
+  std::size_t cases = 0;         ///< compared
+  std::size_t values = 0;        ///< compared, statuses apart
 
   bool regressed() const;
   bool mismatched() const;

@@ -17,16 +17,15 @@ Interval scaled(const Interval& i, double factor) {
   return {i.low * factor, i.mid * factor, i.high * factor};
 }
 
-bool sound(const BenchedCase& c) {
-  return c.timing.failure.empty() && !c.timing.samples.empty() &&
-         (c.record.status.kind == Status::Kind::ok ||
-          c.record.status.kind == Status::Kind::unsettled);
-}
-
 nlohmann::json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
 Interval interval_of(const nlohmann::json& j) { return {j.at(0), j.at(1), j.at(2)}; }
 
 }  // namespace
+
+bool BenchedCase::sound() const {
+  return timing.failure.empty() && !timing.samples.empty() &&
+         (record.status.kind == Status::Kind::ok || record.status.kind == Status::Kind::unsettled);
+}
 
 Interval BenchedCase::cost() const {
   return scaled(bootstrap_median(timing.samples), 1 / record.dt);
@@ -38,7 +37,7 @@ std::vector<Offer> SceneBench::offers(const std::string& metric) const {
     const auto value = c.record.values.find(metric);
     const double error = value == c.record.values.end() ? std::nan("") : value->second;
     const std::string setting = c.record.spec.solver;
-    offers.push_back({c.record.solver, setting, c.cost(), error, !sound(c)});
+    offers.push_back({c.record.solver, setting, c.cost(), error, !c.sound()});
   }
   return offers;
 }

@@ -18,6 +18,8 @@ struct BenchedCase {
 
   /// CPU seconds per simulated second, with its 95 % interval over the samples.
   Interval cost() const;
+  /// Whether cost and errors count: no failure, no explosion, at least one sample.
+  bool sound() const;
 };
 
 /// All settings of all solvers on one scene, timed in one interleaved session.

@@ -12,9 +12,9 @@ namespace {
 /// Values looked at between the bracket and the rung above it.
 constexpr int kLooksAbove = 4;
 
-class Search {
+class BorderSearch {
  public:
-  Search(const SearchRange& range, const Trial& trial) : range_(range), trial_(trial) {}
+  BorderSearch(const SearchRange& range, const Trial& trial) : range_(range), trial_(trial) {}
 
   Frontier run() {
     if (answers(rungs())) {
@@ -140,7 +140,7 @@ const Probed* Frontier::at(double value) const {
 }
 
 Frontier find_frontier(const SearchRange& range, const Trial& trial) {
-  return Search(range, trial).run();
+  return BorderSearch(range, trial).run();
 }
 
 }  // namespace taut

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <csignal>
 #include <list>
+#include <thread>
+
+#include "core/model/input_error.hpp"
 
 namespace taut {
 
@@ -134,7 +137,30 @@ class Campaign {
   Tally tally_;
 };
 
+Record wait_for(IsolatedCase& running) {
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
+    if (const auto record = running.poll()) return *record;
+}
+
 }  // namespace
+
+Record run_stored(const Case& one, const Store& store, const Limits& limits) {
+  if (const auto record = store.find(one)) return *record;
+  IsolatedCase running(one, store.stage(one.key), limits);
+  const Record record = wait_for(running);
+  if (store.commit(running.folder(), record) == Store::Commit::conflict)
+    throw InputError(one.id + ": another result than the one stored; see " +
+                     (store.root() / "conflicts").string());
+  return record;
+}
+
+Record run_again(const Case& one, const Store& store, const Limits& limits) {
+  const std::filesystem::path folder = store.stage(one.key);
+  IsolatedCase running(one, folder, limits);
+  const Record record = wait_for(running);
+  std::filesystem::remove_all(folder);
+  return record;
+}
 
 Tally run_cases(const std::vector<Case>& cases, const Store& store, const Session& session,
                 const CampaignOptions& options) {

@@ -40,6 +40,13 @@ struct CampaignOptions {
 /// lost.
 Tally run_cases(const std::vector<Case>&, const Store&, const Session&, const CampaignOptions&);
 
+/// The stored record of a case, or the one that a process of its own gives and that is stored now.
+/// Throws InputError if the result differs from one that is stored.
+Record run_stored(const Case&, const Store&, const Limits& = {});
+
+/// The same without looking into the store and without leaving anything there.
+Record run_again(const Case&, const Store&, const Limits& = {});
+
 /// What the store knows of a study.
 struct StudyRecords {
   Study study;

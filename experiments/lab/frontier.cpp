@@ -5,6 +5,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/section.hpp"
+#include "core/model/shortest.hpp"
 #include "experiments/lab/linear_stability.hpp"
 
 namespace taut {

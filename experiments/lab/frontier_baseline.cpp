@@ -1,6 +1,7 @@
 #include "experiments/lab/frontier_baseline.hpp"
 
 #include "core/model/section.hpp"
+#include "core/model/shortest.hpp"
 #include "experiments/lab/digest.hpp"
 
 namespace taut {

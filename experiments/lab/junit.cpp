@@ -54,7 +54,7 @@ std::string junit(const std::string& study, const Baseline& now, const Compariso
   std::map<std::string, std::string> failures;  // by test case
   std::set<std::string> names;
   for (const BaselineRow& row : now) names.insert(row.id);
-  for (const Finding& finding : comparison.findings) {
+  for (const Change& finding : comparison.findings) {
     if (!finding.is_regression() && !finding.is_mismatch()) continue;
     const std::string name = finding.id.empty() ? "solver " + finding.solver : finding.id;
     names.insert(name);

@@ -1,18 +1,19 @@
 #include "experiments/lab/linear_stability.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <vector>
+
+#include "core/model/index.hpp"
+#include "core/reference/modes.hpp"
 
 namespace taut {
 
 namespace {
 
 constexpr std::size_t kMostLinks = 128;  ///< of a dense sweep: its eigenvalues cost n^3
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// A link between two particles as linear theory sees it.
 struct Bar {
@@ -54,9 +55,7 @@ double largest_eigenvalue(Eigen::Index n, const Apply& apply) {
     if (off[size - 1] < 1e-13 * std::abs(diagonal[0])) break;
     x = y / off[size - 1];
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(diagonal.head(size), off.head(size - 1), Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[size - 1];
+  return reference::tridiagonal_eigenvalues(diagonal.head(size), off.head(size - 1))[size - 1];
 }
 
 /// Largest eigenvalue of M^-1/2 (stiff K + damped C) M^-1/2, C = drag times unity on free
@@ -131,9 +130,8 @@ Eigen::MatrixXd sweep(const std::vector<Bar>& links, const std::vector<double>& 
 
 /// Largest |z| of z^2 - (1 + q) mu z + q mu over the eigenvalues mu of G^k.
 double growth(const Eigen::MatrixXd& g, int k, double q) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> modes(g, false);
   double most = 0;
-  for (const std::complex<double>& one : modes.eigenvalues()) {
+  for (const std::complex<double>& one : reference::eigenvalues(g)) {
     const std::complex<double> mu = std::pow(one, k), half = (1 + q) * mu / 2.0;
     const std::complex<double> root = std::sqrt(half * half - q * mu);
     most = std::max({most, std::abs(half + root), std::abs(half - root)});

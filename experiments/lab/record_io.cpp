@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
 #include "experiments/lab/digest.hpp"
 
 namespace taut {
@@ -38,9 +39,7 @@ json result_json(const Record& r) {
 }
 
 void append(std::string& text, double value) {
-  if (std::isnan(value)) return;
-  char buffer[32];
-  text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+  if (!std::isnan(value)) text += shortest(value);
 }
 
 double number(std::string_view field) {

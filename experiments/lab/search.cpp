@@ -91,9 +91,9 @@ class Knobs {
 
 using Values = std::map<std::string, std::string>;
 
-class Search {
+class KnobSearch {
  public:
-  Search(const std::string& solver, const Wish& wish, const Try& run, std::vector<Offer> known)
+  KnobSearch(const std::string& solver, const Wish& wish, const Try& run, std::vector<Offer> known)
       : solver_(solver), wish_(wish), run_(run), knobs_(solver), known_(std::move(known)) {}
 
   std::vector<Offer> run() {
@@ -313,7 +313,7 @@ bool Wish::prefers(const Offer& a, const Offer& b) const {
 
 std::vector<Offer> search_settings(const std::string& solver, const Wish& wish, const Try& run,
                                    std::vector<Offer> known) {
-  return Search(solver, wish, run, std::move(known)).run();
+  return KnobSearch(solver, wish, run, std::move(known)).run();
 }
 
 }  // namespace taut

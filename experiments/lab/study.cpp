@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/model/section.hpp"
+#include "core/model/shortest.hpp"
 #include "experiments/lab/data.hpp"
 
 namespace taut {

@@ -10,13 +10,16 @@
 #include <cmath>
 #include <csignal>
 #include <ctime>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/data.hpp"
 
 extern char** environ;
 
@@ -212,6 +215,27 @@ Lane open_lane(const CaseSpec& spec, const BenchOptions& options) {
 }
 
 }  // namespace
+
+std::filesystem::path program_of(const CaseSpec& spec) {
+  const SolverChoice choice = parse_solver(spec.solver);
+  return sibling_program(choice.entry->program ? std::string(choice.entry->program(choice.params))
+                                               : "");
+}
+
+int steps_done(const Record& record) {
+  return record.status.step > 0 ? record.status.step : record.steps;
+}
+
+std::string machine_name() {
+  std::ifstream info("/proc/cpuinfo");
+  std::string line, model = "unknown processor";
+  while (std::getline(info, line))
+    if (line.starts_with("model name")) {
+      model = line.substr(line.find(':') + 2);
+      break;
+    }
+  return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores";
+}
 
 Interval Bench::ratio(std::size_t i, std::size_t j) const {
   return interleaved_ratio(timings[i].samples, timings[j].samples);

@@ -71,6 +71,15 @@ class TimingWorker {
 /// The worker's side: reads requests from stdin and answers on stdout until the input ends.
 int serve_timing(const Scene&, const SolverChoice&);
 
+/// Which program can time the case: this one, or its sibling with the other build of Bullet.
+std::filesystem::path program_of(const CaseSpec&);
+
+/// Steps that say something about cost: all, or those before an explosion.
+int steps_done(const Record&);
+
+/// "Intel ... 2.80GHz, 2 cores".
+std::string machine_name();
+
 /// What was measured of one case.
 struct Timing {
   CaseSpec spec;

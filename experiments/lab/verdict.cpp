@@ -5,11 +5,11 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/model/index.hpp"
+
 namespace taut {
 
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// The cloth as seen from its pins: breadth first along the links.
 struct Hanging {

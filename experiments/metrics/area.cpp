@@ -1,6 +1,6 @@
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::area {
 
 namespace {
 
@@ -64,13 +64,13 @@ class Area final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::area
 
 TAUT_METRIC(area) = {.name = "area",
                      .summary = "Area strain: shear collapse shows here though no link is strained",
                      .source = "A/A0 - 1 of each face",
-                     .values = taut::kValues,
+                     .values = taut::metric::area::kValues,
                      .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
                        if (scene.mesh.triangles.empty()) return nullptr;
-                       return std::make_unique<taut::Area>(scene);
+                       return std::make_unique<taut::metric::area::Area>(scene);
                      }};

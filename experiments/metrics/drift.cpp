@@ -1,6 +1,6 @@
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::drift {
 
 namespace {
 
@@ -38,12 +38,12 @@ class Drift final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::drift
 
 TAUT_METRIC(drift) = {.name = "drift",
                       .summary = "How far the centre of mass moves",
                       .source = "sum of m x over sum of m",
-                      .values = taut::kValues,
+                      .values = taut::metric::drift::kValues,
                       .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-                        return std::make_unique<taut::Drift>(scene);
+                        return std::make_unique<taut::metric::drift::Drift>(scene);
                       }};

@@ -1,6 +1,6 @@
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::energy {
 
 namespace {
 
@@ -55,13 +55,13 @@ class Energy final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::energy
 
 TAUT_METRIC(energy) = {.name = "energy",
                        .summary = "Mechanical energy; relaxation dissipates it legitimately",
                        .source = "sum of m v^2/2 - m g . (x - x_start) over vertices",
-                       .values = taut::kValues,
+                       .values = taut::metric::energy::kValues,
                        .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
                          if (scene.gravity.isZero(0)) return nullptr;
-                         return std::make_unique<taut::Energy>(scene);
+                         return std::make_unique<taut::metric::energy::Energy>(scene);
                        }};

@@ -1,7 +1,7 @@
 #include "core/model/triangle.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::faces {
 
 namespace {
 
@@ -109,13 +109,13 @@ class Faces final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::faces
 
 TAUT_METRIC(faces) = {
     .name = "faces",
     .summary = "How deep the faces, not just the vertices, are in balls and boxes",
     .source = "exact depth of a triangle in a ball and in a box",
-    .values = taut::kValues,
+    .values = taut::metric::faces::kValues,
     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
       const auto solid = [](const taut::Collider& c) {
         return !std::holds_alternative<taut::Plane>(c.shape);
@@ -123,5 +123,5 @@ TAUT_METRIC(faces) = {
       if (scene.mesh.triangles.empty() ||
           std::none_of(scene.colliders.begin(), scene.colliders.end(), solid))
         return nullptr;
-      return std::make_unique<taut::Faces>(scene);
+      return std::make_unique<taut::metric::faces::Faces>(scene);
     }};

@@ -1,7 +1,7 @@
 #include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::jitter {
 
 namespace {
 
@@ -37,14 +37,14 @@ class Jitter final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::jitter
 
 TAUT_METRIC(jitter) = {
     .name = "jitter",
     .summary = "Motion that is left in the last second: noise, if it should rest",
     .source = "RMS speed",
-    .values = taut::kValues,
+    .values = taut::metric::jitter::kValues,
     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
       if (taut::free_vertices(scene).empty()) return nullptr;
-      return std::make_unique<taut::Jitter>(scene);
+      return std::make_unique<taut::metric::jitter::Jitter>(scene);
     }};

@@ -3,7 +3,7 @@
 #include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::penetration {
 
 namespace {
 
@@ -126,14 +126,14 @@ class Penetration final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::penetration
 
 TAUT_METRIC(penetration) = {
     .name = "penetration",
     .summary = "How deep vertices are in colliders after the last pass of the step",
     .source = "max(0, -signed distance), exact for plane, ball and box",
-    .values = taut::kValues,
+    .values = taut::metric::penetration::kValues,
     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
       if (scene.colliders.empty() || taut::free_vertices(scene).empty()) return nullptr;
-      return std::make_unique<taut::Penetration>(scene);
+      return std::make_unique<taut::metric::penetration::Penetration>(scene);
     }};

@@ -1,7 +1,7 @@
 #include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::popping {
 
 namespace {
 
@@ -40,14 +40,14 @@ class Popping final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::popping
 
 TAUT_METRIC(popping) = {
     .name = "popping",
     .summary = "Sudden jumps of single vertices, as the report's halt makes them",
     .source = "second difference of the positions, beyond gravity's own",
-    .values = taut::kValues,
+    .values = taut::metric::popping::kValues,
     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
       if (taut::free_vertices(scene).empty()) return nullptr;
-      return std::make_unique<taut::Popping>(scene);
+      return std::make_unique<taut::metric::popping::Popping>(scene);
     }};

@@ -1,7 +1,7 @@
 #include "core/model/crossings.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::self_intersection {
 
 namespace {
 
@@ -51,14 +51,14 @@ class SelfIntersection final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::self_intersection
 
 TAUT_METRIC(self_intersection) = {
     .name = "self_intersection",
     .summary = "Whether the cloth passes through itself",
     .source = "triangle pairs by orientation tests",
-    .values = taut::kValues,
+    .values = taut::metric::self_intersection::kValues,
     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
       if (!scene.self_collision) return nullptr;
-      return std::make_unique<taut::SelfIntersection>(scene);
+      return std::make_unique<taut::metric::self_intersection::SelfIntersection>(scene);
     }};

@@ -1,7 +1,7 @@
 #include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::settle {
 
 namespace {
 
@@ -31,14 +31,14 @@ class Settle final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::settle
 
 TAUT_METRIC(settle) = {.name = "settle",
                        .summary = "When the cloth comes to rest",
                        .source = "compare 8 N^2 dt/(pi^2 k) of k Gauss-Seidel sweeps on N links",
-                       .values = taut::kValues,
+                       .values = taut::metric::settle::kValues,
                        .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
                          if (scene.gravity.isZero(0) || taut::free_vertices(scene).empty())
                            return nullptr;
-                         return std::make_unique<taut::Settle>(scene);
+                         return std::make_unique<taut::metric::settle::Settle>(scene);
                        }};

@@ -2,7 +2,7 @@
 
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::stretch {
 
 namespace {
 
@@ -152,14 +152,15 @@ std::vector<Link> movable_links(const Scene& scene) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::stretch
 
 TAUT_METRIC(stretch) = {.name = "stretch",
                         .summary = "How far the links are from their rest lengths, by family",
                         .source = "engineering strain (d - r)/r; links between two pins left out",
-                        .values = taut::kValues,
+                        .values = taut::metric::stretch::kValues,
                         .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-                          auto links = taut::movable_links(scene);
+                          auto links = taut::metric::stretch::movable_links(scene);
                           if (links.empty()) return nullptr;
-                          return std::make_unique<taut::Stretch>(scene, std::move(links));
+                          return std::make_unique<taut::metric::stretch::Stretch>(scene,
+                                                                                  std::move(links));
                         }};

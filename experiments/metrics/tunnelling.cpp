@@ -3,7 +3,7 @@
 #include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut {
+namespace taut::metric::tunnelling {
 
 namespace {
 
@@ -165,13 +165,13 @@ class Tunnelling final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metric::tunnelling
 
 TAUT_METRIC(tunnelling) = {
     .name = "tunnelling",
     .summary = "Vertices that pass through a ball or box",
     .source = "swept side labels in the collider's frame; a plane's solid has no other side",
-    .values = taut::kValues,
+    .values = taut::metric::tunnelling::kValues,
     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
       const auto solid = [](const taut::Collider& c) {
         return !std::holds_alternative<taut::Plane>(c.shape);
@@ -179,5 +179,5 @@ TAUT_METRIC(tunnelling) = {
       if (std::none_of(scene.colliders.begin(), scene.colliders.end(), solid) ||
           taut::free_vertices(scene).empty())
         return nullptr;
-      return std::make_unique<taut::Tunnelling>(scene);
+      return std::make_unique<taut::metric::tunnelling::Tunnelling>(scene);
     }};

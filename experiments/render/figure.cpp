@@ -8,8 +8,7 @@ namespace taut {
 
 namespace {
 
-constexpr Rgb8 kInk = rgb(0x1B1F27), kMuted = rgb(0x5A6474), kRule = rgb(0xDDE0E6),
-               kAlarm = rgb(0xB3261E);
+constexpr Rgb8 kAlarm = rgb(0xB3261E);
 
 std::string formatted(const char* format, double value) {
   char text[48];
@@ -140,7 +139,7 @@ Image compose(const Studio& studio, const Layout& layout, double t) {
 }
 
 void draw_colour_bar(Canvas& canvas, const ColourScale& scale, const BarPlace& place, double unit) {
-  const auto [x, y, width, height] = place;
+  const double x = place.x, y = place.y, width = place.width, height = place.height;
   const int columns = static_cast<int>(width);
   for (int k = 0; k < columns; ++k)
     canvas.fill(std::floor(x) + k, y, 1, height, scale.map().at(1.0 * k / (columns - 1)));

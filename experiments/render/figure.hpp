@@ -5,6 +5,9 @@
 
 namespace taut {
 
+/// Colours of what is written and ruled on a page.
+constexpr Rgb8 kInk = rgb(0x1B1F27), kMuted = rgb(0x5A6474), kRule = rgb(0xDDE0E6);
+
 /// Where the parts of a picture go; all in pixels.
 struct Layout {
   int width = 1920, height = 1080;

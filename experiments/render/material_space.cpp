@@ -30,7 +30,7 @@ Image Studio::material_space(std::size_t index, double t, int longest_side) cons
     for (int x = 0; x < image.width(); ++x) {
       const auto [i, a] = locate(x, image.width(), grid.nu);
       const auto [j, b] = locate(y, image.height(), grid.nv);
-      const auto at = [&](int di, int dj) {
+      const auto at = [&, i = i, j = j](int di, int dj) {
         return values[static_cast<std::size_t>(
             grid.index(std::min(i + di, grid.nu - 1), std::min(j + dj, grid.nv - 1)))];
       };

@@ -51,7 +51,7 @@ int export_obj(const Scene& scene, const Take& take, const std::filesystem::path
     std::string out = "# " + scene.name + ", " + take.trajectory.header.solver + "\n";
     line(out, "# t = %.9g s, metres\n", frame.t);
     for (const Vec3& p : frame.state.x) line(out, "v %.9g %.9g %.9g\n", p.x(), p.y(), p.z());
-    std::array<char, 16> number{};
+    std::array<char, 24> number{};
     std::snprintf(number.data(), number.size(), "_%05d.obj", k);
     write_file(folder / (prefix + number.data()), out + shared);
     if (progress) progress(k + 1, total);

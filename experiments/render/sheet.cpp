@@ -6,7 +6,6 @@
 namespace taut {
 
 Image compose_sheet(const Studio& studio, const std::vector<double>& times) {
-  constexpr Rgb8 kInk = rgb(0x1B1F27), kMuted = rgb(0x5A6474), kPage = rgb(0xFFFFFF);
   const int wide = studio.options().width, high = studio.options().height, gap = 6;
   const double u = high / 400.0;
   const Rgb8 stage = studio.options().theme.top;
@@ -14,7 +13,7 @@ Image compose_sheet(const Studio& studio, const std::vector<double>& times) {
   const int head = static_cast<int>(64 * u), foot = static_cast<int>(96 * u);
   const int columns = static_cast<int>(studio.takes().size());
   const int rows = static_cast<int>(times.size());
-  Image picture(columns * (wide + gap) - gap, head + rows * (high + gap) + foot, kPage);
+  Image picture(columns * (wide + gap) - gap, head + rows * (high + gap) + foot, rgb(0xFFFFFF));
   Canvas canvas(picture);
   for (int column = 0; column < columns; ++column) {
     const auto index = static_cast<std::size_t>(column);

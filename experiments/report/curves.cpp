@@ -44,6 +44,7 @@ std::map<std::string, std::string> settings(const Record& record, const std::str
       if (const auto equals = text.find('='); equals != std::string::npos)
         all[text.substr(0, equals)] = text.substr(equals + 1);
   all.erase(along);
+  if (along == "vertices") all.erase("cloth.grid");
   if (along == "setting")
     for (const char* knob : kKnobs) all.erase(knob);
   return all;

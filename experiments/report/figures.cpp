@@ -43,7 +43,8 @@ Figure make_figure(FigureSpec spec, const FigureData& data, const fs::path& out_
   if (spec.x.empty()) spec.x = entry.x;
   if (spec.y.empty()) spec.y = entry.y;
   if (spec.along.empty())
-    spec.along = spec.x == "dt" || spec.x == "substeps" ? spec.x : entry.along;
+    spec.along =
+        spec.x == "dt" || spec.x == "substeps" || spec.x == "vertices" ? spec.x : entry.along;
   if (spec.file.empty()) spec.file = slug(spec.kind + "-" + spec.y + "-over-" + spec.x);
   Drawing drawing = entry.draw(spec, data);
 

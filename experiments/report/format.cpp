@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
+
+#include "core/model/shortest.hpp"
 
 namespace taut::report {
 
@@ -34,12 +35,7 @@ std::string significant(double value, int digits) {
   return (value < 0 ? "−" : "") + text;
 }
 
-std::string exact(double value) {
-  if (std::isnan(value)) return "";
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
+std::string exact(double value) { return std::isnan(value) ? "" : shortest(value); }
 
 std::string ratio(double value) { return significant(value, 2); }
 

@@ -17,9 +17,6 @@ namespace taut {
 namespace {
 
 using reference::Sweep;
-const char* const kStatic = "reference:static";
-const char* const kShake = "reference:shake";
-
 Scene hanging(int n, double mass, double dt, double g = kG) {
   Scene s = bare::chain(n, 1, mass);
   s.gravity = {0, -g, 0};

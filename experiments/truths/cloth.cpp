@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/model/index.hpp"
 #include "core/reference/catenary.hpp"
 #include "core/reference/relaxation.hpp"
 #include "core/reference/static_equilibrium.hpp"
@@ -11,10 +12,6 @@
 namespace taut {
 
 namespace {
-
-const char* const kStatic = "reference:static";
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// A sheet of n x n vertices and unit sides whose upper corners are `span` apart.
 Scene two_corners(int n, double span, const LinkChoice& links = {}) {

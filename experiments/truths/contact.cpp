@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/model/angle.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "experiments/truths/fit.hpp"
 #include "experiments/truths/probe.hpp"
@@ -9,8 +10,6 @@
 namespace taut {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Two particles far apart at `height` above a plane through the origin with this normal.
 Scene above_plane(double height, const Vec3& normal, double friction) {

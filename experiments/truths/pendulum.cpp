@@ -1,10 +1,11 @@
 // Section 4, few links: pendulum, stick, double pendulum.
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
+#include "core/model/angle.hpp"
 #include "core/reference/closed_forms.hpp"
+#include "core/reference/modes.hpp"
 #include "core/reference/relaxation.hpp"
 #include "core/reference/shake.hpp"
 #include "experiments/truths/fit.hpp"
@@ -13,9 +14,6 @@
 namespace taut {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-const char* const kShake = "reference:shake";
 
 Scene pendulum(double amplitude, double dt) {
   Scene s = bare::chain(1, 1, 1, {std::sin(amplitude), -std::cos(amplitude), 0});
@@ -142,14 +140,14 @@ void chain_swings(Ledger& ledger) {
   const int n = 8, k = 1500;
   const double dt = 1.0 / 64, a = kG * dt * dt;
   const auto w = reference::hanging_chain_frequencies(n, 1, kG);
-  const Eigen::EigenSolver<Eigen::MatrixXd> modes(reference::transverse_sweeps(n, k, a, 1.0 / n));
+  const reference::Modes modes = reference::modes(reference::transverse_sweeps(n, k, a, 1.0 / n));
   for (int mode = 0; mode < 3; ++mode) {
     const double implicit =
         1 / (1 + w[static_cast<std::size_t>(mode)] * w[static_cast<std::size_t>(mode)] * dt * dt);
     Eigen::Index nearest = 0;
-    (modes.eigenvalues().array() - implicit).abs().minCoeff(&nearest);
-    const double mu = modes.eigenvalues()[nearest].real();
-    const Eigen::VectorXd shape = modes.eigenvectors().col(nearest).real();
+    (modes.eigenvalues.array() - implicit).abs().minCoeff(&nearest);
+    const double mu = modes.eigenvalues[nearest].real();
+    const Eigen::VectorXd shape = modes.eigenvectors.col(nearest).real();
     Scene s = bare::chain(n, 1, 0.1);
     s.gravity = {0, -kG, 0};
     for (int i = 1; i <= n; ++i)

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 
 namespace taut {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 SolverChoice choose(std::string_view solver) {
   SolverChoice choice = parse_solver(solver);

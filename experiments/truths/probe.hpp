@@ -33,6 +33,9 @@ class Probe {
 /// for but cannot, the ledger gets "not claimed" with the reasons.
 bool claims(Ledger&, std::string_view solver, const Scene&);
 
+constexpr const char* kStatic = "reference:static";  ///< core/reference/static_equilibrium
+constexpr const char* kShake = "reference:shake";    ///< core/reference/shake
+
 /// "jakobsen:iterations=k,projection=exact,precision=double" and its rivals: the settings that the
 /// truths hold to rounding.
 std::string jakobsen(int iterations, std::string_view projection = "exact",

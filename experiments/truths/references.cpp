@@ -10,9 +10,6 @@ namespace taut {
 
 namespace {
 
-const char* const kStatic = "reference:static";
-const char* const kShake = "reference:shake";
-
 /// A draped sheet at its equilibrium, turned about its pin line and let go.
 Scene swung(int n, double degrees) {
   Scene s = bare::sheet(n, n);

@@ -1,8 +1,8 @@
 // Section 5: what relaxation does to Verlet's stability.
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
+#include "core/reference/modes.hpp"
 #include "core/reference/relaxation.hpp"
 #include "experiments/truths/fit.hpp"
 #include "experiments/truths/probe.hpp"
@@ -41,14 +41,14 @@ void sweep_eigenvalue(Ledger& ledger) {
   for (const bool jacobi : {false, true}) {
     const std::string solver = with(jakobsen(1), jacobi ? "method=jacobi" : "");
     if (!claims(ledger, solver, bare::chain(n, n, 1))) continue;
-    const Eigen::EigenSolver<Eigen::MatrixXd> modes(
-        reference::chain_sweep(n, jacobi ? Sweep::jacobi : Sweep::gauss_seidel));
+    const reference::Modes modes =
+        reference::modes(reference::chain_sweep(n, jacobi ? Sweep::jacobi : Sweep::gauss_seidel));
     double worst = 0;
     int count = 0;
     for (int j = 0; j < n; ++j) {
-      const double mu = modes.eigenvalues()[j].real();
-      if (std::abs(modes.eigenvalues()[j].imag()) > 1e-9 || std::abs(mu) < 0.01) continue;
-      const Eigen::VectorXd mode = modes.eigenvectors().col(j).real();
+      const double mu = modes.eigenvalues[j].real();
+      if (std::abs(modes.eigenvalues[j].imag()) > 1e-9 || std::abs(mu) < 0.01) continue;
+      const Eigen::VectorXd mode = modes.eigenvectors.col(j).real();
       const auto [p, q] = measured_recurrence(
           strained_chain(1e-3 * mode / mode.cwiseAbs().maxCoeff()), solver, 0, 7);
       worst = std::max({worst, std::abs(p - 2 * mu), std::abs(q + mu)});
@@ -87,8 +87,7 @@ void gauss_seidel_decay(Ledger& ledger) {
   }
   for (const int links : {2, 7, 16, 64})
     for (const Sweep sweep : {Sweep::gauss_seidel, Sweep::jacobi}) {
-      const double radius =
-          reference::chain_sweep(links, sweep).eigenvalues().cwiseAbs().maxCoeff();
+      const double radius = reference::spectral_radius(reference::chain_sweep(links, sweep));
       ledger.equal("closed form",
                    std::string(sweep == Sweep::jacobi ? "rho_J = cos" : "rho_GS = cos^2") +
                        "(pi/2N), N = " + std::to_string(links),

@@ -8,17 +8,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <thread>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/advice.hpp"
+#include "experiments/lab/campaign.hpp"
 #include "experiments/lab/data.hpp"
-#include "experiments/lab/isolate.hpp"
 #include "experiments/lab/store.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::advise {
 
 namespace {
 
@@ -85,12 +84,6 @@ Wish wish_of(const Options& options) {
   return {{}, options.budget * 1e-3 / kFrame};
 }
 
-std::filesystem::path program_of(const CaseSpec& spec) {
-  const SolverChoice choice = parse_solver(spec.solver);
-  return sibling_program(choice.entry->program ? std::string(choice.entry->program(choice.params))
-                                               : "");
-}
-
 /// Cases of one scene, run in processes of their own and kept in the store.
 class Runner {
  public:
@@ -102,39 +95,14 @@ class Runner {
     return maker_.make({options_.scene, options_.settings, parse_solver(solver).canonical()});
   }
 
-  Record stored(const Case& one) {
-    if (const auto record = store_.find(one)) return *record;
-    IsolatedCase running(one, store_.stage(one.key), {});
-    const Record record = finish(running);
-    if (store_.commit(running.folder(), record) == Store::Commit::conflict)
-      throw InputError(one.id + ": another result than the one stored; see " +
-                       (store_.root() / "conflicts").string());
-    return record;
-  }
-
-  /// Once more, whatever is stored.
-  Record again(const Case& one) {
-    const std::filesystem::path folder = store_.stage(one.key);
-    IsolatedCase running(one, folder, {});
-    const Record record = finish(running);
-    std::filesystem::remove_all(folder);
-    return record;
-  }
+  Record stored(const Case& one) { return run_stored(one, store_); }
+  Record again(const Case& one) { return run_again(one, store_); }
 
  private:
-  static Record finish(IsolatedCase& running) {
-    for (;; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
-      if (const auto record = running.poll()) return *record;
-  }
-
   const Options& options_;
   Store store_;
   CaseMaker maker_;
 };
-
-int steps_of(const Record& record) {
-  return record.status.step > 0 ? record.status.step : record.steps;
-}
 
 Offer quick_offer(const Record& record, const std::string& metric) {
   const auto value = record.values.find(metric);
@@ -147,7 +115,7 @@ Offer quick_offer(const Record& record, const std::string& metric) {
               !ok};
   try {
     TimingWorker worker(program_of(record.spec), record.spec);
-    const double cost = worker.rehearse(std::min(kQuickSteps, steps_of(record))).cpu / record.dt;
+    const double cost = worker.rehearse(std::min(kQuickSteps, steps_done(record))).cpu / record.dt;
     offer.cost = {cost, cost, cost};
   } catch (const std::runtime_error&) {
     offer.failed = true;
@@ -203,7 +171,7 @@ SceneBench time_them(const std::vector<Record>& records, const Options& options)
   const auto steps = [&](const CaseSpec& spec) {
     const auto at = std::find_if(records.begin(), records.end(),
                                  [&](const Record& r) { return r.spec.solver == spec.solver; });
-    return steps_of(*at);
+    return steps_done(*at);
   };
   Bench bench = run_bench(specs, {.rounds = options.rounds,
                                   .seconds = options.seconds,
@@ -362,34 +330,34 @@ int run(Options options) {
   return answer.same_bits ? kPass : kConflict;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto o = std::make_shared<Options>();
-  app.add_option("SCENE", o->scene, "Name or path of a scene")->required();
-  app.add_option("--error", o->error, "Reach this error (0.01 or 1%) at the least cost");
-  app.add_option("--budget", o->budget,
-                 "Reach the least error within this CPU time per frame of 1/60 s [ms]")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--metric", o->metric, "What the error is (default: stretch.rms)");
-  app.add_option("--solver", o->solvers,
-                 "Only this solver; what its text fixes is not searched; repeat it (default: all)");
-  app.add_option("--set", o->settings,
-                 "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
-  app.add_option("--patience", o->patience, "Search no longer than this [s] (default: 120)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--rounds", o->rounds, "Rounds of the final timing (default: 8)")
-      ->check(CLI::Range(2, 1000));
-  app.add_option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--tolerance", o->tolerance,
-                 "Smaller relative differences are none (default: 0.05)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--out", o->out, "Results folder (default: " + o->out + ")");
-  app.add_flag("--json", o->json, "The answer and all that was tried, as JSON");
+  arguments.option("SCENE", o->scene, "Name or path of a scene").required();
+  arguments.option("--error", o->error, "Reach this error (0.01 or 1%) at the least cost");
+  arguments
+      .option("--budget", o->budget,
+              "Reach the least error within this CPU time per frame of 1/60 s [ms]")
+      .positive();
+  arguments.option("--metric", o->metric, "What the error is (default: stretch.rms)");
+  arguments.option(
+      "--solver", o->solvers,
+      "Only this solver; what its text fixes is not searched; repeat it (default: all)");
+  arguments.option("--set", o->settings,
+                   "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
+  arguments.option("--patience", o->patience, "Search no longer than this [s] (default: 120)")
+      .positive();
+  arguments.option("--rounds", o->rounds, "Rounds of the final timing (default: 8)").range(2, 1000);
+  arguments.option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)").positive();
+  arguments
+      .option("--tolerance", o->tolerance, "Smaller relative differences are none (default: 0.05)")
+      .positive();
+  arguments.option("--out", o->out, "Results folder (default: " + o->out + ")");
+  arguments.flag("--json", o->json, "The answer and all that was tried, as JSON");
   return [o] { return run(*o); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::advise
 
 TAUT_VERB(advise) = {
     .name = "advise",
@@ -399,4 +367,4 @@ TAUT_VERB(advise) = {
     .example =
         "taut advise hang --error 1%\n  taut advise ball --budget 4 --metric "
         "stretch.max\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json",
-    .bind = taut::bind};
+    .bind = taut::verb::advise::bind};

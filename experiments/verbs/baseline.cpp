@@ -7,7 +7,7 @@
 #include "experiments/verbs/baseline_study.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::baseline {
 
 namespace {
 
@@ -43,7 +43,7 @@ void note_reason(const BaselineStudy& study, const std::string& why, const Compa
   std::ofstream out(file, std::ios::app);
   if (fresh) out << "# Why the baseline of " << study.name << " is what it is, oldest first\n\n";
   std::set<std::string> rows;
-  for (const Finding& finding : changes.findings) rows.insert(finding.id);
+  for (const Change& finding : changes.findings) rows.insert(finding.id);
   out << "- " << why << " (" << (study.before.empty() ? study.now.size() : rows.size())
       << " cases)\n";
   std::ofstream(study.folder / kToolchainFile) << toolchain() << '\n';
@@ -70,26 +70,25 @@ int update(Options options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  app.require_subcommand(1);
+std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  CLI::App* updating = app.add_subcommand("update", "Takes what is different as the new baseline");
-  updating->add_option("--why", options->why, "The reason, kept beside the baseline")->required();
-  CLI::App* differing =
-      app.add_subcommand("diff", "Shows what an update would change (exit 1: something)");
-  for (CLI::App* sub : {updating, differing}) {
-    sub->add_option("STUDY", options->study, "Name or path")->required();
+  Arguments updating = arguments.subverb("update", "Takes what is different as the new baseline");
+  updating.option("--why", options->why, "The reason, kept beside the baseline").required();
+  Arguments differing =
+      arguments.subverb("diff", "Shows what an update would change (exit 1: something)");
+  for (Arguments* sub : {&updating, &differing}) {
+    sub->option("STUDY", options->study, "Name or path").required();
     options->bind(*sub);
   }
-  return [options, updating] { return updating->parsed() ? update(*options) : diff(*options); };
+  return [options, updating] { return updating.named() ? update(*options) : diff(*options); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::baseline
 
 TAUT_VERB(baseline) = {.name = "baseline",
                        .summary = "Updates a committed baseline, or shows how it differs",
                        .example =
                            "taut baseline update regression --why \"contacts are swept\"\n"
                            "  taut baseline diff regression",
-                       .bind = taut::bind};
+                       .bind = taut::verb::baseline::bind};

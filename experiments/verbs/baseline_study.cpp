@@ -72,13 +72,13 @@ const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
 
 }  // namespace
 
-void BaselineOptions::bind(CLI::App& app) {
+void BaselineOptions::bind(Arguments& arguments) {
   out = default_results();
   jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  app.add_option("--baselines", baselines, "Folder of the baselines (default: " + baselines + ")");
-  app.add_option("--out", out, "Results folder (default: " + out + ")");
-  app.add_option("-j,--jobs", jobs, "Cases at a time (default: one per core)")
-      ->check(CLI::Range(1, 1024));
+  arguments.option("--baselines", baselines,
+                   "Folder of the baselines (default: " + baselines + ")");
+  arguments.option("--out", out, "Results folder (default: " + out + ")");
+  arguments.option("-j,--jobs", jobs, "Cases at a time (default: one per core)").range(1, 1024);
 }
 
 Comparison BaselineStudy::compare() const {
@@ -121,7 +121,7 @@ BaselineStudy baseline_study(const std::string& name, const BaselineOptions& opt
 
 void print_findings(const BaselineStudy& study, const Comparison& comparison) {
   for (std::size_t i = 0; i < comparison.findings.size(); ++i) {
-    const Finding& finding = comparison.findings[i];
+    const Change& finding = comparison.findings[i];
     const std::string what = finding.id.empty() ? "solver " + finding.solver : finding.id;
     std::cout << study.name << ": " << what << ": " << finding.text << '\n';
     const bool last =

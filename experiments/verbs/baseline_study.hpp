@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "experiments/lab/baseline.hpp"
 #include "experiments/lab/campaign.hpp"
+#include "experiments/verbs/arguments.hpp"
 
 namespace taut {
 
@@ -17,7 +17,7 @@ struct BaselineOptions {
   std::string out;  ///< results folder
   int jobs = 1;
   bool repeat = false;  ///< run every case a second time, to mark those that differ as flaky
-  void bind(CLI::App&);
+  void bind(Arguments&);
 };
 
 /// A study beside its baseline.

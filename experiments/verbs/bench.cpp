@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <map>
@@ -18,7 +17,7 @@
 #include "experiments/verbs/progress.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::bench {
 
 namespace {
 
@@ -30,17 +29,6 @@ struct Options {
   double tolerance = 0.05;
   bool json = false, quiet = false, worker = false;
 };
-
-std::string machine() {
-  std::ifstream info("/proc/cpuinfo");
-  std::string line, model = "unknown processor";
-  while (std::getline(info, line))
-    if (line.starts_with("model name")) {
-      model = line.substr(line.find(':') + 2);
-      break;
-    }
-  return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores";
-}
 
 /// The physics of every case, from the store or run now.
 std::vector<Record> physics(const std::vector<Case>& cases, const Options& options) {
@@ -59,11 +47,6 @@ std::vector<Record> physics(const std::vector<Case>& cases, const Options& optio
   return records;
 }
 
-/// The steps that say something about cost: all, or those before an explosion.
-int steps_worth_timing(const Record& record) {
-  return record.status.step > 0 ? record.status.step : record.steps;
-}
-
 SceneBench bench_scene(const std::string& scene, const std::vector<Record>& records,
                        const Options& options) {
   std::vector<CaseSpec> specs;
@@ -77,18 +60,13 @@ SceneBench bench_scene(const std::string& scene, const std::vector<Record>& reco
     specs.push_back(record.spec);
     by_spec[name(record.spec)] = &record;
   }
-  const auto program = [](const CaseSpec& spec) {
-    const SolverChoice choice = parse_solver(spec.solver);
-    return sibling_program(choice.entry->program ? std::string(choice.entry->program(choice.params))
-                                                 : "");
-  };
   std::cerr << scene << ": timing " << specs.size() << " cases, " << options.rounds
             << " rounds forth and back\n";
   Bench bench = run_bench(
       specs, {.rounds = options.rounds,
               .seconds = options.seconds,
-              .program = program,
-              .steps = [&](const CaseSpec& s) { return steps_worth_timing(*by_spec.at(name(s))); },
+              .program = program_of,
+              .steps = [&](const CaseSpec& s) { return steps_done(*by_spec.at(name(s))); },
               .progress = {}});
   SceneBench result{scene, bench.control, {}};
   for (std::size_t i = 0; i < specs.size(); ++i)
@@ -179,7 +157,7 @@ std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
 
 BenchSession bench(const std::string& name, const std::vector<Case>& cases,
                    const Options& options) {
-  BenchSession session{name, machine(), {}};
+  BenchSession session{name, machine_name(), {}};
   for (const auto& [scene, records] : by_scene(physics(cases, options)))
     session.scenes.push_back(bench_scene(scene, records, options));
   return session;
@@ -245,33 +223,34 @@ int run(const Options& options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto o = std::make_shared<Options>();
-  app.add_option("WHAT", o->what, "Studies; or scenes, with --solver; or `kernels`");
-  app.add_option("--solver", o->solvers, "A solver to time on the scene; repeat it for each");
-  app.add_option("--set", o->settings,
-                 "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
-  app.add_option("--preset", o->preset, "A smaller or larger version that the study defines");
-  app.add_option("--metric", o->metric,
-                 "The error of the equal-error table (default: stretch.rms)");
-  app.add_option("--rounds", o->rounds,
-                 "Rounds forth and back; each gives two samples a case (default: 5)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--tolerance", o->tolerance,
-                 "Smaller relative differences are none (default: 0.05)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--out", o->out, "Results folder (default: " + o->out + ")");
-  app.add_flag("--json", o->json, "Everything measured, every sample, as JSON");
-  app.add_flag("--quiet", o->quiet, "Measure and keep; print nothing of it");
-  app.add_flag("--worker", o->worker, "Serve samples of one case over stdin and stdout (internal)")
-      ->group("");
+  arguments.option("WHAT", o->what, "Studies; or scenes, with --solver; or `kernels`");
+  arguments.option("--solver", o->solvers, "A solver to time on the scene; repeat it for each");
+  arguments.option("--set", o->settings,
+                   "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
+  arguments.option("--preset", o->preset, "A smaller or larger version that the study defines");
+  arguments.option("--metric", o->metric,
+                   "The error of the equal-error table (default: stretch.rms)");
+  arguments
+      .option("--rounds", o->rounds,
+              "Rounds forth and back; each gives two samples a case (default: 5)")
+      .range(1, 1000);
+  arguments.option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)").positive();
+  arguments
+      .option("--tolerance", o->tolerance, "Smaller relative differences are none (default: 0.05)")
+      .positive();
+  arguments.option("--out", o->out, "Results folder (default: " + o->out + ")");
+  arguments.flag("--json", o->json, "Everything measured, every sample, as JSON");
+  arguments.flag("--quiet", o->quiet, "Measure and keep; print nothing of it");
+  arguments
+      .flag("--worker", o->worker, "Serve samples of one case over stdin and stdout (internal)")
+      .hidden();
   return [o] { return run(*o); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::bench
 
 TAUT_VERB(bench) = {
     .name = "bench",
@@ -280,4 +259,4 @@ TAUT_VERB(bench) = {
     .example =
         "taut bench trade\n  taut bench hang --solver jakobsen:iterations=16 --solver "
         "bullet:iterations=16\n  taut bench kernels",
-    .bind = taut::bind};
+    .bind = taut::verb::bench::bind};

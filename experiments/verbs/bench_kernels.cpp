@@ -6,7 +6,7 @@
 #include "experiments/bench/kernels.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::kernels {
 
 namespace {
 
@@ -43,18 +43,18 @@ void print(const KernelBench& bench) {
   std::fflush(stdout);
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto o = std::make_shared<Options>();
-  app.add_option("--sizes", o->sizes, "Vertices along a side (default: 32,128,512)")
-      ->delimiter(',')
-      ->check(CLI::Range(2, 4096));
-  app.add_option("--rounds", o->rounds, "Interleaved rounds forth and back (default: 11)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--seconds", o->seconds, "Of one sample (default: 0.005)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--largest-bullet", o->largest_bullet,
-                 "Largest side for Bullet, whose steps take seconds beyond (default: 256)")
-      ->check(CLI::Range(0, 4096));
+  arguments.option("--sizes", o->sizes, "Vertices along a side (default: 32,128,512)")
+      .separated_by(',')
+      .range(2, 4096);
+  arguments.option("--rounds", o->rounds, "Interleaved rounds forth and back (default: 11)")
+      .range(1, 1000);
+  arguments.option("--seconds", o->seconds, "Of one sample (default: 0.005)").positive();
+  arguments
+      .option("--largest-bullet", o->largest_bullet,
+              "Largest side for Bullet, whose steps take seconds beyond (default: 256)")
+      .range(0, 4096);
   return [o] {
     for (const int side : o->sizes)
       print(bench_kernels({.side = side,
@@ -66,10 +66,10 @@ std::function<int()> bind(CLI::App& app) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::kernels
 
 TAUT_VERB(bench_kernels) = {
     .name = "bench-kernels",
     .summary = "Measures one link projection: textbook, packed, strips, Bullet, in one session",
     .example = "taut bench kernels --sizes 32,1024\n  taut-f32 bench kernels   (Bullet in float)",
-    .bind = taut::bind};
+    .bind = taut::verb::kernels::bind};

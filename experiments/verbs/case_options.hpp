@@ -1,18 +1,18 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/lab/case.hpp"
+#include "experiments/verbs/arguments.hpp"
 
 namespace taut {
 
 /// How verbs name one case: SCENE SOLVER [--dt] [--duration] [--set key=value ...].
 class CaseOptions {
  public:
-  void bind(CLI::App&);
+  void bind(Arguments&);
   CaseSpec spec() const;  ///< as typed
   /// Throws InputError.
   Case make() const;

@@ -11,7 +11,7 @@
 #include "experiments/verbs/program.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::check {
 
 namespace {
 
@@ -60,8 +60,8 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
   const auto count = [&](auto test) {
     return std::count_if(comparison.findings.begin(), comparison.findings.end(), test);
   };
-  const auto moved = count([](const Finding& f) { return f.is_regression(); });
-  const auto mismatched = count([](const Finding& f) { return f.is_mismatch(); });
+  const auto moved = count([](const Change& f) { return f.is_regression(); });
+  const auto mismatched = count([](const Change& f) { return f.is_mismatch(); });
   std::cout << study.name << ": " << comparison.cases << " cases and " << comparison.values
             << " values compared, " << moved << " moved";
   if (mismatched) std::cout << ", " << mismatched << " do not match the study";
@@ -79,7 +79,7 @@ struct Notes {
 
   void add(const std::string& study, const Comparison& comparison) {
     cases += comparison.cases, values += comparison.values;
-    for (const Finding& f : comparison.findings)
+    for (const Change& f : comparison.findings)
       if (f.is_regression() || f.is_mismatch())
         findings.push_back(
             {{"study", study}, {"case", f.id.empty() ? f.solver : f.id}, {"change", f.text}});
@@ -136,19 +136,19 @@ int check(Options options) {
   return code;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  app.add_option("STUDY", options->studies, "Names or paths; none: all that have a baseline");
-  options->bind(app);
-  app.add_option("--junit", options->junit, "Also write a JUnit file for continuous integration");
-  app.add_flag("--record", options->record, "Also keep the findings for the report");
-  app.add_flag("--strict-env", options->strict,
-               "Fail with 5 if the baseline was made with another toolchain");
+  arguments.option("STUDY", options->studies, "Names or paths; none: all that have a baseline");
+  options->bind(arguments);
+  arguments.option("--junit", options->junit, "Also write a JUnit file for continuous integration");
+  arguments.flag("--record", options->record, "Also keep the findings for the report");
+  arguments.flag("--strict-env", options->strict,
+                 "Fail with 5 if the baseline was made with another toolchain");
   return [options] { return check(*options); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::check
 
 TAUT_VERB(check) = {.name = "check",
                     .summary =
@@ -159,4 +159,4 @@ TAUT_VERB(check) = {.name = "check",
                         "Exit: 0 nothing moved; 1 a value or status moved; 3 cases were not "
                         "run;\n      4 nothing compared, or the baseline does not match the "
                         "study;\n      5 another toolchain under --strict-env",
-                    .bind = taut::bind};
+                    .bind = taut::verb::check::bind};

@@ -17,7 +17,7 @@
 #include "experiments/lab/store.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::doctor {
 
 namespace {
 
@@ -144,16 +144,16 @@ int run(bool as_json) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto json = std::make_shared<bool>(false);
-  app.add_flag("--json", *json, "Print JSON");
+  arguments.flag("--json", *json, "Print JSON");
   return [json] { return run(*json); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::doctor
 
 TAUT_VERB(doctor) = {.name = "doctor",
                      .summary = "Versions, precision, cores, load: what can be trusted here?",
                      .example = "taut doctor",
-                     .bind = taut::bind};
+                     .bind = taut::verb::doctor::bind};

@@ -4,7 +4,7 @@
 #include "experiments/verbs/invoke.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::figures {
 
 namespace {
 
@@ -29,9 +29,9 @@ std::vector<Flagship> flagships() {
   };
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto folder = std::make_shared<std::string>("results/figures");
-  app.add_option("-o,--out", *folder, "Folder (default: results/figures)");
+  arguments.option("-o,--out", *folder, "Folder (default: results/figures)");
   return [folder]() -> int {
     std::filesystem::create_directories(*folder);
     for (Flagship flagship : flagships()) {
@@ -43,9 +43,9 @@ std::function<int()> bind(CLI::App& app) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::figures
 
 TAUT_VERB(figures) = {.name = "figures",
                       .summary = "Draws the pictures of results/figures again",
                       .example = "taut figures\n  taut figures -o /tmp/figures",
-                      .bind = taut::bind};
+                      .bind = taut::verb::figures::bind};

@@ -9,11 +9,12 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/section.hpp"
+#include "core/model/shortest.hpp"
 #include "experiments/verbs/case_options.hpp"
 #include "experiments/verbs/progress.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::frontier {
 
 namespace {
 
@@ -169,28 +170,30 @@ int run(const Options& options) {
   return judge(options, result.frontier);
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  options->which.bind(app);
-  app.add_option("--of", options->of,
-                 "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
-                 "(default: dt)");
-  app.add_option("--from", options->from, "Where to start (dt: 1e-3 s)");
-  app.add_option("--to", options->to, "Where to stop (dt: 0.5 s)");
-  app.add_option("--tolerance", options->tolerance, "Relative width of the bracket (default: 0.01)")
-      ->check(CLI::Range(1e-9, 0.5));
-  app.add_option("--expect", options->expected,
-                 "Two values; exit 1 if the bracket does not meet the range between them")
-      ->expected(2);
-  app.add_option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
-      ->check(CLI::Range(1, 1024));
-  app.add_option("--out", options->out, "Results folder (default: " + options->out + ")");
-  app.add_flag("--json", options->json, "Print JSON");
+  options->which.bind(arguments);
+  arguments.option("--of", options->of,
+                   "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
+                   "(default: dt)");
+  arguments.option("--from", options->from, "Where to start (dt: 1e-3 s)");
+  arguments.option("--to", options->to, "Where to stop (dt: 0.5 s)");
+  arguments
+      .option("--tolerance", options->tolerance, "Relative width of the bracket (default: 0.01)")
+      .range(1e-9, 0.5);
+  arguments
+      .option("--expect", options->expected,
+              "Two values; exit 1 if the bracket does not meet the range between them")
+      .values(2);
+  arguments.option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
+      .range(1, 1024);
+  arguments.option("--out", options->out, "Results folder (default: " + options->out + ")");
+  arguments.flag("--json", options->json, "Print JSON");
   return [options] { return run(*options); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::frontier
 
 TAUT_VERB(frontier) = {
     .name = "frontier",
@@ -199,4 +202,4 @@ TAUT_VERB(frontier) = {
         "taut frontier chain mass-spring:substeps=1 --tolerance 0.001\n"
         "  taut frontier chain jakobsen:iterations=1 --of omega --from 1\n"
         "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000",
-    .bind = taut::bind};
+    .bind = taut::verb::frontier::bind};

@@ -10,7 +10,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::list {
 
 namespace {
 
@@ -132,19 +132,19 @@ int run(const std::string& what, bool as_json) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto what = std::make_shared<std::string>();
   const auto as_json = std::make_shared<bool>(false);
-  app.add_option("WHAT", *what, "scenes | solvers | metrics | studies (default: all)")
-      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies"}));
-  app.add_flag("--json", *as_json, "Print JSON");
+  arguments.option("WHAT", *what, "scenes | solvers | metrics | studies (default: all)")
+      .one_of({"scenes", "solvers", "metrics", "studies"});
+  arguments.flag("--json", *as_json, "Print JSON");
   return [what, as_json] { return run(*what, *as_json); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::list
 
 TAUT_VERB(list) = {.name = "list",
                    .summary = "Names scenes, solvers with their parameters, metrics and studies",
                    .example = "taut list solvers",
-                   .bind = taut::bind};
+                   .bind = taut::verb::list::bind};

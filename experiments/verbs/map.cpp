@@ -8,7 +8,7 @@
 #include "experiments/verbs/progress.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::map {
 
 namespace {
 
@@ -92,26 +92,27 @@ int run(Options options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  app.add_option(
+  arguments.option(
       "STUDY", options->studies,
       "Names or paths of studies with two sweeps; none: every shipped map, preset quick");
-  app.add_option("--preset", options->preset, "A smaller or larger version that the study defines");
-  app.add_option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
-      ->check(CLI::Range(1, 1024));
-  app.add_option("--timeout", options->seconds, "Wall time limit of a case [s] (default: 120)")
-      ->check(CLI::PositiveNumber);
-  app.add_flag("--quiet", options->quiet, "Do not print the maps");
-  app.add_option("--out", options->out, "Results folder (default: " + options->out + ")");
+  arguments.option("--preset", options->preset,
+                   "A smaller or larger version that the study defines");
+  arguments.option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
+      .range(1, 1024);
+  arguments.option("--timeout", options->seconds, "Wall time limit of a case [s] (default: 120)")
+      .positive();
+  arguments.flag("--quiet", options->quiet, "Do not print the maps");
+  arguments.option("--out", options->out, "Results folder (default: " + options->out + ")");
   return [options] { return run(*options); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::map
 
 TAUT_VERB(map) = {
     .name = "map",
     .summary = "Runs a study of two sweeps along the borders between outcomes, not densely",
     .example = "taut map\n  taut map map-dt-iterations --preset quick",
-    .bind = taut::bind};
+    .bind = taut::verb::map::bind};

@@ -9,7 +9,7 @@
 #include "experiments/lab/store.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::merge {
 
 namespace {
 
@@ -68,19 +68,19 @@ int run(const std::vector<std::string>& folders, const std::string& out) {
   return there == plan.size() ? kPass : kIncomplete;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto folders = std::make_shared<std::vector<std::string>>();
   const auto out = std::make_shared<std::string>(default_results());
-  app.add_option("DIR", *folders, "Results folders of shards")->required();
-  app.add_option("--out", *out, "Where to (default: " + *out + ")");
+  arguments.option("DIR", *folders, "Results folders of shards").required();
+  arguments.option("--out", *out, "Where to (default: " + *out + ")");
   return [folders, out] { return run(*folders, *out); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::merge
 
 TAUT_VERB(merge) = {
     .name = "merge",
     .summary = "Unites the results of shards and checks that no planned case is missing (exit 3)",
     .example = "taut merge results/shard1 results/shard2 --out results/runs",
-    .bind = taut::bind};
+    .bind = taut::verb::merge::bind};

@@ -6,7 +6,7 @@
 #include "experiments/verbs/case_options.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::planning {
 
 namespace {
 
@@ -55,19 +55,19 @@ int run(const Case& one, bool json) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto which = std::make_shared<CaseOptions>();
   const auto json = std::make_shared<bool>(false);
-  which->bind(app);
-  app.add_flag("--json", *json, "Print JSON");
+  which->bind(arguments);
+  arguments.flag("--json", *json, "Print JSON");
   return [which, json] { return run(which->make(), *json); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::planning
 
 TAUT_VERB(plan) = {
     .name = "plan",
     .summary = "Shows the passes of one step, what they visit and what they hold in memory",
     .example = "taut plan ball jakobsen:iterations=8",
-    .bind = taut::bind};
+    .bind = taut::verb::planning::bind};

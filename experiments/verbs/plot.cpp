@@ -10,7 +10,7 @@
 #include "experiments/report/stored.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::plot {
 
 namespace {
 
@@ -56,6 +56,7 @@ int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Re
   std::vector<Record> records = here(study.records);
   const std::vector<Record> guessed =
       spec.kind == "stability" ? here(inferred) : std::vector<Record>{};
+  if (spec.kind == "scaling") spec.slope = 1;
   if (spec.kind != "stability")
     records = spec.x == "dt" ? report::most_common(records, "iterations", 8).records
                              : report::most_common(records, "dt", 1.0 / 64).records;
@@ -93,26 +94,28 @@ int run(const Options& options) {
   return drawn > 0 ? kPass : kNothing;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   std::string kinds;
   for (const report::FigureEntry* entry : report::figures())
     kinds += (kinds.empty() ? "" : ", ") + std::string(entry->name);
-  app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
-  app.add_option("--preset", options->preset, "The preset under which it was run");
-  app.add_option("--kind", options->kind,
-                 "One of: " + kinds + " (default: what the study asks for)");
-  app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
-  app.add_option("--y", options->y, "Value on y, such as stretch.rms");
-  app.add_option("--title", options->title, "Title above the figure");
-  app.add_option("--results", options->results,
-                 "Results folder (default: " + options->results + ")");
-  app.add_option("--out", options->out, "Where figures go (default: figures/STUDY in the results)");
+  arguments.option("STUDY", options->study, "Name or path of a study that was run").required();
+  arguments.option("--preset", options->preset, "The preset under which it was run");
+  arguments.option("--kind", options->kind,
+                   "One of: " + kinds + " (default: what the study asks for)");
+  arguments.option("--x", options->x,
+                   "Value on x: dt, iterations, projections or a metric's value");
+  arguments.option("--y", options->y, "Value on y, such as stretch.rms");
+  arguments.option("--title", options->title, "Title above the figure");
+  arguments.option("--results", options->results,
+                   "Results folder (default: " + options->results + ")");
+  arguments.option("--out", options->out,
+                   "Where figures go (default: figures/STUDY in the results)");
   return [options] { return run(*options); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::plot
 
 TAUT_VERB(plot) = {.name = "plot",
                    .summary = "Draws the figures of a study: SVG, PDF, gnuplot script and CSV",
@@ -120,4 +123,4 @@ TAUT_VERB(plot) = {.name = "plot",
                        "taut plot iterations --preset quick\n  taut plot time-steps --kind "
                        "stability --out figures\n  taut plot iterations --x projections "
                        "--y stretch.max",
-                   .bind = taut::bind};
+                   .bind = taut::verb::plot::bind};

@@ -12,7 +12,7 @@
 #include "experiments/lab/reference_store.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::references {
 
 namespace {
 
@@ -79,22 +79,23 @@ int run(const Options& options) {
   return written > 0 || options.all ? kPass : kNothing;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scenes, "Names of shipped scenes, or scene files");
-  app.add_flag("--all", options->all, "Every shipped scene");
-  app.add_option("--scenes", options->folder, "Folder of the shipped scenes")
-      ->capture_default_str();
-  app.add_option("-o,--out", options->out, "Where references are kept")->capture_default_str();
+  arguments.option("SCENE", options->scenes, "Names of shipped scenes, or scene files");
+  arguments.flag("--all", options->all, "Every shipped scene");
+  arguments.option("--scenes", options->folder,
+                   "Folder of the shipped scenes (default: " + options->folder + ")");
+  arguments.option("-o,--out", options->out,
+                   "Where references are kept (default: " + options->out + ")");
   return [options] { return run(*options); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::references
 
 TAUT_VERB(reference) = {.name = "reference",
                         .summary =
                             "Rebuilds the converged references of scenes that have a unique "
                             "truth, and says why the others have none",
                         .example = "taut reference drape\n  taut reference --all",
-                        .bind = taut::bind};
+                        .bind = taut::verb::references::bind};

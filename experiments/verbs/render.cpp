@@ -11,7 +11,7 @@
 #include "experiments/verbs/takes.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::render {
 
 namespace {
 
@@ -187,35 +187,35 @@ int run(Options options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto o = std::make_shared<Options>();
-  app.add_option("SCENE", o->what.scene, "Name of a shipped scene, or a path")->required();
-  app.add_option("--solver", o->what.solvers, "NAME or NAME:key=value,...; one to four of them")
-      ->allow_extra_args(false);
-  app.add_option("--at", o->at, "Moments to draw [s]; default: the end")->allow_extra_args(false);
-  app.add_flag("--sheet", o->sheet, "One picture, a row for each moment");
-  app.add_flag("--video", o->video, "H.264 video in real time (so does -o NAME.mp4)");
-  app.add_option("--view", o->view,
-                 "three-quarter, front, back, left, right, top, or AZIMUTH,ELEVATION in degrees");
-  app.add_option("--colour", o->colour, "strain, penetration or speed");
-  app.add_option("--range", o->range, "End of the colour bar, in its unit (%, mm, m/s)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--export", o->exported, "obj: a Wavefront file per frame into the folder -o")
-      ->check(CLI::IsMember({"obj"}));
-  app.add_option("--duration", o->duration, "Simulated time [s]");
-  app.add_option("--dt", o->dt, "Time step [s], a number or a fraction such as 1/120");
-  app.add_option("--set", o->what.overrides, "Replace a key of the scene: 'cloth.grid=[65, 65]'")
-      ->allow_extra_args(false);
-  app.add_option("--size", o->size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
-  app.add_option("--quality", o->quality, "draft, video or still")
-      ->check(CLI::IsMember({"draft", "video", "still"}));
-  app.add_flag("--dark", o->dark, "The dark stage of the report");
-  app.add_option("-o,--out", o->out, "File (.png, .mp4) or, for --export, folder");
+  arguments.option("SCENE", o->what.scene, "Name of a shipped scene, or a path").required();
+  arguments.option("--solver", o->what.solvers, "NAME or NAME:key=value,...; one to four of them")
+      .repeated();
+  arguments.option("--at", o->at, "Moments to draw [s]; default: the end").repeated();
+  arguments.flag("--sheet", o->sheet, "One picture, a row for each moment");
+  arguments.flag("--video", o->video, "H.264 video in real time (so does -o NAME.mp4)");
+  arguments.option("--view", o->view,
+                   "three-quarter, front, back, left, right, top, or AZIMUTH,ELEVATION in degrees");
+  arguments.option("--colour", o->colour, "strain, penetration or speed");
+  arguments.option("--range", o->range, "End of the colour bar, in its unit (%, mm, m/s)")
+      .positive();
+  arguments.option("--export", o->exported, "obj: a Wavefront file per frame into the folder -o")
+      .one_of({"obj"});
+  arguments.option("--duration", o->duration, "Simulated time [s]");
+  arguments.option("--dt", o->dt, "Time step [s], a number or a fraction such as 1/120");
+  arguments.option("--set", o->what.overrides, "Replace a key of the scene: 'cloth.grid=[65, 65]'")
+      .repeated();
+  arguments.option("--size", o->size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
+  arguments.option("--quality", o->quality, "draft, video or still")
+      .one_of({"draft", "video", "still"});
+  arguments.flag("--dark", o->dark, "The dark stage of the report");
+  arguments.option("-o,--out", o->out, "File (.png, .mp4) or, for --export, folder");
   return [o] { return run(*o); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::render
 
 TAUT_VERB(render) = {
     .name = "render",
@@ -223,4 +223,4 @@ TAUT_VERB(render) = {
     .example =
         "taut render ball --solver jakobsen:iterations=20 --solver bullet --at 0.6\n"
         "  taut render flag --solver jakobsen --solver bullet --video --duration 4",
-    .bind = taut::bind};
+    .bind = taut::verb::render::bind};

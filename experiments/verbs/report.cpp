@@ -14,7 +14,7 @@
 #include "experiments/verbs/program.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::reporting {
 
 namespace {
 
@@ -68,22 +68,22 @@ int run(Options options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  app.add_option("STUDY", options->studies,
-                 "Names or paths of studies; none: the main job, preset quick");
-  app.add_option("--preset", options->preset, "The preset under which the studies were run");
-  app.add_option("--results", options->results,
-                 "Results folder (default: " + options->results + ")");
-  app.add_flag("--no-media", options->no_media, "Without pictures and videos");
-  app.add_option("-o,--out", options->out, "The page (default: report.html)");
+  arguments.option("STUDY", options->studies,
+                   "Names or paths of studies; none: the main job, preset quick");
+  arguments.option("--preset", options->preset, "The preset under which the studies were run");
+  arguments.option("--results", options->results,
+                   "Results folder (default: " + options->results + ")");
+  arguments.flag("--no-media", options->no_media, "Without pictures and videos");
+  arguments.option("-o,--out", options->out, "The page (default: report.html)");
   return [options] { return run(*options); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::reporting
 
 TAUT_VERB(report) = {.name = "report",
                      .summary = "Writes the comparison of stored results as one HTML page",
                      .example = "taut report\n  taut report iterations --preset quick -o hang.html",
-                     .bind = taut::bind};
+                     .bind = taut::verb::reporting::bind};

@@ -8,7 +8,7 @@
 #include "experiments/verbs/progress.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::run {
 
 namespace {
 
@@ -148,33 +148,35 @@ int run(Options options) {
   return report(options);
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  app.add_option("STUDY", options->studies,
-                 "Names or paths of studies; none: the main job, preset quick, with its report");
-  app.add_option("--preset", options->preset, "A smaller or larger version that the study defines");
-  app.add_option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
-      ->check(CLI::Range(1, 1024));
-  app.add_option("--shard", options->shard,
-                 "Only part i of n of the cases, as i/n (default: a Slurm array's, else all)");
-  app.add_option("--only", options->only, "failed: run stored failures again, nothing else")
-      ->check(CLI::IsMember({"failed"}));
-  app.add_option("--out", options->out, "Results folder (default: " + options->out + ")");
-  app.add_option("--timeout", options->seconds,
-                 "CPU time limit of a case [s] (default: 120); wall time: five times that")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--memory", options->megabytes, "Memory limit of a case [MB] (default: 2048)")
-      ->check(CLI::Range(64.0, 1e9));
-  app.add_flag("--no-report", options->no_report, "Run the main job without its report");
+  arguments.option("STUDY", options->studies,
+                   "Names or paths of studies; none: the main job, preset quick, with its report");
+  arguments.option("--preset", options->preset,
+                   "A smaller or larger version that the study defines");
+  arguments.option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
+      .range(1, 1024);
+  arguments.option("--shard", options->shard,
+                   "Only part i of n of the cases, as i/n (default: a Slurm array's, else all)");
+  arguments.option("--only", options->only, "failed: run stored failures again, nothing else")
+      .one_of({"failed"});
+  arguments.option("--out", options->out, "Results folder (default: " + options->out + ")");
+  arguments
+      .option("--timeout", options->seconds,
+              "CPU time limit of a case [s] (default: 120); wall time: five times that")
+      .positive();
+  arguments.option("--memory", options->megabytes, "Memory limit of a case [MB] (default: 2048)")
+      .range(64.0, 1e9);
+  arguments.flag("--no-report", options->no_report, "Run the main job without its report");
   return [options] { return run(*options); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::run
 
 TAUT_VERB(run) = {.name = "run",
                   .summary = "Runs studies, one process per case; resumes what was interrupted",
                   .example =
                       "taut run\n  taut run iterations --preset quick -j 2\n"
                       "  taut run my/study.toml --shard 1/4 --out results/shard1",
-                  .bind = taut::bind};
+                  .bind = taut::verb::run::bind};

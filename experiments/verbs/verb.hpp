@@ -1,9 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <span>
 #include <string_view>
+
+#include "experiments/verbs/arguments.hpp"
 
 namespace taut {
 
@@ -27,7 +28,7 @@ struct VerbEntry {
   std::string_view example;  ///< one or more full command lines, shown below --help
   /// Adds options to the verb's parser and gives what to do once they are parsed. It may throw
   /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr.
-  std::function<int()> (*bind)(CLI::App&);
+  std::function<int()> (*bind)(Arguments&);
 };
 
 /// All verbs, sorted by name (generated; see cmake/registry.cmake).

@@ -16,7 +16,7 @@
 #include "experiments/verbs/program.hpp"
 #include "experiments/verbs/verb.hpp"
 
-namespace taut {
+namespace taut::verb::verify {
 
 namespace {
 
@@ -202,27 +202,27 @@ int list() {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
+std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   const auto only_list = std::make_shared<bool>(false);
-  app.add_option("TRUTH", options->names, "Truths to check by name; all if none is given");
-  app.add_option("--solver", options->solvers,
-                 "Only what binds these solvers (\"reference\": the references)");
-  app.add_option("--section", options->section, "Only one section of the catalogue")
-      ->check(CLI::Range(1, 10));
-  app.add_option("-j,--jobs", options->jobs, "Threads")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  app.add_option("-o,--out", options->out, "Also write the findings as JSON to this file");
-  app.add_flag("--json", options->json, "Findings as JSON instead of a table");
-  app.add_flag("--quiet", options->quiet, "Only the line that sums it up");
-  app.add_flag("--verbose", options->verbose, "Every number, with sources and times");
-  app.add_flag("--list", *only_list, "Only name the truths");
+  arguments.option("TRUTH", options->names, "Truths to check by name; all if none is given");
+  arguments.option("--solver", options->solvers,
+                   "Only what binds these solvers (\"reference\": the references)");
+  arguments.option("--section", options->section, "Only one section of the catalogue").range(1, 10);
+  arguments
+      .option("-j,--jobs", options->jobs,
+              "Threads (default: " + std::to_string(options->jobs) + ")")
+      .range(1, 64);
+  arguments.option("-o,--out", options->out, "Also write the findings as JSON to this file");
+  arguments.flag("--json", options->json, "Findings as JSON instead of a table");
+  arguments.flag("--quiet", options->quiet, "Only the line that sums it up");
+  arguments.flag("--verbose", options->verbose, "Every number, with sources and times");
+  arguments.flag("--list", *only_list, "Only name the truths");
   return [options, only_list] { return *only_list ? list() : run(*options); };
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::verb::verify
 
 TAUT_VERB(verify) = {.name = "verify",
                      .summary =
@@ -231,4 +231,4 @@ TAUT_VERB(verify) = {.name = "verify",
                      .example =
                          "taut verify --section 4 --solver jakobsen\n"
                          "  taut verify hanging-chain-sweeps --verbose",
-                     .bind = taut::bind};
+                     .bind = taut::verb::verify::bind};

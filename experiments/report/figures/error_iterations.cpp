@@ -1,6 +1,6 @@
 #include "experiments/report/chart.hpp"
 
-namespace taut::report {
+namespace taut::report::figure::error_iterations {
 
 namespace {
 
@@ -9,7 +9,7 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::figure::error_iterations
 
 TAUT_FIGURE(error_iterations) = {
     .name = "error-iterations",
@@ -17,4 +17,4 @@ TAUT_FIGURE(error_iterations) = {
     .x = "iterations",
     .y = "stretch.rms",
     .along = "iterations",
-    .draw = taut::report::draw};
+    .draw = taut::report::figure::error_iterations::draw};

@@ -1,6 +1,6 @@
 #include "experiments/report/chart.hpp"
 
-namespace taut::report {
+namespace taut::report::figure::penetration {
 
 namespace {
 
@@ -9,11 +9,11 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::figure::penetration
 
 TAUT_FIGURE(penetration) = {.name = "penetration",
                             .summary = "Depth inside the colliders over sweeps or time step",
                             .x = "iterations",
                             .y = "penetration.max",
                             .along = "iterations",
-                            .draw = taut::report::draw};
+                            .draw = taut::report::figure::penetration::draw};

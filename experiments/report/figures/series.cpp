@@ -4,7 +4,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart.hpp"
 
-namespace taut::report {
+namespace taut::report::figure::series {
 
 namespace {
 
@@ -46,11 +46,11 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::figure::series
 
 TAUT_FIGURE(series) = {.name = "series",
                        .summary = "A value over simulated time",
                        .x = "t",
                        .y = "stretch.rms",
                        .along = "t",
-                       .draw = taut::report::draw};
+                       .draw = taut::report::figure::series::draw};

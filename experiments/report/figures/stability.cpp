@@ -8,7 +8,7 @@
 #include "experiments/report/format.hpp"
 #include "experiments/report/palette.hpp"
 
-namespace taut::report {
+namespace taut::report::figure::stability {
 
 namespace {
 
@@ -252,7 +252,7 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::figure::stability
 
 TAUT_FIGURE(stability) = {
     .name = "stability",
@@ -260,4 +260,4 @@ TAUT_FIGURE(stability) = {
     .x = "dt",
     .y = "iterations",
     .along = "",
-    .draw = taut::report::draw};
+    .draw = taut::report::figure::stability::draw};

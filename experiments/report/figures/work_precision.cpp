@@ -1,6 +1,6 @@
 #include "experiments/report/chart.hpp"
 
-namespace taut::report {
+namespace taut::report::figure::work_precision {
 
 namespace {
 
@@ -16,7 +16,7 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::figure::work_precision
 
 TAUT_FIGURE(work_precision) = {
     .name = "work-precision",
@@ -24,4 +24,4 @@ TAUT_FIGURE(work_precision) = {
     .x = "projections",
     .y = "stretch.rms",
     .along = "setting",
-    .draw = taut::report::draw};
+    .draw = taut::report::figure::work_precision::draw};

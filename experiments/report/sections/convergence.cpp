@@ -5,7 +5,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::convergence {
 
 namespace {
 
@@ -38,7 +38,9 @@ std::string render(Page& page, const std::string& scene) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::convergence
 
-TAUT_SECTION(convergence) = {
-    .name = "convergence", .order = 50, .per_scene = true, .render = taut::report::render};
+TAUT_SECTION(convergence) = {.name = "convergence",
+                             .order = 50,
+                             .per_scene = true,
+                             .render = taut::report::section::convergence::render};

@@ -4,7 +4,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::fairness {
 
 namespace {
 
@@ -82,6 +82,7 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::fairness
 
-TAUT_SECTION(fairness) = {.name = "fairness", .order = 30, .render = taut::report::render};
+TAUT_SECTION(fairness) = {
+    .name = "fairness", .order = 30, .render = taut::report::section::fairness::render};

@@ -3,7 +3,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/player.hpp"
 
-namespace taut::report {
+namespace taut::report::section::film {
 
 namespace {
 
@@ -20,7 +20,7 @@ std::string render(Page& page, const std::string& scene) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::film
 
 TAUT_SECTION(film) = {
-    .name = "film", .order = 42, .per_scene = true, .render = taut::report::render};
+    .name = "film", .order = 42, .per_scene = true, .render = taut::report::section::film::render};

@@ -1,7 +1,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/player.hpp"
 
-namespace taut::report {
+namespace taut::report::section::hero {
 
 namespace {
 
@@ -13,6 +13,6 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::hero
 
-TAUT_SECTION(hero) = {.name = "hero", .order = 10, .render = taut::report::render};
+TAUT_SECTION(hero) = {.name = "hero", .order = 10, .render = taut::report::section::hero::render};

@@ -5,7 +5,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::limits {
 
 namespace {
 
@@ -49,6 +49,7 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::limits
 
-TAUT_SECTION(limits) = {.name = "limits", .order = 130, .render = taut::report::render};
+TAUT_SECTION(limits) = {
+    .name = "limits", .order = 130, .render = taut::report::section::limits::render};

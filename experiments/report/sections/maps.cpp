@@ -3,7 +3,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::maps {
 
 namespace {
 
@@ -61,6 +61,6 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::maps
 
-TAUT_SECTION(maps) = {.name = "maps", .order = 80, .render = taut::report::render};
+TAUT_SECTION(maps) = {.name = "maps", .order = 80, .render = taut::report::section::maps::render};

@@ -2,7 +2,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::material {
 
 namespace {
 
@@ -41,7 +41,9 @@ std::string render(Page& page, const std::string& scene) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::material
 
-TAUT_SECTION(material) = {
-    .name = "material", .order = 45, .per_scene = true, .render = taut::report::render};
+TAUT_SECTION(material) = {.name = "material",
+                          .order = 45,
+                          .per_scene = true,
+                          .render = taut::report::section::material::render};

@@ -6,7 +6,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::method {
 
 namespace {
 
@@ -81,6 +81,7 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::method
 
-TAUT_SECTION(method) = {.name = "method", .order = 110, .render = taut::report::render};
+TAUT_SECTION(method) = {
+    .name = "method", .order = 110, .render = taut::report::section::method::render};

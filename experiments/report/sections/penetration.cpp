@@ -6,7 +6,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::penetration {
 
 namespace {
 
@@ -37,7 +37,9 @@ std::string render(Page& page, const std::string& scene) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::penetration
 
-TAUT_SECTION(penetration) = {
-    .name = "penetration", .order = 80, .per_scene = true, .render = taut::report::render};
+TAUT_SECTION(penetration) = {.name = "penetration",
+                             .order = 80,
+                             .per_scene = true,
+                             .render = taut::report::section::penetration::render};

@@ -3,7 +3,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::raw {
 
 namespace {
 
@@ -51,6 +51,6 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::raw
 
-TAUT_SECTION(raw) = {.name = "raw", .order = 120, .render = taut::report::render};
+TAUT_SECTION(raw) = {.name = "raw", .order = 120, .render = taut::report::section::raw::render};

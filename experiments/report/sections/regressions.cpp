@@ -1,7 +1,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::regressions {
 
 namespace {
 
@@ -26,6 +26,7 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::regressions
 
-TAUT_SECTION(regressions) = {.name = "regressions", .order = 100, .render = taut::report::render};
+TAUT_SECTION(regressions) = {
+    .name = "regressions", .order = 100, .render = taut::report::section::regressions::render};

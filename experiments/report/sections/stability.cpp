@@ -5,7 +5,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::stability {
 
 namespace {
 
@@ -39,7 +39,9 @@ std::string render(Page& page, const std::string& scene) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::stability
 
-TAUT_SECTION(stability) = {
-    .name = "stability", .order = 70, .per_scene = true, .render = taut::report::render};
+TAUT_SECTION(stability) = {.name = "stability",
+                           .order = 70,
+                           .per_scene = true,
+                           .render = taut::report::section::stability::render};

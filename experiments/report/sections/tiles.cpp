@@ -5,7 +5,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::tiles {
 
 namespace {
 
@@ -124,6 +124,7 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::tiles
 
-TAUT_SECTION(tiles) = {.name = "tiles", .order = 20, .render = taut::report::render};
+TAUT_SECTION(tiles) = {
+    .name = "tiles", .order = 20, .render = taut::report::section::tiles::render};

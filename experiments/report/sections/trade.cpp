@@ -4,7 +4,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::trade {
 
 namespace {
 
@@ -127,6 +127,7 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::trade
 
-TAUT_SECTION(trade) = {.name = "trade", .order = 35, .render = taut::report::render};
+TAUT_SECTION(trade) = {
+    .name = "trade", .order = 35, .render = taut::report::section::trade::render};

@@ -3,7 +3,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::truths {
 
 namespace {
 
@@ -57,6 +57,7 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::truths
 
-TAUT_SECTION(truths) = {.name = "truths", .order = 90, .render = taut::report::render};
+TAUT_SECTION(truths) = {
+    .name = "truths", .order = 90, .render = taut::report::section::truths::render};

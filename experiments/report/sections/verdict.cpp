@@ -1,7 +1,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::verdicts {
 
 namespace {
 
@@ -39,6 +39,7 @@ std::string render(Page& page, const std::string&) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::verdicts
 
-TAUT_SECTION(verdict) = {.name = "verdict", .order = 0, .render = taut::report::render};
+TAUT_SECTION(verdict) = {
+    .name = "verdict", .order = 0, .render = taut::report::section::verdicts::render};

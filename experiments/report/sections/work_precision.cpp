@@ -6,7 +6,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
-namespace taut::report {
+namespace taut::report::section::work_precision {
 
 namespace {
 
@@ -29,7 +29,9 @@ std::string render(Page& page, const std::string& scene) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::section::work_precision
 
-TAUT_SECTION(work_precision) = {
-    .name = "work-precision", .order = 60, .per_scene = true, .render = taut::report::render};
+TAUT_SECTION(work_precision) = {.name = "work-precision",
+                                .order = 60,
+                                .per_scene = true,
+                                .render = taut::report::section::work_precision::render};

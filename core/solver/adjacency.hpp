@@ -3,14 +3,15 @@
 #include <span>
 #include <vector>
 
+#include "core/model/index.hpp"
 #include "core/model/mesh.hpp"
 
 namespace taut {
 
 /// The other ends of each vertex's links, and which links those are.
-class Neighbours {
+class Adjacency {
  public:
-  Neighbours(std::span<const Link> links, int vertices)
+  Adjacency(std::span<const Link> links, int vertices)
       : first_(at(vertices) + 1), ends_(2 * links.size()) {
     for (const Link& link : links) ++first_[at(link.a) + 1], ++first_[at(link.b) + 1];
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
@@ -30,7 +31,6 @@ class Neighbours {
   }
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   std::vector<int> first_;
   std::vector<End> ends_;
 };
