@@ -13,13 +13,14 @@
 #include <cmath>
 
 #include "bullet_ref/cloth_builder.hpp"
+#include "bullet_ref/common_params.hpp"
 #include "bullet_ref/convert.hpp"
 #include "bullet_ref/read_back.hpp"
 #include "bullet_ref/rigid_colliders.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/wind.hpp"
 
-namespace taut {
+namespace taut::solver::bullet_deformable {
 
 namespace {
 
@@ -43,17 +44,8 @@ constexpr ParamSpec kParams[] = {
      .min = 1,
      .max = 1000,
      .help = "Newton steps at most per implicit substep (Bullet's default: 1)"},
-    {.name = "substeps",
-     .kind = Kind::integer,
-     .default_value = "1",
-     .min = 1,
-     .max = 1e6,
-     .help = "each step is this many calls of stepSimulation(dt / substeps)"},
-    {.name = "precision",
-     .kind = Kind::choice,
-     .default_value = "double",
-     .choices = "float|double",
-     .help = "which build of Bullet; float runs in taut-f32"},
+    bullet_param::substeps,
+    bullet_param::precision,
     {.name = "spring-damping",
      .kind = Kind::real,
      .unit = "N s/m",
@@ -61,13 +53,7 @@ constexpr ParamSpec kParams[] = {
      .min = 0,
      .max = 1e6,
      .help = "damping along every link, on top of the scene's (Bullet's default: 0.05)"},
-    {.name = "margin",
-     .kind = Kind::real,
-     .unit = "m",
-     .default_value = "0",
-     .min = 0,
-     .max = 1,
-     .help = "collision margin on top of the scene's thickness (Bullet's default: 0.25)"},
+    bullet_param::margin,
     {.name = "voxel",
      .kind = Kind::real,
      .unit = "m",
@@ -336,15 +322,15 @@ std::string_view program(const Params& params) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::solver::bullet_deformable
 
 TAUT_SOLVER(bullet_deformable) = {
     .name = "bullet-deformable",
     .summary = "Bullet's deformable body: Hooke springs, implicit Euler",
     .source =
         "Bullet Physics 3.24, btDeformableMultiBodyDynamicsWorld, btDeformableMassSpringForce",
-    .params = taut::kParams,
-    .make = taut::make,
-    .cannot = taut::cannot,
-    .effective = taut::effective,
-    .program = taut::program};
+    .params = taut::solver::bullet_deformable::kParams,
+    .make = taut::solver::bullet_deformable::make,
+    .cannot = taut::solver::bullet_deformable::cannot,
+    .effective = taut::solver::bullet_deformable::effective,
+    .program = taut::solver::bullet_deformable::program};

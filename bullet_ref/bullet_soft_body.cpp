@@ -10,13 +10,14 @@
 #include <cmath>
 
 #include "bullet_ref/cloth_builder.hpp"
+#include "bullet_ref/common_params.hpp"
 #include "bullet_ref/convert.hpp"
 #include "bullet_ref/read_back.hpp"
 #include "bullet_ref/rigid_colliders.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/wind.hpp"
 
-namespace taut {
+namespace taut::solver::bullet_soft_body {
 
 namespace {
 
@@ -28,17 +29,8 @@ constexpr ParamSpec kParams[] = {
      .min = 0,
      .max = 1e6,
      .help = "m_cfg.piterations: sweeps over contacts and links per substep (Bullet's default: 1)"},
-    {.name = "substeps",
-     .kind = Kind::integer,
-     .default_value = "1",
-     .min = 1,
-     .max = 1e6,
-     .help = "each step is this many calls of stepSimulation(dt / substeps)"},
-    {.name = "precision",
-     .kind = Kind::choice,
-     .default_value = "double",
-     .choices = "float|double",
-     .help = "which build of Bullet; float runs in taut-f32"},
+    bullet_param::substeps,
+    bullet_param::precision,
     {.name = "order",
      .kind = Kind::choice,
      .default_value = "contacts-first",
@@ -56,13 +48,7 @@ constexpr ParamSpec kParams[] = {
      .min = 0,
      .max = 1,
      .help = "kKHR: share of the penetration that one contact pass removes; 0.1 is Bullet's own"},
-    {.name = "margin",
-     .kind = Kind::real,
-     .unit = "m",
-     .default_value = "0",
-     .min = 0,
-     .max = 1,
-     .help = "collision margin on top of the scene's thickness (Bullet's default: 0.25)"},
+    bullet_param::margin,
     {.name = "voxel",
      .kind = Kind::real,
      .unit = "m",
@@ -330,13 +316,13 @@ std::string_view program(const Params& params) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::solver::bullet_soft_body
 
 TAUT_SOLVER(bullet) = {.name = "bullet",
                        .summary = "Bullet's btSoftBody, Positions solver",
                        .source = "Bullet Physics 3.24, btSoftRigidDynamicsWorld",
-                       .params = taut::kParams,
-                       .make = taut::make,
-                       .cannot = taut::cannot,
-                       .effective = taut::effective,
-                       .program = taut::program};
+                       .params = taut::solver::bullet_soft_body::kParams,
+                       .make = taut::solver::bullet_soft_body::make,
+                       .cannot = taut::solver::bullet_soft_body::cannot,
+                       .effective = taut::solver::bullet_soft_body::effective,
+                       .program = taut::solver::bullet_soft_body::program};

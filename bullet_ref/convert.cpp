@@ -8,7 +8,9 @@ btVector3 to_bullet(const Vec3& v) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
 }
 
-Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+Vec3 from_bullet(const btVector3& v) {
+  return Eigen::Matrix<btScalar, 3, 1>(v.x(), v.y(), v.z()).cast<double>();
+}
 
 btTransform to_bullet(const Eigen::Quaterniond& rotation, const Vec3& origin) {
   const Eigen::Matrix3d m = rotation.toRotationMatrix();

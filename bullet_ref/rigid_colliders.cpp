@@ -117,13 +117,15 @@ std::vector<Collider> RigidColliders::read_back(double t) const {
     const btTransform& now = body->rigid.getWorldTransform();
     const btQuaternion q = now.getRotation();
     const Eigen::Quaterniond turned = body->motion.rotation(t).conjugate();
-    const Eigen::Quaterniond rotation = turned * Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z());
+    const Eigen::Quaterniond rotation =
+        turned * Eigen::Quaternion<btScalar>(q.w(), q.x(), q.y(), q.z()).cast<double>();
     const Vec3& pivot = body->motion.pivot;
     const Vec3 moved = from_bullet(now.getOrigin()) - body->motion.displacement(t);
     const Vec3 origin = pivot + turned * (moved - pivot);
-    Collider collider{.motion = body->motion, .friction = body->rigid.getFriction()};
+    Collider collider{.motion = body->motion,
+                      .friction = static_cast<double>(body->rigid.getFriction())};
     if (const auto* ball = dynamic_cast<const btSphereShape*>(body->shape.get())) {
-      collider.shape = Ball{origin, ball->getRadius()};
+      collider.shape = Ball{origin, static_cast<double>(ball->getRadius())};
     } else {
       const auto& box = dynamic_cast<const btBoxShape&>(*body->shape);
       const Vec3 half = from_bullet(box.getHalfExtentsWithoutMargin());

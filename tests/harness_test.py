@@ -13,6 +13,7 @@ import time
 
 from command_line import BINARIES, CommandLine, main
 
+KILLS = int(os.environ.get("TAUT_KILLS", 12))  # 200 in the target harness_kills
 SANITIZED = "asan" in BINARIES.name  # its allocator knows no limit on address space
 
 
@@ -70,16 +71,19 @@ class Store(CommandLine):
         self.assertEqual(self.store_digest(first), self.store_digest(second))
 
     def test_kill_9_at_random_moments_then_resume(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="sweep.variant = [0, 1, 2, 3, 4, 5, 6, 7]\n")
-        whole = self.store_digest(self.taut("run", study, "--out", "whole", program="taut-faulty"))
+        study = self.study(solvers=["faulty:mode=slow"], rest=f"sweep.variant = {list(range(3 * KILLS))}\n")
+        whole = self.store_digest(self.taut("run", study, "--out", "whole", "-j", 8, program="taut-faulty"))
         moments = random.Random(1)
-        for _ in range(12):
+        hits = 0
+        for _ in range(KILLS):
             process = self.start("run", study, "-j", 2, program="taut-faulty")
             time.sleep(moments.uniform(0, 0.8))
+            hits += process.poll() is None
             process.kill()
             process.communicate()
             for entry in self.entries():
                 self.assertTrue((entry / "status.json").exists(), "an entry is there whole or not at all")
+        self.assertGreater(hits, KILLS // 2, "most kills have to hit a run that has not ended")
         resumed = self.taut("run", study, program="taut-faulty")
         self.assertEqual(self.store_digest(resumed), whole)
         self.assertEqual(list((self.folder / "results/runs/tmp").iterdir()), [], "leftovers are swept up")

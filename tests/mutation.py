@@ -78,8 +78,8 @@ def mutate(build, folder, name):
     subprocess.run(command, cwd=build, check=True)
     link = link_command(build)
     link[link.index("-o") + 1] = str(copy / "taut")
-    # Before the libraries: of two definitions the first is taken, and theirs may be in a batch.
-    link[link.index("-o"):link.index("-o")] = ["-Wl,--allow-multiple-definition", str(copy / "mutant.o")]
+    # Of two definitions the first is taken: the unit's own may stand in a batch with others.
+    link[1:1] = ["-Wl,--allow-multiple-definition", str(copy / "mutant.o")]
     subprocess.run(link, cwd=build, check=True)
     verify = subprocess.run([copy / "taut", "verify", "-j1", *truths], capture_output=True, text=True)
     return verify.returncode == 1 and " broken " in verify.stderr + " "

@@ -13,11 +13,14 @@ constexpr double kRest = 0.7;
 constexpr double kEpsilon = 2.3e-16, kFloatEpsilon = 1.2e-7;
 const char* const kFloat = ",precision=float";
 
-/// Strain of a link after one step from rest, which is nothing but the sweeps.
+/// Strain of a link after one step from rest, which is nothing but the sweeps; below -1 if its ends
+/// have changed sides.
 double projected(std::string_view solver, double strain, double mass1 = 1, double mass2 = 3) {
   Probe probe(bare::pair(kRest * (1 + strain), kRest, mass1, mass2), solver);
+  const Vec3 before = (probe.x(1) - probe.x(0)).normalized();
   probe.step();
-  return (probe.x(1) - probe.x(0)).norm() / kRest - 1;
+  const Vec3 after = probe.x(1) - probe.x(0);
+  return std::copysign(after.norm(), after.dot(before)) / kRest - 1;
 }
 
 /// The strain that one square-root-free projection leaves.
