@@ -146,6 +146,21 @@ TEST(Crossings, OfATangleAreThoseOfAllPairs) {
   EXPECT_EQ(crossings(faces, x), brute);
 }
 
+TEST(Crossings, AFlatSheetHasNoneHoweverItLies) {
+  for (int n = 8; n <= 64; n += 7)
+    for (const Vec3& v : {Vec3(0, -1, 0.15), Vec3(0.3, -1, 0.7), Vec3(-0.2, 0.1, 1)}) {
+      const Mesh mesh = make_sheet({.nu = n,
+                                    .nv = n,
+                                    .width = 0.8,
+                                    .height = 0.8,
+                                    .origin = {-0.4, 0.9, 0},
+                                    .u = Vec3(1, 0, 0.1).normalized(),
+                                    .v = v.normalized(),
+                                    .mass = 1});
+      EXPECT_TRUE(crossings(mesh.triangles, mesh.rest).empty()) << n;
+    }
+}
+
 TEST(Crossings, LeastGapIsThatOfAllPairs) {
   Random random(6);
   std::vector<Vec3> rest(40), x(40);

@@ -18,9 +18,14 @@ double nearest_share(const Vec3& a, const Vec3& b, const Vec3& p) {
   return length2 > 0 ? std::clamp(along.dot(p - a) / length2, 0.0, 1.0) : 0.0;
 }
 
-/// Six times the volume of the tetrahedron; positive if d lies above the triangle abc.
+/// Six times the volume of the tetrahedron; positive if d lies above the triangle abc. 0 if the
+/// rounding of the coordinates may have made the sign: faces of one plane do not cross.
 double orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  return (b - a).cross(c - a).dot(d - a);
+  const Vec3 ab = b - a, ac = c - a, ad = d - a;
+  const double volume = ab.cross(ac).dot(ad);
+  const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), ad.squaredNorm()});
+  const double noise = 1e-14 * longest2 * (a.cwiseAbs().maxCoeff() + std::sqrt(longest2));
+  return std::abs(volume) <= noise ? 0 : volume;
 }
 
 /// True if the segment pq passes through the inside of the triangle.
