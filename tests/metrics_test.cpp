@@ -252,6 +252,64 @@ TEST(Faces, ThatRestOnABallSagByGeometryAlone) {
   EXPECT_NEAR(v.at("penetration.max"), 0, 1e-12);
 }
 
+/// A block that slides down a slope of 30 degrees with friction mu, as steps of dt see it.
+State sliding(const Scene& scene, double mu, int step) {
+  const Vec3 down = Vec3(1, -std::sqrt(1.0 / 3), 0).normalized();
+  const double a = 9.81 * std::max(0.0, 0.5 - mu * std::sqrt(0.75));
+  State state = scene.start;
+  for (Vec3& x : state.x) x += a * scene.dt * scene.dt * step * (step + 1) / 2 * down;
+  for (Vec3& v : state.v) v = a * scene.dt * step * down;
+  return state;
+}
+
+TEST(Slip, IsZeroForCoulombsLawAndElseTheAccelerationThatIsWrong) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Plane{.normal = {0.5, std::sqrt(0.75), 0}}, .friction = 0.3}};
+  const auto at = [&](double mu) {
+    return measure(scene, [&](int step) { return sliding(scene, mu, step); });
+  };
+  Values v = at(0.3);
+  EXPECT_NEAR(v.at("slip.error.peak"), 0, 1e-9);
+  EXPECT_NEAR(v.at("slip.distance"), 0, 1e-9);
+  v = at(0.2);  // a solver whose friction is too small by 0.1
+  const double wrong = 9.81 * 0.1 * std::sqrt(0.75);
+  EXPECT_NEAR(v.at("slip.error"), wrong, 1e-9);
+  EXPECT_NEAR(v.at("slip.distance"), wrong / 2 * 3 * (3 + scene.dt), 1e-9);
+  scene.colliders[0].friction = 0.6;  // more than tan(30 degrees): it has to stick, and creeps
+  v = at(0.57);
+  EXPECT_GT(v.at("slip.error"), 0.05);
+  v = at(1);
+  EXPECT_NEAR(v.at("slip.error.peak"), 0, 1e-9);
+}
+
+TEST(Slip, SeesThePlaneMoveAndDampingAndNeedsAPlaneAlone) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Plane{}, .motion = {.velocity = {0.3, 0, 0}}, .friction = 0.5}};
+  const auto carried = [&](int step) {
+    State state = scene.start;
+    for (Vec3& x : state.x) x.x() += 0.3 * scene.dt * step;
+    return state;
+  };
+  for (Vec3& v : scene.start.v) v = {0.3, 0, 0};
+  EXPECT_NEAR(measure(scene, carried).at("slip.error.peak"), 0, 1e-9);
+  scene.colliders[0].motion = {};
+  EXPECT_NEAR(measure(scene, carried).at("slip.error"), 0.5 * 9.81, 1e-9);  // nothing brakes it
+  scene.colliders.clear();
+  scene.damping = 2;
+  scene.gravity = {0, -1e-9, 0};
+  scene.colliders = {{.shape = Plane{.offset = -5}, .friction = 0.5}};
+  const double keep = std::exp(-2 * scene.dt);
+  const auto damped = [&](int step) {
+    State state = scene.start;
+    for (Vec3& x : state.x)
+      x.x() += 0.3 * scene.dt * keep * (1 - std::pow(keep, step)) / (1 - keep);
+    return state;
+  };
+  EXPECT_NEAR(measure(scene, damped).at("slip.error.peak"), 0, 1e-6);
+  scene.pins = {0};
+  EXPECT_FALSE(measure(scene, damped).contains("slip.error"));
+}
+
 TEST(Tunnelling, CountsPassagesWithinOneStepAndForgetsReturns) {
   Scene scene = sheet(3);
   scene.colliders = {{.shape = Box{.center = {0.5, -1, 0.5}, .half_extents = {2, 0.01, 2}}}};

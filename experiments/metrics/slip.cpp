@@ -1,0 +1,108 @@
+#include "experiments/metrics/summary.hpp"
+
+namespace taut::metric::slip {
+
+namespace {
+
+constexpr ValueSpec kValues[] = {
+    {"slip.error", "m/s^2",
+     "distance of the centre of mass's acceleration along the plane from what Coulomb's law makes "
+     "of the normal force that acted, mean over the last second"},
+    {"slip.error.peak", "m/s^2", "the same, largest over the run"},
+    {"slip.distance", "m",
+     "how far the centre of mass is along the plane from where a block would be that felt the same "
+     "normal forces, at the end",
+     true},
+};
+
+/// The cloth against one plane, as a whole: what its threads do to each other cancels, so that
+/// gravity, damping and the plane alone move its centre of mass c. A step's contact impulse per
+/// mass is
+///
+///     j = v' - keep v - g dt,   v = (c_n - c_(n-1))/dt - velocity of the plane, keep = e^(-d dt),
+///
+/// and Coulomb's law, implicit in the velocity as a block on the plane obeys it, lets friction take
+/// mu n . j off the tangential velocity that would be without it, and no more than all of it. A
+/// part of a cloth may slide while another sticks; then the law's bound is all that it can be held
+/// to, and a cloth that deforms while it lies still shows some error.
+class Slip final : public Metric {
+ public:
+  explicit Slip(const Scene& scene)
+      : mass_(scene.mesh.mass),
+        normal_(std::get<Plane>(scene.colliders[0].shape).normal),
+        plane_velocity_(scene.colliders[0].motion.velocity),
+        g_dt_(scene.gravity * scene.dt),
+        keep_(std::exp(-scene.damping * scene.dt)),
+        friction_(scene.colliders[0].friction),
+        dt_(scene.dt),
+        end_(scene) {}
+
+  void observe(const Moment& m) override {
+    const Vec3 center = mean(m.state.x);
+    if (m.step == 0) {
+      velocity_ = block_ = mean(m.state.v);
+    } else {
+      const Vec3 next = (center - center_) / dt_;
+      const double press = std::max(0.0, normal_.dot(next - drift(velocity_)));
+      const Vec3 expected = rubbed(drift(velocity_), press);
+      error_.add(m.step, end_.contains(m.step), along(next - expected).norm() / dt_);
+      block_ = rubbed(drift(block_), press);
+      apart_ += along(next - block_) * dt_;
+      velocity_ = next;
+    }
+    center_ = center;
+  }
+  std::vector<double> finish() override { return {error_.mean(), error_.peak(), apart_.norm()}; }
+  std::vector<double> now(const Moment&) const override {
+    return {Summary::kNone, Summary::kNone, apart_.norm()};
+  }
+
+ private:
+  /// What v becomes in a step without contact.
+  Vec3 drift(const Vec3& v) const { return keep_ * v + g_dt_; }
+
+  /// v after friction under the normal impulse `press` [m/s]; only its part along the plane counts.
+  Vec3 rubbed(const Vec3& v, double press) const {
+    const Vec3 slides = along(v - plane_velocity_);
+    const double speed = slides.norm(), most = friction_ * press;
+    return v - (speed <= most ? slides : Vec3(most / speed * slides));
+  }
+
+  Vec3 along(const Vec3& v) const { return v - normal_.dot(v) * normal_; }
+
+  Vec3 mean(const std::vector<Vec3>& vectors) const {
+    Vec3 sum = Vec3::Zero();
+    double total = 0;
+    for (std::size_t i = 0; i < mass_.size(); ++i) sum += mass_[i] * vectors[i], total += mass_[i];
+    return sum / total;
+  }
+
+  std::vector<double> mass_;
+  Vec3 normal_, plane_velocity_, g_dt_;
+  double keep_, friction_, dt_;
+  LastSecond end_;
+  Vec3 center_ = Vec3::Zero(), velocity_ = Vec3::Zero();  ///< of the cloth
+  Vec3 block_ = Vec3::Zero();                             ///< velocity of the block
+  Vec3 apart_ = Vec3::Zero();                             ///< m, along the plane
+  Summary error_;
+};
+
+/// Nothing but gravity and one plane that does not turn may act on the cloth.
+bool is_a_slope(const Scene& scene) {
+  if (scene.colliders.size() != 1 || !scene.pins.empty() || scene.wind) return false;
+  const Collider& collider = scene.colliders[0];
+  return std::holds_alternative<Plane>(collider.shape) && collider.motion.spin.isZero(0) &&
+         collider.motion.path.empty();
+}
+
+}  // namespace
+}  // namespace taut::metric::slip
+
+TAUT_METRIC(slip) = {.name = "slip",
+                     .summary = "Whether friction on a plane is Coulomb's",
+                     .source = "momentum of the whole cloth against Coulomb's law, step by step",
+                     .values = taut::metric::slip::kValues,
+                     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
+                       if (!taut::metric::slip::is_a_slope(scene)) return nullptr;
+                       return std::make_unique<taut::metric::slip::Slip>(scene);
+                     }};
