@@ -171,6 +171,14 @@ class Verbs(CommandLine):
         self.assertIn(report["timing_trusted"], (True, False))
         self.assertIn("toolchain", [finding["name"] for finding in report["findings"]])
 
+    def test_benches_of_two_words_take_options(self):
+        short = ["--sizes", "8", "--rounds", "1", "--seconds", "0.0001"]
+        out = self.taut("bench", "kernels", *short).out
+        self.assertIn("textbook, float", out)
+        out = self.taut("bench", "contact", *short).out
+        for text in ["contact=swept,order=mesh", "self=grid,order=coloured", "8 x 8, 64 particles"]:
+            self.assertIn(text, out)
+
     def test_the_same_scene_under_another_name_is_the_same_case(self):
         (self.folder / "copy.toml").write_text((self.folder / "small.toml").read_text())
         self.taut("run", self.study(scenes=["./small.toml"]))

@@ -13,7 +13,6 @@
 #include "experiments/lab/campaign.hpp"
 #include "experiments/lab/data.hpp"
 #include "experiments/lab/files.hpp"
-#include "experiments/verbs/invoke.hpp"
 #include "experiments/verbs/progress.hpp"
 #include "experiments/verbs/verb.hpp"
 
@@ -215,9 +214,7 @@ int run(const Options& options) {
     return serve_timing(*one.scene, one.choice);
   }
   if (options.what.empty())
-    throw InputError("bench what? A study, a scene with --solver, or `kernels`");
-  if (options.what.front() == "kernels")
-    return invoke("bench-kernels", {options.what.begin() + 1, options.what.end()});
+    throw InputError("bench what? A study, a scene with --solver, `kernels` or `contact`");
   for (const std::string& name : options.what)
     options.solvers.empty() ? bench_study(name, options) : compare(name, options);
   return kPass;
@@ -225,7 +222,7 @@ int run(const Options& options) {
 
 std::function<int()> bind(Arguments& arguments) {
   const auto o = std::make_shared<Options>();
-  arguments.option("WHAT", o->what, "Studies; or scenes, with --solver; or `kernels`");
+  arguments.option("WHAT", o->what, "Studies; or scenes, with --solver; or `kernels` or `contact`");
   arguments.option("--solver", o->solvers, "A solver to time on the scene; repeat it for each");
   arguments.option("--set", o->settings,
                    "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
@@ -258,5 +255,5 @@ TAUT_VERB(bench) = {
         "Measures cost: interleaved, CPU time of Solver::step alone, with confidence intervals",
     .example =
         "taut bench trade\n  taut bench hang --solver jakobsen:iterations=16 --solver "
-        "bullet:iterations=16\n  taut bench kernels",
+        "bullet:iterations=16\n  taut bench kernels\n  taut bench contact",
     .bind = taut::verb::bench::bind};

@@ -76,6 +76,17 @@ int run_verb(int argc, char** argv) {
   return exit_code;
 }
 
+/// "bench kernels" is the verb bench-kernels, with options of its own.
+std::vector<char*> join_verb(int argc, char** argv, std::string& joined) {
+  std::vector<char*> words(argv, argv + argc);
+  if (argc < 3) return words;
+  joined = std::string(argv[1]) + "-" + argv[2];
+  if (!has_verb(joined)) return words;
+  words.erase(words.begin() + 1);
+  words[1] = joined.data();
+  return words;
+}
+
 }  // namespace
 
 int command_line(int argc, char** argv) {
@@ -87,7 +98,9 @@ int command_line(int argc, char** argv) {
     return kUsage;
   }
   try {
-    return run_verb(argc, argv);
+    std::string joined;
+    std::vector<char*> words = join_verb(argc, argv, joined);
+    return run_verb(static_cast<int>(words.size()), words.data());
   } catch (const InputError& error) {
     std::cerr << error.what() << '\n';
     return kUsage;
