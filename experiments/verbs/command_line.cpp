@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <optional>
 
 #include "core/model/input_error.hpp"
 #include "experiments/verbs/arguments.hpp"
