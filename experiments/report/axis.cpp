@@ -143,7 +143,7 @@ void log_ticks(Axis& axis) {
       const double at = m * std::pow(10.0, e);
       if (at < axis.low * (1 - 1e-9) || at > axis.high * (1 + 1e-9)) continue;
       const bool labelled = m == 1 ? (e - first) % stride == 0 : few && (m == 2 || m == 5);
-      if (labelled || stride == 1) axis.ticks.emplace_back(at, labelled ? significant(at, 1) : "");
+      if (labelled || stride == 1) axis.ticks.emplace_back(at, labelled ? tick_text(at, 1) : "");
     }
 }
 
@@ -204,9 +204,10 @@ Axis sweep_axis(const Quantity& q, std::vector<double> shown, std::size_t most_l
     // Counted from the right: the largest value always has its label.
     const bool labelled = (shown.size() - 1 - i) % stride == 0;
     const int digits = shown[i] == std::round(shown[i]) && shown[i] < 1e5 ? 5 : 2;
-    axis.ticks.emplace_back(shown[i], !labelled     ? ""
-                                      : digits == 5 ? exact(shown[i])
-                                                    : significant(shown[i], 2));
+    axis.ticks.emplace_back(shown[i], !labelled ? ""
+                                      : digits == 5 && shown[i] < 1e4
+                                          ? exact(shown[i])
+                                          : tick_text(shown[i], digits));
   }
   return axis;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/format.hpp"
@@ -199,21 +200,64 @@ std::string plot_commands(const Chart& chart, const std::string& slope) {
   return out + "\n";
 }
 
+/// A rectangle on the picture [px] by its centre.
+struct Box {
+  double x, y, width, height;
+  bool meets(const Box& o) const {
+    return std::abs(x - o.x) < (width + o.width) / 2 && std::abs(y - o.y) < (height + o.height) / 2;
+  }
+};
+
+Box marker_at(const Chart& chart, const PlotArea& area, const Point& p) {
+  const double x = chart.x.position(p.x * chart.x.quantity.scale);
+  const double y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));
+  return {area.left + x * (area.right - area.left), area.bottom - y * (area.bottom - area.top), 8,
+          8};
+}
+
+std::vector<Box> markers_of(const Chart& chart, const PlotArea& area) {
+  std::vector<Box> all;
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points)
+      if (p.measured()) all.push_back(marker_at(chart, area, p));
+  return all;
+}
+
+/// Where a text of this width beside a marker hides nothing of `taken`; nothing: nowhere.
+std::optional<Box> free_place(const Box& marker, double width, const PlotArea& area,
+                              const std::vector<Box>& taken) {
+  const double side = width / 2 + 8;
+  for (const auto& [dx, dy] : {std::pair(10.0, -11.0),
+                               {-10.0, -11.0},
+                               {10.0, 12.0},
+                               {-10.0, 12.0},
+                               {side, 0.0},
+                               {-side, 0.0},
+                               {side, -11.0},
+                               {-side, 12.0}}) {
+    const Box place{marker.x + dx, marker.y + dy, width, 11};
+    if (place.x - width / 2 < area.left || place.x + width / 2 > area.right + 14) continue;
+    if (place.y < area.top || place.y > area.bottom - 6) continue;
+    if (std::ranges::none_of(taken, [&](const Box& o) { return place.meets(o); })) return place;
+  }
+  return {};
+}
+
+/// The settings beside their points, as many as find room; the table has them all.
 std::string point_names(const Chart& chart, const PlotArea& area) {
   std::string out;
+  std::vector<Box> taken = markers_of(chart, area);
   for (const Curve& curve : chart.curves) {
     std::vector<const Point*> points;
     for (const Point& p : curve.points)
       if (p.measured() && std::isfinite(p.along)) points.push_back(&p);
-    for (std::size_t i = 0;
-         i<points.size(); i += points.size()> 4 && points[i]->name.empty() ? 2 : 1) {
-      const Point& p = *points[i];
-      const double x = chart.x.position(p.x * chart.x.quantity.scale);
-      const double y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));
-      const std::string name = p.name.empty() ? quantity("iterations").text(p.along, 2) : p.name;
-      out += "set label " + gnuplot_string(name) + " at " +
-             screen(area.left + x * (area.right - area.left) + 10,
-                    area.bottom - y * (area.bottom - area.top) - 10, chart) +
+    for (const Point* p : points) {
+      const std::string name = p->name.empty() ? quantity("iterations").text(p->along, 2) : p->name;
+      const auto place =
+          free_place(marker_at(chart, area, *p), text_width(name) * 11 / 12, area, taken);
+      if (!place) continue;
+      taken.push_back(*place);
+      out += "set label " + gnuplot_string(name) + " at " + screen(place->x, place->y, chart) +
              " center tc rgb " + quoted(solver_style(curve.solver).colour.light) +
              " font ',11' front\n";
     }

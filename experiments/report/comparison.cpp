@@ -122,6 +122,9 @@ Comparison compare(const ReportInput& input) {
   for (const Contender& c : facts.contenders) {
     facts.stretch.push_back(ratio_of(c, facts.contenders.front(), "stretch.rms", kNoStretch));
     facts.cost.push_back(ratio_of(c, facts.contenders.front(), kCpuValue, 0));
+    facts.price.push_back(
+        input.bench ? std::optional(compare_price(*input.bench, solvers.front(), c.solver))
+                    : std::nullopt);
     facts.failed.push_back(static_cast<int>(std::ranges::count_if(c.records, [](const Record& r) {
       return !usable(r) && r.status.kind != Status::Kind::unsupported;
     })));

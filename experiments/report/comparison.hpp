@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/report/input.hpp"
+#include "experiments/report/price.hpp"
 
 namespace taut::report {
 
@@ -30,6 +31,7 @@ struct Comparison {
   std::vector<Contender> contenders;          ///< in the order of first appearance
   std::vector<std::optional<Ratio>> stretch;  ///< RMS stretch over the first contender's
   std::vector<std::optional<Ratio>> cost;     ///< CPU per step over the first contender's
+  std::vector<std::optional<Price>> price;    ///< of kPricedError; nothing: not timed
   int sweeps = 0;                             ///< at which single cases are quoted; 0: none
   std::vector<int> failed, total;  ///< cases by contender; unsupported ones are not failures
 };
@@ -63,5 +65,9 @@ std::optional<double> value_at(const Contender&, const std::string& scene, int s
 
 /// The verdict: what the data say, as HTML. Never claims what no pair of cases shows.
 std::string verdict(const Comparison&, const std::vector<std::string>& scenes);
+
+/// Who pays less for kPricedError, by how much and how sure that is, as HTML; "" if nothing was
+/// timed.
+std::string price_verdict(const Comparison&);
 
 }  // namespace taut::report

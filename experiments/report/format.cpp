@@ -35,6 +35,18 @@ std::string significant(double value, int digits) {
   return (value < 0 ? "−" : "") + text;
 }
 
+std::string tick_text(double value, int digits) {
+  static constexpr std::array<const char*, 10> kRaised{"⁰", "¹", "²", "³", "⁴",
+                                                       "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const double exponent = value > 0 ? std::log10(value) : 0;
+  const auto whole = static_cast<int>(std::lround(exponent));
+  if (std::abs(exponent - whole) > 1e-9 || std::abs(whole) < 4) return significant(value, digits);
+  std::string text = whole < 0 ? "10⁻" : "10";
+  for (const char digit : std::to_string(std::abs(whole)))
+    text += kRaised[static_cast<std::size_t>(digit - '0')];
+  return text;
+}
+
 std::string exact(double value) { return std::isnan(value) ? "" : shortest(value); }
 
 std::string ratio(double value) { return significant(value, 2); }

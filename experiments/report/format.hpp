@@ -10,6 +10,8 @@ namespace taut::report {
 std::string significant(double value, int digits = 2);
 /// Every bit, shortest form: for data files. NaN gives "".
 std::string exact(double value);
+/// A number beside an axis: powers of ten from 10⁴ on as such, all else by significant().
+std::string tick_text(double value, int digits);
 /// A ratio for prose: "3.3", "12", "150".
 std::string ratio(double value);
 

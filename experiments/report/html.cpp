@@ -16,6 +16,13 @@ std::string solver_dot(const std::string& solver) {
          std::string(solver_style(solver).colour.name) + ")\"></i>";
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    out += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + escape_html(names[k]);
+  return out;
+}
+
 std::string status_legend(const std::set<Status::Kind>& kinds, bool explained) {
   std::string out;
   for (const Status::Kind kind : kinds) {

@@ -3,6 +3,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "experiments/report/comparison.hpp"
 #include "experiments/report/figures.hpp"
@@ -16,6 +17,9 @@ std::string solver_name(const Contender&);
 std::string solver_name(const std::string& solver, const std::string& label);
 /// A dot in the solver's colour.
 std::string solver_dot(const std::string& solver);
+
+/// "ball, box and plane"; escaped.
+std::string listed(const std::vector<std::string>& names);
 
 /// A swatch with its glyph and a name for each status; `explained`: with a few words more.
 std::string status_legend(const std::set<Status::Kind>&, bool explained);

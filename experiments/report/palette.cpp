@@ -75,6 +75,7 @@ SolverStyle solver_style(std::string_view solver, int variant) {
 }
 
 std::string solver_title(std::string_view solver) {
+  if (solver == "xpbd") return "XPBD";
   std::string title(solver);
   std::ranges::replace(title, '_', ' ');
   std::ranges::replace(title, '-', ' ');

@@ -88,7 +88,8 @@ std::string scenes_part(Page& page, const std::vector<const SectionEntry*>& part
     for (const Record& r : study.records) kinds.insert(r.status.kind);
   return "<section id=\"scenes\"><h2>Scene by scene</h2><p class=\"lead\">How cases ended: " +
          status_legend(kinds, true) +
-         "On curves a failed case is its glyph above the plot, an exact zero a triangle on the "
+         "</p><p class=\"lead\">On curves a failed case is its glyph above the plot, an exact zero "
+         "a triangle on the "
          "floor.</p><nav class=\"jump\" "
          "aria-label=\"Scenes\">" +
          links + "</nav>" + all + "</section>\n";

@@ -16,14 +16,6 @@ std::string plural(int n, const std::string& one) {
   return std::to_string(n) + " " + one + (n == 1 ? "" : "s");
 }
 
-/// "ball, box and plane"
-std::string listed(const std::vector<std::string>& names) {
-  std::string out;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    out += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + escape_html(names[k]);
-  return out;
-}
-
 /// Scenes on which one contender has less of a value, with how much less (geometric mean).
 struct Wins {
   std::vector<std::string> scenes;

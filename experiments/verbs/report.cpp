@@ -1,10 +1,14 @@
 #include "experiments/report/report.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "core/model/scene_io.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/lab/data.hpp"
 #include "experiments/lab/files.hpp"
 #include "experiments/lab/key.hpp"
 #include "experiments/lab/map.hpp"
@@ -35,6 +39,26 @@ std::string command_line(const Options& options) {
   return run + " && " + report;
 }
 
+/// Every solver with what it cannot do on the shipped scenes at its default settings.
+std::vector<report::SolverInfo> introductions() {
+  std::vector<report::SolverInfo> all;
+  for (const SolverEntry* entry : solvers())
+    all.push_back(
+        {std::string(entry->name), std::string(entry->summary), std::string(entry->source), {}});
+  for (const std::string& name : shipped("scenes")) {
+    const Scene scene = load_scene(find_scene(name));
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (const std::string& reason :
+           solvers()[i]->cannot(scene, parse_solver(all[i].name).params)) {
+        auto& reasons = all[i].cannot;
+        auto at = std::ranges::find(reasons, reason, [](const auto& r) { return r.first; });
+        if (at == reasons.end()) at = reasons.insert(reasons.end(), {reason, {}});
+        at->second.push_back(name);
+      }
+  }
+  return all;
+}
+
 int run(Options options) {
   const std::string command = command_line(options);
   if (options.studies.empty()) {
@@ -51,9 +75,7 @@ int run(Options options) {
     maps.push_back(load_study(name, options.preset.empty() ? "quick" : options.preset));
   input.maps = report::stored_maps(maps, store);
   input.command = command;
-  for (const SolverEntry* entry : solvers())
-    input.solvers.push_back(
-        {std::string(entry->name), std::string(entry->summary), std::string(entry->source)});
+  input.solvers = introductions();
   const std::string program = program_digest();
   input.provenance = {{"version", "program " + program.substr(0, 10)},
                       {"made", utc_stamp()},

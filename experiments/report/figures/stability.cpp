@@ -95,10 +95,10 @@ std::string make_csv(const Map& map) {
   return out;
 }
 
-std::string tick_text(const Quantity& q, double si) {
+std::string cell_text(const Quantity& q, double si) {
   const double shown = si * q.scale;
-  const bool whole = std::abs(shown - std::round(shown)) < 1e-6 * shown && shown < 1e5;
-  return whole ? exact(std::round(shown)) : significant(shown, 2);
+  const bool whole = std::abs(shown - std::round(shown)) < 1e-6 * shown && shown < 1e4;
+  return whole ? exact(std::round(shown)) : tick_text(shown, 2);
 }
 
 std::string muted() { return "'" + std::string(neutral("muted").light) + "'"; }
@@ -109,7 +109,7 @@ std::string index_ticks(const std::string& which, const Quantity& q, const std::
       std::max(1.0, std::ceil(static_cast<double>(at.size()) * 34 / std::max(room, 34.0))));
   std::string out = "set " + which + "tics scale 0 (";
   for (std::size_t i = 0; i < at.size(); i += stride)
-    out += (i > 0 ? ", " : "") + gnuplot_string(tick_text(q, at[i])) + " " + std::to_string(i);
+    out += (i > 0 ? ", " : "") + gnuplot_string(cell_text(q, at[i])) + " " + std::to_string(i);
   return out + ") textcolor rgb " + muted() + " font ',12'\nset " + which +
          "range [-0.5:" + exact(static_cast<double>(at.size()) - 0.5) + "]\n";
 }

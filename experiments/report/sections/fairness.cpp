@@ -65,8 +65,28 @@ std::string panel(const std::vector<const Record*>& examples, const Comparison& 
     work.push_back(std::to_string(r->projections));
   }
   row("passes of a step, in order", orders);
-  row("constraint projections per step", work);
+  row("work unit: constraint projections per step", work);
   return out + "</tbody></table></div>";
+}
+
+/// What each solver refuses rather than misreads; failing to refuse would be a silent
+/// approximation.
+std::string refusals(const Page& page) {
+  std::string out;
+  for (const Contender& c : page.facts().contenders) {
+    const auto& all = page.input().solvers;
+    const auto solver = std::ranges::find(all, c.solver, &SolverInfo::name);
+    if (solver == all.end()) continue;
+    out += "<li>" + solver_name(c.solver, solver_title(c.solver)) + " ";
+    if (solver->cannot.empty()) out += "can run every shipped scene.";
+    for (const auto& [reason, scenes] : solver->cannot)
+      out += (&reason == &solver->cannot.front().first ? "cannot: " : "; ") + escape_html(reason) +
+             " (" + listed(scenes) + ")";
+    out += "</li>\n";
+  }
+  return out.empty()
+             ? ""
+             : "<h3 class=\"inner\">What each cannot do</h3><ul class=\"links\">" + out + "</ul>";
 }
 
 std::string render(Page& page, const std::string&) {
@@ -77,8 +97,9 @@ std::string render(Page& page, const std::string&) {
          "same case (" +
          escape_html(page.hero()) + ", " + std::to_string(page.facts().sweeps) +
          " sweeps), after mapping. Marked rows differ: differences in the results may come from "
-         "them.</p><div class=\"card\">" +
-         panel(examples, page.facts()) + "</div></section>\n";
+         "them. Equal sweeps are equal numbers of projections, not equal time. What none of this "
+         "shows is said <a href=\"#limits\">at the end</a>.</p><div class=\"card\">" +
+         panel(examples, page.facts()) + refusals(page) + "</div></section>\n";
 }
 
 }  // namespace

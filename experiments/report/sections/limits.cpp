@@ -10,17 +10,23 @@ namespace taut::report::section::limits {
 namespace {
 
 bool timed(const ReportInput& input) {
-  return std::ranges::any_of(input.studies, [](const StudyResult& study) {
-    return std::ranges::any_of(
-        study.records, [](const Record& r) { return std::isfinite(value_of(r, kCpuValue)); });
-  });
+  return input.bench || std::ranges::any_of(input.studies, [](const StudyResult& study) {
+           return std::ranges::any_of(study.records, [](const Record& r) {
+             return std::isfinite(value_of(r, kCpuValue));
+           });
+         });
 }
 
 std::string render(Page& page, const std::string&) {
   const ReportInput& input = page.input();
   std::string points;
   const auto point = [&](const std::string& text) { points += "<li>" + text + "</li>"; };
-  if (!timed(input))
+  if (input.bench)
+    point("Cost elsewhere. Times were measured on one machine (" +
+          escape_html(input.bench->machine) +
+          "), with the settings that were tried; a finer search may find cheaper ones: <code>taut "
+          "advise</code>.");
+  else if (!timed(input))
     point(
         "Cost in time. Equal sweeps are equal work, not equal time; <code>taut bench</code> "
         "measures CPU time.");

@@ -15,7 +15,8 @@ struct Tile {
   Quantity quantity;
   std::vector<std::optional<double>> values;
   bool less_is_better = true;
-  std::string more, less;  ///< "longer", "less"
+  std::string more, less;   ///< "longer", "less"
+  std::string judged = {};  ///< instead of the ratio of the values
 };
 
 std::string judgement(const Comparison& facts, const Tile& tile) {
@@ -52,8 +53,31 @@ std::string draw(const Comparison& facts, const Tile& tile) {
             ")\"></i></i></li>";
   }
   return "<div class=\"card tile\"><h3>" + escape_html(tile.heading) + "</h3><p>" +
-         escape_html(tile.caption) + "</p><ul>" + bars + "</ul>" + judgement(facts, tile) +
-         "</div>";
+         escape_html(tile.caption) + "</p><ul>" + bars + "</ul>" +
+         (tile.judged.empty() ? judgement(facts, tile) : tile.judged) + "</div>";
+}
+
+/// What the priced error costs; nothing unless every solver reached it somewhere.
+std::optional<Tile> cost(const Comparison& facts) {
+  if (facts.contenders.size() != 2 || !facts.price[1] || !facts.price[1]->mean) return {};
+  const Price& price = *facts.price[1];
+  const Quantity error = quantity(kPricedMetric);
+  Tile tile{"Cost of " + error.text(kPricedError, 1) + " stretch",
+            "CPU time per simulated second, cheapest setting, mean of scenes",
+            {"", "", "ms", 1e3},
+            {price.first_cost, price.other_cost},
+            true,
+            "more",
+            "less"};
+  const Interval& r = *price.mean;
+  const bool ours = r.mid > 1;
+  const Interval by = ours ? r : Interval{1 / r.high, 1 / r.mid, 1 / r.low};
+  if (told_apart(r, {1, 1, 1}))
+    tile.judged = "<p class=\"good\">" + escape_html(facts.contenders[ours ? 0 : 1].label) + ": " +
+                  ratio(by.mid) + "× less (" + ratio(by.low) + "–" + ratio(by.high) + ")</p>";
+  else
+    tile.judged = "<p class=\"even\">no difference</p>";
+  return tile;
 }
 
 /// Means over the scenes on which every contender has the value at the quoted sweeps.
@@ -98,7 +122,9 @@ std::string render(Page& page, const std::string&) {
                            quantity("stretch.rms"), means(page, "stretch.rms", true), true, "more",
                            "less"}};
   auto cpu = means(page, kCpuValue, true);
-  if (any(cpu))
+  if (const auto priced = cost(facts))
+    tiles.push_back(*priced);
+  else if (any(cpu))
     tiles.push_back({"Cost",
                      "CPU per step, one thread, " + at,
                      {"", "", "ms", 1e3},

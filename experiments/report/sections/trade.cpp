@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "experiments/report/axis.hpp"
 #include "experiments/report/html.hpp"
@@ -8,8 +9,9 @@ namespace taut::report::section::trade {
 
 namespace {
 
-constexpr const char* kMetric = "stretch.rms";
-constexpr double kQuestion = 0.01;  ///< the level of "which solver at which setting?"
+constexpr const char* kMetric = kPricedMetric;
+constexpr double kQuestion = kPricedError;  ///< the level of "which solver at which setting?"
+constexpr double kFrame = 1.0 / 60;         ///< s; budgets are CPU time within it
 
 std::string span_text(const Interval& i, const char* unit, double scale = 1) {
   return significant(i.mid * scale, 3) + unit + " (" + significant(i.low * scale, 3) + "–" +
@@ -19,7 +21,19 @@ std::string span_text(const Interval& i, const char* unit, double scale = 1) {
 std::string setting(const BenchedCase& c) {
   const std::string text = parse_solver(c.record.spec.solver).brief();
   const auto colon = text.find(':');
-  return colon == std::string::npos ? "defaults" : text.substr(colon + 1);
+  if (colon == std::string::npos) return "defaults";
+  std::string spaced;  // so that a narrow column can break it
+  for (const char letter : text.substr(colon + 1))
+    spaced += letter == ',' ? ", " : std::string(1, letter);
+  return spaced;
+}
+
+/// "never reached (at best 0.12 %)".
+std::string never(const SceneBench& scene, const std::string& solver) {
+  const std::vector<Offer> offers = scene.offers(kMetric);
+  const auto nearest = best_within(offers, solver, std::numeric_limits<double>::infinity());
+  return nearest ? "never reached (at best " + quantity(kMetric).text(offers[*nearest].error) + ")"
+                 : "never reached: every case failed";
 }
 
 /// The rivals of the cheapest, nearest first.
@@ -31,21 +45,35 @@ std::vector<const Reached*> rivals(const std::vector<Reached>& row, const Reache
   return others;
 }
 
+/// The command that asks the same question of the same scene.
+std::string ask_again(const SceneBench& scene) {
+  std::string text = "taut advise " + scene.scene + " --error 1%";
+  if (!scene.cases.empty())
+    for (const std::string& value : scene.cases.front().record.spec.overrides)
+      text += " --set " + value;
+  return text;
+}
+
 /// One row of the summary: who is cheapest for the level, by how much, and how to ask again.
 std::vector<std::string> answer(const SceneBench& scene) {
   const std::vector<Reached> row = equal_error(scene, kMetric, kQuestion);
   const auto best = cheapest_within(scene.offers(kMetric), "", kQuestion);
-  if (!best) return {scene.scene, "never reached", "–", "–"};
+  const std::string again = ask_again(scene);
+  if (!best) return {scene.scene, "never reached", "–", "–", again};
   const BenchedCase& c = scene.cases[*best];
   const auto& first = *std::ranges::find_if(row, [&](const Reached& r) { return r.at == best; });
   std::string ratios;
   for (const Reached* r : rivals(row, first))
-    ratios +=
-        (ratios.empty() ? "" : ", ") + solver_title(r->solver) + " " + span_text(*r->times, " ×");
+    ratios += (ratios.empty() ? "" : ", ") + solver_title(r->solver) + " " +
+              span_text(*r->times, " ×") +
+              (told_apart(*r->times, scene.control) ? "" : ", no difference that can be told");
   for (const Reached& r : row)
-    if (!r.at) ratios += (ratios.empty() ? "" : ", ") + solver_title(r.solver) + ": never reached";
+    if (!r.at)
+      ratios +=
+          (ratios.empty() ? "" : ", ") + solver_title(r.solver) + " " + never(scene, r.solver);
   return {scene.scene, solver_title(c.record.solver) + " " + setting(c),
-          span_text(c.cost(), " ms", 1e3), ratios.empty() ? "no rival can run this scene" : ratios};
+          span_text(c.cost(), " ms", 1e3), ratios.empty() ? "no rival can run this scene" : ratios,
+          again};
 }
 
 Table levels(const SceneBench& scene) {
@@ -55,7 +83,7 @@ Table levels(const SceneBench& scene) {
     table.rows.push_back({quantity(kMetric).text(level, 1)});
     for (const Reached& r : equal_error(scene, kMetric, level))
       table.rows.back().push_back(
-          !r.at ? "never reached"
+          !r.at ? never(scene, r.solver)
                 : span_text(scene.cases[*r.at].cost(), " ms", 1e3) +
                       (r.times && r.times->mid > 1 ? ", " + span_text(*r.times, " ×") : "") + ", " +
                       setting(scene.cases[*r.at]));
@@ -70,8 +98,9 @@ Table budgets(const SceneBench& scene) {
   for (const double budget : kFrameBudgets) {
     table.rows.push_back({significant(1e3 * budget, 2) + " ms"});
     for (const std::string& solver : solvers_of(scene)) {
-      const auto at = best_within(offers, solver, budget * 60);
-      table.rows.back().push_back(at ? quantity(kMetric).text(offers[*at].error) + ", " +
+      const auto at = best_within(offers, solver, budget / kFrame);
+      table.rows.back().push_back(at ? quantity(kMetric).text(offers[*at].error) + " for " +
+                                           span_text(offers[*at].cost, " ms", 1e3 * kFrame) + ", " +
                                            setting(scene.cases[*at])
                                      : "nothing that cheap");
     }
@@ -79,13 +108,7 @@ Table budgets(const SceneBench& scene) {
   return table;
 }
 
-std::string scroll(const std::string& label, const std::string& inner) {
-  return "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" + label + "\">" +
-         inner + "</div>";
-}
-
 std::string scene_part(Page& page, const SceneBench& scene, const std::vector<Record>& records) {
-  const std::string name = escape_html(scene.scene);
   const std::string control = "the same code against itself: " + span_text(scene.control, " ×");
   return "<h3>" + escape_html(solver_title(scene.scene)) + "</h3><div class=\"cards\">" +
          page.figure({.kind = "work-precision",
@@ -98,11 +121,12 @@ std::string scene_part(Page& page, const SceneBench& scene, const std::vector<Re
                      "down and left is better; labels are substeps × sweeps; " + control) +
          "<div class=\"card\"><h4>Cost of an error</h4><p>CPU time per simulated second, its 95 % "
          "interval, and the ratio to the cheapest.</p>" +
-         scroll("Cost of an error, " + name, html_table(levels(scene), "Cost of an error")) +
-         "<h4>Error within a budget</h4>" +
-         scroll("Error within a budget, " + name,
-                html_table(budgets(scene), "Error within a budget of CPU time per frame")) +
-         "</div></div>\n";
+         html_table(levels(scene), "Cost of an error, " + scene.scene) +
+         "</div><div class=\"card wide\"><h4>Error within a budget</h4><p>The least error within a "
+         "budget of CPU time per frame "
+         "of "
+         "1/60 s, what it costs and with which setting.</p>" +
+         html_table(budgets(scene), "Error within a budget, " + scene.scene) + "</div></div>\n";
 }
 
 std::string render(Page& page, const std::string&) {
@@ -111,7 +135,8 @@ std::string render(Page& page, const std::string&) {
     return head + absent("No cost was measured.", "taut bench trade --preset quick") +
            "</section>\n";
   const BenchSession& bench = *page.input().bench;
-  Table table{{"scene", "cheapest setting", "CPU per simulated second", "the others"}, {}};
+  Table table{{"scene", "cheapest setting", "CPU per simulated second", "the others", "ask again"},
+              {}};
   std::string parts;
   for (const SceneBench& scene : bench.scenes) {
     table.rows.push_back(answer(scene));
@@ -120,10 +145,9 @@ std::string render(Page& page, const std::string&) {
   return head + "<p class=\"lead\">Which solver at which setting for " +
          quantity(kMetric).text(kQuestion, 1) + " " + quantity(kMetric).title + "? Measured on " +
          escape_html(bench.machine) +
-         ", CPU time of a step alone, forth and back between processes; intervals are 95 %. Any "
-         "scene and level: <code>taut advise SCENE --error 0.01</code>.</p><div class=\"card\">" +
-         scroll("Cheapest settings", html_table(table, "Cheapest setting for the level")) +
-         "</div>" + parts + "</section>\n";
+         ", CPU time of a step alone, forth and back between processes; intervals are 95 %. "
+         "Factors in the last but one column are costs over the cheapest.</p><div class=\"card\">" +
+         html_table(table, "Cheapest setting for the level") + "</div>" + parts + "</section>\n";
 }
 
 }  // namespace

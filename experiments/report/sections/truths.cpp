@@ -19,6 +19,13 @@ std::string csv(const Truths& truths) {
   return out;
 }
 
+/// Narrow columns break a text at spaces only.
+std::string breakable(const std::string& settings) {
+  std::string out;
+  for (const char c : settings) out += c == ',' ? ", " : std::string(1, c);
+  return out;
+}
+
 /// What is not simply as theory has it stays in sight; the rest is behind a click.
 std::string body(const ReportInput& input) {
   if (!input.truths)
@@ -29,8 +36,8 @@ std::string body(const ReportInput& input) {
   Table apart{{"truth", "solver", "expected", "measured", "verdict"}, {}}, all = apart;
   std::map<std::string, int> verdicts;
   for (const TruthRow& row : truths.rows) {
-    const std::vector<std::string> cells{row.statement + " (" + row.source + ")", row.subject,
-                                         row.expected, row.measured,
+    const std::vector<std::string> cells{row.statement + " (" + row.source + ")",
+                                         breakable(row.subject), row.expected, row.measured,
                                          row.verdict + (row.why.empty() ? "" : ": " + row.why)};
     all.rows.push_back(cells);
     if (row.verdict == "passed") continue;
@@ -43,7 +50,9 @@ std::string body(const ReportInput& input) {
                     "</b> " + std::to_string(truths.truths) + " truths, " +
                     std::to_string(truths.findings) + " numbers compared";
   for (const auto& [verdict, n] : verdicts)
-    if (n > 0) out += ", " + std::to_string(n) + " " + verdict;
+    if (n > 0)
+      out += ", " + std::to_string(n) + " " +
+             (verdict == "deviates" && n > 1 ? std::string("deviate") : verdict);
   out += ".</p>";
   if (!apart.rows.empty()) out += html_table(apart, "Where a solver differs from theory, and why");
   return out + html_data(all, "each truth, the number nearest to its tolerance", csv(truths),

@@ -27,6 +27,15 @@ std::string provenance_line(const ReportInput& input) {
   return out;
 }
 
+/// The price of an error leads where it was measured; all else stands below it.
+std::string sentences(const Page& page) {
+  const std::string price = price_verdict(page.facts());
+  const std::string rest = verdict(page.facts(), page.scenes());
+  const std::string open = "<p class=\"verdict\" id=\"verdict\">";
+  if (price.empty()) return open + rest + "</p>";
+  return open + price + "</p><p class=\"besides\">" + rest + "</p>";
+}
+
 std::string render(Page& page, const std::string&) {
   return "<header class=\"page\"><div class=\"bar\"><span><b>taut</b> comparison report</span>"
          "<span class=\"grow\"></span><span>" +
@@ -34,8 +43,7 @@ std::string render(Page& page, const std::string&) {
          "</span><button id=\"theme\" type=\"button\" aria-label=\"Dark theme\" title=\"Switch "
          "between light and "
          "dark\">light / dark</button></div>\n<h1>" +
-         title(page) + "</h1>\n<p class=\"verdict\" id=\"verdict\">" +
-         verdict(page.facts(), page.scenes()) + "</p></header>\n<main id=\"main\">\n";
+         title(page) + "</h1>\n" + sentences(page) + "</header>\n<main id=\"main\">\n";
 }
 
 }  // namespace
