@@ -1,13 +1,17 @@
 // Metrics on states whose answers are known in closed form, and the symmetries that all obey.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <random>
 
 #include "core/model/input_error.hpp"
+#include "core/model/scene_io.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/metrics/reference.hpp"
 
 namespace taut {
 namespace {
@@ -419,6 +423,36 @@ void expect_same(const Values& a, const Values& b) {
   ASSERT_EQ(a.size(), b.size());
   for (const auto& [name, value] : a)
     EXPECT_NEAR(value, b.at(name), 1e-9 * std::max(1.0, std::abs(value))) << name;
+}
+
+TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
+  Scene scene =
+      load_scene(std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/drape.toml");
+  const References known = known_references(scene);
+  ASSERT_TRUE(known.rest && known.motion);
+  scene.dt = 0.1, scene.steps = 10;  // neither matters
+  const auto pins = [&](std::size_t i) {
+    return std::ranges::count(scene.pins, static_cast<int>(i));
+  };
+  const auto motion = [&](int step) {
+    State state{step == 5 ? known.motion->x : known.rest->x, scene.start.v};
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      if (pins(i)) state.x[i] += Vec3(0, 0, 5);  // which the scene moves, not the solver
+      if (step != 5) state.x[i] += Vec3(0, 0.03, -0.04);
+    }
+    return state;
+  };
+  const Values v = measure(scene, motion);
+  EXPECT_EQ(v.at("reference.motion"), 0);
+  EXPECT_GT(v.at("reference.max"), 0.05);  // at step 5, where it should not rest yet
+  EXPECT_EQ(v.at("reference.floor"), known.rest->floor);
+  EXPECT_EQ(v.at("reference.motion_floor"), known.motion->floor);
+  scene.steps = 4, scene.dt = 0.25;
+  const Values end = measure(scene, [&](int) { return motion(1); });
+  EXPECT_NEAR(end.at("reference.rms"), 0.05, 1e-15);
+  EXPECT_NEAR(end.at("reference.max"), 0.05, 1e-15);
+  scene.mesh.mass[3] *= 2;  // another cloth: nothing is known of it
+  EXPECT_FALSE(measure(scene, motion).contains("reference.rms"));
 }
 
 TEST(Metrics, DoNotCareWhereTheWorldIs) {

@@ -25,6 +25,12 @@ fs::path data_folder() {
   return fs::is_directory(installed) ? installed : fs::path(TAUT_SOURCE_DATA);
 }
 
+fs::path references_folder() {
+  const fs::path installed = data_folder() / "references";
+  return fs::is_directory(installed) ? installed
+                                     : data_folder().parent_path() / "results" / "references";
+}
+
 std::vector<std::string> shipped(const std::string& kind) {
   std::vector<std::string> names;
   std::error_code none;

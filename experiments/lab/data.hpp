@@ -10,6 +10,10 @@ namespace taut {
 /// installed program, else the source tree. Throws InputError if $TAUT_DATA is no folder.
 std::filesystem::path data_folder();
 
+/// Where converged references are: beside the shipped scenes if installed, else
+/// results/references of the source tree.
+std::filesystem::path references_folder();
+
 /// Names of the shipped "scenes" or "studies", sorted.
 std::vector<std::string> shipped(const std::string& kind);
 

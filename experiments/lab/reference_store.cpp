@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/data.hpp"
 #include "experiments/lab/digest.hpp"
 
 namespace taut {
@@ -60,12 +61,33 @@ Reference read_reference(const std::filesystem::path& path) {
   }
 }
 
-std::optional<Reference> find_reference(const Scene& scene, const std::filesystem::path& root) {
-  const std::filesystem::path path = root / scene.name / "static.json";
-  if (!std::filesystem::exists(path)) return {};
-  Reference reference = read_reference(path);
-  if (reference.digest != digest(scene) || reference.x.size() != scene.start.x.size()) return {};
-  return reference;
+std::string reference_digest(const Scene& scene, const std::string& kind) {
+  Scene same = scene;
+  same.dt = 1, same.steps = 1;
+  if (kind == "static") {
+    same.damping = 0;
+    for (Vec3& v : same.start.v) v.setZero();
+  }
+  return digest(same);
+}
+
+References find_references(const Scene& scene, const std::filesystem::path& root) {
+  References known;
+  if (scene.name.empty()) return known;
+  std::error_code none;
+  for (const auto& file : std::filesystem::directory_iterator(root / scene.name, none)) {
+    if (!file.is_regular_file() || file.path().extension() != ".json") continue;
+    Reference reference = read_reference(file.path());
+    if (reference.x.size() != scene.start.x.size() ||
+        reference.digest != reference_digest(scene, reference.kind))
+      continue;
+    (reference.kind == "static" ? known.rest : known.motion) = std::move(reference);
+  }
+  return known;
+}
+
+References known_references(const Scene& scene) {
+  return find_references(scene, references_folder());
 }
 
 }  // namespace taut

@@ -139,6 +139,24 @@ SlopeLine slope_line(const Chart& chart, const PlotArea& area) {
   return line;
 }
 
+/// The reference's own error as a dotted line, or as a note on the axis if it lies below.
+std::string floor_line(const Chart& chart, const PlotArea& area) {
+  const double floor = *chart.floor * chart.y.quantity.scale;
+  const bool below = floor < chart.y.low;
+  const double t = below ? 0 : chart.y.position(std::min(floor, chart.y.high));
+  const double y = area.bottom - t * (area.bottom - area.top);
+  std::string out =
+      "set label " +
+      gnuplot_string("reference's own error: " + chart.y.quantity.text(*chart.floor, 2) +
+                     (below ? ", below this plot" : "")) +
+      " at " + screen(area.left + 8, y - 8, chart) + " left tc rgb " + paint("muted") +
+      " font ',11'\n";
+  if (!below)
+    out += "set arrow from " + screen(area.left, y, chart) + " to " + screen(area.right, y, chart) +
+           " nohead dt (2,4) lw 1.4 lc rgb " + paint("axis") + "\n";
+  return out;
+}
+
 /// An empty cell would make gnuplot join the neighbours across a failure.
 std::string number(double value) { return std::isfinite(value) ? exact(value) : "NaN"; }
 
@@ -359,6 +377,18 @@ std::string script_ticks(const std::string& which, const Axis& axis) {
   return out + "set grid " + which + "tics lw 1 lt 1 lc rgb " + paint("grid") + "\n";
 }
 
+namespace {
+
+/// The value that says how exact the reference of an error is; nullptr if it has none.
+const char* floor_of(const std::string& error) {
+  if (error == "reference.rms" || error == "reference.max") return "reference.floor";
+  if (error == "reference.motion") return "reference.motion_floor";
+  return error.starts_with("stretch.") || error.starts_with("structural.") ? "reference.strain"
+                                                                           : nullptr;
+}
+
+}  // namespace
+
 Chart curves_chart(const FigureSpec& spec, std::span<const Record> records) {
   Chart chart{spec.title, spec.width, spec.height, {}, {}, {}, spec.slope};
   chart.curves = make_curves(records, spec.x, spec.y, spec.along);
@@ -374,6 +404,9 @@ Chart curves_chart(const FigureSpec& spec, std::span<const Record> records) {
   if (!any) throw InputError("no case has both '" + spec.x + "' and '" + spec.y + "'");
   chart.x = spec.x == spec.along ? sweep_axis(qx, xs) : fit_axis(qx, xs, true);
   chart.y = fit_axis(qy, ys, true);
+  if (const char* const name = floor_of(spec.y))
+    for (const Record& record : records)
+      if (const double floor = value_of(record, name); std::isfinite(floor)) chart.floor = floor;
   return chart;
 }
 
@@ -387,6 +420,7 @@ Drawing draw_chart(const Chart& chart) {
                    axis_titles(chart, area) + end_labels(chart, area) + failure_strip(chart, area) +
                    slope.commands;
   if (chart.name_points) drawing.script += point_names(chart, area);
+  if (chart.floor && chart.y.log) drawing.script += floor_line(chart, area);
   drawing.script += plot_commands(chart, slope.plot);
   return drawing;
 }

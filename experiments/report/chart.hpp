@@ -17,6 +17,7 @@ struct Chart {
   Axis x, y;
   std::vector<Curve> curves;
   std::optional<double> slope;  ///< a dashed line of this exponent below the curves
+  std::optional<double> floor;  ///< SI, the reference's own error: nothing below it means anything
   bool stair = false;           ///< the Pareto front behind the curves
   bool name_points = false;     ///< the swept setting beside every other point
   bool markers = true;

@@ -60,8 +60,9 @@ int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Re
   if (spec.kind != "stability")
     records = spec.x == "dt" ? report::most_common(records, "iterations", 8).records
                              : report::most_common(records, "dt", 1.0 / 64).records;
-  if (const auto slope = study.slopes.find(scene);
-      slope != study.slopes.end() && spec.kind == "error-iterations")
+  if (const auto slope = study.slopes.find(scene); slope != study.slopes.end() &&
+                                                   spec.kind == "error-iterations" &&
+                                                   spec.y.starts_with("stretch."))
     spec.slope = slope->second;
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene;
   spec.file = report::slug(scene + "-" + spec.kind + "-" + spec.y + "-over-" + spec.x);

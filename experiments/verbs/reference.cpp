@@ -8,7 +8,6 @@
 #include "core/model/scene_io.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
-#include "experiments/lab/digest.hpp"
 #include "experiments/lab/reference_store.hpp"
 #include "experiments/verbs/verb.hpp"
 
@@ -38,21 +37,22 @@ std::vector<fs::path> chosen(const Options& options) {
 }
 
 /// A static reference, or why there is none; true if one was written.
-bool write_static(const Scene& scene, const std::string& hash, const fs::path& out) {
+bool write_static(const Scene& scene, const fs::path& out) {
   const reference::Equilibrium rest = reference::static_equilibrium(scene);
   std::cout << scene.name << "\tstatic\t";
   if (!rest.unique) {
     std::cout << "refused: " << rest.reason << '\n';
     return false;
   }
-  write_reference({scene.name, hash, "static", 0, rest.derivation, rest.floor, rest.x},
+  write_reference({scene.name, reference_digest(scene, "static"), "static", 0, rest.derivation,
+                   rest.floor, rest.x},
                   out / scene.name);
   std::cout << "floor " << rest.floor << " m\t" << rest.derivation << '\n';
   return true;
 }
 
 /// The same for the state after half a second, before any chaos.
-bool write_motion(const Scene& scene, const std::string& hash, const fs::path& out) {
+bool write_motion(const Scene& scene, const fs::path& out) {
   const double t = 0.5;
   const reference::Trajectory motion = reference::converged_motion(scene, {t}, 1.0 / 1024);
   std::cout << scene.name << "\tmotion\t";
@@ -60,9 +60,9 @@ bool write_motion(const Scene& scene, const std::string& hash, const fs::path& o
     std::cout << "refused: " << motion.reason << '\n';
     return false;
   }
-  write_reference(
-      {scene.name, hash, "motion", t, motion.derivation, motion.floor[0], motion.states[0].x},
-      out / scene.name);
+  write_reference({scene.name, reference_digest(scene, "motion"), "motion", t, motion.derivation,
+                   motion.floor[0], motion.states[0].x},
+                  out / scene.name);
   std::cout << "floor " << motion.floor[0] << " m at " << t << " s\t" << motion.derivation << '\n';
   return true;
 }
@@ -71,9 +71,8 @@ int run(const Options& options) {
   int written = 0;
   for (const fs::path& file : chosen(options)) {
     const Scene scene = load_scene(file);
-    const std::string hash = digest(scene);
-    written += write_static(scene, hash, options.out);
-    written += write_motion(scene, hash, options.out);
+    written += write_static(scene, options.out);
+    written += write_motion(scene, options.out);
   }
   std::cerr << written << " references in " << options.out << '\n';
   return written > 0 || options.all ? kPass : kNothing;

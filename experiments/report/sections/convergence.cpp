@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/report/axis.hpp"
@@ -28,13 +29,25 @@ std::string render(Page& page, const std::string& scene) {
   std::optional<double> slope;
   for (const StudyResult& study : page.input().studies)
     if (const auto at = study.slopes.find(scene); at != study.slopes.end()) slope = at->second;
-  return page.figure({.kind = "error-iterations",
-                      .title = "Residual stretch over sweeps, " + scene,
-                      .slope = slope,
-                      .width = 540,
-                      .height = 380},
-                     {slice.records, {}}, "Convergence: " + quantity("stretch.rms").title,
-                     caption(slice.records, slice.value));
+  std::string out =
+      page.figure({.kind = "error-iterations",
+                   .title = "Residual stretch over sweeps, " + scene,
+                   .slope = slope,
+                   .width = 540,
+                   .height = 380},
+                  {slice.records, {}}, "Convergence: " + quantity("stretch.rms").title,
+                  caption(slice.records, slice.value));
+  const auto known = [](const Record& r) { return std::isfinite(value_of(r, "reference.rms")); };
+  if (std::ranges::any_of(slice.records, known))
+    out += page.figure({.kind = "error-iterations",
+                        .y = "reference.rms",
+                        .title = "Distance from the reference over sweeps, " + scene,
+                        .width = 540,
+                        .height = 380},
+                       {slice.records, {}}, "Convergence: distance from the reference",
+                       "The reference is the static equilibrium of the same cloth, which no solver "
+                       "here took part in (<code>taut reference</code>)");
+  return out;
 }
 
 }  // namespace

@@ -1,0 +1,100 @@
+#include "experiments/metrics/reference.hpp"
+
+#include <cmath>
+
+#include "core/model/index.hpp"
+#include "experiments/metrics/free_vertices.hpp"
+#include "experiments/metrics/summary.hpp"
+
+namespace taut::metric::reference {
+
+namespace {
+
+constexpr ValueSpec kValues[] = {
+    {"reference.rms", "m",
+     "distance of the free vertices from the static reference, RMS over vertices and the last "
+     "second",
+     true},
+    {"reference.max", "m",
+     "largest distance of a free vertex from the static reference, in the last second", true},
+    {"reference.motion", "m",
+     "distance of the free vertices from the dynamic reference, RMS over vertices, at its moment "
+     "(0.5 s)"},
+    {"reference.floor", "m", "the static reference's own error, by self-convergence"},
+    {"reference.strain", "1",
+     "largest strain |d - r|/r of a structural or shear link in the static reference itself"},
+    {"reference.motion_floor", "m", "the dynamic reference's own error, by self-convergence"},
+};
+
+class Distance final : public Metric {
+ public:
+  Distance(const Scene& scene, References known)
+      : free_(free_vertices(scene)), known_(std::move(known)), end_(scene) {
+    if (!known_.rest) return;
+    strain_ = 0;
+    for (const Link& link : scene.links)
+      if (link.family != Family::bend) {
+        const Vec3 delta = known_.rest->x[at(link.b)] - known_.rest->x[at(link.a)];
+        strain_ = std::max(strain_, std::abs(delta.norm() - link.rest) / link.rest);
+      }
+  }
+
+  void observe(const Moment& m) override {
+    if (known_.rest && end_.contains(m.step)) {
+      const Gap gap = from(*known_.rest, m.state);
+      rms_.add(m.step, true, gap.mean_square);
+      max_.add(m.step, true, gap.max);
+    }
+    if (known_.motion && std::abs(m.t - known_.motion->t) < 1e-6)
+      at_moment_ = std::sqrt(from(*known_.motion, m.state).mean_square);
+  }
+  std::vector<double> finish() override {
+    return {std::sqrt(rms_.mean()),
+            max_.max(),
+            at_moment_,
+            known_.rest ? known_.rest->floor : Summary::kNone,
+            strain_,
+            known_.motion ? known_.motion->floor : Summary::kNone};
+  }
+  std::vector<double> now(const Moment& m) const override {
+    constexpr double none = Summary::kNone;
+    if (!known_.rest) return {none, none, none, none, none, none};
+    const Gap gap = from(*known_.rest, m.state);
+    return {std::sqrt(gap.mean_square), gap.max, none, none, none, none};
+  }
+
+ private:
+  struct Gap {
+    double mean_square = 0, max = 0;  ///< m^2, m
+  };
+  Gap from(const Reference& reference, const State& state) const {
+    Gap gap;
+    for (const std::size_t i : free_) {
+      const double distance2 = (state.x[i] - reference.x[i]).squaredNorm();
+      gap.mean_square += distance2 / static_cast<double>(free_.size());
+      gap.max = std::max(gap.max, std::sqrt(distance2));
+    }
+    return gap;
+  }
+  std::vector<std::size_t> free_;
+  References known_;
+  LastSecond end_;
+  Summary rms_, max_;
+  double strain_ = Summary::kNone;
+  double at_moment_ = Summary::kNone;
+};
+
+std::unique_ptr<Metric> make(const Scene& scene) {
+  References known = known_references(scene);
+  if (!known.rest && !known.motion) return nullptr;
+  return std::make_unique<Distance>(scene, std::move(known));
+}
+
+}  // namespace
+}  // namespace taut::metric::reference
+
+TAUT_METRIC(reference) = {.name = "reference",
+                          .summary = "How far the cloth is from where it should be",
+                          .source = "core/reference: static equilibrium; SHAKE",
+                          .values = taut::metric::reference::kValues,
+                          .make = taut::metric::reference::make};
