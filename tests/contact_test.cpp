@@ -321,7 +321,7 @@ void expect_first_hit(const Shape_& shape) {
   const SurfaceOf<double> fast(shape);
   std::mt19937 random(4);
   std::uniform_real_distribution<> number(-1, 1);
-  int hits = 0;
+  int hits = 0, misses = 0;
   for (int k = 0; k < 500; ++k) {
     const Vec3 a(number(random), number(random), number(random)),
         b(number(random), number(random), number(random));
@@ -330,6 +330,8 @@ void expect_first_hit(const Shape_& shape) {
     int first = 0;
     while (first <= kCuts && surface(shape, a + (b - a) * first / kCuts).distance > 0) ++first;
     const auto entry = fast.entry(a, b);
+    EXPECT_FALSE(fast.misses(a, b) && entry);
+    misses += fast.misses(a, b);
     if (first > kCuts) continue;  // may still graze between two samples
     ASSERT_TRUE(entry);
     ++hits;
@@ -338,6 +340,7 @@ void expect_first_hit(const Shape_& shape) {
     EXPECT_LT(entry->normal.dot(b - a), 0);
   }
   EXPECT_GT(hits, 30);
+  EXPECT_GT(misses, 100);
 }
 
 TEST(Contact, ClosedFormsAgreeWithTheModelAndWithMarching) {

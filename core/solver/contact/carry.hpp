@@ -23,7 +23,9 @@ class Carry {
   }
   Carry() = default;
 
-  Point operator()(const Point& p) const { return moves_ ? Point(turn_ * p + shift_) : p; }
+  [[gnu::always_inline]] Point operator()(const Point& p) const {
+    return moves_ ? Point(turn_ * p + shift_) : p;
+  }
 
  private:
   bool moves_ = false;

@@ -1,5 +1,7 @@
 #include "core/solver/contact/responses.hpp"
 
+#include <type_traits>
+
 #include "core/solver/passes/collide.hpp"
 #include "core/solver/passes/face_contact.hpp"
 #include "core/solver/passes/octree.hpp"
@@ -15,7 +17,9 @@ void add_response(const Collider& collider, const Scene& scene, const Params& pa
                   ContactPasses<Real>& passes) {
   const std::size_t n = scene.start.x.size();
   const double thickness = scene.thickness;
-  using Swept = CollidePass<Real, SurfaceOf, true>;
+  // nothing passes through a half-space within a step: both tests are the same
+  constexpr bool has_other_side = !std::is_same_v<SurfaceOf<Real>, PlaneSurface<Real>>;
+  using Swept = CollidePass<Real, SurfaceOf, has_other_side>;
   using Nearest = CollidePass<Real, SurfaceOf, false>;
   if (params.is("contact", "swept"))
     passes.sweep.push_back(std::make_unique<Swept>(collider, thickness, n));

@@ -21,6 +21,7 @@ struct Tangent {
 //
 //   clear(x, t)       quick and conservative: true only if x is at least t from the surface
 //   beyond(x, w2, t)  the same for all of a path that ends in x and whose squared length is w2
+//   misses(from, to)  quick and conservative: true only if entry(from, to) is empty
 //   nearest(x)        tangent at the surface point nearest to x
 //   entry(from, to)   tangent where a straight path first meets the solid; the one nearest to
 //                     `from` if it starts inside; empty if it misses
@@ -34,12 +35,15 @@ class PlaneSurface {
   explicit PlaneSurface(const Plane& plane)
       : tangent_{plane.normal.cast<Real>(), static_cast<Real>(plane.offset)} {}
 
-  bool clear(const Point& x, Real thickness) const {
+  [[gnu::always_inline]] bool clear(const Point& x, Real thickness) const {
     return tangent_.normal.dot(x) >= tangent_.offset + thickness;
   }
-  bool beyond(const Point& x, Real, Real thickness) const { return clear(x, thickness); }
-  Tangent<Real> nearest(const Point&) const { return tangent_; }
+  [[gnu::always_inline]] bool beyond(const Point& x, Real, Real thickness) const {
+    return clear(x, thickness);
+  }
+  [[gnu::always_inline]] Tangent<Real> nearest(const Point&) const { return tangent_; }
   /// A half-space has no other side: nearest() says all.
+  [[gnu::always_inline]] bool misses(const Point&, const Point&) const { return true; }
   std::optional<Tangent<Real>> entry(const Point&, const Point&) const { return {}; }
 
  private:
@@ -55,16 +59,22 @@ class BallSurface {
   explicit BallSurface(const Ball& ball)
       : center_(ball.center.cast<Real>()), radius_(static_cast<Real>(ball.radius)) {}
 
-  bool clear(const Point& x, Real thickness) const {
+  [[gnu::always_inline]] bool clear(const Point& x, Real thickness) const {
     const Real reach = radius_ + thickness;
     return (x - center_).squaredNorm() >= reach * reach;
   }
   /// (reach + way)^2 <= 2 (reach^2 + way^2).
-  bool beyond(const Point& x, Real way2, Real thickness) const {
+  [[gnu::always_inline]] bool beyond(const Point& x, Real way2, Real thickness) const {
     const Real reach = radius_ + thickness;
     return (x - center_).squaredNorm() >= 2 * (reach * reach + way2);
   }
-  Tangent<Real> nearest(const Point& x) const {
+  /// Both ends lie beyond the plane that touches the ball towards `from`.
+  [[gnu::always_inline]] bool misses(const Point& from, const Point& to) const {
+    const Point a = from - center_;
+    const Real aa = a.squaredNorm(), ab = a.dot(to - center_), r2 = radius_ * radius_;
+    return aa > r2 && ab > 0 && ab * ab > r2 * aa;
+  }
+  [[gnu::always_inline]] Tangent<Real> nearest(const Point& x) const {
     const Point out = x - center_;
     const Real distance = out.norm();
     return at(distance > 0 ? Point(out / distance) : Point::UnitY());
@@ -81,7 +91,9 @@ class BallSurface {
   }
 
  private:
-  Tangent<Real> at(const Point& normal) const { return {normal, normal.dot(center_) + radius_}; }
+  [[gnu::always_inline]] Tangent<Real> at(const Point& normal) const {
+    return {normal, normal.dot(center_) + radius_};
+  }
   Point center_;
   Real radius_ = 0;
 };
@@ -98,17 +110,22 @@ class BoxSurface {
         axes_(box.rotation.toRotationMatrix().cast<Real>()),
         far_(static_cast<Real>(box.half_extents.norm())) {}
 
-  bool clear(const Point& x, Real thickness) const {
+  [[gnu::always_inline]] bool clear(const Point& x, Real thickness) const {
     const Point out = x - center_;
     const Real reach = far_ + thickness;
     if (out.squaredNorm() >= reach * reach) return true;
     return ((axes_.transpose() * out).cwiseAbs() - half_).maxCoeff() >= thickness;
   }
-  bool beyond(const Point& x, Real way2, Real thickness) const {
+  [[gnu::always_inline]] bool beyond(const Point& x, Real way2, Real thickness) const {
     const Real reach = far_ + thickness;
     return (x - center_).squaredNorm() >= 2 * (reach * reach + way2);
   }
-  Tangent<Real> nearest(const Point& x) const {
+  /// Both ends lie beyond the same side.
+  [[gnu::always_inline]] bool misses(const Point& from, const Point& to) const {
+    const Point a = axes_.transpose() * (from - center_), b = axes_.transpose() * (to - center_);
+    return (a.cwiseMin(b) - half_).maxCoeff() > 0 || (a.cwiseMax(b) + half_).minCoeff() < 0;
+  }
+  [[gnu::always_inline]] Tangent<Real> nearest(const Point& x) const {
     const Point local = axes_.transpose() * (x - center_);
     const Point excess = local.cwiseAbs() - half_;
     Eigen::Index axis = 0;
@@ -137,7 +154,7 @@ class BoxSurface {
   }
 
  private:
-  Tangent<Real> face(Eigen::Index axis, Real sign) const {
+  [[gnu::always_inline]] Tangent<Real> face(Eigen::Index axis, Real sign) const {
     const Point normal = sign * axes_.col(axis);
     return {normal, normal.dot(center_) + half_[axis]};
   }

@@ -24,19 +24,20 @@ class Contact {
     carry_ = Carry<Real>(collider_.motion, t, dt);
   }
 
-  bool clear(const Point& x) const { return surface_.clear(x, thickness_); }
+  [[gnu::always_inline]] bool clear(const Point& x) const { return surface_.clear(x, thickness_); }
 
   /// Moves x out to the nearest point at the scene's thickness, then against its slip since
   /// `previous`. False if it was outside.
-  bool project(Point& x, const Point& previous) const {
+  [[gnu::always_inline]] bool project(Point& x, const Point& previous) const {
     return push(x, previous, surface_.nearest(x));
   }
 
   /// The same, but back to the side from which the particle came in, even if it has passed through
   /// since.
-  bool project_swept(Point& x, const Point& previous) const {
+  [[gnu::always_inline]] bool project_swept(Point& x, const Point& previous) const {
     const Point from = carry_(previous);
     if (surface_.beyond(x, (x - from).squaredNorm(), thickness_)) return false;
+    if (surface_.misses(from, x)) return !clear(x) && project(x, previous);
     const auto entry = surface_.entry(from, x);
     if (!entry) return !clear(x) && project(x, previous);
     const Tangent<Real> nearest = surface_.nearest(x);
@@ -47,7 +48,8 @@ class Contact {
  private:
   /// Coulomb: the tangential correction is at most mu times the normal one, and no more than the
   /// slip itself.
-  bool push(Point& x, const Point& previous, const Tangent<Real>& tangent) const {
+  [[gnu::always_inline]] bool push(Point& x, const Point& previous,
+                                   const Tangent<Real>& tangent) const {
     const Real depth = tangent.offset + thickness_ - tangent.normal.dot(x);
     if (!(depth > 0)) return false;
     x += depth * tangent.normal;

@@ -18,7 +18,8 @@ namespace taut {
 ///
 /// The pairs are those within a diameter and a skin. They serve until a particle has moved a
 /// quarter of the skin against the cloth as a whole (L. Verlet, 1967): a cloth at rest does not
-/// search at all.
+/// search at all. A cloth so fast that the skin serves one step alone keeps only those pairs that
+/// may meet in it, by their own motion.
 template <class Real>
 class SelfCollidePass final : public Pass<Real> {
  public:
@@ -89,15 +90,25 @@ class SelfCollidePass final : public Pass<Real> {
 
   void search(const Particles<Real>& p, Real motion) {
     skin_ = diameter_ / 2 + std::min(2 * motion, 4 * diameter_);
+    const bool one_step = skin_ < 4 * motion;
     pairs_.clear();
     neighbours_.pairs(p.x, diameter_ + skin_, [&](std::uint32_t a, std::uint32_t b) {
+      if (one_step && !may_meet(p, a, b)) return;
       const Real rest2 = (rest_[b] - rest_[a]).squaredNorm();
       const bool near_at_rest = rest2 < diameter_ * diameter_ * Real(1.01);
       if (p.w[a] + p.w[b] == 0 || (near_at_rest && linked(a, b))) return;
       pairs_.push_back({a, b, near_at_rest ? std::min(diameter_, std::sqrt(rest2)) : diameter_});
     });
-    searched_at_.resize(p.size());
-    for (std::size_t i = 0; i < p.size(); ++i) searched_at_[i] = p.x[i];
+    searched_at_.clear();
+    if (one_step) return;
+    for (std::size_t i = 0; i < p.size(); ++i) searched_at_.push_back(p.x[i]);
+  }
+
+  /// (diameter + half of it + way)^2 <= 2 ((3/2 diameter)^2 + way^2).
+  bool may_meet(const Particles<Real>& p, std::uint32_t a, std::uint32_t b) const {
+    const Point now = p.x[b] - p.x[a], before = p.previous[b] - p.previous[a];
+    return now.squaredNorm() <
+           2 * (Real(2.25) * diameter_ * diameter_ + (now - before).squaredNorm());
   }
 
   /// The largest of a particle against the cloth as a whole, between two times [m].
@@ -135,7 +146,7 @@ class SelfCollidePass final : public Pass<Real> {
   std::vector<Point> rest_;
   std::vector<std::uint32_t> first_link_, links_;  ///< partners of particle i: [first, next first)
   Real skin_ = 0;                                  ///< m
-  std::vector<Point> searched_at_;                 ///< [n] m; empty: not yet
+  std::vector<Point> searched_at_;                 ///< [n] m; empty: to be searched
   std::vector<Pair> pairs_, fast_;  ///< fast: may come from one side to the other in this step
 };
 
