@@ -132,6 +132,23 @@ TEST(Relaxation, ZeroIterationsIsFreeFallAndNegativeIsAnError) {
   EXPECT_THROW(parse_solver("jakobsen:iterations=-1"), InputError);
 }
 
+TEST(Relaxation, AVertexWithoutLinksFallsAndSoDoesAClothWithoutAny) {
+  Scene scene = hanging_sheet(5, 5);
+  std::erase_if(scene.links, [](const Link& l) { return l.a == 12 || l.b == 12; });
+  Scene loose = scene;
+  loose.links.clear();
+  for (const char* more : {"order=mesh", "order=coloured", "method=jacobi-averaged", "tethers=on",
+                           "levels=3", "order=random"}) {
+    const std::string solver = std::string("jakobsen:precision=double,") + more;
+    const double fall = -9.81 * (0.5 + 0.5 / 64);
+    for (const Scene* one : {&scene, &loose}) {
+      const State state = simulate(*one, solver, 64);
+      EXPECT_NEAR(state.x[12].y() - one->start.x[12].y(), fall, 1e-12) << more;
+      for (const Vec3& x : state.x) EXPECT_TRUE(x.allFinite()) << more;
+    }
+  }
+}
+
 TEST(Relaxation, LinksThatCannotMoveOrHaveNoLengthDoNoHarm) {
   Scene scene = hanging_sheet(3, 3);
   scene.pins = {0, 1, 2};                                // 0-1 and 1-2 cannot move
