@@ -114,6 +114,10 @@ ACCESSIBILITY = r"""
   for (const e of all('video, [role=img], [role=region], [role=group], svg:not([aria-hidden])'))
     if (!named(e)) say('name of ' + e.tagName, e);
   for (const e of all('button, a[href], summary, input, select, textarea')) if (!hidden(e) && !named(e)) say('name of control', e);
+  for (const e of all('button[aria-label], a[aria-label], input[aria-label]')) {
+    const seen = (e.innerText || '').trim().toLowerCase();
+    if (/[a-z]{2}/.test(seen) && !e.getAttribute('aria-label').toLowerCase().includes(seen)) say('label-content-name-mismatch', e);
+  }
   for (const e of all('a')) if (!e.hasAttribute('href')) say('link without target', e);
   for (const e of all('a[href^="#"]')) if (e.hash && !document.querySelector(e.hash)) say('link to nowhere', e);
   for (const e of all('[tabindex]')) if (e.tabIndex > 0) say('tabindex', e);

@@ -40,7 +40,8 @@ std::string render(Page& page, const std::string&) {
   return "<header class=\"page\"><div class=\"bar\"><span><b>taut</b> comparison report</span>"
          "<span class=\"grow\"></span><span>" +
          provenance_line(page.input()) +
-         "</span><button id=\"theme\" type=\"button\" aria-label=\"Dark theme\" title=\"Switch "
+         "</span><button id=\"theme\" type=\"button\" aria-label=\"light / dark: dark theme\" "
+         "title=\"Switch "
          "between light and "
          "dark\">light / dark</button></div>\n<h1>" +
          title(page) + "</h1>\n" + sentences(page) + "</header>\n<main id=\"main\">\n";
