@@ -1,8 +1,10 @@
 #include "core/solver/jakobsen_params.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
 #include "core/solver/contact/responses.hpp"
 
 namespace taut {
@@ -173,9 +175,18 @@ Firmness firmness(const Params& params, double substep, int iterations) {
 }
 
 Effective jakobsen_effective(const Scene& scene, const Params& params) {
-  Effective lines{{"precision", std::string(params.choice("precision"))},
-                  {"link order", params.is("order", "mesh") ? "the scene's"
-                                                            : std::string(params.choice("order"))}};
+  const double h = scene.dt / params.integer("substeps");
+  Effective lines{
+      {"time step", shortest(h) + " s x " + std::string(params.value("substeps"))},
+      {"integration", "Verlet"},
+      {"projection", std::string(params.choice("projection")) + ", weighted by inverse mass"},
+      {"gravity", "the scene's"},
+      {"precision", std::string(params.choice("precision"))},
+      {"link order",
+       params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))}};
+  if (scene.damping > 0)
+    lines.emplace_back("damping",
+                       "velocity x " + shortest(std::exp(-scene.damping * h)) + " per substep");
   for (auto& line : contact_effective(scene, params)) lines.push_back(std::move(line));
   return lines;
 }

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/lab/agreement.hpp"
 #include "experiments/lab/files.hpp"
 #include "experiments/verbs/verb.hpp"
@@ -30,7 +31,9 @@ std::string interval(const Interval& i) {
   return number(i.mid) + " (" + number(i.low) + " to " + number(i.high) + ")";
 }
 
-std::string or_never(const std::string& setting) { return setting.empty() ? "never" : setting; }
+std::string or_never(const std::string& setting) {
+  return setting.empty() ? "never reached" : parse_solver(setting).brief();
+}
 
 /// What two sessions found, and how much of it contradicts.
 struct Outcome {
@@ -66,10 +69,10 @@ Outcome with_advice(const BenchSession& bench, const nlohmann::json& advice) {
     const std::vector<Offer> offers = one.offers(metric);
     const auto cheapest = cheapest_within(offers, "", advice.at("error"));
     const auto& best = advice.at("best");
-    std::cout << "  " << scene << ": bench "
-              << (cheapest ? offers[*cheapest].setting : std::string("never reached"));
+    std::cout << "  " << scene << ": bench " << or_never(cheapest ? offers[*cheapest].setting : "");
     if (cheapest) std::cout << ", " << number(1e3 * offers[*cheapest].cost.mid) << " ms";
-    std::cout << "\n    advice " << (best.is_null() ? "never reached" : best.at("setting"));
+    std::cout << "\n    advice "
+              << or_never(best.is_null() ? "" : best.at("setting").get<std::string>());
     if (!best.is_null())
       std::cout << ", " << number(1e3 * best.at("cpu_seconds_per_second").at(1).get<double>())
                 << " ms";

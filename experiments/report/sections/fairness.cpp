@@ -42,9 +42,11 @@ std::string panel(const std::vector<const Record*>& examples, const Comparison& 
     out += "<th scope=\"col\">" + solver_dot(c.solver) + solver_name(c) + "</th>";
   out += "</tr></thead><tbody>";
   const auto row = [&](const std::string& name, const std::vector<std::string>& cells) {
-    // A dash says that the solver has no such setting, not that it differs.
-    const bool same = std::ranges::all_of(cells, [&](const auto& c) {
-      return c == cells.front() || c == "–" || cells.front() == "–";
+    // A dash says that the solver has no such setting, not that it differs; what follows the same
+    // beginning is a remark.
+    const std::string& first = cells.front();
+    const bool same = std::ranges::all_of(cells, [&](const std::string& c) {
+      return c == "–" || first == "–" || c.starts_with(first) || first.starts_with(c);
     });
     out += std::string("<tr") + (same ? "" : " class=\"differs\"") + "><th scope=\"row\">" +
            escape_html(name) + (same ? "" : "<span class=\"sr\"> (differs)</span>") + "</th>";
