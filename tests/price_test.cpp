@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+
 #include "experiments/report/comparison.hpp"
 #include "experiments/report/figures.hpp"
+#include "tests/recorded_samples.hpp"
 
 namespace taut::report {
 namespace {
@@ -82,6 +85,26 @@ TEST(Price, ADifferenceExceedsTheToleranceAndTheNoise) {
   EXPECT_FALSE(told_apart({1.01, 1.03, 1.04}, {1, 1, 1})) << "below 5 %";
   EXPECT_FALSE(told_apart({1.2, 1.3, 1.4}, {0.7, 1, 1.1})) << "the same code strays by 43 %";
   EXPECT_TRUE(told_apart({3.5, 4, 4.5}, {0.7, 1, 1.1})) << "a factor of four is more than that";
+}
+
+/// told_apart() does not fall silent on a noisy machine, so it has more to prove than judge().
+TEST(Price, RecordedSamplesOfOneCodeAreNotToldApartButATwofoldCostIs) {
+  const auto samples = [](std::size_t row, double cost) {
+    std::vector<double> out;
+    for (const int value : kRecorded[row]) out.push_back(cost * value);
+    return out;
+  };
+  int benches = 0, same = 0, twice = 0;
+  for (std::size_t k = 0; k + 3 < std::size(kRecorded); ++k, ++benches) {
+    const Interval control = interleaved_ratio(samples(k, 1), samples(k + 1, 1));
+    const auto apart = [&](double factor) {
+      return told_apart(interleaved_ratio(samples(k + 2, factor), samples(k + 3, 1)), control);
+    };
+    same += apart(1), twice += apart(2);
+  }
+  EXPECT_GE(benches, 100);
+  EXPECT_EQ(same, 0);
+  EXPECT_GE(twice, 100);
 }
 
 TEST(PriceVerdict, NamesWinnerFactorIntervalAndExtremes) {

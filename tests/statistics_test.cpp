@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 #include <random>
+
+#include "tests/recorded_samples.hpp"
 
 namespace taut {
 namespace {
@@ -72,6 +75,33 @@ TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
   }
   EXPECT_EQ(declared, 0);
   EXPECT_LT(noisy, 30);  // most of these machines are still good enough to judge
+}
+
+/// A bench of one code against itself from samples that a busy machine gave: four neighbours of one
+/// session, two as the control, two as the pair, the second of which costs `factor` times as much.
+Judgement recorded_bench(std::size_t first, double factor) {
+  const auto samples = [](std::size_t row, double cost) {
+    std::vector<double> out;
+    for (const int value : kRecorded[row]) out.push_back(cost * value);
+    return out;
+  };
+  return judge(interleaved_ratio(samples(first + 2, factor), samples(first + 3, 1)),
+               interleaved_ratio(samples(first, 1), samples(first + 1, 1)), 0.05);
+}
+
+TEST(Statistics, RecordedSamplesOfOneCodeAreNeverADifferenceButATwofoldCostIs) {
+  int benches = 0, declared = 0, seen = 0;
+  for (std::size_t first = 0; first + 3 < std::size(kRecorded); ++first) {
+    ++benches;
+    const auto is_difference = [](Judgement j) {
+      return j == Judgement::faster || j == Judgement::slower;
+    };
+    declared += is_difference(recorded_bench(first, 1));
+    seen += recorded_bench(first, 2) == Judgement::slower;
+  }
+  EXPECT_GE(benches, 100);
+  EXPECT_EQ(declared, 0);
+  EXPECT_GE(seen, 10) << "of benches quiet enough to judge: the machine was busy";
 }
 
 TEST(Statistics, ATwentyPercentChangeIsSeenDespiteTheNoise) {
