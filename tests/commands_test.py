@@ -26,9 +26,9 @@ class BadInput(CommandLine):
         self.refuse("run", "iterations", "--preset", "quikc", says="did you mean 'quick'?")
         self.refuse("advise", "hnag", "--error", "1%", says="unknown scene 'hnag'; did you mean 'hang'?")
         self.refuse("advise", "hang", "--error", "1%", "--metric", "stretch.rsm", says="did you mean 'stretch.rms'?")
-        self.refuse("advise", "hang", says="either --error or --budget")
-        self.refuse("advise", "hang", "--error", "1%", "--budget", 4, says="either --error or --budget")
-        self.refuse("advise", "hang", "--error", "small", says="expected a number such as 0.01 or 1%")
+        self.refuse("advise", "hang", says="one of --error and --budget")
+        self.refuse("advise", "hang", "--error", "1%", "--budget", 4, says="one of --error and --budget")
+        self.refuse("advise", "hang", "--error", "small", says="expected a number above 0 such as 0.01 or 1%")
         self.refuse("advise", "hang", "--error", "1%", "--solver", "bulet", says="did you mean 'bullet'?")
 
     def test_numbers(self):
@@ -74,6 +74,27 @@ substeps = [1, 0]
         (self.folder / "bad.toml").write_text("question = ")
         self.refuse("run", "./bad.toml", says="bad.toml:1:")
 
+    def test_exclusions_and_plots_are_judged_before_anything_runs(self):
+        (self.folder / "bad.toml").write_text('''question = "?"
+scenes = ["hang"]
+solvers = ["jakobsen"]
+exclude = [{ scen = "hang" }, { iteratons = 1 }]
+[sweep]
+iterations = [1, 2]
+[[plot]]
+kind = "series"
+colour = "red"
+''')
+        self.refuse("run", "./bad.toml",
+                    says=["bad.toml:4:14: nothing that this study varies is called 'scen'; did you mean 'scene'?",
+                          "'iteratons'; did you mean 'iterations'?", "bad.toml:9:1: unknown key 'colour' in [[plot]]"])
+        plot = '[[plot]]\nkind = "error-iteration"\ny = "stretch.rmss"\n'
+        self.refuse("run", self.study(rest=plot),
+                    says=["unknown kind of figure 'error-iteration'; did you mean 'error-iterations'?",
+                          "unknown value 'stretch.rmss' for y; did you mean 'stretch.rms'?"])
+        nothing = self.taut("run", self.study(rest='exclude = [{ solver = "jakobsen" }]\n'), expect=4)
+        self.assertIn("no case", nothing.err)
+
     def test_a_bad_scene_in_a_study_stops_all_of_it(self):
         (self.folder / "small.toml").write_text("[cloth]\ngrid = [1, 1]\nmas = 3\n")
         self.refuse("run", self.study(scenes=["hang", "./small.toml"]), says=["small.toml:", "unknown key 'mas'"])
@@ -83,6 +104,28 @@ substeps = [1, 0]
 
 
 class Verbs(CommandLine):
+    def test_plots_of_values_over_time_and_what_is_held_is_said(self):
+        study = self.study(rest="sweep.iterations = [1, 2]\nsweep.time.dt = [0.02, 0.01]\n"
+                                '[[plot]]\nkind = "error-iterations"\nfile = "mine"\n')
+        self.taut("run", study)
+        drawn = self.taut("plot", study)
+        self.assertIn("small-mine.svg", drawn.out)
+        self.assertIn("2 cases at other values are not drawn", drawn.err)
+        self.assertIn("dt = ", (self.folder / drawn.out.split()[0]).read_text())
+        series = self.taut("plot", study, "--kind", "series", "--y", "stretch.rms")
+        self.assertIn("Jakobsen 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
+
+    def test_targets_that_cannot_be_written_are_refused_before_the_work(self):
+        study = self.study()
+        self.taut("run", study)
+        (self.folder / "file").write_text("")
+        self.assertIn("name the page", self.taut("report", study, "-o", ".", expect=2).err)
+        for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"],
+                      ["figures", "-o", "file"]]:
+            self.assertIn("file", self.taut(*words, expect=2).err)
+        self.assertIn("taut run", self.taut("plot", study, "--results", "nowhere", expect=2).err)
+        self.assertIn("no folder", self.taut("check", "regression", expect=4).out)
+
     def test_every_verb_has_help_with_an_example(self):
         verbs = self.taut("--help").out
         for verb in ["list", "run", "case", "plan", "merge", "doctor"]:
@@ -157,7 +200,7 @@ class Verbs(CommandLine):
     def test_a_budget_is_kept_and_what_cannot_be_had_is_said(self):
         answer = self.advise("--budget", 0.01, "--solver", "jakobsen")
         self.assertLessEqual(answer["best"]["cpu_seconds_per_second"][1], 0.01e-3 * 60)
-        never = self.advise("--error", "0", "--solver", "xpbd:iterations=1,substeps=2", expect=4)
+        never = self.advise("--error", "1e-12", "--solver", "xpbd:iterations=1,substeps=2", expect=4)
         self.assertEqual((never["best"], len(never["tried"]) > 0), (None, True))
 
     def test_plan(self):

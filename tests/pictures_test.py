@@ -35,6 +35,11 @@ class Pictures(CommandLine):
             self.render(*SIDE_BY_SIDE, *SMALL, "-o", name)
         self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "b.png").read_bytes())
 
+    def test_what_contradicts_itself_is_refused_before_anything_is_simulated(self):
+        for words in [["--video", "--sheet"], ["-o", "a.jpg"], ["--video", "-o", "a.png"], ["-o", "."]]:
+            self.taut("render", *SIDE_BY_SIDE, *words, expect=2)
+        self.assertEqual(self.files(), [])
+
     def test_obj_sequence(self):
         self.render(*SIDE_BY_SIDE, "--export", "obj", "-o", "frames")
         files = self.files()

@@ -197,6 +197,10 @@ class StudyReader {
       for (std::size_t i = 0; i < item.items.size() && item.is_table(); ++i) {
         const std::string& key = item.keys[i].text;
         const bool toml = key.find('.') != std::string::npos;
+        if (std::ranges::count(settings(), key) == 0)
+          judge_.report(item.keys[i].place, "nothing that this study varies is called '" + key +
+                                                "'" + suggestion(key, settings()) +
+                                                " (scene, solver, or a sweep's name)");
         std::vector<std::string>& values = exclusion.when[key];
         if (item.items[i].is_array() && !toml)
           for (const Value& v : item.items[i].items) values.push_back(text_of(v, toml));
@@ -208,6 +212,13 @@ class StudyReader {
       else
         study_.exclusions.push_back(std::move(exclusion));
     }
+  }
+
+  /// What an exclusion may name.
+  std::vector<std::string> settings() const {
+    std::vector<std::string> names{"scene", "solver"};
+    for (const Sweep& sweep : study_.sweeps) names.push_back(sweep.name);
+    return names;
   }
 
   void read_presets(Section& section, const std::string& wanted) {
@@ -228,6 +239,11 @@ class StudyReader {
 
   void read_plot(const Value& table) {
     Plot plot;
+    const std::vector<std::string> known{"kind", "x", "y", "along", "title", "file", "slope"};
+    for (std::size_t i = 0; i < table.items.size(); ++i)
+      if (std::ranges::count(known, table.keys[i].text) == 0)
+        judge_.report(table.keys[i].place, "unknown key '" + table.keys[i].text + "' in [[plot]]" +
+                                               suggestion(table.keys[i].text, known));
     for (std::size_t i = 0; i < table.items.size(); ++i)
       (table.keys[i].text == "kind" ? plot.kind : plot.options[table.keys[i].text]) =
           text_of(table.items[i], false);

@@ -127,6 +127,14 @@ Quantity quantity(std::string_view name) {
   return q;
 }
 
+std::vector<std::string> quantity_names() {
+  std::vector<std::string> names;
+  for (const Titled& known : kTitles) names.emplace_back(known.name);
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& value : metric->values) names.emplace_back(value.name);
+  return names;
+}
+
 double Axis::position(double shown) const {
   const double t =
       log ? std::log(shown / low) / std::log(high / low) : (shown - low) / (high - low);

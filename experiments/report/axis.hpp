@@ -28,6 +28,9 @@ struct Quantity {
 /// Titles and units come from the metrics' own declarations; unknown names are shown as they are.
 Quantity quantity(std::string_view name);
 
+/// What quantity() has a title for, beside the sweeps of a study.
+std::vector<std::string> quantity_names();
+
 /// One axis of a figure in shown units.
 struct Axis {
   Quantity quantity;

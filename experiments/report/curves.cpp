@@ -17,7 +17,8 @@ constexpr const char* kKnobs[] = {
     "substeps", "iterations", "newton",  "stiffness", "structural_stiffness",
     "omega",    "order",      "tethers", "levels",    "precision"};
 
-/// The knobs of this record that take several values among its solver's: their values, as a label.
+}  // namespace
+
 std::string knob_label(const Record& record, std::span<const Record> records) {
   std::string text;
   for (const char* knob : kKnobs) {
@@ -33,6 +34,8 @@ std::string knob_label(const Record& record, std::span<const Record> records) {
   }
   return text;
 }
+
+namespace {
 
 /// Everything that tells two cases of one solver apart, by name.
 std::map<std::string, std::string> settings(const Record& record, const std::string& along) {

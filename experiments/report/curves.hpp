@@ -27,6 +27,9 @@ struct Curve {
   std::vector<Point> points;
 };
 
+/// The knobs of this record that take several values among its solver's: their values, as a label.
+std::string knob_label(const Record&, std::span<const Record> all);
+
 /// Groups records into curves of y over x: those that differ in nothing but `along` ("iterations",
 /// "dt", ...) share a curve. Labels name only the settings that vary among the records. `along` =
 /// "setting" frees every accuracy knob at once (sweeps, substeps, stiffness, Newton steps,

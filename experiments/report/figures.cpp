@@ -34,7 +34,7 @@ const FigureEntry& find_figure(std::string_view name) {
     if (entry->name == name) return *entry;
     names.emplace_back(entry->name);
   }
-  throw InputError("unknown kind of figure '" + std::string(name) + "';" +
+  throw InputError("unknown kind of figure '" + std::string(name) + "'" +
                    suggestion(std::string(name), names));
 }
 

@@ -106,6 +106,18 @@ std::vector<MapResult> stored_maps(const std::vector<Study>& studies, const Stor
   return maps;
 }
 
+std::vector<TimeSeries> stored_series(std::span<const Record> records, const std::string& value,
+                                      const Store& store) {
+  std::vector<TimeSeries> all;
+  for (const Record& record : records) {
+    const std::string knobs = knob_label(record, records);
+    const std::string label = solver_title(record.solver) + (knobs.empty() ? "" : " " + knobs);
+    TimeSeries series = column(store.series(record.key), record, label, value);
+    if (series.t.size() > 1) all.push_back(std::move(series));
+  }
+  return all;
+}
+
 ReportInput stored_results(const std::vector<Study>& studies, const Store& store) {
   ReportInput input;
   std::set<std::string> seen;

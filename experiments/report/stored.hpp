@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace taut::report {
 /// summaries, the theory's exponents, costs if they were timed, values over time of one case per
 /// scene and solver. Throws InputError as load_scene() does.
 ReportInput stored_results(const std::vector<Study>&, const Store&);
+
+/// A value over time of those cases of which the store has it, named by what sets them apart.
+std::vector<TimeSeries> stored_series(std::span<const Record>, const std::string& value,
+                                      const Store&);
 
 /// What `taut bench STUDY` left in this store's folder: the cases that this build would run alike,
 /// in scenes that have any; nullopt: none. Throws InputError if the file is damaged.

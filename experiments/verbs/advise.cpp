@@ -59,7 +59,7 @@ const ValueSpec& find_value(const std::string& name) {
       if (value.name == name) return value;
       names.emplace_back(value.name);
     }
-  throw InputError("unknown metric value '" + name + "';" + suggestion(name, names));
+  throw InputError("unknown metric value '" + name + "'" + suggestion(name, names));
 }
 
 /// "0.01" or "1%".
@@ -72,14 +72,14 @@ double error_of(const std::string& text) {
     used = 0;
   }
   const std::string unit = text.substr(used);
-  if (used == 0 || !(unit.empty() || unit == "%") || !std::isfinite(value) || value < 0)
-    throw InputError("--error " + text + ": expected a number such as 0.01 or 1%");
+  if (used == 0 || !(unit.empty() || unit == "%") || !(std::isfinite(value) && value > 0))
+    throw InputError("--error " + text + ": expected a number above 0 such as 0.01 or 1%");
   return unit == "%" ? value / 100 : value;
 }
 
 Wish wish_of(const Options& options) {
   if (options.error.empty() == (options.budget <= 0))
-    throw InputError("advise needs either --error or --budget");
+    throw InputError("advise needs one of --error and --budget");
   if (!options.error.empty()) return {error_of(options.error), {}};
   return {{}, options.budget * 1e-3 / kFrame};
 }
@@ -129,9 +129,9 @@ struct Answer {
   Wish wish;
   std::vector<Offer> tried;
   std::vector<std::string> cannot;  ///< "xpbd: why"
+  std::vector<std::string> cut;     ///< solvers whose share of the time ended their search
   SceneBench bench;
   Advice advice;
-  bool in_time = true;
   double searched = 0;  ///< s
   bool same_bits = false;
   Interval again;  ///< cost of the best in a second session
@@ -139,20 +139,24 @@ struct Answer {
   const BenchedCase& best() const { return bench.cases[*advice.best]; }
 };
 
+/// Every solver gets an equal share of the time that those before it have left.
 void search(const Options& options, Runner& runner, Answer& answer) {
   const auto start = std::chrono::steady_clock::now();
+  double deadline = 0;
+  bool in_time = true;
   const Try run = [&](const std::string& setting) -> std::optional<Offer> {
-    if (since(start) > options.patience) {
-      answer.in_time = false;
-      return {};
-    }
+    in_time = since(start) <= deadline;
+    if (!in_time) return {};
     const Offer offer = quick_offer(runner.stored(runner.make(setting)), options.metric);
     std::cerr << "  " << parse_solver(setting).brief() << ": "
               << (offer.failed ? "failed" : options.metric + " " + number(offer.error)) << ", "
               << number(1e3 * offer.cost.mid) << " ms per simulated s\n";
     return offer;
   };
+  auto left = static_cast<double>(options.solvers.size());
   for (const std::string& solver : options.solvers) {
+    deadline = since(start) + (options.patience - since(start)) / left--;
+    in_time = true;
     const Case one = runner.make(solver);
     const auto reasons = one.choice.entry->cannot(*one.scene, one.choice.params);
     if (!reasons.empty()) {
@@ -161,6 +165,7 @@ void search(const Options& options, Runner& runner, Answer& answer) {
     }
     const std::vector<Offer> found = search_settings(solver, answer.wish, run, answer.tried);
     answer.tried.insert(answer.tried.end(), found.begin(), found.end());
+    if (!in_time) answer.cut.push_back(solver);
   }
   answer.searched = since(start);
 }
@@ -237,6 +242,7 @@ void print_best(const Options& options, const Answer& answer) {
                           (advice.ratio ? ", " + interval(*advice.ratio) + " x the cost" : ""));
   }
   line("certainty", std::string(to_string(advice.certainty)) +
+                        (answer.cut.empty() ? "" : " among what was tried") +
                         "; the same code against itself: " + interval(answer.bench.control));
   line("verified", std::string(answer.same_bits ? "run again, the same bits"
                                                 : "RUN AGAIN, OTHER BITS: not deterministic") +
@@ -246,9 +252,10 @@ void print_best(const Options& options, const Answer& answer) {
 
 void print_searched(const Options& options, const Answer& answer) {
   std::cout << "  searched   " << answer.tried.size() << " settings in " << number(answer.searched)
-            << " s"
-            << (answer.in_time ? "" : "; STOPPED AT --patience " + number(options.patience) + " s")
-            << '\n';
+            << " s" << '\n';
+  for (const std::string& solver : answer.cut)
+    std::cout << "  NOT DONE   " << solver << ": stopped by --patience " << number(options.patience)
+              << "\n";
   for (const std::string& reason : answer.cannot) std::cout << "  cannot     " << reason << '\n';
 }
 
@@ -278,10 +285,14 @@ nlohmann::json json_of(const BenchedCase& c, const std::string& metric) {
 }
 
 void print_json(const Options& options, const Answer& answer) {
-  nlohmann::json all{{"scene", options.scene},    {"metric", options.metric},
-                     {"best", nullptr},           {"runner_up", nullptr},
-                     {"cannot", answer.cannot},   {"searched_seconds", answer.searched},
-                     {"complete", answer.in_time}};
+  nlohmann::json all{{"scene", options.scene},
+                     {"metric", options.metric},
+                     {"best", nullptr},
+                     {"runner_up", nullptr},
+                     {"cannot", answer.cannot},
+                     {"searched_seconds", answer.searched},
+                     {"complete", answer.cut.empty()},
+                     {"not_done", answer.cut}};
   if (answer.wish.error) all["error"] = *answer.wish.error;
   if (answer.wish.budget) all["budget_cpu_seconds_per_second"] = *answer.wish.budget;
   for (const Offer& o : answer.tried)

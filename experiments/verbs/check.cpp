@@ -99,8 +99,13 @@ struct Notes {
 int check_study(const std::string& name, const Options& options, std::string& xml, Notes& notes) {
   const BaselineStudy study = baseline_study(name, options, true);
   if (study.before.empty()) {
-    std::cout << study.name << ": nothing to compare with: no baseline in " << study.folder.string()
-              << "; taut baseline update " << study.name << " --why \"...\" makes one\n";
+    const std::string folder = study.folder.parent_path().string();
+    std::cout << study.name << ": nothing to compare with: ";
+    if (std::filesystem::is_directory(folder))
+      std::cout << "no baseline in " << study.folder.string() << "; taut baseline update "
+                << study.name << " --why \"...\" makes one\n";
+    else
+      std::cout << "no folder '" << folder << "' here; --baselines names another\n";
     return kNothing;
   }
   const bool same = same_toolchain(study);

@@ -104,8 +104,10 @@ int command_line(int argc, char** argv) {
     return run_verb(static_cast<int>(words.size()), words.data());
   } catch (const InputError& error) {
     std::cerr << error.what() << '\n';
-    return kUsage;
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::cerr << error.path1().string() << ": " << error.code().message() << '\n';
   }
+  return kUsage;
 }
 
 bool has_verb(const std::string& name) { return find_verb(name) != nullptr; }

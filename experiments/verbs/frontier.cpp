@@ -78,7 +78,11 @@ void print_text(const CaseFrontier& result, const std::optional<Prediction>& the
     const Probed* probe = found.at(value);
     return shortest(value) + unit + "  " + (probe ? describe(probe->status) : "");
   };
-  if (found.kind != Frontier::Kind::none_stable) print_line("stable up to", outcome(found.stable));
+  if (found.kind == Frontier::Kind::all_stable)
+    print_line("stable", "as far as was looked (--to): " + outcome(found.stable) +
+                             "; stable is not accurate");
+  else if (found.kind != Frontier::Kind::none_stable)
+    print_line("stable up to", outcome(found.stable));
   if (found.kind != Frontier::Kind::all_stable)
     print_line("unstable from", outcome(found.unstable));
   if (theory) print_theory(*theory, found, unit);

@@ -8,6 +8,7 @@
 #include "core/model/scene_io.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
+#include "experiments/lab/data.hpp"
 #include "experiments/lab/reference_store.hpp"
 #include "experiments/verbs/verb.hpp"
 
@@ -20,17 +21,14 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<std::string> scenes;
   bool all = false;
-  std::string folder = "experiments/scenes", out = "results/references";
+  std::string out = references_folder().string();
 };
 
 std::vector<fs::path> chosen(const Options& options) {
   std::vector<fs::path> files;
-  for (const std::string& scene : options.scenes)
-    files.push_back(fs::exists(scene) ? fs::path(scene)
-                                      : fs::path(options.folder) / (scene + ".toml"));
-  if (options.all && fs::is_directory(options.folder))
-    for (const auto& entry : fs::directory_iterator(options.folder))
-      if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  for (const std::string& scene : options.scenes) files.push_back(find_scene(scene));
+  if (options.all)
+    for (const std::string& scene : shipped("scenes")) files.push_back(find_scene(scene));
   if (files.empty()) throw InputError("reference: name a scene, or give --all");
   std::sort(files.begin(), files.end());
   return files;
@@ -82,8 +80,6 @@ std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   arguments.option("SCENE", options->scenes, "Names of shipped scenes, or scene files");
   arguments.flag("--all", options->all, "Every shipped scene");
-  arguments.option("--scenes", options->folder,
-                   "Folder of the shipped scenes (default: " + options->folder + ")");
   arguments.option("-o,--out", options->out,
                    "Where references are kept (default: " + options->out + ")");
   return [options] { return run(*options); };

@@ -155,8 +155,21 @@ fs::path output(const Options& options, const std::string& scene) {
   return scene + (options.video ? ".mp4" : options.sheet ? "-sheet.png" : ".png");
 }
 
+/// What is wrong with the name of the output is said before anything is simulated.
+void check_output(const Options& options) {
+  if (options.video + options.sheet + !options.exported.empty() > 1)
+    throw InputError("only one of --video (or -o NAME.mp4), --sheet and --export");
+  if (options.out.empty() || !options.exported.empty()) return;
+  if (fs::is_directory(options.out))
+    throw InputError("-o " + options.out + " is a folder; name the file");
+  const std::string suffix = options.video ? ".mp4" : ".png";
+  if (!options.out.ends_with(suffix))
+    throw InputError("-o " + options.out + ": what is drawn here ends in " + suffix);
+}
+
 int run(Options options) {
   if (options.out.ends_with(".mp4")) options.video = true;
+  check_output(options);
   if (options.what.solvers.empty() || options.what.solvers.size() > 4)
     throw InputError("one to four --solver, for example --solver jakobsen --solver bullet");
   if (!options.dt.empty()) options.what.overrides.push_back("time.dt=\"" + options.dt + "\"");

@@ -65,6 +65,11 @@ int run(Options options) {
     options.studies = {"iterations", "time-steps", "penetration"};
     if (options.preset.empty()) options.preset = "quick";
   }
+  const std::filesystem::path page = options.out;
+  if (std::filesystem::is_directory(page))
+    throw InputError(options.out + " is a folder; name the page: -o " +
+                     (page / "report.html").string());
+  if (page.has_parent_path()) std::filesystem::create_directories(page.parent_path());
   std::vector<Study> studies;
   for (const std::string& name : options.studies)
     studies.push_back(load_study(name, options.preset));

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <thread>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/campaign.hpp"
+#include "experiments/report/axis.hpp"
+#include "experiments/report/figures.hpp"
 #include "experiments/verbs/invoke.hpp"
 #include "experiments/verbs/progress.hpp"
 #include "experiments/verbs/verb.hpp"
@@ -35,6 +38,28 @@ std::string command_line(const Options& options) {
   return text;
 }
 
+/// What no figure could draw, said before anything runs.
+void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
+  std::vector<std::string> known = report::quantity_names();
+  known.emplace_back("setting");
+  for (const Sweep& sweep : study.sweeps) known.push_back(sweep.name);
+  const auto report = [&](std::size_t i, const std::string& text) {
+    wrong.push_back({study.file, 0, 0, "[[plot]] " + std::to_string(i + 1) + ": " + text});
+  };
+  for (std::size_t i = 0; i < study.plots.size(); ++i) {
+    try {
+      report::find_figure(study.plots[i].kind);
+    } catch (const InputError& error) {
+      report(i, error.diagnostics().front().text());
+    }
+    for (const char* axis : {"x", "y", "along"})
+      if (const auto at = study.plots[i].options.find(axis);
+          at != study.plots[i].options.end() && std::ranges::count(known, at->second) == 0)
+        report(i, "unknown value '" + at->second + "' for " + axis + suggestion(at->second, known) +
+                      " (`taut list metrics`)");
+  }
+}
+
 std::vector<Study> load_studies(const Options& options) {
   std::vector<Study> studies;
   std::vector<Diagnostic> wrong;
@@ -44,6 +69,7 @@ std::vector<Study> load_studies(const Options& options) {
         wrong.push_back({study.file, 0, 0,
                          "study '" + study.name + "' has no preset '" + options.preset + "'" +
                              suggestion(options.preset, study.presets)});
+      judge_plots(study, wrong);
       studies.push_back(std::move(study));
     } catch (const InputError& error) {
       for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);
@@ -118,6 +144,10 @@ int run(Options options) {
   }
   const Shard shard = Shard::parse(options.shard);
   const std::vector<Case> cases = all_cases(load_studies(options));
+  if (cases.empty()) {
+    std::cerr << "these studies have no case: their exclusions leave out all\n";
+    return kNothing;
+  }
   const Store store(options.out);
   store.prepare();
   const Session session(store, command_line(options), cases, shard);

@@ -12,7 +12,7 @@ namespace {
 void thin(Table& table) {
   const std::size_t stride = table.rows.size() / 60 + 1;
   for (std::size_t i = 0; i * stride < table.rows.size(); ++i)
-    if (i > 0) table.rows[i] = std::move(table.rows[i * stride]);
+    if (stride > 1 && i > 0) table.rows[i] = std::move(table.rows[i * stride]);
   table.rows.resize((table.rows.size() + stride - 1) / stride);
   table.header.pop_back();
   for (auto& row : table.rows) row.pop_back();
