@@ -225,6 +225,18 @@ TEST(Comparison, RatiosPairOnlyCasesThatBothEndedWell) {
   EXPECT_LT(*dt, 0.1);
 }
 
+TEST(Comparison, ASolverWithoutSweepsHasNoSayInWhichAreQuoted) {
+  ReportInput input = example();
+  Record springs = input.studies.front().records.front();
+  springs.solver = "mass-spring", springs.status = {}, springs.values["stretch.rms"] = 0.25;
+  springs.params.erase("iterations");
+  input.studies.front().records.push_back(springs);
+  const Comparison facts = compare(input);
+  ASSERT_EQ(facts.contenders.size(), 3U);
+  EXPECT_EQ(facts.sweeps, 16);
+  EXPECT_EQ(value_at(facts.contenders.back(), springs.scene, 16, "stretch.rms"), 0.25);
+}
+
 TEST(Comparison, RoundingInFreeFallDecidesNothing) {
   ReportInput input = example();
   for (StudyResult& study : input.studies)

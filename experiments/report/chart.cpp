@@ -84,8 +84,11 @@ std::string failure_strip(const Chart& chart, const PlotArea& area) {
   for (const Curve& curve : chart.curves) {
     if (std::ranges::none_of(curve.points, failed)) continue;
     const std::string colour = quoted(solver_style(curve.solver).colour.light);
-    out += "set label 'failed' at " + screen(area.left - 8, y, chart) + " right tc rgb " +
-           paint("muted") + " font ',11'\n";
+    const bool refused = std::ranges::all_of(curve.points, [](const Point& p) {
+      return !failed(p) || p.record->status.kind == Status::Kind::unsupported;
+    });
+    out += std::string("set label '") + (refused ? "cannot" : "failed") + "' at " +
+           screen(area.left - 8, y, chart) + " right tc rgb " + colour + " font ',11'\n";
     for (const Point& p : curve.points) {
       if (!failed(p)) continue;
       // A failed case may lack its measured abscissa (CPU time): then its glyph stands at the edge.

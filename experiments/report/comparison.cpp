@@ -62,6 +62,7 @@ Contender choose(const std::string& solver, const std::vector<Record>& all) {
   return contender;
 }
 
+/// The number that most contenders were run with, near 16; those without sweeps have no say.
 int common_sweeps(const std::vector<Contender>& contenders) {
   std::map<int, int> counts;
   for (const Contender& c : contenders) {
@@ -70,12 +71,11 @@ int common_sweeps(const std::vector<Contender>& contenders) {
       if (const double k = value_of(r, "iterations"); k >= 1) seen.insert(static_cast<int>(k));
     for (const int k : seen) ++counts[k];
   }
-  int best = 0;
-  for (const auto& [k, n] : counts)
-    if (n == static_cast<int>(contenders.size()) &&
-        (best == 0 || std::abs(std::log(k / 16.0)) < std::abs(std::log(best / 16.0))))
-      best = k;
-  return best;
+  const auto rank = [](const std::pair<const int, int>& count) {
+    return std::pair(count.second, -std::abs(std::log(count.first / 16.0)));
+  };
+  const auto best = std::ranges::max_element(counts, {}, rank);
+  return best == counts.end() ? 0 : best->first;
 }
 
 double geometric(const std::vector<double>& values) {
@@ -133,11 +133,16 @@ Comparison compare(const ReportInput& input) {
   return facts;
 }
 
+bool quoted_at(const Record& record, int sweeps) {
+  const double own = value_of(record, "iterations");
+  return std::isnan(own) || own == sweeps;
+}
+
 std::optional<double> largest_stable_dt(const Contender& contender, const std::string& scene,
                                         int sweeps) {
   std::map<double, bool> stable;
   for (const Record& r : contender.records) {
-    if (r.scene != scene || value_of(r, "iterations") != sweeps) continue;
+    if (r.scene != scene || !quoted_at(r, sweeps)) continue;
     const auto [at, fresh] = stable.try_emplace(r.dt, true);
     at->second = at->second && usable(r);
   }
@@ -171,7 +176,7 @@ std::optional<double> value_at(const Contender& contender, const std::string& sc
                                const std::string& value) {
   std::vector<Record> here;
   for (const Record& r : contender.records)
-    if (r.scene == scene && value_of(r, "iterations") == sweeps) here.push_back(r);
+    if (r.scene == scene && quoted_at(r, sweeps)) here.push_back(r);
   if (here.empty()) return std::nullopt;
   for (const Record& r : most_common(here, "dt", 1.0 / 64).records)
     if (usable(r) && std::isfinite(value_of(r, value))) return value_of(r, value);

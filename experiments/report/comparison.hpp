@@ -50,6 +50,10 @@ Comparison compare(const ReportInput&);
 std::optional<Ratio> ratio_of(const Contender&, const Contender& first, const std::string& value,
                               double floor);
 
+/// Whether a case is among those quoted at this number of sweeps: it has as many, or its solver has
+/// none.
+bool quoted_at(const Record&, int sweeps);
+
 /// The largest dt [s] of a contender's cases on `scene` at `sweeps` below which (itself included)
 /// every tried dt ended ok or unsettled; nullopt if fewer than three were tried, 0 if the smallest
 /// failed.

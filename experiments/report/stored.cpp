@@ -37,7 +37,7 @@ std::vector<TimeSeries> series_of(const std::string& scene, const Comparison& fa
   for (const Contender& contender : facts.contenders) {
     std::vector<Record> here;
     for (const Record& r : contender.records)
-      if (r.scene == scene && value_of(r, "iterations") == facts.sweeps) here.push_back(r);
+      if (r.scene == scene && quoted_at(r, facts.sweeps)) here.push_back(r);
     for (const Record& r : most_common(here, "dt", 1.0 / 64).records) {
       TimeSeries series = column(store.series(r.key), r, contender.label, "stretch.rms");
       if (series.t.size() < 2) continue;

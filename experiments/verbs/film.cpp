@@ -23,9 +23,8 @@ const Record* shown_case(const report::Contender& contender, const std::string& 
   const Record* best = nullptr;
   const auto distance = [](const Record& r) { return std::abs(std::log(r.dt * 64)); };
   for (const Record& r : contender.records) {
-    const auto iterations = r.params.find("iterations");
     if (r.scene != scene || r.status.kind == Status::Kind::unsupported) continue;
-    if (iterations != r.params.end() && iterations->second != std::to_string(sweeps)) continue;
+    if (!report::quoted_at(r, sweeps)) continue;
     if (!best || distance(r) < distance(*best)) best = &r;
   }
   return best;
