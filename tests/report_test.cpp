@@ -229,7 +229,7 @@ TEST(Comparison, ASolverWithoutSweepsHasNoSayInWhichAreQuoted) {
   ReportInput input = example();
   Record springs = input.studies.front().records.front();
   springs.solver = "mass-spring", springs.status = {}, springs.values["stretch.rms"] = 0.25;
-  springs.params.erase("iterations");
+  springs.params.erase("iterations"), springs.key += ", springs";
   input.studies.front().records.push_back(springs);
   const Comparison facts = compare(input);
   ASSERT_EQ(facts.contenders.size(), 3U);
