@@ -290,6 +290,7 @@ Effective effective(const Scene& scene, const Params& params) {
   Effective lines = {
       library_line(params),
       time_step_line(scene, params),
+      {"precision", std::string(params.choice("precision"))},
       {"integration", implicit ? "backward Euler, " + std::string(params.value("newton")) +
                                      " Newton step(s), conjugate gradients"
                                : "symplectic Euler, explicit springs"},

@@ -282,6 +282,7 @@ Effective effective(const Scene& scene, const Params& params) {
   Effective lines = {
       library_line(params),
       time_step_line(scene, params),
+      {"precision", std::string(params.choice("precision"))},
       {"integration", "symplectic Euler; the same positions as Verlet"},
       {"projection",
        "sqrt-free, weighted by inverse mass, kLST " + short_text(params.real("stiffness"))},
