@@ -4,6 +4,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/scene_io.hpp"
+#include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/lab/data.hpp"
 #include "experiments/lab/study.hpp"
@@ -20,10 +21,10 @@ constexpr std::string_view kKinds[] = {"scenes", "solvers", "metrics", "studies"
 
 std::string allowed(const ParamSpec& spec) {
   if (spec.kind == ParamSpec::Kind::choice) return std::string(spec.choices);
-  json min = spec.min, max = spec.max;
   if (spec.kind == ParamSpec::Kind::integer)
-    min = static_cast<long>(spec.min), max = static_cast<long>(spec.max);
-  return min.dump() + " to " + max.dump();
+    return std::to_string(static_cast<long>(spec.min)) + " to " +
+           std::to_string(static_cast<long>(spec.max));
+  return shortest(spec.min) + " to " + shortest(spec.max);
 }
 
 json list_scenes() {
