@@ -14,6 +14,7 @@
 #include <fstream>
 #include <iostream>
 #include <new>
+#include <optional>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/data.hpp"
@@ -72,7 +73,8 @@ std::string signal_name(int signal) {
 Heartbeat::Heartbeat(const fs::path& path) {
   const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   void* page = MAP_FAILED;
-  if (fd >= 0 && ftruncate(fd, sizeof(int)) == 0)
+  // Room for it now: a page without a block behind it is a SIGBUS later.
+  if (fd >= 0 && (errno = posix_fallocate(fd, 0, sizeof(int))) == 0)
     page = mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
   if (fd >= 0) close(fd);
   if (page == MAP_FAILED)
@@ -171,6 +173,10 @@ Record IsolatedCase::record_of(int wait_status, bool timed_out) const {
       }
     case kOutOfMemory:
       return failed(Kind::oom, "out of memory");
+    case kCannotWrite:  // no property of the case, so no record; on a full disk its words are lost
+                        // too
+      throw InputError(said.empty() ? folder_.string() + ": cannot write: " + std::strerror(ENOSPC)
+                                    : said);
     case 127:
       return failed(Kind::error, "cannot execute the program" + (said.empty() ? "" : ": " + said));
     default:
@@ -180,12 +186,24 @@ Record IsolatedCase::record_of(int wait_status, bool timed_out) const {
 }
 
 int run_into(const Case& one, const fs::path& folder) try {
-  Heartbeat heartbeat(folder / "heartbeat");
-  const CaseRun run = run_case(
-      one, {.series_rows = kSeriesRows, .watch = [&](const Moment& m) { heartbeat.beat(m.step); }});
-  write_durably(folder / "series.csv", to_csv(run.series));
-  write_durably(folder / "case.json", to_json(run.record, 1) + "\n");
-  return 0;
+  const auto write = [&](auto&& what) {
+    try {
+      what();
+      return true;
+    } catch (const InputError& error) {
+      std::cerr << error.what() << '\n';
+      return false;
+    }
+  };
+  std::optional<Heartbeat> heartbeat;
+  if (!write([&] { heartbeat.emplace(folder / "heartbeat"); })) return kCannotWrite;
+  const CaseRun run = run_case(one, {.series_rows = kSeriesRows,
+                                     .watch = [&](const Moment& m) { heartbeat->beat(m.step); }});
+  const bool written = write([&] {
+    write_durably(folder / "series.csv", to_csv(run.series));
+    write_durably(folder / "case.json", to_json(run.record, 1) + "\n");
+  });
+  return written ? 0 : kCannotWrite;
 } catch (const std::bad_alloc&) {
   return kOutOfMemory;
 } catch (const std::exception& error) {

@@ -17,6 +17,9 @@ struct Limits {
 
 /// Exit code by which a case says that it ran out of memory.
 inline constexpr int kOutOfMemory = 77;
+/// Exit code by which a case says that its folder cannot be written: the campaign ends, for a full
+/// disk is no property of the case that meets it.
+inline constexpr int kCannotWrite = 74;
 
 /// The step that a case has reached, in a file that outlives it: 4 bytes, mapped, so that reporting
 /// costs a store to memory.
@@ -49,6 +52,7 @@ class IsolatedCase {
   int descriptor() const { return fd_; }
   std::chrono::steady_clock::time_point deadline() const { return deadline_; }
   /// Its record once it has ended or its time is up (it is killed then); until then nothing.
+  /// Throws InputError if it could not write what it found.
   std::optional<Record> poll();
   const std::filesystem::path& folder() const { return folder_; }
   const Case& of() const { return case_; }
