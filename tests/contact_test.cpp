@@ -8,7 +8,7 @@
 
 #include "core/model/solver.hpp"
 #include "core/model/triangle.hpp"
-#include "core/solver/passes/collide.hpp"
+#include "core/solver/contact/place.hpp"
 
 namespace taut {
 namespace {
@@ -294,16 +294,18 @@ TEST(FaceContact, LeavesPinsAlone) {
 /// Nearest points in the solver's closed forms against the model's surface().
 template <template <class> class SurfaceOf, class Shape_>
 void expect_model_surface(const Shape_& shape) {
-  const SurfaceOf<double> fast(shape);
+  const SurfaceOf<double> fast = surface_of<double>(shape);
   std::mt19937 random(3);
   std::uniform_real_distribution<> number(-1, 1);
   for (int k = 0; k < 2000; ++k) {
     const Vec3 x(number(random), number(random), number(random));
     const Surface exact = surface(shape, x);
-    const Tangent<double> tangent = fast.nearest(x);
-    EXPECT_NEAR(tangent.normal.dot(x) - tangent.offset, exact.distance, 1e-12);
-    EXPECT_NEAR((tangent.normal - exact.normal).norm(), 0, 1e-7);
-    for (const double t : {0.0, 0.05}) EXPECT_FALSE(fast.clear(x, t) && exact.distance < t - 1e-12);
+    const Triple<double> here = triple<double>(x);
+    const Tangent<double> tangent = fast.nearest(here);
+    EXPECT_NEAR(dot(tangent.normal, here) - tangent.offset, exact.distance, 1e-12);
+    EXPECT_NEAR((point(tangent.normal) - exact.normal).norm(), 0, 1e-7);
+    for (const double t : {0.0, 0.05})
+      EXPECT_FALSE(fast.clear(here, t) && exact.distance < t - 1e-12);
     const double e = 1e-6;  // the gradient by central differences
     Vec3 gradient;
     for (Eigen::Index a = 0; a < 3; ++a)
@@ -318,7 +320,7 @@ void expect_model_surface(const Shape_& shape) {
 /// entry() against marching along the path.
 template <template <class> class SurfaceOf, class Shape_>
 void expect_first_hit(const Shape_& shape) {
-  const SurfaceOf<double> fast(shape);
+  const SurfaceOf<double> fast = surface_of<double>(shape);
   std::mt19937 random(4);
   std::uniform_real_distribution<> number(-1, 1);
   int hits = 0, misses = 0;
@@ -329,15 +331,17 @@ void expect_first_hit(const Shape_& shape) {
     constexpr int kCuts = 4000;
     int first = 0;
     while (first <= kCuts && surface(shape, a + (b - a) * first / kCuts).distance > 0) ++first;
-    const auto entry = fast.entry(a, b);
-    EXPECT_FALSE(fast.misses(a, b) && entry);
-    misses += fast.misses(a, b);
+    const Triple<double> from = triple<double>(a), to = triple<double>(b);
+    const Entry<double> entry = fast.entry(from, to);
+    EXPECT_FALSE(fast.misses(from, to) && entry.hits);
+    misses += fast.misses(from, to);
     if (first > kCuts) continue;  // may still graze between two samples
-    ASSERT_TRUE(entry);
+    ASSERT_TRUE(entry.hits);
     ++hits;
     const Vec3 hit = a + (b - a) * first / kCuts;
-    EXPECT_NEAR(entry->normal.dot(hit), entry->offset, 2 * (b - a).norm() / kCuts);
-    EXPECT_LT(entry->normal.dot(b - a), 0);
+    const Vec3 normal = point(entry.tangent.normal);
+    EXPECT_NEAR(normal.dot(hit), entry.tangent.offset, 2 * (b - a).norm() / kCuts);
+    EXPECT_LT(normal.dot(b - a), 0);
   }
   EXPECT_GT(hits, 30);
   EXPECT_GT(misses, 100);

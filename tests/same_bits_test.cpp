@@ -64,6 +64,39 @@ TEST(SameBits, ForEveryInstructionSetAndNumberOfThreads) {
         }
 }
 
+/// A plane, a ball and a turned box that rises and spins, where the sheet falls past them.
+std::vector<Collider> obstacles(const Scene& scene) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : scene.start.x) middle += x / static_cast<double>(scene.start.x.size());
+  Box box{middle + Vec3(0.3, -0.1, 0), {0.2, 0.1, 0.15}};
+  box.rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized());
+  Motion motion;
+  motion.velocity = {0, 2, 0}, motion.spin = {0, 3, 1}, motion.pivot = box.center;
+  return {Collider{Plane{Vec3(1, 2, 2) / 3, Vec3(1, 2, 2).dot(middle) / 3 - 0.3}, {}, 0.5},
+          Collider{Ball{middle + Vec3(-0.2, 0.1, 0), 0.2}, {}, 0.3}, Collider{box, motion, 0.8},
+          Collider{Ball{middle + Vec3(0, -0.3, 0), 0.15}, motion, 0}};
+}
+
+TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
+  for (Scene& scene : scenes()) {
+    scene.colliders = obstacles(scene);
+    scene.thickness = 0.002;
+    for (const char* precision : {"float", "double"})
+      for (const char* contact : {"swept", "sweep", "after"}) {
+        const std::string method =
+            std::string("jakobsen:iterations=3,contact=") + contact + ",precision=" + precision;
+        for (const char* order : {",order=mesh", ",order=coloured"}) {
+          const State want = simulate(scene, method + order + ",simd=scalar", 8);
+          for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+            if (available(simd)) {
+              const std::string with = method + order + ",simd=" + std::string(to_string(simd));
+              EXPECT_TRUE(same_bits(simulate(scene, with, 8), want)) << with;
+            }
+        }
+      }
+  }
+}
+
 /// Runs the scene's links in the given order through the generic path, one link at a time.
 State one_by_one(Scene scene, std::vector<Link> order, const std::string& more) {
   scene.links = std::move(order);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/solver/triple.hpp"
+
 namespace taut {
 
 /// How the distance constraint |x2 - x1| = rest is projected; any masses, w = 1/m.
@@ -15,12 +17,6 @@ namespace taut {
 /// The report prints a splice of the two listings whose sign is wrong; see
 /// tests/projection_test.cpp.
 enum class Projection { exact, sqrt_free };
-
-/// A point or vector; T is a number or one number per lane.
-template <class T>
-struct Triple {
-  T x, y, z;
-};
 
 /// Shorter than any link [m]. Added so that coincident particles give 0 and not 0/0; it changes no
 /// other bit.

@@ -1,7 +1,6 @@
 #include "core/solver/contact/responses.hpp"
 
-#include <type_traits>
-
+#include "core/solver/jakobsen_params.hpp"
 #include "core/solver/passes/collide.hpp"
 #include "core/solver/passes/face_contact.hpp"
 #include "core/solver/passes/octree.hpp"
@@ -17,18 +16,17 @@ void add_response(const Collider& collider, const Scene& scene, const Params& pa
                   ContactPasses<Real>& passes) {
   const std::size_t n = scene.start.x.size();
   const double thickness = scene.thickness;
-  // nothing passes through a half-space within a step: both tests are the same
-  constexpr bool has_other_side = !std::is_same_v<SurfaceOf<Real>, PlaneSurface<Real>>;
-  using Swept = CollidePass<Real, SurfaceOf, has_other_side>;
-  using Nearest = CollidePass<Real, SurfaceOf, false>;
+  const auto project = [&](bool swept) {
+    return std::make_unique<CollidePass<Real, SurfaceOf>>(collider, scene, swept, simd_of(params));
+  };
   if (params.is("contact", "swept"))
-    passes.sweep.push_back(std::make_unique<Swept>(collider, thickness, n));
+    passes.sweep.push_back(project(true));
   else if (params.is("contact", "sweep"))
-    passes.sweep.push_back(std::make_unique<Nearest>(collider, thickness, n));
+    passes.sweep.push_back(project(false));
   else if (params.is("contact", "before"))
-    passes.before.push_back(std::make_unique<Nearest>(collider, thickness, n));
+    passes.before.push_back(project(false));
   else if (params.is("contact", "after"))
-    passes.after.push_back(std::make_unique<Nearest>(collider, thickness, n));
+    passes.after.push_back(project(false));
   else if (params.is("contact", "freeze"))
     passes.sweep.push_back(std::make_unique<FreezePass<Real, SurfaceOf>>(collider, thickness, n));
   else

@@ -1,166 +1,232 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <optional>
 
-#include "core/model/collider.hpp"
+#include "core/solver/triple.hpp"
 
 namespace taut {
 
+struct Plane;
+struct Ball;
+struct Box;
+
 /// The place of a surface to which a point belongs: the half-space normal . x >= offset.
-template <class Real>
+template <class T>
 struct Tangent {
-  Eigen::Matrix<Real, 3, 1> normal;
-  Real offset = 0;  ///< m
+  Triple<T> normal;
+  T offset;  ///< m
+};
+template <class Mask, class T>
+[[gnu::always_inline]] inline Tangent<T> select(const Mask& mask, const Tangent<T>& yes,
+                                                const Tangent<T>& no) {
+  return {select(mask, yes.normal, no.normal), select(mask, yes.offset, no.offset)};
+}
+
+/// Where a path meets a solid; `tangent` means something only where `hits`.
+template <class T>
+struct Entry {
+  decltype(T() < T()) hits;
+  Tangent<T> tangent;
 };
 
 // Colliders at one moment, as the contact loops want them: closed forms in the solver's own
-// precision, one type for each shape. surface() of core/model/collider.hpp is their oracle.
+// precision, for a point or one in every lane. surface() of core/model/collider.hpp is their
+// oracle.
 //
 //   clear(x, t)       quick and conservative: true only if x is at least t from the surface
 //   beyond(x, w2, t)  the same for all of a path that ends in x and whose squared length is w2
-//   misses(from, to)  quick and conservative: true only if entry(from, to) is empty
+//   misses(from, to)  quick and conservative: true only if entry(from, to) hits nothing
 //   nearest(x)        tangent at the surface point nearest to x
 //   entry(from, to)   tangent where a straight path first meets the solid; the one nearest to
-//                     `from` if it starts inside; empty if it misses
+//                     `from` if it starts inside
 
+/// A half-space has no other side to pass to: nearest() says all.
 template <class Real>
-class PlaneSurface {
- public:
-  using Point = Eigen::Matrix<Real, 3, 1>;
+struct PlaneSurface {
   using Shape = Plane;
-  PlaneSurface() = default;
-  explicit PlaneSurface(const Plane& plane)
-      : tangent_{plane.normal.cast<Real>(), static_cast<Real>(plane.offset)} {}
+  Triple<Real> normal;
+  Real offset;  ///< m
 
-  [[gnu::always_inline]] bool clear(const Point& x, Real thickness) const {
-    return tangent_.normal.dot(x) >= tangent_.offset + thickness;
+  template <class T>
+  [[gnu::always_inline]] auto clear(const Triple<T>& x, T thickness) const {
+    return dot(spread_out<T>(normal), x) >= T(offset) + thickness;
   }
-  [[gnu::always_inline]] bool beyond(const Point& x, Real, Real thickness) const {
-    return clear(x, thickness);
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> nearest(const Triple<T>&) const {
+    return {spread_out<T>(normal), T(offset)};
   }
-  [[gnu::always_inline]] Tangent<Real> nearest(const Point&) const { return tangent_; }
-  /// A half-space has no other side: nearest() says all.
-  [[gnu::always_inline]] bool misses(const Point&, const Point&) const { return true; }
-  std::optional<Tangent<Real>> entry(const Point&, const Point&) const { return {}; }
-
- private:
-  Tangent<Real> tangent_;
 };
 
 template <class Real>
-class BallSurface {
- public:
-  using Point = Eigen::Matrix<Real, 3, 1>;
+struct BallSurface {
   using Shape = Ball;
-  BallSurface() = default;
-  explicit BallSurface(const Ball& ball)
-      : center_(ball.center.cast<Real>()), radius_(static_cast<Real>(ball.radius)) {}
+  Triple<Real> center;
+  Real radius;  ///< m
 
-  [[gnu::always_inline]] bool clear(const Point& x, Real thickness) const {
-    const Real reach = radius_ + thickness;
-    return (x - center_).squaredNorm() >= reach * reach;
+  template <class T>
+  [[gnu::always_inline]] auto clear(const Triple<T>& x, T thickness) const {
+    const T reach = T(radius) + thickness;
+    return squared_norm(x - spread_out<T>(center)) >= reach * reach;
   }
   /// (reach + way)^2 <= 2 (reach^2 + way^2).
-  [[gnu::always_inline]] bool beyond(const Point& x, Real way2, Real thickness) const {
-    const Real reach = radius_ + thickness;
-    return (x - center_).squaredNorm() >= 2 * (reach * reach + way2);
+  template <class T>
+  [[gnu::always_inline]] auto beyond(const Triple<T>& x, T way2, T thickness) const {
+    const T reach = T(radius) + thickness;
+    return squared_norm(x - spread_out<T>(center)) >= T(2) * (reach * reach + way2);
   }
   /// Both ends lie beyond the plane that touches the ball towards `from`.
-  [[gnu::always_inline]] bool misses(const Point& from, const Point& to) const {
-    const Point a = from - center_;
-    const Real aa = a.squaredNorm(), ab = a.dot(to - center_), r2 = radius_ * radius_;
-    return aa > r2 && ab > 0 && ab * ab > r2 * aa;
+  template <class T>
+  [[gnu::always_inline]] auto misses(const Triple<T>& from, const Triple<T>& to) const {
+    const Triple<T> a = from - spread_out<T>(center);
+    const T aa = squared_norm(a), ab = dot(a, to - spread_out<T>(center));
+    const T r2 = T(radius * radius);
+    return aa > r2 && ab > T(0) && ab * ab > r2 * aa;
   }
-  [[gnu::always_inline]] Tangent<Real> nearest(const Point& x) const {
-    const Point out = x - center_;
-    const Real distance = out.norm();
-    return at(distance > 0 ? Point(out / distance) : Point::UnitY());
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> nearest(const Triple<T>& x) const {
+    const Triple<T> out = x - spread_out<T>(center);
+    const T distance = norm(out);
+    const auto apart = distance > T(0);
+    return at(select(apart, out / select(apart, distance, T(1)), Triple<T>{T(0), T(1), T(0)}));
   }
-  std::optional<Tangent<Real>> entry(const Point& from, const Point& to) const {
-    const Point a = from - center_, d = to - from;
-    const Real dd = d.squaredNorm(), ad = a.dot(d), above = a.squaredNorm() - radius_ * radius_;
-    if (above <= 0) return nearest(from);
-    const Real discriminant = ad * ad - dd * above;
-    if (ad >= 0 || discriminant <= 0) return {};
-    const Real share = above / (-ad + std::sqrt(discriminant));  // the nearer root, no cancellation
-    if (share > 1) return {};
-    return at((a + share * d) / radius_);
+  template <class T>
+  [[gnu::always_inline]] Entry<T> entry(const Triple<T>& from, const Triple<T>& to) const {
+    using std::sqrt;
+    const Triple<T> a = from - spread_out<T>(center), d = to - from;
+    const T dd = squared_norm(d), ad = dot(a, d), above = squared_norm(a) - T(radius * radius);
+    const auto inside = above <= T(0);
+    const T discriminant = ad * ad - dd * above;
+    const auto ahead = !inside && ad < T(0) && discriminant > T(0);
+    const T root = sqrt(select(ahead, discriminant, T(1)));
+    const T share = above / select(ahead, root - ad, T(1));  // the nearer root, no cancellation
+    return {inside || (ahead && share <= T(1)),
+            select(inside, nearest(from), at((a + share * d) / T(radius)))};
   }
 
  private:
-  [[gnu::always_inline]] Tangent<Real> at(const Point& normal) const {
-    return {normal, normal.dot(center_) + radius_};
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> at(const Triple<T>& normal) const {
+    return {normal, dot(normal, spread_out<T>(center)) + T(radius)};
   }
-  Point center_;
-  Real radius_ = 0;
 };
 
 template <class Real>
-class BoxSurface {
- public:
-  using Point = Eigen::Matrix<Real, 3, 1>;
+struct BoxSurface {
   using Shape = Box;
-  BoxSurface() = default;
-  explicit BoxSurface(const Box& box)
-      : center_(box.center.cast<Real>()),
-        half_(box.half_extents.cast<Real>()),
-        axes_(box.rotation.toRotationMatrix().cast<Real>()),
-        far_(static_cast<Real>(box.half_extents.norm())) {}
+  Triple<Real> center, half;
+  Triple<Real> axes[3];  ///< the box's own, in the world
+  Real far;              ///< m, from the centre to a corner
 
-  [[gnu::always_inline]] bool clear(const Point& x, Real thickness) const {
-    const Point out = x - center_;
-    const Real reach = far_ + thickness;
-    if (out.squaredNorm() >= reach * reach) return true;
-    return ((axes_.transpose() * out).cwiseAbs() - half_).maxCoeff() >= thickness;
+  template <class T>
+  [[gnu::always_inline]] auto clear(const Triple<T>& x, T thickness) const {
+    const Triple<T> out = x - spread_out<T>(center);
+    const T reach = T(far) + thickness;
+    return squared_norm(out) >= reach * reach || largest(excess(turned(out))) >= thickness;
   }
-  [[gnu::always_inline]] bool beyond(const Point& x, Real way2, Real thickness) const {
-    const Real reach = far_ + thickness;
-    return (x - center_).squaredNorm() >= 2 * (reach * reach + way2);
+  template <class T>
+  [[gnu::always_inline]] auto beyond(const Triple<T>& x, T way2, T thickness) const {
+    const T reach = T(far) + thickness;
+    return squared_norm(x - spread_out<T>(center)) >= T(2) * (reach * reach + way2);
   }
   /// Both ends lie beyond the same side.
-  [[gnu::always_inline]] bool misses(const Point& from, const Point& to) const {
-    const Point a = axes_.transpose() * (from - center_), b = axes_.transpose() * (to - center_);
-    return (a.cwiseMin(b) - half_).maxCoeff() > 0 || (a.cwiseMax(b) + half_).minCoeff() < 0;
+  template <class T>
+  [[gnu::always_inline]] auto misses(const Triple<T>& from, const Triple<T>& to) const {
+    const Triple<T> a = local(from), b = local(to), h = spread_out<T>(half);
+    const auto beside = [](T u, T v, T most) __attribute__((always_inline)) {
+      return lesser(u, v) > most || greater(u, v) < T(0) - most;
+    };
+    return beside(a.x, b.x, h.x) || beside(a.y, b.y, h.y) || beside(a.z, b.z, h.z);
   }
-  [[gnu::always_inline]] Tangent<Real> nearest(const Point& x) const {
-    const Point local = axes_.transpose() * (x - center_);
-    const Point excess = local.cwiseAbs() - half_;
-    Eigen::Index axis = 0;
-    if (excess.maxCoeff(&axis) <= 0) return face(axis, local[axis] < 0 ? Real(-1) : Real(1));
-    const Point corner = local.cwiseMax(-half_).cwiseMin(half_);
-    const Point normal = axes_ * (local - corner).normalized();
-    return {normal, normal.dot(center_ + axes_ * corner)};
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> nearest(const Triple<T>& x) const {
+    const Triple<T> at = local(x), past = excess(at);
+    const auto inside = largest(past) <= T(0);
+    Tangent<T> tangent = over_corner(at);
+    if (any(inside)) tangent = select(inside, over_face(at, past), tangent);
+    return tangent;
   }
-  std::optional<Tangent<Real>> entry(const Point& from, const Point& to) const {
-    const Point a = axes_.transpose() * (from - center_), d = axes_.transpose() * (to - from);
-    if ((a.cwiseAbs() - half_).maxCoeff() <= 0) return nearest(from);
-    Real in = -std::numeric_limits<Real>::infinity(), out = 1;
-    Eigen::Index side = 0;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {  // the path is inside between in and out
-      if (d[axis] == 0) {
-        if (std::abs(a[axis]) >= half_[axis]) return {};
-        continue;
-      }
-      const Real toward = d[axis] > 0 ? Real(1) : Real(-1);
-      const Real enters = (-toward * half_[axis] - a[axis]) / d[axis];
-      if (enters > in) in = enters, side = axis;
-      out = std::min(out, (toward * half_[axis] - a[axis]) / d[axis]);
-    }
-    if (in < 0 || in >= out) return {};
-    return face(side, d[side] > 0 ? Real(-1) : Real(1));
+  template <class T>
+  [[gnu::always_inline]] Entry<T> entry(const Triple<T>& from, const Triple<T>& to) const {
+    const Triple<T> a = local(from), d = turned(to - from);
+    const auto inside = largest(excess(a)) <= T(0);
+    // The path is inside the slab between two faces from `enters` to `leaves`; where it runs along
+    // them it is so for ever or never.
+    constexpr Real kEver = std::numeric_limits<Real>::max();
+    T in(-kEver), out(1);
+    Tangent<T> side = face(0, T(1));
+    const auto cut = [&](int axis, T ai, T di, T most) __attribute__((always_inline)) {
+      const T toward = select(di > T(0), T(1), T(-1));
+      const auto along = !(di > T(0)) && !(di < T(0));
+      const auto between = magnitude(ai) < most;
+      const T way = select(along, T(1), di);
+      const T enters =
+          select(along, select(between, T(-kEver), T(kEver)), (T(0) - toward * most - ai) / way);
+      const T leaves = select(along, T(kEver), (toward * most - ai) / way);
+      const auto later = enters > in;
+      in = select(later, enters, in);
+      side = select(later, face(axis, T(0) - toward), side);
+      out = lesser(out, leaves);
+    };
+    cut(0, a.x, d.x, T(half.x)), cut(1, a.y, d.y, T(half.y)), cut(2, a.z, d.z, T(half.z));
+    Tangent<T> tangent = side;
+    if (any(inside)) tangent = select(inside, nearest(from), side);
+    return {inside || (in >= T(0) && in < out), tangent};
   }
 
  private:
-  [[gnu::always_inline]] Tangent<Real> face(Eigen::Index axis, Real sign) const {
-    const Point normal = sign * axes_.col(axis);
-    return {normal, normal.dot(center_) + half_[axis]};
+  template <class T>
+  [[gnu::always_inline]] Triple<T> turned(const Triple<T>& v) const {
+    return {dot(spread_out<T>(axes[0]), v), dot(spread_out<T>(axes[1]), v),
+            dot(spread_out<T>(axes[2]), v)};
   }
-  Point center_, half_;
-  Eigen::Matrix<Real, 3, 3> axes_;  ///< columns: the box's axes in the world
-  Real far_ = 0;                    ///< m, from the centre to a corner
+  template <class T>
+  [[gnu::always_inline]] Triple<T> local(const Triple<T>& x) const {
+    return turned(x - spread_out<T>(center));
+  }
+  template <class T>
+  [[gnu::always_inline]] Triple<T> world(const Triple<T>& v) const {
+    const auto sum = [&v](Real a, Real b, Real c) __attribute__((always_inline)) {
+      return dot(Triple<T>{T(a), T(b), T(c)}, v);
+    };
+    return {sum(axes[0].x, axes[1].x, axes[2].x), sum(axes[0].y, axes[1].y, axes[2].y),
+            sum(axes[0].z, axes[1].z, axes[2].z)};
+  }
+  /// Beyond each pair of faces; negative between them.
+  template <class T>
+  [[gnu::always_inline]] Triple<T> excess(const Triple<T>& at) const {
+    return {magnitude(at.x) - T(half.x), magnitude(at.y) - T(half.y), magnitude(at.z) - T(half.z)};
+  }
+  template <class T>
+  [[gnu::always_inline]] static T largest(const Triple<T>& a) {
+    return greater(greater(a.x, a.y), a.z);
+  }
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> face(int axis, T sign) const {
+    const Triple<T> normal = sign * spread_out<T>(axes[axis]);
+    const Real most[3] = {half.x, half.y, half.z};
+    return {normal, dot(normal, spread_out<T>(center)) + T(most[axis])};
+  }
+  /// From inside, out of the nearest face.
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> over_face(const Triple<T>& at, const Triple<T>& past) const {
+    const auto sign = [](T v) __attribute__((always_inline)) {
+      return select(v < T(0), T(-1), T(1));
+    };
+    const Tangent<T> xy = select(past.y > past.x, face(1, sign(at.y)), face(0, sign(at.x)));
+    return select(past.z > greater(past.x, past.y), face(2, sign(at.z)), xy);
+  }
+  /// From outside, straight away from the nearest point of the box.
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> over_corner(const Triple<T>& at) const {
+    const Triple<T> h = spread_out<T>(half);
+    const Triple<T> corner{lesser(greater(at.x, T(0) - h.x), h.x),
+                           lesser(greater(at.y, T(0) - h.y), h.y),
+                           lesser(greater(at.z, T(0) - h.z), h.z)};
+    const Triple<T> out = at - corner;
+    const T distance = norm(out);
+    const Triple<T> normal = world(out / select(distance > T(0), distance, T(1)));
+    return {normal, dot(normal, spread_out<T>(center) + world(corner))};
+  }
 };
 
 }  // namespace taut

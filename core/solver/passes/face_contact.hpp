@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/model/triangle.hpp"
-#include "core/solver/contact/carry.hpp"
+#include "core/solver/contact/place.hpp"
 #include "core/solver/pass.hpp"
 
 namespace taut {
@@ -22,7 +22,7 @@ class FaceContactPass final : public Pass<Real> {
 
   void begin(Particles<Real>&, double t, double dt) override {
     shape_ = shape_at(collider_, t + dt);
-    carry_ = Carry<double>(collider_.motion, t, dt);
+    carry_ = carry_of<double>(collider_.motion, t, dt);
     if (Ball* ball = std::get_if<Ball>(&shape_)) {
       ball->radius += thickness_;
       center_ = ball->center, reach_ = ball->radius;
@@ -94,7 +94,7 @@ class FaceContactPass final : public Pass<Real> {
     if (sum == 0) return;  // all that could move it are pins
     Vec3 correction = exit.length * exit.normal;
     if (collider_.friction > 0) {
-      Vec3 slip = exit.point.position + correction - carry_(previous);
+      Vec3 slip = exit.point.position + correction - point(carry_(triple<double>(previous)));
       slip -= exit.normal.dot(slip) * exit.normal;
       const double length = slip.norm(), most = collider_.friction * exit.length;
       correction -= length <= most ? slip : Vec3(most / length * slip);

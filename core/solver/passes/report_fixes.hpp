@@ -1,6 +1,8 @@
 #pragma once
 
-#include "core/solver/passes/collide.hpp"
+#include "core/model/scene.hpp"
+#include "core/solver/contact/place.hpp"
+#include "core/solver/pass.hpp"
 
 namespace taut {
 
@@ -11,7 +13,7 @@ template <class Real, template <class> class SurfaceOf>
 class FreezePass final : public Pass<Real> {
  public:
   FreezePass(const Collider& collider, double thickness, std::size_t particles)
-      : contact_(collider, thickness),
+      : collider_(collider, thickness),
         kind_(type_name(collider.shape)),
         particles_(particles),
         frozen_(particles) {}
@@ -21,13 +23,13 @@ class FreezePass final : public Pass<Real> {
     held_.clear();
   }
   void begin(Particles<Real>& p, double t, double dt) override {
-    contact_.place(t, dt);
+    const Contact<Real, SurfaceOf> contact = collider_.at(t, dt);
     for (std::size_t i = 0; i < p.size(); ++i) {
-      Point x = p.x[i];
-      if (frozen_[i] || p.w[i] == 0 || contact_.clear(x)) continue;
-      if (!contact_.project(x, p.previous[i])) continue;
+      if (frozen_[i] || p.w[i] == 0) continue;
+      Triple<Real> x = triple<Real>(p.x[i]);
+      if (!contact.project(x, triple<Real>(p.previous[i]))) continue;
       frozen_[i] = true;
-      held_.push_back({i, x});
+      held_.push_back({i, point(x)});
     }
     for (const Held& h : held_) p.previous.set(h.particle, h.place);
     apply(p, t, dt);
@@ -47,7 +49,7 @@ class FreezePass final : public Pass<Real> {
     std::size_t particle;
     Point place;
   };
-  Contact<Real, SurfaceOf> contact_;
+  ColliderInMotion<Real, SurfaceOf> collider_;
   std::string kind_;
   std::size_t particles_;
   std::vector<bool> frozen_;
@@ -62,11 +64,11 @@ template <class Real, template <class> class SurfaceOf>
 class HaltPass final : public Pass<Real> {
  public:
   HaltPass(const Collider& collider, double thickness, std::size_t particles)
-      : contact_(collider, thickness), kind_(type_name(collider.shape)), particles_(particles) {}
+      : collider_(collider, thickness), kind_(type_name(collider.shape)), particles_(particles) {}
 
   void restart() override { halted_.clear(); }
   void begin(Particles<Real>& p, double t, double dt) override {
-    contact_.place(t, dt);
+    contact_ = collider_.at(t, dt);
     skip_.assign(particles_, false);
     for (const Halted& h : halted_) {  // undo this step's integration
       p.x.set(h.particle, p.previous[h.particle]);
@@ -77,10 +79,10 @@ class HaltPass final : public Pass<Real> {
   }
   void apply(Particles<Real>& p, double, double) override {
     for (std::size_t i = 0; i < p.size(); ++i) {
-      Point x = p.x[i];
-      if (skip_[i] || p.w[i] == 0 || contact_.clear(x)) continue;
-      if (!contact_.project(x, p.previous[i])) continue;
-      p.x.set(i, x);
+      if (skip_[i] || p.w[i] == 0) continue;
+      Triple<Real> x = triple<Real>(p.x[i]);
+      if (!contact_.project(x, triple<Real>(p.previous[i]))) continue;
+      p.x.set(i, point(x));
       halted_.push_back({i, p.previous[i]});
     }
   }
@@ -96,7 +98,8 @@ class HaltPass final : public Pass<Real> {
     std::size_t particle;
     Point previous;  ///< one step before the halt
   };
-  Contact<Real, SurfaceOf> contact_;
+  ColliderInMotion<Real, SurfaceOf> collider_;
+  Contact<Real, SurfaceOf> contact_{};
   std::string kind_;
   std::size_t particles_;
   std::vector<bool> skip_;

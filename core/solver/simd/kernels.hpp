@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "core/solver/contact/contact.hpp"
+
 namespace taut {
 
 /// A regular sheet is cut into `lanes` strips of columns, and a SIMD vector holds the same column
@@ -73,6 +75,24 @@ struct VerletStep {
   const Real* g;  ///< [kGrain] m
 };
 
+/// `count` times the x, the y and the z of `lanes` particles of strips; lanes 1: x y z 0 of so many
+/// packed particles.
+template <class Real>
+struct CollideSpan {
+  Real* x;
+  const Real* previous;
+  std::size_t lanes, count;
+};
+/// Puts out of the collider what is inside, or, `swept`, has passed through it in this step.
+template <class Real, template <class> class SurfaceOf>
+using Collide = void (*)(const Contact<Real, SurfaceOf>&, const CollideSpan<Real>&);
+template <class Real>
+struct CollideKernels {
+  Collide<Real, PlaneSurface> plane;
+  Collide<Real, BallSurface> ball, ball_swept;
+  Collide<Real, BoxSurface> box, box_swept;
+};
+
 /// The loops that matter, once for each instruction set.
 template <class Real>
 struct Kernels {
@@ -81,6 +101,7 @@ struct Kernels {
   void (*narrow_strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);
   void (*wide_strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);
   void (*batches[2])(const BatchRun<Real>&, Real* x);
+  CollideKernels<Real> collide;
 };
 
 enum class Simd { scalar, sse2, avx2, avx512 };

@@ -3,6 +3,7 @@
 // Included by one file for each instruction set, which says what its lanes are. No function here
 // may be shared between them: everything depends on the lane type, which is private to the file.
 
+#include <cstring>
 #include <type_traits>
 
 #include "core/solver/distance.hpp"
@@ -112,6 +113,8 @@ template <Projection kind, class Real>
   }
 }
 
+inline constexpr std::uint32_t kPacked[8] = {0, 4, 8, 12, 16, 20, 24, 28};
+
 /// T holds the x y z 0 of one particle, or of two.
 template <class T, class Real>
 [[gnu::always_inline]] inline T load_particles(const Real* x, const std::uint32_t* slot) {
@@ -128,25 +131,55 @@ template <class T, class Real>
     store(x + slot[0], t.lower()), store(x + slot[4], t.upper());
 }
 
-/// Lane l of the result is the sum x + y + z of d[l % 4] (its half l / 4): the only transposition.
+/// The x, y and z of 4 or 8 particles: lane l is that of p[l % 4], of its half l / 4.
+template <class T>
+[[gnu::always_inline]] inline Triple<T> transposed(const T (&p)[4]) {
+  if constexpr (kWidth<T> == 4) {
+    const T xy01 = T::template shuffle<0, 4, 1, 5>(p[0], p[1]);
+    const T xy23 = T::template shuffle<0, 4, 1, 5>(p[2], p[3]);
+    const T z01 = T::template shuffle<2, 6, 3, 7>(p[0], p[1]);
+    const T z23 = T::template shuffle<2, 6, 3, 7>(p[2], p[3]);
+    return {T::template shuffle<0, 1, 4, 5>(xy01, xy23),
+            T::template shuffle<2, 3, 6, 7>(xy01, xy23), T::template shuffle<0, 1, 4, 5>(z01, z23)};
+  } else {
+    const T xy01 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(p[0], p[1]);
+    const T xy23 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(p[2], p[3]);
+    const T z01 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(p[0], p[1]);
+    const T z23 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(p[2], p[3]);
+    return {T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(xy01, xy23),
+            T::template shuffle<2, 3, 10, 11, 6, 7, 14, 15>(xy01, xy23),
+            T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(z01, z23)};
+  }
+}
+/// The way back.
+template <class T>
+[[gnu::always_inline]] inline void transpose(const Triple<T>& t, T (&p)[4]) {
+  const T none(0.0);
+  if constexpr (kWidth<T> == 4) {
+    const T xy01 = T::template shuffle<0, 4, 1, 5>(t.x, t.y);
+    const T xy23 = T::template shuffle<2, 6, 3, 7>(t.x, t.y);
+    const T z01 = T::template shuffle<0, 4, 1, 5>(t.z, none);
+    const T z23 = T::template shuffle<2, 6, 3, 7>(t.z, none);
+    p[0] = T::template shuffle<0, 1, 4, 5>(xy01, z01);
+    p[1] = T::template shuffle<2, 3, 6, 7>(xy01, z01);
+    p[2] = T::template shuffle<0, 1, 4, 5>(xy23, z23);
+    p[3] = T::template shuffle<2, 3, 6, 7>(xy23, z23);
+  } else {
+    const T xy01 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(t.x, t.y);
+    const T xy23 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(t.x, t.y);
+    const T z01 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(t.z, none);
+    const T z23 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(t.z, none);
+    p[0] = T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(xy01, z01);
+    p[1] = T::template shuffle<2, 3, 10, 11, 6, 7, 14, 15>(xy01, z01);
+    p[2] = T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(xy23, z23);
+    p[3] = T::template shuffle<2, 3, 10, 11, 6, 7, 14, 15>(xy23, z23);
+  }
+}
+/// x + y + z of each.
 template <class T>
 [[gnu::always_inline]] inline T sums(const T (&d)[4]) {
-  if constexpr (kWidth<T> == 4) {
-    const T xy01 = T::template shuffle<0, 4, 1, 5>(d[0], d[1]);
-    const T xy23 = T::template shuffle<0, 4, 1, 5>(d[2], d[3]);
-    const T z01 = T::template shuffle<2, 6, 3, 7>(d[0], d[1]);
-    const T z23 = T::template shuffle<2, 6, 3, 7>(d[2], d[3]);
-    return T::template shuffle<0, 1, 4, 5>(xy01, xy23) +
-           T::template shuffle<2, 3, 6, 7>(xy01, xy23) + T::template shuffle<0, 1, 4, 5>(z01, z23);
-  } else {
-    const T xy01 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(d[0], d[1]);
-    const T xy23 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(d[2], d[3]);
-    const T z01 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(d[0], d[1]);
-    const T z23 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(d[2], d[3]);
-    return T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(xy01, xy23) +
-           T::template shuffle<2, 3, 10, 11, 6, 7, 14, 15>(xy01, xy23) +
-           T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(z01, z23);
-  }
+  const Triple<T> t = transposed(d);
+  return t.x + t.y + t.z;
 }
 
 /// Lane l of every particle in t.
@@ -210,6 +243,82 @@ void batches(const BatchRun<Real>& run, Real* x) {
   }
 }
 
+/// kWidth<T> packed particles, one after the other.
+template <class T, class Real>
+[[gnu::always_inline]] inline Triple<T> load_packed(const Real* x) {
+  if constexpr (kWidth<T> == 1) {
+    return {x[0], x[1], x[2]};
+  } else {
+    T p[4];
+    four_times([&](auto l) { p[l] = load_particles<T>(x, kPacked + l); });
+    return transposed(p);
+  }
+}
+template <class T, class Real>
+[[gnu::always_inline]] inline void store_packed(Real* x, const Triple<T>& t) {
+  if constexpr (kWidth<T> == 1) {
+    x[0] = t.x, x[1] = t.y, x[2] = t.z;
+  } else {
+    T p[4];
+    transpose(t, p);
+    four_times([&](auto l) { store_particles(x, kPacked + l, p[l]); });
+  }
+}
+
+/// Whether a particle moved.
+template <bool swept, class Contact, class T>
+[[gnu::always_inline]] inline bool collide_points(const Contact& contact, Triple<T>& x,
+                                                  const Triple<T>& previous) {
+  if constexpr (swept)
+    return any(contact.project_swept(x, previous));
+  else
+    return any(contact.project(x, previous));
+}
+
+/// Vectors of strips.
+template <class T, bool swept, class Real, template <class> class SurfaceOf>
+void collide_strips(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& span) {
+  const std::size_t lanes = span.lanes;
+  for (std::size_t v = 0; v < span.count; ++v)
+    for (std::size_t l = 0; l < lanes; l += kWidth<T>) {
+      const auto triple = [&](const Real* r) __attribute__((always_inline)) {
+        return Triple<T>{load<T>(r), load<T>(r + lanes), load<T>(r + 2 * lanes)};
+      };
+      Real* const at = span.x + 3 * lanes * v + l;
+      Triple<T> x = triple(at);
+      if (collide_points<swept>(contact, x, triple(span.previous + (at - span.x))))
+        store(at, x.x), store(at + lanes, x.y), store(at + 2 * lanes, x.z);
+    }
+}
+
+/// Packed particles; what is left at the end goes through a buffer.
+template <class T, bool swept, class Real, template <class> class SurfaceOf>
+void collide_packed(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& span) {
+  constexpr std::size_t step = kWidth<T>;
+  Real last_x[4 * step] = {}, last_previous[4 * step] = {};
+  for (std::size_t i = 0; i < span.count; i += step) {
+    const std::size_t left = span.count - i;
+    Real* at = span.x + 4 * i;
+    const Real* previous = span.previous + 4 * i;
+    if (left < step) {
+      std::memcpy(last_x, at, 4 * left * sizeof(Real));
+      std::memcpy(last_previous, previous, 4 * left * sizeof(Real));
+      at = last_x, previous = last_previous;
+    }
+    Triple<T> x = load_packed<T>(at);
+    if (collide_points<swept>(contact, x, load_packed<T>(previous))) store_packed(at, x);
+    if (left < step) std::memcpy(span.x + 4 * i, last_x, 4 * left * sizeof(Real));
+  }
+}
+
+template <class Lane, class P, bool swept, class Real, template <class> class SurfaceOf>
+void collide(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& span) {
+  if (span.lanes == 1)
+    collide_packed<P, swept>(contact, span);
+  else
+    collide_strips<Lane, swept>(contact, span);
+}
+
 /// Narrow and Wide compute along strips of 8 and 16 lanes, P on particles.
 template <class Real, class Narrow, class Wide, class P>
 constexpr Kernels<Real> make_kernels() {
@@ -217,7 +326,12 @@ constexpr Kernels<Real> make_kernels() {
   return {verlet<Wide, Real>,
           {strips<Narrow, kNarrow, exact, Real>, strips<Narrow, kNarrow, sqrt_free, Real>},
           {strips<Wide, kWide, exact, Real>, strips<Wide, kWide, sqrt_free, Real>},
-          {batches<P, exact, Real>, batches<P, sqrt_free, Real>}};
+          {batches<P, exact, Real>, batches<P, sqrt_free, Real>},
+          {.plane = collide<Narrow, P, false, Real, PlaneSurface>,
+           .ball = collide<Narrow, P, false, Real, BallSurface>,
+           .ball_swept = collide<Narrow, P, true, Real, BallSurface>,
+           .box = collide<Narrow, P, false, Real, BoxSurface>,
+           .box_swept = collide<Narrow, P, true, Real, BoxSurface>}};
 }
 
 }  // namespace taut

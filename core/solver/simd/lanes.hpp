@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -9,6 +10,34 @@
 #endif
 
 namespace taut {
+
+/// One decision per lane: all bits of a lane, or none. && and || evaluate both sides.
+template <class Real, int width, class Isa>
+struct LaneMask {
+  using Bits = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+  using V [[gnu::vector_size(width * sizeof(Real))]] = Bits;
+  V v;
+
+  [[gnu::always_inline]] friend LaneMask operator&&(LaneMask a, LaneMask b) { return {a.v & b.v}; }
+  [[gnu::always_inline]] friend LaneMask operator||(LaneMask a, LaneMask b) { return {a.v | b.v}; }
+  [[gnu::always_inline]] LaneMask operator!() const { return {~v}; }
+
+  /// Whether one lane is set.
+  [[gnu::always_inline]] friend bool any(LaneMask a) {
+#if defined(__AVX512F__)
+    if constexpr (sizeof(V) == 64) return _mm512_test_epi64_mask(__m512i(a.v), __m512i(a.v)) != 0;
+#endif
+#if defined(__AVX__)
+    if constexpr (sizeof(V) == 32) return _mm256_testz_si256(__m256i(a.v), __m256i(a.v)) == 0;
+#endif
+#if defined(__x86_64__)
+    if constexpr (sizeof(V) == 16) return _mm_movemask_epi8(__m128i(a.v)) != 0;
+#endif
+    Bits bits = 0;
+    for (int l = 0; l < width; ++l) bits |= a.v[l];
+    return bits != 0;
+  }
+};
 
 /// `width` numbers that are computed with at once. The arithmetic is a number's, lane by lane, so
 /// every width gives the same bits. `Isa` keeps what one instruction set compiles to apart from
@@ -28,6 +57,14 @@ struct Lanes {
   [[gnu::always_inline]] friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.v - b.v); }
   [[gnu::always_inline]] friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.v * b.v); }
   [[gnu::always_inline]] friend Lanes operator/(Lanes a, Lanes b) { return Lanes(a.v / b.v); }
+  using Mask = LaneMask<Real, width, Isa>;
+  [[gnu::always_inline]] friend Mask operator<(Lanes a, Lanes b) { return {a.v < b.v}; }
+  [[gnu::always_inline]] friend Mask operator>(Lanes a, Lanes b) { return {a.v > b.v}; }
+  [[gnu::always_inline]] friend Mask operator<=(Lanes a, Lanes b) { return {a.v <= b.v}; }
+  [[gnu::always_inline]] friend Mask operator>=(Lanes a, Lanes b) { return {a.v >= b.v}; }
+  [[gnu::always_inline]] friend Lanes select(Mask mask, Lanes yes, Lanes no) {
+    return Lanes(mask.v ? yes.v : no.v);
+  }
   [[gnu::always_inline]] void operator+=(Lanes b) { v += b.v; }
   [[gnu::always_inline]] void operator-=(Lanes b) { v -= b.v; }
 
