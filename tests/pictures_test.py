@@ -86,6 +86,54 @@ class Pictures(CommandLine):
         self.render("--solver", "jakobsen", "--solver", exploding, *SMALL, *long, "-o", "a.png")
         self.assertEqual(self.files(), ["a.png"])
 
+    def kept(self, *words):
+        self.taut("case", "./small.toml", *words, "--trajectory", "run.traj")
+        return self.folder / "run.traj"
+
+    def test_a_stored_motion_is_drawn_as_if_it_were_run(self):
+        self.kept("jakobsen")
+        self.render("--trajectory", "run.traj", *SMALL, "-o", "stored.png")
+        self.render("--solver", "jakobsen", *SMALL, "-o", "run.png")
+        self.assertEqual((self.folder / "stored.png").read_bytes(), (self.folder / "run.png").read_bytes())
+        done = self.render("--trajectory", "run.traj", "--set", "cloth.grid=[3, 3]", "-o", "a.png", expect=2)
+        self.assertIn("run.traj: a trajectory of 'small' with 16 vertices; small has 9", done.err)
+
+    def test_a_cut_motion_is_drawn_up_to_its_last_whole_frame_and_marked(self):
+        file = self.kept("jakobsen")
+        whole = file.read_bytes()
+        self.render("--trajectory", "run.traj", *SMALL, "-o", "whole.png")
+        file.write_bytes(whole[:len(whole) // 2])
+        done = self.render("--trajectory", "run.traj", *SMALL, "-o", "half.png")
+        self.assertRegex(done.err, r"run\.traj: the writer was interrupted; dropped .* from byte \d+ on")
+        self.assertNotEqual((self.folder / "half.png").read_bytes(), (self.folder / "whole.png").read_bytes())
+
+    def test_an_empty_or_headless_motion_names_file_and_byte(self):
+        file = self.kept("jakobsen")
+        whole = file.read_bytes()
+        first = int.from_bytes(whole[12:16], "little")
+        for size, text in [(0, "empty file"), (20, "ends at byte 20 of 48"),
+                           (first - 1, f"ends at byte {first - 1} of {first}"),
+                           (first + 8, f"ends at byte {first + 8}, the first frame would end at byte")]:
+            file.write_bytes(whole[:size])
+            done = self.render("--trajectory", "run.traj", *SMALL, "-o", "a.png", expect=2)
+            self.assertIn("run.traj: ", done.err)
+            self.assertIn(text, done.err)
+        self.assertFalse((self.folder / "a.png").exists())
+
+    def test_sheet_view_colour_and_moments(self):
+        plain = ["--solver", "jakobsen", *SMALL]
+        self.render(*plain, "-o", "plain.png")
+        for words in [["--view", "top"], ["--view", "70,10"], ["--colour", "penetration"], ["--colour", "speed"],
+                      ["--at", "0.25"], ["--range", "50"], ["--dark"]]:
+            self.render(*plain, *words, "-o", "other.png")
+            self.assertNotEqual((self.folder / "plain.png").read_bytes(), (self.folder / "other.png").read_bytes(), words)
+        self.render(*SIDE_BY_SIDE, "--quality", "draft", "--size", "320x240", "--sheet", "--at", "0.1", "--at", "0.5", "-o", "s.png")
+        width, height = png_size(self.folder / "s.png")
+        self.assertGreaterEqual(width, 2 * 320)
+        self.assertGreaterEqual(height, 2 * 240)
+        for words in [["--view", "sideways"], ["--colour", "heat"], ["--at", "-1"], ["--at", "99", "--duration", "0.5"]]:
+            self.render(*plain, *words, "-o", "other.png", expect=2)
+
 
 if __name__ == "__main__":
     main()

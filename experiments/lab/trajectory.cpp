@@ -131,7 +131,9 @@ void TrajectoryReader::read_header(std::uint64_t file_bytes) {
   in_.read(reinterpret_cast<char*>(&fixed), sizeof fixed);
   if (std::memcmp(fixed.magic, kMagic, static_cast<std::size_t>(known)) != 0)
     fail("not a trajectory: it does not begin with TAUTTRAJ");
-  if (!in_) fail("truncated within its header: " + std::to_string(file_bytes) + " bytes");
+  if (!in_)
+    fail("truncated within its header: it ends at byte " + std::to_string(file_bytes) + " of " +
+         std::to_string(sizeof fixed));
   if (fixed.version != kVersion)
     fail("version " + std::to_string(fixed.version) + "; this program reads version 1");
   const std::uint64_t before_triangles = round_up_to_8(
@@ -141,7 +143,9 @@ void TrajectoryReader::read_header(std::uint64_t file_bytes) {
                           (fixed.channels == 1 || fixed.channels == 2) &&
                           fixed.first == before_triangles + 12 * std::uint64_t{fixed.triangles};
   if (!consistent) fail("inconsistent header");
-  if (file_bytes < fixed.first) fail("truncated within its header");
+  if (file_bytes < fixed.first)
+    fail("truncated within its header: it ends at byte " + std::to_string(file_bytes) + " of " +
+         std::to_string(fixed.first));
   first_ = fixed.first;
   header_.vertices = static_cast<int>(fixed.vertices);
   header_.real = static_cast<TrajectoryHeader::Real>(fixed.real);
@@ -185,10 +189,14 @@ TrajectoryReader::Frame TrajectoryReader::read(int k) {
 Trajectory read_trajectory(const std::filesystem::path& path) {
   TrajectoryReader reader(path);
   if (reader.frames() == 0)
-    throw InputError({{path.string(), 0, 0, "a trajectory without a whole frame"}});
+    throw InputError(
+        {{path.string(), 0, 0,
+          "a trajectory without a whole frame: it ends at byte " + std::to_string(reader.end()) +
+              ", the first frame would end at byte " + std::to_string(reader.frame_end(1))}});
   if (reader.dropped_bytes() > 0)
     std::cerr << path.string() << ": the writer was interrupted; dropped the last "
-              << reader.dropped_bytes() << " bytes, an unfinished frame after " << reader.frames()
+              << reader.dropped_bytes() << " bytes, an unfinished frame from byte "
+              << reader.frame_end(reader.frames()) << " on, after " << reader.frames()
               << " whole ones\n";
   Trajectory trajectory{reader.header(), {}};
   for (int k = 0; k < reader.frames(); ++k) trajectory.frames.push_back(reader.read(k));

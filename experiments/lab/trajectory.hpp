@@ -82,6 +82,11 @@ class TrajectoryReader {
   int frames() const { return frames_; }
   /// Bytes of an unfinished frame at the end, which is ignored; 0: the file is whole.
   std::uint64_t dropped_bytes() const { return dropped_; }
+  /// Where the first `count` frames end, and where the file does [bytes].
+  std::uint64_t frame_end(int count) const {
+    return first_ + static_cast<std::uint64_t>(count) * frame_size_;
+  }
+  std::uint64_t end() const { return frame_end(frames_) + dropped_; }
   struct Frame {
     double t = 0;  ///< s
     State state;   ///< v is empty if the file has no velocities

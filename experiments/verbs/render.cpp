@@ -170,8 +170,10 @@ void check_output(const Options& options) {
 int run(Options options) {
   if (options.out.ends_with(".mp4")) options.video = true;
   check_output(options);
-  if (options.what.solvers.empty() || options.what.solvers.size() > 4)
-    throw InputError("one to four --solver, for example --solver jakobsen --solver bullet");
+  const std::size_t panels = options.what.solvers.size() + options.what.files.size();
+  if (panels == 0 || panels > 4)
+    throw InputError(
+        "one to four --solver or --trajectory, for example --solver jakobsen --solver bullet");
   if (!options.dt.empty()) options.what.overrides.push_back("time.dt=\"" + options.dt + "\"");
   if (!options.duration.empty())
     options.what.overrides.push_back("time.duration=\"" + options.duration + "\"");
@@ -205,6 +207,10 @@ std::function<int()> bind(Arguments& arguments) {
   arguments.option("SCENE", o->what.scene, "Name of a shipped scene, or a path").required();
   arguments.option("--solver", o->what.solvers, "NAME or NAME:key=value,...; one to four of them")
       .repeated();
+  arguments
+      .option("--trajectory", o->what.files,
+              "A motion of this scene kept by `taut case --trajectory`, in a panel of its own")
+      .repeated();
   arguments.option("--at", o->at, "Moments to draw [s]; default: the end").repeated();
   arguments.flag("--sheet", o->sheet, "One picture, a row for each moment");
   arguments.flag("--video", o->video, "H.264 video in real time (so does -o NAME.mp4)");
@@ -235,5 +241,6 @@ TAUT_VERB(render) = {
     .summary = "Pictures and videos of solvers side by side",
     .example =
         "taut render ball --solver jakobsen:iterations=20 --solver bullet --at 0.6\n"
-        "  taut render flag --solver jakobsen --solver bullet --video --duration 4",
+        "  taut render flag --solver jakobsen --solver bullet --video --duration 4\n"
+        "  taut render ball --trajectory run.traj --solver bullet --sheet",
     .bind = taut::verb::render::bind};

@@ -34,6 +34,13 @@ std::string caption_settings(const SolverChoice& choice) {
   return settings;
 }
 
+/// The same of a text that some program wrote: as it stands if this one knows no such solver.
+std::string caption_settings(const std::string& solver) try {
+  return caption_settings(parse_solver(solver));
+} catch (const InputError&) {
+  return readable_settings(solver);
+}
+
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -112,6 +119,24 @@ Take make_take(const Scene& scene, const SolverChoice& choice, CaseProcess& proc
   return take;
 }
 
+/// What a file holds, under the name of the solver that it says made it.
+Take stored_take(const Scene& scene, const std::string& file) {
+  Trajectory trajectory = read_trajectory(file);
+  const TrajectoryHeader& header = trajectory.header;
+  if (header.vertices != scene.mesh.size())
+    throw InputError(
+        {{file, 0, 0,
+          "a trajectory of '" + header.scene + "' with " + std::to_string(header.vertices) +
+              " vertices; " + scene.name + " has " + std::to_string(scene.mesh.size())}});
+  Take take = take_of(scene, std::move(trajectory));
+  const std::string& solver = take.trajectory.header.solver;
+  const std::string name = solver.substr(0, solver.find(':'));
+  take.title = report::solver_title(name);
+  take.settings = caption_settings(solver);
+  take.colour = colour_of(report::solver_style(name).colour.light);
+  return take;
+}
+
 }  // namespace
 
 TakeSet make_takes(const TakeRequest& request, const std::function<void(const std::string&)>& say) {
@@ -128,6 +153,7 @@ TakeSet make_takes(const TakeRequest& request, const std::function<void(const st
     Take& take = set.takes.emplace_back(make_take(set.scene, choices[k], *processes[k]));
     take.colour = colour_of(report::solver_style(choices[k].entry->name).colour.light);
   }
+  for (const std::string& file : request.files) set.takes.push_back(stored_take(set.scene, file));
   return set;
 }
 

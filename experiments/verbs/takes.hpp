@@ -13,17 +13,18 @@ struct TakeRequest {
   std::string scene;                   ///< name or path
   std::vector<std::string> overrides;  ///< of the scene file
   std::vector<std::string> solvers;    ///< "jakobsen:iterations=8"
+  std::vector<std::string> files{};    ///< trajectories, shown after the solvers
 };
 
 struct TakeSet {
   Scene scene;
-  std::vector<Take> takes;  ///< in the order of the solvers, with titles and colours
+  std::vector<Take> takes;  ///< in the order of the solvers, then files, with titles and colours
 };
 
 /// Runs every solver on the scene, each in a process of its own and all at once, and keeps every
 /// step. A run that explodes, crashes or hangs is kept up to its last sound state. `say` is told
 /// what is being run. Throws InputError: unknown scene or solver, a solver that cannot represent
-/// the scene.
+/// the scene, a trajectory that cannot be read or is of other cloth.
 TakeSet make_takes(const TakeRequest&, const std::function<void(const std::string&)>& say);
 
 }  // namespace taut
