@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/key.hpp"
 #include "experiments/verbs/arguments.hpp"
 #include "experiments/verbs/invoke.hpp"
+#include "experiments/verbs/program.hpp"
 #include "experiments/verbs/verb.hpp"
 
 namespace taut {
@@ -61,6 +63,10 @@ int run_verb(int argc, char** argv) {
   CLI::App app("taut: runs cloth solvers side by side on identical scenes and measures them");
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Help of every verb");
+  app.set_version_flag("--version", [] {
+    return "taut " TAUT_VERSION "\nprogram " + program_digest().substr(0, 10) + "\n" +
+           std::string(toolchain());
+  });
   app.footer("`taut VERB --help` shows the options and an example of each verb.");
   int exit_code = kPass;
   for (const VerbEntry* verb : verbs()) {
