@@ -102,6 +102,18 @@ std::string failure_strip(const Chart& chart, const PlotArea& area) {
   return out;
 }
 
+/// Exact zeros have no place on a logarithmic axis: they lie on its floor, which then says so.
+std::string zero_label(const Chart& chart, const PlotArea& area) {
+  const bool any =
+      chart.y.log && chart.markers && std::ranges::any_of(chart.curves, [](const Curve& curve) {
+        return std::ranges::any_of(curve.points,
+                                   [](const Point& p) { return p.measured() && p.y <= 0; });
+      });
+  return any ? "set label '0' at " + screen(area.left - 9, area.bottom - 4, chart) +
+                   " right tc rgb " + paint("muted") + " font ',12'\n"
+             : "";
+}
+
 std::string slope_text(double slope) {
   return slope == std::round(slope) ? significant(slope, 1) : significant(slope, 2);
 }
@@ -268,15 +280,21 @@ std::optional<Box> free_place(const Box& marker, double width, const PlotArea& a
 std::string point_names(const Chart& chart, const PlotArea& area) {
   std::string out;
   std::vector<Box> taken = markers_of(chart, area);
+  std::vector<std::pair<Box, std::string>> named;  // curves that coincide share a name
   for (const Curve& curve : chart.curves) {
     std::vector<const Point*> points;
     for (const Point& p : curve.points)
       if (p.measured() && std::isfinite(p.along)) points.push_back(&p);
     for (const Point* p : points) {
       const std::string name = p->name.empty() ? quantity("iterations").text(p->along, 2) : p->name;
-      const auto place =
-          free_place(marker_at(chart, area, *p), text_width(name) * 11 / 12, area, taken);
+      const Box marker = marker_at(chart, area, *p);
+      if (std::ranges::any_of(named, [&](const auto& other) {
+            return other.second == name && other.first.meets(marker);
+          }))
+        continue;
+      const auto place = free_place(marker, text_width(name) * 11 / 12, area, taken);
       if (!place) continue;
+      named.emplace_back(marker, name);
       taken.push_back(*place);
       out += "set label " + gnuplot_string(name) + " at " + screen(place->x, place->y, chart) +
              " center tc rgb " + quoted(solver_style(curve.solver).colour.light) +
@@ -421,7 +439,7 @@ Drawing draw_chart(const Chart& chart) {
   drawing.script = script_preamble(chart.title, area, chart.width, chart.height) +
                    script_ticks("x", chart.x) + script_ticks("y", chart.y) +
                    axis_titles(chart, area) + end_labels(chart, area) + failure_strip(chart, area) +
-                   slope.commands;
+                   zero_label(chart, area) + slope.commands;
   if (chart.name_points) drawing.script += point_names(chart, area);
   if (chart.floor && chart.y.log) drawing.script += floor_line(chart, area);
   drawing.script += plot_commands(chart, slope.plot);
