@@ -152,7 +152,26 @@ TEST(Report, MediaThatWouldBurstTheLimitAreLeftOutAndSaidSo) {
   EXPECT_LT(html.size(), report_limit(2));
   EXPECT_NE(html.find("left out"), std::string::npos);
   input.media[0].clips[0].bytes.resize(1000);
-  EXPECT_NE(make_report(input).find("src=\"data:video/mp4;base64,eHh4"), std::string::npos);
+  EXPECT_NE(make_report(input).find("data-src=\"data:video/mp4;base64,eHh4"), std::string::npos);
+}
+
+TEST(Report, ScenesThatNoStudyRanAreShownBesideWhoRefusesThem) {
+  ReportInput input = example();
+  EXPECT_EQ(make_report(input).find("id=\"others\""), std::string::npos);
+  SceneMedia media{.scene = "twist", .clips = {{.type = "video/mp4", .bytes = "xxx"}}};
+  media.summary = "A strip is <wound> up", media.duration = 3, media.speed = 0.25;
+  media.refused = {{"bullet", "self-collision & more"}};
+  input.media = {media};
+  input.series.push_back({"twist", "jakobsen", "Jakobsen", "stretch.rms", {0, 1, 2}, {0, 0.1, 0}});
+  const std::string html = make_report(input);
+  const std::size_t begins = html.find("id=\"film-twist\"");
+  ASSERT_NE(begins, std::string::npos);
+  const std::string card = html.substr(begins, html.find("</article>", begins) - begins);
+  for (const char* text :
+       {"A strip is &lt;wound&gt; up", "data-src=\"data:video", "class=\"refused\"",
+        "self-collision &amp; more", "1/4 of real time", "<svg"})
+    EXPECT_NE(card.find(text), std::string::npos) << text;
+  EXPECT_EQ(html.find("id=\"scene-twist\""), std::string::npos);
 }
 
 /// A test picture as video, if ffmpeg is here; tests/browser uses it to try the slider.
@@ -181,6 +200,13 @@ TEST(Report, SampleForTheBrowser) {
     Clip other = clip;
     other.panels = {{"bullet", "16 sweeps"}};
     input.media = {{"ball", {clip, other}, 2.5, 1.25, {}}};
+    input.media.front().poster = 1, input.media.front().frame = 1.25 / 30;
+    SceneMedia more{
+        .scene = "twist", .clips = {clip}, .duration = 2, .summary = "A strip, wound up"};
+    more.poster = 0.5, more.refused = {{"bullet", "self-collision is not what it does"}};
+    input.media.push_back(more);
+    input.series.push_back(
+        {"twist", "jakobsen", "Jakobsen", "stretch.rms", {0, 1, 2}, {0, 0.1, 0}});
   }
   write_report(input, path);
   EXPECT_TRUE(fs::exists(path));

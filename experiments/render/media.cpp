@@ -19,7 +19,7 @@ std::vector<double> frame_times(const Scene& scene, const std::vector<Take>& tak
                                 const MediaOptions& options) {
   double step = scene.dt;
   for (const Take& take : takes) step = std::max(step, take.trajectory.header.frame_dt);
-  const double stride = std::max(1.0, std::round(1 / (options.fps * step)));
+  const double stride = std::max(1.0, std::round(options.speed / (options.fps * step)));
   const double end = std::min(options.duration, scene.duration());
   std::vector<double> times;
   for (int k = 0; k * stride * step <= end + 1e-9; ++k) times.push_back(k * stride * step);
@@ -52,17 +52,37 @@ Image side_by_side(const Studio& studio, const MediaOptions& options, double t) 
   return picture;
 }
 
-/// Where the takes differ most in strain; the last third of the video if they never do.
-std::size_t most_telling(const Media& media) {
-  std::size_t best = media.t.size() * 2 / 3;
-  double largest = 0;
-  for (std::size_t k = media.t.size() / 8; k < media.t.size(); ++k) {
-    double low = 1e300, high = 0;
+/// The index of the largest value from an eighth of the video on, if it exceeds `least`.
+std::optional<std::size_t> peak(const std::vector<double>& values, double least) {
+  const auto from = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 8);
+  const auto at = std::max_element(from, values.end());
+  if (at == values.end() || *at <= least) return {};
+  return static_cast<std::size_t>(at - values.begin());
+}
+
+/// RMS distance [m] of a take's vertices from those of the first take.
+double distance(const Take& first, const Take& other, double t) {
+  const auto &a = first.at(t).state.x, &b = other.at(t).state.x;
+  double squares = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) squares += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(a.size()));
+}
+
+/// Where the takes differ most in strain, else in place; the greatest strain of a single one; two
+/// thirds on the way if nothing differs.
+std::size_t most_telling(const Media& media, const Scene& scene, const std::vector<Take>& takes) {
+  constexpr double kStrain = 1e-3, kPlace = 1e-2;  // differences that are seen: 1, of the extent
+  std::vector<double> strain, place;
+  for (std::size_t k = 0; k < media.t.size(); ++k) {
+    double low = takes.size() > 1 ? 1e300 : 0, high = 0, apart = 0;
     for (const auto& series : media.rms_strain)
       low = std::min(low, series[k]), high = std::max(high, series[k]);
-    if (high - low > largest) largest = high - low, best = k;
+    for (const Take& take : takes)
+      apart = std::max(apart, distance(takes.front(), take, media.t[k]));
+    strain.push_back(high - low), place.push_back(apart);
   }
-  return best;
+  if (const auto k = peak(strain, kStrain)) return *k;
+  return peak(place, kPlace * extent(scene)).value_or(media.t.size() * 2 / 3);
 }
 
 std::string read_and_remove(const std::filesystem::path& path) {
@@ -106,7 +126,7 @@ Media render_media(const Scene& scene, const std::vector<Take>& takes, const Med
   Media media;
   media.width = options.width, media.height = options.height;
   media.t = frame_times(scene, takes, options);
-  media.rate = frame_rate(media.t[1] - media.t[0]);
+  media.rate = frame_rate((media.t[1] - media.t[0]) / options.speed);
   for (const Take& take : takes) {
     media.stops.push_back(take.stop);
     auto& series = media.rms_strain.emplace_back();
@@ -120,12 +140,12 @@ Media render_media(const Scene& scene, const std::vector<Take>& takes, const Med
   look.quality = options.quality;
   look.view = options.view;
   look.quantity = options.quantity;
-  look.frame = {-0.94, 0.84, -0.66, 0.86};  // the flat may hide a corner of the first moments
+  look.frame = {-0.94, 0.84, -0.64, 0.74};  // the flat may hide a corner of the first moments
   look.to = media.t.back();
   const Studio studio(scene, takes, look);
   media.scale = studio.scale();
   lay_flat(media, studio);
-  const std::size_t poster = most_telling(media);
+  const std::size_t poster = most_telling(media, scene, takes);
   media.poster_t = media.t[poster];
   const Image poster_image = side_by_side(studio, options, media.poster_t);
   media.poster = jpeg_bytes(poster_image);

@@ -12,8 +12,9 @@ namespace taut {
 /// own fonts and themes.
 struct MediaOptions {
   int width = 960, height = 400;  ///< of all panels together; even
-  double duration = 4;            ///< s of the scene's beginning, played in real time
-  double fps = 22;                ///< frames are whole steps: the nearest rate that dt allows
+  double duration = 4;            ///< s of the scene's beginning
+  double speed = 1;               ///< simulated seconds per second of video
+  double fps = 22;  ///< of the video; frames are whole steps: the nearest rate that dt allows
   Quantity quantity = Quantity::strain;
   View view;
   RenderQuality quality = RenderQuality::video();

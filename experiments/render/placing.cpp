@@ -51,8 +51,14 @@ std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Vec3>
   Eigen::AlignedBox3d near;
   for (const Vec3& x : points) near.extend(x);
   for (const Vec3& x : scene.start.x) near.extend(x);
-  // What is held swings within the cloth's own size; what lands spreads a little.
-  const Vec3 margin = Vec3::Constant((scene.pins.empty() ? 0.3 : 0.6) * extent(scene));
+  // What is held swings within the cloth's own size; what lands spreads a little; down an endless
+  // slope it slides.
+  const bool slope = std::ranges::any_of(scene.colliders, [&](const Collider& collider) {
+    const auto* plane = std::get_if<Plane>(&collider.shape);
+    return plane && plane->normal.dot(up_direction(scene)) < 0.9999;
+  });
+  const double share = slope ? 3 : scene.pins.empty() ? 0.3 : 0.6;
+  const Vec3 margin = Vec3::Constant(share * extent(scene));
   near = {near.min() - margin, near.max() + margin};
   for (const Vec3& x : cloth)
     if (near.contains(x)) points.push_back(x);

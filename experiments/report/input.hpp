@@ -77,6 +77,11 @@ struct SceneMedia {
   ColourBar bar{};
   std::vector<MaterialRow> material{};  ///< empty for cloth that is no sheet
   double aspect = 1;                    ///< width / height of the cloth laid flat
+  std::string summary{};                ///< of a scene that no study ran
+  double frame = 1.0 / 30;              ///< s of simulated time between two frames
+  double poster = 0;                    ///< s of simulated time that the clips' posters show
+  /// Solvers of the comparison that refuse the scene, and why.
+  std::vector<std::pair<std::string, std::string>> refused{};
 };
 
 /// A closed form or a published number beside what was measured: of each truth the finding that is

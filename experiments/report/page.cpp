@@ -22,6 +22,14 @@ std::vector<std::string> scene_names(const ReportInput& input) {
   return names;
 }
 
+/// Filmed scenes that no study ran.
+std::size_t others(const ReportInput& input) {
+  const std::vector<std::string> studied = scene_names(input);
+  return static_cast<std::size_t>(std::ranges::count_if(input.media, [&](const SceneMedia& media) {
+    return std::ranges::find(studied, media.scene) == studied.end();
+  }));
+}
+
 /// Scenes that show most come first when one has to stand on top.
 constexpr std::array<std::string_view, 4> kShowpieces{"ball", "drape", "flag", "hang"};
 
@@ -48,7 +56,7 @@ std::string hero_scene(const ReportInput& input, const std::vector<std::string>&
 }  // namespace
 
 Page::Page(const ReportInput& input, std::filesystem::path scratch)
-    : media_budget(report_limit(scene_names(input).size()) * 2 / 3),
+    : media_budget(report_limit(scene_names(input).size(), others(input)) * 2 / 3),
       input_(input),
       scratch_(std::move(scratch)),
       facts_(compare(input)),

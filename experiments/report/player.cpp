@@ -1,6 +1,7 @@
 #include "experiments/report/player.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/axis.hpp"
@@ -11,7 +12,11 @@ namespace taut::report {
 
 namespace {
 
-constexpr int kWidth = 1100;  ///< px of the chart over time
+/// The chart over time [px], across the page or half of it.
+struct Extent {
+  int width, height;
+};
+constexpr Extent kWide{1100, 190}, kHalf{540, 170};
 
 std::string data_uri(const std::string& type, const std::string& bytes) {
   return "data:" + type + ";base64," + base64(bytes);
@@ -25,7 +30,9 @@ std::string names(const Clip& clip) {
   return out + "</div>";
 }
 
-std::string picture(Page& page, const Clip& clip, const SceneMedia& media, bool leads) {
+/// A film's bytes become its source when the script sees it coming: a page of many films opens as
+/// fast as one with a few.
+std::string picture(Page& page, const Clip& clip, const SceneMedia& media) {
   const std::size_t weight = (clip.bytes.size() + clip.poster.size()) * 4 / 3;
   if (clip.bytes.empty() || weight > page.media_budget)
     return absent("A picture was left out to keep this page small.", "");
@@ -34,12 +41,20 @@ std::string picture(Page& page, const Clip& clip, const SceneMedia& media, bool 
   if (!clip.type.starts_with("video/"))
     return "<div class=\"clip\">" + names(clip) + "<img alt=\"" + alt + "\" src=\"" +
            data_uri(clip.type, clip.bytes) + "\"></div>";
-  return "<div class=\"clip\">" + names(clip) + "<video muted playsinline preload=\"" +
-         (leads ? "auto" : "metadata") + "\" aria-label=\"" + alt + "\" data-speed=\"" +
-         exact(media.speed) + "\"" +
+  return "<div class=\"clip\">" + names(clip) +
+         "<video muted playsinline preload=\"auto\" aria-label=\"" + alt + "\" data-speed=\"" +
+         exact(media.speed) + "\" data-frame=\"" + exact(media.frame) + "\" data-poster=\"" +
+         exact(media.poster) + "\"" +
          (clip.poster.empty() ? ""
                               : " poster=\"" + data_uri(clip.poster_type, clip.poster) + "\"") +
-         " src=\"" + data_uri(clip.type, clip.bytes) + "\"></video></div>";
+         " data-src=\"" + data_uri(clip.type, clip.bytes) + "\"></video></div>";
+}
+
+/// In place of a panel: who does not run this scene, and why.
+std::string refusal(const std::string& solver, const std::string& why) {
+  return "<div class=\"refused\"><p>" + solver_dot(solver) + "<b>" +
+         escape_html(solver_title(solver)) + "</b> cannot run this scene</p><p>" +
+         escape_html(why) + "</p></div>";
 }
 
 std::string colour_bar(const ColourBar& bar) {
@@ -74,7 +89,8 @@ std::vector<TimeSeries> curves_of(const Page& page, const std::string& scene, do
 }
 
 /// Its plot area becomes attributes by which the playhead finds its place.
-std::string timeline(Page& page, const std::string& scene, const std::string& value, double until) {
+std::string timeline(Page& page, const std::string& scene, const std::string& value, double until,
+                     Extent size) {
   const std::vector<TimeSeries> here = curves_of(page, scene, until);
   std::string svg;
   const Quantity q = quantity(value);
@@ -82,15 +98,15 @@ std::string timeline(Page& page, const std::string& scene, const std::string& va
     const Figure figure = page.draw({.kind = "series",
                                      .y = value,
                                      .title = q.title + " over time, " + scene,
-                                     .width = kWidth,
-                                     .height = 190},
+                                     .width = size.width,
+                                     .height = size.height},
                                     {{}, here}, svg);
     const PlotArea& a = figure.area;
     const auto attribute = [](const char* name, double v) {
       return std::string(" data-") + name + "=\"" + exact(v) + "\"";
     };
-    return "<div class=\"timeline\"" + attribute("left", a.left / kWidth) +
-           attribute("right", a.right / kWidth) + attribute("low", a.low) +
+    return "<div class=\"timeline\"" + attribute("left", a.left / size.width) +
+           attribute("right", a.right / size.width) + attribute("low", a.low) +
            attribute("high", a.high) +
            "><div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"" +
            escape_html(q.title + " over time, " + scene) + "\"><div class=\"plot\">" + svg +
@@ -98,8 +114,9 @@ std::string timeline(Page& page, const std::string& scene, const std::string& va
            "<input type=\"range\" class=\"scrub\" min=\"" + exact(a.low) + "\" max=\"" +
            exact(a.high) + "\" step=\"any\" value=\"" + exact(a.low) +
            // Below the plot area, half a thumb wider at either end: thumb and playhead in line.
-           "\" style=\"--from:" + exact(a.left / kWidth) + ";--to:" + exact(a.right / kWidth) +
-           "\" aria-label=\"Simulated time of " + escape_html(scene) + " in seconds\" hidden>" +
+           "\" style=\"--from:" + exact(a.left / size.width) +
+           ";--to:" + exact(a.right / size.width) + "\" aria-label=\"Simulated time of " +
+           escape_html(scene) + " in seconds\" hidden>" +
            html_data(figure.table, q.title + " over time, " + scene, read_file(figure.csv),
                      slug(scene) + "-series.csv") +
            "</div>";
@@ -110,36 +127,45 @@ std::string timeline(Page& page, const std::string& scene, const std::string& va
   }
 }
 
-std::string controls(const std::string& scene) {
+/// "half", "one eighth"; "" in real time.
+std::string pace(double speed) {
+  if (speed >= 1) return "";
+  return "<span class=\"pace\">" +
+         (speed == 0.5 ? "half" : "1/" + std::to_string(std::lround(1 / speed)) + " of") +
+         " real time</span>";
+}
+
+std::string controls(const std::string& scene, const SceneMedia& media) {
   const std::string of = "<span class=\"sr\"> " + escape_html(scene) + "</span>";
   return "<div class=\"controls\" hidden><button type=\"button\" class=\"play\"><span>play</span>" +
          of + "</button><button type=\"button\" class=\"back\" aria-label=\"One frame back, " +
          escape_html(scene) +
          "\">◂</button><button type=\"button\" class=\"forward\" aria-label=\"One frame forward, " +
-         escape_html(scene) +
-         "\">▸</button><span class=\"clock\">0.00 s</span><span class=\"hint\">space plays, ← → "
-         "step a frame, drag the chart to scrub</span></div>";
+         escape_html(scene) + "\">▸</button><span class=\"clock\"></span>" + pace(media.speed) +
+         "<span class=\"hint\">space plays, ← → step a frame, drag the chart to scrub</span></div>";
 }
 
 }  // namespace
 
-std::string scene_player(Page& page, const std::string& scene, bool leads) {
-  std::string stage, bar;
+std::string scene_player(Page& page, const std::string& scene, bool half) {
+  std::string stage, bar, buttons;
   double until = 1e300;
   for (const SceneMedia& media : page.input().media) {
     if (media.scene != scene) continue;
-    for (const Clip& clip : media.clips) stage += picture(page, clip, media, leads);
+    for (const Clip& clip : media.clips) stage += picture(page, clip, media);
+    for (const auto& [solver, why] : media.refused) stage += refusal(solver, why);
     bar = colour_bar(media.bar);
+    buttons = controls(scene, media);
     until = media.duration;
   }
-  const std::string chart = timeline(page, scene, "stretch.rms", until);
+  const std::string chart = timeline(page, scene, "stretch.rms", until, half ? kHalf : kWide);
   if (stage.empty() && chart.empty()) return "";
   const std::string missing = stage.empty() ? absent("No pictures were rendered; this makes them:",
                                                      "taut render " + scene + " --video")
                                             : "";
   return (stage.empty() ? ""
                         : "<div class=\"stage\"><div class=\"clips\">" + stage + bar + "</div>" +
-                              controls(scene) + "</div>") +
+                              buttons + "</div>") +
          chart + missing;
 }
 

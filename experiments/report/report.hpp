@@ -14,10 +14,10 @@ std::string make_report(const ReportInput&);
 /// The same into a file, whole or not at all; gives its path. Throws std::runtime_error as well.
 std::filesystem::path write_report(const ReportInput&, const std::filesystem::path&);
 
-/// A report may weigh this much [bytes]: a megabyte a scene, three for a single one. Pictures that
-/// would exceed it are left out, and said so.
-constexpr std::size_t report_limit(std::size_t scenes) {
-  return scenes < 3 ? 3'000'000 : scenes * 1'000'000;
+/// A report may weigh this much [bytes]: a megabyte a scene, three for a single one, a third of one
+/// for a scene that is only shown. Pictures that would exceed it are left out, and said so.
+constexpr std::size_t report_limit(std::size_t scenes, std::size_t others = 0) {
+  return (scenes < 3 ? 3'000'000 : scenes * 1'000'000) + others * 333'000;
 }
 
 }  // namespace taut::report

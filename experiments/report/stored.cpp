@@ -10,6 +10,7 @@
 #include "experiments/report/comparison.hpp"
 #include "experiments/report/curves.hpp"
 #include "experiments/report/gnuplot.hpp"
+#include "experiments/report/palette.hpp"
 
 namespace taut::report {
 

@@ -8,11 +8,14 @@
 
 namespace taut {
 
-/// Videos, posters and material space of every scene of a report: each contender under the settings
-/// at which single cases are quoted, side by side in the order of the report. Two scenes at a time.
-/// `say` is told, from any thread but one at a time, which scene is done. A scene that cannot be
-/// drawn is left out and `say` is told why; so it is with all of them where there is no renderer.
-std::vector<report::SceneMedia> film_scenes(const report::ReportInput&,
-                                            const std::function<void(const std::string&)>& say);
+/// Adds videos, posters and material space of every scene of a report to it: each contender under
+/// the settings at which single cases are quoted, side by side in the order of the report, beside
+/// the reason of whoever refuses the scene. `others` are scenes (names or paths) that no study ran:
+/// they get smaller films of their own and, from the same runs, strain over time. Two scenes at a
+/// time. `say` is told, from any thread but one at a time, which scene is done. A scene that cannot
+/// be drawn is left out and `say` is told why; so it is with all of them where there is no
+/// renderer. Throws InputError if one of the others is no scene.
+void film_scenes(report::ReportInput&, const std::vector<std::string>& others,
+                 const std::function<void(const std::string&)>& say);
 
 }  // namespace taut

@@ -23,19 +23,21 @@ namespace taut::verb::reporting {
 namespace {
 
 struct Options {
-  std::vector<std::string> studies;
+  std::vector<std::string> studies, films;
   std::string preset, results = default_results(), out = "report.html";
   bool no_media = false;
 };
 
 std::string command_line(const Options& options) {
   std::string run = "./taut run";
-  if (options.studies.empty()) return run;
+  if (options.studies.empty())
+    return run + (options.preset.empty() ? "" : " --preset " + options.preset);
   for (const std::string& study : options.studies) run += " " + study;
   if (!options.preset.empty()) run += " --preset " + options.preset;
   std::string report = "./taut report";
   for (const std::string& study : options.studies) report += " " + study;
   if (!options.preset.empty()) report += " --preset " + options.preset;
+  for (const std::string& scene : options.films) report += " --film " + scene;
   return run + " && " + report;
 }
 
@@ -63,6 +65,7 @@ int run(Options options) {
   const std::string command = command_line(options);
   if (options.studies.empty()) {
     options.studies = {"iterations", "time-steps", "penetration"};
+    if (options.films.empty()) options.films = shipped("scenes");
     if (options.preset.empty()) options.preset = "quick";
   }
   const std::filesystem::path page = options.out;
@@ -90,7 +93,7 @@ int run(Options options) {
   input.truths = report::stored_truths(options.results, program);
   input.regressions = report::stored_regressions(options.results, program);
   if (!options.no_media)
-    input.media = film_scenes(input, [](const std::string& news) { std::cerr << news << '\n'; });
+    film_scenes(input, options.films, [](const std::string& news) { std::cerr << news << '\n'; });
   std::cout << report::write_report(input, options.out).string() << '\n';
   return kPass;
 }
@@ -102,6 +105,11 @@ std::function<int()> bind(Arguments& arguments) {
   arguments.option("--preset", options->preset, "The preset under which the studies were run");
   arguments.option("--results", options->results,
                    "Results folder (default: " + options->results + ")");
+  arguments
+      .option("--film", options->films,
+              "Also films this scene (name or path), which no study ran; none and no STUDY: all "
+              "shipped scenes")
+      .repeated();
   arguments.flag("--no-media", options->no_media, "Without pictures and videos");
   arguments.option("-o,--out", options->out, "The page (default: report.html)");
   return [options] { return run(*options); };

@@ -130,9 +130,9 @@ int report(const Options& options) {
     std::cout << options.out << '\n';
     return kPass;
   }
-  std::vector<std::string> arguments = options.studies;
-  if (!options.preset.empty()) arguments.insert(arguments.end(), {"--preset", options.preset});
-  arguments.insert(arguments.end(), {"--results", options.out});
+  std::vector<std::string> arguments{"--results", options.out};  // none named: the main job's
+  if (options.preset != kMainPreset)
+    arguments.insert(arguments.end(), {"--preset", options.preset});
   return invoke("report", arguments);
 }
 

@@ -40,10 +40,12 @@ def main(binaries, out):
 
     taut("run", "./small.toml", "--out", "results")
     taut("verify", "--section", "1", "--quiet", "--out", "results/verify.json")
-    page = folder / taut("report", "./small.toml", "--results", "results")[-1]
+    page = folder / taut("report", "./small.toml", "--results", "results", "--film", "disc", "--film", "twist")[-1]
     text = page.read_text()
     for what, holds in {
-        "each scene has its film": text.count("<video") == 2,
+        "each scene has its film": text.count("<video") == 4,
+        "what no study ran is shown apart": 'id="film-disc"' in text and 'id="film-twist"' in text,
+        "who refuses a scene says why": "cannot run this scene</p><p>self-collision" in text,
         "both engines are in it": "Jakobsen" in text and "Bullet" in text,
         "the truths are filled": "No truth is broken" in text,
         "what was not made names its command": "taut check --record" in text,

@@ -72,6 +72,7 @@ SCRUB = """
 (async () => {
   const box = document.querySelectorAll('.player')[PLAYER];
   const videos = [...box.querySelectorAll('video')];
+  box.scrollIntoView();  // what is far off is not loaded
   await Promise.all(videos.map(v => v.readyState > 1 || new Promise(r => v.addEventListener('canplay', r))));
   const scrub = box.querySelector('.scrub'), head = box.querySelector('.playhead');
   const play = box.querySelector('.play');
@@ -145,8 +146,17 @@ ACCESSIBILITY = r"""
 })()
 """
 
-# The first player after a fresh start under reduced motion: where it stands and whether it runs.
-STATE = "(v => [v.paused, v.currentTime])(document.querySelector('.player video'))"
+# The first player after a fresh start under reduced motion: whether it stands, and the simulated times of
+# its poster, its film, its clock and its playhead, which is read from its place between the ends of the chart.
+STATE = """(box => {
+  const v = box.querySelector('video'), line = box.querySelector('.timeline').dataset;
+  const head = parseFloat(box.querySelector('.playhead').style.left) / 100;
+  return [v.paused, Number(v.dataset.poster), v.currentTime * v.dataset.speed, parseFloat(box.querySelector('.clock').textContent),
+          Number(line.low) + (head - line.left) / (line.right - line.left) * (line.high - line.low), Number(v.dataset.frame)];
+})(document.querySelector('.player'))"""
+# Films far below the window: how many there are, and how many are loaded already.
+FAR = """(far => [far.length, far.filter(v => v.src).length])([...document.querySelectorAll('video')]
+    .filter(v => v.getBoundingClientRect().top > innerHeight + 1500))"""
 READY = """new Promise(done => { const v = document.querySelector('.player video');
     v.readyState > 1 ? done(1) : v.addEventListener('canplay', () => done(1)); })"""
 
@@ -228,21 +238,27 @@ def check_media(page, checks):
 
 
 def check_keys(page, checks, report):
-    """Reduced motion: nothing plays by itself. The arrow steps a frame, the space bar plays and stops."""
+    """Reduced motion: nothing plays by itself, and poster, film, clock and playhead agree. The arrow steps a
+    frame, the space bar plays and stops."""
     if not page.run("document.querySelectorAll('.stage video').length"):
         return
     page.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
     page.open(report)
     page.run(READY)
-    paused, start = page.run(STATE)
-    checks.true(paused and start == 0, "reduced motion: nothing plays by itself", f"{paused} {start}")
+    start = page.run(STATE)
+    checks.true(start[0], "reduced motion: nothing plays by itself", f"{start}")
+    checks.true(max(start[1:5]) - min(start[1:5]) < max(0.011, start[5] / 4),
+                "poster, film, clock and playhead show the same moment", f"{start}")
+    far, loaded = page.run(FAR)
+    checks.true(loaded == 0, "films far below are not loaded", f"{loaded} of {far}")
 
     def press(key, code):
         for kind in ("keyDown", "keyUp"):
             page.call("Input.dispatchKeyEvent", type=kind, key=key, code=code)
     press("ArrowRight", "ArrowRight")
     after = page.run(STATE)
-    checks.true(after[0] and 0 < after[1] < 0.1, "the right arrow steps one frame", f"{after}")
+    stepped = (after[2] - start[2]) / start[5]
+    checks.true(after[0] and 0.9 < stepped < 1.1, "the right arrow steps one frame", f"{start} {after}")
     press(" ", "Space")
     checks.true(not page.run(STATE)[0], "the space bar plays")
     press(" ", "Space")

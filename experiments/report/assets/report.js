@@ -12,8 +12,7 @@ theme.addEventListener('click', () => {
 tell();
 
 // A player: films of one scene that run together, the first one leads; the playhead of the chart below
-// follows and scrubs them. Times are seconds of simulated time.
-const frame = 1 / 30;
+// follows and scrubs them. Times are seconds of simulated time. It opens at the moment of its poster.
 const players = [];
 let current = null;  // the one that keys move
 
@@ -22,6 +21,8 @@ const makePlayer = (box) => {
   if (!videos.length) return;
   const leader = videos[0];
   const speed = Number(leader.dataset.speed) || 1;
+  const frame = (Number(leader.dataset.frame) || 1 / 30) / speed;  // seconds of video
+  const poster = Number(leader.dataset.poster) || 0;
   const play = box.querySelector('.play');
   const label = play.querySelector('span');
   const clock = box.querySelector('.clock');
@@ -32,6 +33,8 @@ const makePlayer = (box) => {
     left: Number(line.dataset.left), right: Number(line.dataset.right),
     low: Number(line.dataset.low), high: Number(line.dataset.high)
   };
+  let untouched = true;  // still at its poster: playing starts at the beginning
+  let wanted = poster;   // what is shown before the film has arrived, and sought once it has
   box.querySelector('.controls').hidden = false;
   if (line) scrub.hidden = head.hidden = false;
 
@@ -43,11 +46,28 @@ const makePlayer = (box) => {
     scrub.value = time;
     scrub.setAttribute('aria-valuetext', time.toFixed(2) + ' seconds');
   };
+  const here = () => leader.readyState ? leader.currentTime * speed : wanted;
+  // A frame is sought a little after its beginning: rounding must not show the one before.
+  const put = (video) => {
+    if (video.readyState)
+      video.currentTime = Math.min(video.duration, wanted / speed + (wanted > 0 ? frame / 8 : 0));
+  };
+  const load = () => {
+    if (leader.src) return;
+    for (const video of videos) {
+      video.addEventListener('loadedmetadata', () => { if (wanted > 0) put(video); });
+      video.src = video.dataset.src;
+      video.removeAttribute('data-src');
+    }
+  };
   const seek = (time) => {
+    load();
     current = player;
-    const at = Math.min(leader.duration || 0, Math.max(0, time / speed));
-    for (const video of videos) video.currentTime = at;
-    show(at * speed);
+    untouched = false;
+    const end = leader.readyState ? leader.duration * speed : Infinity;
+    wanted = Math.min(end, Math.max(0, time));
+    for (const video of videos) put(video);
+    show(wanted);
   };
   const pause = () => {
     for (const video of videos) video.pause();
@@ -55,21 +75,26 @@ const makePlayer = (box) => {
   };
   const start = () => {
     for (const other of players) if (other !== player) other.pause();
+    if (untouched) seek(0);
     current = player;
     for (const video of videos) {
-      video.currentTime = leader.currentTime;
+      if (video !== leader && video.readyState) video.currentTime = leader.currentTime;
       video.play().catch(pause);
     }
     label.textContent = 'pause';
   };
   const toggle = () => leader.paused ? start() : pause();
-  const step = (by) => { pause(); seek((leader.currentTime + by * frame) * speed); };
+  const step = (by) => {
+    pause();
+    seek((Math.floor(here() / speed / frame + 0.01) + by) * frame * speed);
+  };
   const follow = () => {
+    if (leader.paused) return;
     show(leader.currentTime * speed);
     for (const video of videos)
       if (Math.abs(video.currentTime - leader.currentTime) > 2 * frame)
         video.currentTime = leader.currentTime;
-    if (!leader.paused) requestAnimationFrame(follow);
+    requestAnimationFrame(follow);
   };
   leader.addEventListener('play', () => requestAnimationFrame(follow));
   leader.addEventListener('ended', () => { seek(0); start(); });
@@ -90,11 +115,20 @@ const makePlayer = (box) => {
     plot.addEventListener('pointerdown', drag);
     plot.addEventListener('pointermove', drag);
   }
-  const player = {box, toggle, step, start, pause};
+  const player = {box, load, toggle, step, start, pause};
   players.push(player);
-  show(0);
+  show(poster);
 };
 for (const box of document.querySelectorAll('.player')) makePlayer(box);
+// Films are decoded when they come near.
+const near = new IntersectionObserver((entries) => {
+  for (const entry of entries) {
+    if (!entry.isIntersecting) continue;
+    near.unobserve(entry.target);
+    players.find((player) => player.box === entry.target).load();
+  }
+}, {rootMargin: '600px 0px'});
+for (const player of players) near.observe(player.box);
 
 document.addEventListener('keydown', (event) => {
   if (!current || event.ctrlKey || event.metaKey || event.altKey ||

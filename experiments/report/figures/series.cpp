@@ -8,6 +8,9 @@ namespace taut::report::figure::series {
 
 namespace {
 
+/// The axis of a strain reaches at least so far: rounding does not fill a picture.
+constexpr double kLeastStrain = 1e-3;
+
 /// People read a few dozen moments; the CSV has them all.
 void thin(Table& table) {
   const std::size_t stride = table.rows.size() / 60 + 1;
@@ -21,7 +24,7 @@ void thin(Table& table) {
 /// Every curve shares one record that stands for "measured": moments have no status of their own.
 Drawing draw(const FigureSpec& spec, const FigureData& data) {
   static const Record moment;
-  Chart chart{spec.title, spec.width, spec.height, {}, {}, {}, {}, false, false, false};
+  Chart chart{.title = spec.title, .width = spec.width, .height = spec.height, .markers = false};
   std::vector<double> ts, ys;
   const Quantity y = quantity(spec.y);
   for (const TimeSeries& series : data.series) {
@@ -39,6 +42,7 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
   chart.x = fit_axis(quantity("t"), ts, false);
   chart.x.high = *std::ranges::max_element(ts);
   std::erase_if(chart.x.ticks, [&](const auto& tick) { return tick.first > chart.x.high; });
+  if (y.unit == "%") ys.push_back(kLeastStrain * y.scale);
   chart.y = fit_axis(y, ys, false);
   Drawing drawing = draw_chart(chart);
   thin(drawing.table);

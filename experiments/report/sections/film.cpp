@@ -13,7 +13,7 @@ std::string render(Page& page, const std::string& scene) {
   if (scene == page.hero() && filmed)
     return "<p class=\"wide lead\">Its film is <a href=\"#hero\">at the top</a>.</p>";
   if (scene == page.hero()) return "";
-  const std::string player = scene_player(page, scene, false);
+  const std::string player = scene_player(page, scene);
   return player.empty() ? ""
                         : "<div class=\"card wide player\" role=\"group\" aria-label=\"" +
                               escape_html(scene) + " side by side\">" + player + "</div>\n";
