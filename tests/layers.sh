@@ -14,6 +14,7 @@ experiments/metrics | (core/model|experiments/(metrics|lab))/
 experiments/lab     | (core/(model|reference)|experiments/(metrics|lab))/
 experiments/report  | (core/model|experiments/(metrics|lab|report))/
 experiments/render  | (core/model|experiments/(metrics|lab|render))/
+experiments/bench   | (core/(model|solver)|experiments/(lab|bench))/
 experiments/truths  | (core/(model|reference)|experiments/(metrics|lab|truths))/
 '
 # what is included | files that may include it

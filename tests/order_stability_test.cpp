@@ -14,7 +14,7 @@
 #include <random>
 #include <string>
 
-#include "core/reference/modes.hpp"
+#include "core/reference/dense.hpp"
 #include "core/solver/order.hpp"
 #include "tests/cloths.hpp"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/model/mesh.hpp"
-#include "core/reference/modes.hpp"
+#include "core/reference/dense.hpp"
 
 namespace taut::reference {
 

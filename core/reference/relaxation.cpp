@@ -1,8 +1,9 @@
 #include "core/reference/relaxation.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
+
+#include "core/reference/dense.hpp"
 
 namespace taut::reference {
 
@@ -39,7 +40,7 @@ Eigen::VectorXd steady_strain(const Eigen::MatrixXd& sweep, int k, double a) {
     square = square * square;
   }
   const Eigen::VectorXd load = a * power.col(0);
-  return (Eigen::MatrixXd::Identity(n, n) - power).partialPivLu().solve(load);
+  return solve(Eigen::MatrixXd::Identity(n, n) - power, load);
 }
 
 Eigen::MatrixXd transverse_sweeps(int n, int k, double a, double l) {

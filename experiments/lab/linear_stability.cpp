@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/model/index.hpp"
-#include "core/reference/modes.hpp"
+#include "core/reference/dense.hpp"
 
 namespace taut {
 

@@ -5,7 +5,7 @@
 
 #include "core/model/angle.hpp"
 #include "core/reference/closed_forms.hpp"
-#include "core/reference/modes.hpp"
+#include "core/reference/dense.hpp"
 #include "core/reference/relaxation.hpp"
 #include "core/reference/shake.hpp"
 #include "experiments/truths/fit.hpp"

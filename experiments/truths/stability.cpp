@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/reference/modes.hpp"
+#include "core/reference/dense.hpp"
 #include "core/reference/relaxation.hpp"
 #include "experiments/truths/fit.hpp"
 #include "experiments/truths/probe.hpp"
