@@ -11,7 +11,7 @@ namespace taut {
 
 namespace {
 
-constexpr int kFewSweeps = 2, kManySweeps = 18;
+constexpr int kNoSweeps = 0, kFewSweeps = 2, kManySweeps = 18;
 
 double now(bool cpu) {
   timespec t;
@@ -19,13 +19,14 @@ double now(bool cpu) {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Does a number of sweeps, few or many.
-using Work = std::function<void(bool many)>;
+/// A step of so many sweeps: none, few or many.
+using Work = std::function<void(int sweeps)>;
 
 struct Kernel {
   KernelRow row;
   Work work;
   double projections = 0;  ///< between few and many
+  double structural = 0;   ///< projections of a sweep over the structural links alone
   int repeats = 1;         ///< in one sample
 };
 
@@ -48,8 +49,8 @@ Kernel textbook(const Scene& scene, const std::string& name) {
   // move
   return {.row = {.name = name, .flops = 27, .bytes = 15 * static_cast<int>(sizeof(Real)) + 8},
           .work =
-              [kernel](bool many) {
-                for (int k = 0; k < (many ? kManySweeps : kFewSweeps); ++k) kernel->sweep();
+              [kernel](int sweeps) {
+                for (int k = 0; k < sweeps; ++k) kernel->sweep();
               },
           .projections = static_cast<double>(kernel->links()) * (kManySweeps - kFewSweeps)};
 }
@@ -64,14 +65,17 @@ Kernel of_solver(const Scene& scene, const std::string& name, int flops, int byt
     solver->load(scene.start);
     return solver;
   };
-  const auto few = make(kFewSweeps), many = make(kManySweeps);
+  const auto none = make(kNoSweeps), few = make(kFewSweeps), many = make(kManySweeps);
   const double h = scene.dt;
   const auto projections = [](const Solver& s) {
     return static_cast<double>(projections_per_step(s));
   };
   const bool threads = name.find("threads=2") != std::string::npos;
   return {.row = {.name = name, .threads = threads ? 2 : 1, .flops = flops, .bytes = bytes},
-          .work = [few, many, h](bool all) { (all ? many : few)->step(0, h); },
+          .work =
+              [=](int sweeps) {
+                (sweeps == kManySweeps ? many : sweeps == kFewSweeps ? few : none)->step(0, h);
+              },
           .projections = projections(*many) - projections(*few)};
 }
 
@@ -120,16 +124,24 @@ std::vector<Kernel> kernels_of(const Scene& scene, bool bullet) {
   return all;
 }
 
-double time_once(Kernel& kernel, bool many) {
+double time_once(Kernel& kernel, int sweeps) {
   const bool cpu = kernel.row.threads == 1;
+  const int repeats = kernel.repeats * (sweeps == kNoSweeps ? kManySweeps : 1);
   const double begin = now(cpu);
-  for (int r = 0; r < kernel.repeats; ++r) kernel.work(many);
-  return (now(cpu) - begin) / kernel.repeats;
+  for (int r = 0; r < repeats; ++r) kernel.work(sweeps);
+  return (now(cpu) - begin) / repeats;
 }
 
-double sample(Kernel& kernel, bool back) {
-  const double first = time_once(kernel, back), second = time_once(kernel, !back);
-  return 1e9 * (back ? first - second : second - first) / kernel.projections;
+struct Sample {
+  double projection;  ///< ns
+  double fixed;       ///< structural sweeps
+};
+
+Sample sample(Kernel& kernel, bool back) {
+  const double first = time_once(kernel, back ? kManySweeps : kFewSweeps);
+  const double second = time_once(kernel, back ? kFewSweeps : kManySweeps);
+  const double projection = (back ? first - second : second - first) / kernel.projections;
+  return {1e9 * projection, time_once(kernel, kNoSweeps) / (projection * kernel.structural)};
 }
 
 }  // namespace
@@ -144,21 +156,27 @@ Interval KernelBench::ratio(std::size_t i, std::size_t j) const {
 KernelBench bench_kernels(const KernelBenchOptions& options) {
   const Scene scene = sheet(options.side);
   std::vector<Kernel> kernels = kernels_of(scene, options.bullet);
+  const auto structural = static_cast<double>(
+      std::count_if(scene.links.begin(), scene.links.end(),
+                    [](const Link& link) { return link.family == Family::structural; }));
   const double flop[] = {seconds_per_flop(true), seconds_per_flop(false)};
   for (Kernel& kernel : kernels) {
     const bool single = kernel.row.name.find("float") != std::string::npos;
     kernel.row.floor = 1e9 * flop[single ? 0 : 1] * kernel.row.flops / kernel.row.threads;
-    kernel.work(true);
-    const double once = time_once(kernel, true);
+    kernel.structural = structural;
+    kernel.work(kManySweeps);
+    const double once = time_once(kernel, kManySweeps);
     kernel.repeats =
         std::clamp(static_cast<int>(options.seconds / std::max(once, 1e-9)), 1, 100000);
   }
   for (int round = 0; round < options.rounds; ++round) {
-    std::vector<double> forth, back(kernels.size());
+    std::vector<Sample> forth, back(kernels.size());
     for (Kernel& kernel : kernels) forth.push_back(sample(kernel, false));
     for (std::size_t i = kernels.size(); i-- > 0;) back[i] = sample(kernels[i], true);
-    for (std::size_t i = 0; i < kernels.size(); ++i)
-      kernels[i].row.samples.push_back((forth[i] + back[i]) / 2);
+    for (std::size_t i = 0; i < kernels.size(); ++i) {
+      kernels[i].row.samples.push_back((forth[i].projection + back[i].projection) / 2);
+      kernels[i].row.fixed.push_back((forth[i].fixed + back[i].fixed) / 2);
+    }
   }
   KernelBench bench{options.side, {}};
   for (Kernel& kernel : kernels) bench.rows.push_back(std::move(kernel.row));

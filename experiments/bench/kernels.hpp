@@ -16,6 +16,9 @@ struct KernelRow {
   int bytes = 0;     ///< read and written in one projection, as the program asks for them
   double floor = 0;  ///< ns: flops at the machine's measured rate
   std::vector<double> samples;  ///< ns per projection, one of each round
+  /// A step without a sweep (integration, pins), in sweeps over the structural links alone, one of
+  /// each round.
+  std::vector<double> fixed;
   Interval cost() const { return bootstrap_median(samples); }
 };
 

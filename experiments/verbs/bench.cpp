@@ -22,6 +22,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> what, solvers, settings;
+  std::vector<double> levels{std::begin(kErrorLevels), std::end(kErrorLevels)};
   std::string preset, metric = "stretch.rms", out = default_results();
   int rounds = 5;
   double seconds = 0.05;
@@ -90,8 +91,9 @@ void print_control(const SceneBench& bench, double tolerance) {
             << (noisy ? ": THIS MACHINE IS TOO NOISY NOW TO JUDGE" : "") << '\n';
 }
 
-void print_equal_error(const SceneBench& bench, const std::string& metric) {
-  for (const double level : kErrorLevels) {
+void print_equal_error(const SceneBench& bench, const std::string& metric,
+                       const std::vector<double>& levels) {
+  for (const double level : levels) {
     std::cout << "  " << metric << " <= " << number(100 * level) << " %\n";
     for (const Reached& r : equal_error(bench, metric, level)) {
       std::cout << "    " << std::left << std::setw(18) << r.solver;
@@ -176,7 +178,7 @@ void bench_study(const std::string& name, const Options& options) {
   for (const SceneBench& scene : session.scenes) {
     std::cout << scene.scene << '\n';
     print_control(scene, options.tolerance);
-    print_equal_error(scene, options.metric);
+    print_equal_error(scene, options.metric, options.levels);
     print_budgets(scene, options.metric);
     print_failures(scene);
   }
@@ -230,6 +232,11 @@ std::function<int()> bind(Arguments& arguments) {
   arguments.option("--metric", o->metric,
                    "The error of the equal-error table (default: stretch.rms)");
   arguments
+      .option("--at", o->levels,
+              "Errors of the equal-error table (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
+      .separated_by(',')
+      .positive();
+  arguments
       .option("--rounds", o->rounds,
               "Rounds forth and back; each gives two samples a case (default: 5)")
       .range(1, 1000);
@@ -254,6 +261,7 @@ TAUT_VERB(bench) = {
     .summary =
         "Measures cost: interleaved, CPU time of Solver::step alone, with confidence intervals",
     .example =
-        "taut bench trade\n  taut bench hang --solver jakobsen:iterations=16 --solver "
+        "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
+        "jakobsen:iterations=16 --solver "
         "bullet:iterations=16\n  taut bench kernels\n  taut bench contact",
     .bind = taut::verb::bench::bind};

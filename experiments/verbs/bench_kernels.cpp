@@ -25,20 +25,23 @@ std::string times(const Interval& ratio) {
 }
 
 void print(const KernelBench& bench) {
-  std::printf("\n%d x %d, %s: structural, shear and bend links; ns per projection\n", bench.side,
-              bench.side, std::string(to_string(widest())).c_str());
-  std::printf("%-78s %7s %-15s %-22s %-22s %5s %5s %6s\n", "", "median", "[95 %]",
-              "x faster than textbook", "x faster than Bullet", "flops", "bytes", "floor");
+  std::printf(
+      "\n%d x %d, %s: structural, shear and bend links; ns per projection; fixed: what a step "
+      "costs "
+      "without a sweep, in structural sweeps\n",
+      bench.side, bench.side, std::string(to_string(widest())).c_str());
+  std::printf("%-78s %7s %-15s %-22s %-22s %5s %5s %6s %6s\n", "", "median", "[95 %]",
+              "x faster than textbook", "x faster than Bullet", "flops", "bytes", "floor", "fixed");
   std::size_t bullet = bench.rows.size();
   for (std::size_t i = 0; i < bench.rows.size() && bullet == bench.rows.size(); ++i)
     if (bench.rows[i].name.starts_with("bullet")) bullet = i;
   for (std::size_t i = 0; i < bench.rows.size(); ++i) {
     const KernelRow& row = bench.rows[i];
     const Interval cost = row.cost();
-    std::printf("%-78s %7.3f [%.3f %.3f]  %-22s %-22s %5d %5d %6.3f\n", row.name.c_str(), cost.mid,
-                cost.low, cost.high, times(bench.ratio(i, 0)).c_str(),
+    std::printf("%-78s %7.3f [%.3f %.3f]  %-22s %-22s %5d %5d %6.3f %6.2f\n", row.name.c_str(),
+                cost.mid, cost.low, cost.high, times(bench.ratio(i, 0)).c_str(),
                 bullet < bench.rows.size() ? times(bench.ratio(i, bullet)).c_str() : "-", row.flops,
-                row.bytes, row.floor);
+                row.bytes, row.floor, bootstrap_median(row.fixed).mid);
   }
   std::fflush(stdout);
 }
