@@ -218,9 +218,10 @@ class Verbs(CommandLine):
         short = ["--sizes", "8", "--rounds", "1", "--seconds", "0.0001"]
         out = self.taut("bench", "kernels", *short).out
         self.assertIn("textbook, float", out)
-        self.assertIn("fixed: a step without a sweep", out)
+        self.assertIn("fixed: what a step costs without a sweep", out)
         fixed = [float(line.split()[-1]) for line in out.splitlines() if line.startswith("jakobsen:")]
-        self.assertTrue(fixed and all(value > 0 for value in fixed), fixed)
+        self.assertGreater(len(fixed), 8)
+        self.assertNotIn(0, fixed)
         out = self.taut("bench", "contact", *short).out
         for text in ["contact=swept,order=mesh", "self=grid,order=coloured", "8 x 8, 64 particles"]:
             self.assertIn(text, out)
