@@ -121,6 +121,24 @@ sweep."time.dt" = ["1/64", 0.015625]
   EXPECT_EQ(plan(study).size(), 1u);
 }
 
+TEST(Study, MoreCasesThanAnybodyWaitsForAreRefusedBeforeTheyAreMade) {
+  const Study study = study_of(R"(
+question = "?"
+scenes = ["fall", "chain"]
+solvers = ["jakobsen"]
+[sweep]
+"time.dt" = { from = "1/1000", to = "1/10", steps = 1000 }
+"forces.damping" = { from = 0, to = 1, steps = 1000 }
+)");
+  try {
+    plan(study);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("2000000 cases; at most 100000"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Study, ShippedStudiesAndTheirPresetsArePlans) {
   for (const std::string& name : shipped("studies")) {
     Study study = load_study(name);

@@ -45,6 +45,27 @@ std::vector<Sweep> solver_sweeps(const Study& study, const std::string& text) {
   return chosen;
 }
 
+/// More than anybody waits for; a sweep of a thousand values too many is a slip.
+constexpr int kMostCases = 100'000;
+
+double count(const std::vector<Sweep>& sweeps) {
+  double product = 1;
+  for (const Sweep& sweep : sweeps) product *= static_cast<double>(sweep.values.size());
+  return product;
+}
+
+/// Before any of them is made; exclusions and repetitions do not count.
+void require_few(const Study& study) {
+  double of_solvers = 0;
+  for (const std::string& solver : study.solvers) of_solvers += count(solver_sweeps(study, solver));
+  const double all =
+      static_cast<double>(study.scenes.size()) * count(scene_sweeps(study)) * of_solvers;
+  if (all > kMostCases)
+    throw InputError(study.file.string() + ": " +
+                     std::to_string(static_cast<long long>(std::min(all, 1e18))) +
+                     " cases; at most " + std::to_string(kMostCases) + " in a study");
+}
+
 bool excluded(const Study& study, const Settings& settings) {
   const auto matches = [&](const Exclusion& exclusion) {
     for (const auto& [name, values] : exclusion.when) {
@@ -72,6 +93,7 @@ CaseSpec spec_of(const Study& study, const std::string& scene, const std::string
 }  // namespace
 
 std::vector<Case> plan(const Study& study) {
+  require_few(study);
   CaseMaker maker;
   std::vector<Case> cases;
   std::set<std::string> keys, said;

@@ -50,7 +50,7 @@ struct Study {
 Study load_study(const std::string& name_or_path, const std::string& preset = "");
 
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
-/// wrong with any of the scenes.
+/// wrong with any of the scenes, or if it would be more than 100 000.
 std::vector<Case> plan(const Study&);
 
 }  // namespace taut
