@@ -81,6 +81,7 @@ TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
   for (Scene& scene : scenes()) {
     scene.colliders = obstacles(scene);
     scene.thickness = 0.002;
+    scene.self_collision = SelfCollision{.radius = 0.02};
     for (const char* precision : {"float", "double"})
       for (const char* contact : {"swept", "sweep", "after"}) {
         const std::string method =

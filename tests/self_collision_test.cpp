@@ -136,6 +136,36 @@ TEST(Neighbours, AreThoseOfAllPairs) {
   }
 }
 
+TEST(Neighbours, ThatMeetAreThoseWithinTheirOwnWay) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<> number(-1, 1);
+  Points<float> x(std::make_shared<const Layout>(Layout::packed(400))), previous = x;
+  const auto somewhere = [&] {
+    return Points<float>::Point(Vec3(number(random), number(random), number(random)).cast<float>());
+  };
+  for (std::size_t i = 0; i < 400; ++i)
+    x.set(i, somewhere()), previous.set(i, x[i] + 0.2F * somewhere());
+  const float within = 0.1F, reach = within + 0.4F * std::sqrt(3.0F);
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+    if (!available(simd)) continue;
+    Neighbours<float> neighbours(400, simd);
+    std::multiset<std::pair<std::uint32_t, std::uint32_t>> found, brute;
+    neighbours.meetings(x, previous, within, reach,
+                        [&](std::uint32_t a, std::uint32_t b, const auto& apart) {
+                          found.insert(std::minmax(a, b));
+                          EXPECT_EQ(apart.now().x, x[b].x() - x[a].x());
+                        });
+    for (std::uint32_t a = 0; a < 400; ++a)
+      for (std::uint32_t b = a + 1; b < 400; ++b) {
+        const Points<float>::Point now = x[b] - x[a];
+        const float way = (now - (previous[b] - previous[a])).norm();
+        if (now.norm() < within + way) brute.insert({a, b});
+      }
+    EXPECT_EQ(found, brute) << to_string(simd);
+    EXPECT_GT(found.size(), 1000u);
+  }
+}
+
 TEST(SelfCollision, CrumpleEndsWithoutSelfIntersectionsByDefault) {
   const auto crossings = [](const char* solver, const char* duration) {
     const Scene scene = load_scene(TAUT_SOURCE_DIR "/experiments/scenes/crumple.toml", {duration});

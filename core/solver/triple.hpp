@@ -44,6 +44,7 @@ template <class T>
 // Decisions, lane by lane: a bool is the mask of a number. Lanes bring masks of their own; && and
 // || of those evaluate both sides, so a text for any width divides by nothing that may be zero.
 [[gnu::always_inline]] inline bool any(bool mask) { return mask; }
+[[gnu::always_inline]] inline unsigned bits(bool mask) { return mask ? 1 : 0; }
 template <class Real>
 requires std::is_arithmetic_v<Real>
 [[gnu::always_inline]] inline Real select(bool mask, Real yes, Real no) { return mask ? yes : no; }

@@ -39,7 +39,7 @@ template <class Real>
 ContactPasses<Real> make_contact(const Scene& scene, const Params& params) {
   ContactPasses<Real> passes;
   if (scene.self_collision && params.is("self", "grid"))
-    passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene));
+    passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene, simd_of(params)));
   if (scene.self_collision && params.is("self", "octree"))
     passes.sweep.push_back(std::make_unique<OctreePass<Real>>(scene));
   for (const Collider& collider : scene.colliders)

@@ -7,147 +7,198 @@
 namespace taut {
 
 /// The cloth against itself: every particle is a ball, no two may overlap. Pairs come from a hash
-/// grid, found once a substep and projected in every sweep. Three things the report's octree lacks:
+/// grid and are projected in every sweep. Three things the report's octree lacks:
 ///
 /// - pairs are found wherever they are, not only within one cell;
 /// - two particles keep at most their distance at rest, so that a radius larger than the spacing
-///   does not make neighbours fight (M. Mueller, Ten Minute Physics 15), and linked ones are left
-///   to their link;
+///   does not make neighbours fight (M. Mueller, Ten Minute Physics 15), and those that are linked
+///   within 3/2 diameters are left to their link;
 /// - two particles that have changed sides since the step began go back, so that a layer that
 ///   arrives fast, by up to four diameters a step, does not pass between.
 ///
-/// The pairs are those within a diameter and a skin. They serve until a particle has moved a
-/// quarter of the skin against the cloth as a whole (L. Verlet, 1967): a cloth at rest does not
-/// search at all. A cloth so fast that the skin serves one step alone keeps only those pairs that
-/// may meet in it, by their own motion.
+/// In a cloth that moves fast, the pairs of a step are those within 3/2 diameters and their own way
+/// in it: half a diameter is left for what the sweeps do to them. In a slow one they are those
+/// within a diameter and a skin, and serve until a particle has moved a quarter of the skin against
+/// the cloth as a whole (L. Verlet, 1967): a cloth at rest does not search at all.
 template <class Real>
 class SelfCollidePass final : public Pass<Real> {
  public:
-  explicit SelfCollidePass(const Scene& scene)
+  SelfCollidePass(const Scene& scene, Simd simd)
       : diameter_(static_cast<Real>(2 * scene.self_collision->radius)),
-        neighbours_(scene.start.x.size()) {
-    for (const Vec3& x : scene.mesh.rest) rest_.push_back(x.cast<Real>());
-    link(scene);
+        neighbours_(scene.start.x.size(), simd) {
+    find_close_at_rest(scene);
   }
 
   void restart() override { searched_at_.clear(); }
 
   void begin(Particles<Real>& p, double, double) override {
+    stride_ = p.layout->stride();
     const Real motion = largest_motion(p.x, p.previous);
-    const bool fresh = !searched_at_.empty() && 4 * motion_since_search(p.x) <= skin_;
-    if (!fresh) search(p, motion);
-    fast_.clear();
-    if (8 * motion < diameter_) return;  // nothing can come from one side to the other
-    for (const Pair& pair : pairs_)
-      if ((p.previous[pair.b] - p.previous[pair.a]).squaredNorm() < 16 * motion * motion)
-        fast_.push_back(pair);
+    if (8 * motion >= diameter_)
+      search_step(p, motion);
+    else if (searched_at_.empty() || 4 * largest_motion(p.x, searched_at_) > skin_)
+      search_steps(p, motion);
   }
 
   void apply(Particles<Real>& p, double, double) override {
-    for (const Pair& pair : fast_) {
-      const Point before = p.previous[pair.b] - p.previous[pair.a];
-      const Point now = p.x[pair.b] - p.x[pair.a];
-      if (now.dot(before) < 0 && passed(before, now, pair.least)) separate(p, pair, before);
+    for (const Crossing& pair : crossing_) {
+      const Triple<Real> now = between(p.x, pair);
+      if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
+        separate(p, pair, pair.before);
     }
     for (const Pair& pair : pairs_) {
-      const Point now = p.x[pair.b] - p.x[pair.a];
-      if (now.squaredNorm() < pair.least * pair.least) separate(p, pair, now);
+      const Triple<Real> now = between(p.x, pair);
+      if (squared_norm(now) < pair.least * pair.least) separate(p, pair, now);
     }
   }
 
   std::vector<PassCost> cost() const override {
     return {{.pass = "self-collide",
              .items = pairs_.size(),
-             .bytes = sizeof(*this) + neighbours_.bytes() + 2 * rest_.size() * sizeof(Point) +
-                      (pairs_.capacity() + fast_.capacity()) * sizeof(Pair) +
-                      (links_.size() + first_link_.size()) * sizeof(std::uint32_t)}};
+             .bytes = sizeof(*this) + neighbours_.bytes() +
+                      searched_at_.capacity() * sizeof searched_at_[0] +
+                      pairs_.capacity() * sizeof(Pair) + crossing_.capacity() * sizeof(Crossing) +
+                      close_.size() * sizeof(CloseAtRest) +
+                      first_close_.size() * sizeof(std::uint32_t)}};
   }
 
  private:
-  using Point = typename Points<Real>::Point;
   struct Pair {
-    std::uint32_t a, b;
-    Real least;  ///< m
+    std::uint32_t a, b;  ///< slots
+    Real least;          ///< m
+    Real share;          ///< of a in their parting: w_a / (w_a + w_b)
+  };
+  /// A pair that may come from one side to the other in this step.
+  struct Crossing : Pair {
+    Triple<Real> before;  ///< from a to b when the step began [m]
+  };
+  struct CloseAtRest {
+    std::uint32_t partner;
+    Real least;  ///< m; 0: left to their link
   };
 
+  [[gnu::always_inline]] Triple<Real> between(const Points<Real>& x, const Pair& pair) const {
+    const Real *a = x.data() + pair.a, *b = x.data() + pair.b;
+    return {b[0] - a[0], b[stride_] - a[stride_], b[2 * stride_] - a[2 * stride_]};
+  }
+  void move(Points<Real>& x, std::size_t slot, Real far, const Triple<Real>& along) const {
+    Real* const r = x.data() + slot;
+    r[0] += far * along.x, r[stride_] += far * along.y, r[2 * stride_] += far * along.z;
+  }
+
   /// Whether the way from `before` to `now` comes nearer to the origin than `least`.
-  static bool passed(const Point& before, const Point& now, Real least) {
-    const Point way = now - before;
-    const Real share = std::clamp(-before.dot(way) / way.squaredNorm(), Real(0), Real(1));
-    return (before + share * way).squaredNorm() < least * least;
+  static bool passed(const Triple<Real>& before, const Triple<Real>& now, Real least) {
+    const Triple<Real> way = now - before;
+    const Real share = std::clamp(-dot(before, way) / squared_norm(way), Real(0), Real(1));
+    return squared_norm(before + share * way) < least * least;
   }
 
   /// Moves the two apart along `out` until they are pair.least apart in that direction.
-  static void separate(Particles<Real>& p, const Pair& pair, const Point& out) {
-    const Real length = out.norm();
+  void separate(Particles<Real>& p, const Pair& pair, const Triple<Real>& out) const {
+    const Real length = norm(out);
     if (!(length > 0)) return;  // at one place: no direction is better than another
-    const Point a = p.x[pair.a], b = p.x[pair.b];
-    const Real push =
-        (pair.least - out.dot(b - a) / length) / ((p.w[pair.a] + p.w[pair.b]) * length);
-    p.x.set(pair.a, a - p.w[pair.a] * push * out);
-    p.x.set(pair.b, b + p.w[pair.b] * push * out);
+    const Real gap = dot(out, between(p.x, pair)) / length;
+    const Real push = (pair.least - gap) / length;
+    move(p.x, pair.a, -pair.share * push, out), move(p.x, pair.b, (1 - pair.share) * push, out);
   }
 
-  void search(const Particles<Real>& p, Real motion) {
-    skin_ = diameter_ / 2 + std::min(2 * motion, 4 * diameter_);
-    const bool one_step = skin_ < 4 * motion;
-    pairs_.clear();
-    neighbours_.pairs(p.x, diameter_ + skin_, [&](std::uint32_t a, std::uint32_t b) {
-      if (one_step && !may_meet(p, a, b)) return;
-      const Real rest2 = (rest_[b] - rest_[a]).squaredNorm();
-      const bool near_at_rest = rest2 < diameter_ * diameter_ * Real(1.01);
-      if (p.w[a] + p.w[b] == 0 || (near_at_rest && linked(a, b))) return;
-      pairs_.push_back({a, b, near_at_rest ? std::min(diameter_, std::sqrt(rest2)) : diameter_});
-    });
-    searched_at_.clear();
-    if (one_step) return;
-    for (std::size_t i = 0; i < p.size(); ++i) searched_at_.push_back(p.x[i]);
+  /// Of this step alone.
+  void search_step(const Particles<Real>& p, Real motion) {
+    pairs_.clear(), crossing_.clear(), searched_at_.clear();
+    const Real within = kMeets * diameter_;
+    const Real reach = within + std::min(2 * motion, 4 * diameter_);
+    neighbours_.meetings(p.x, p.previous, within, reach,
+                         [&](std::uint32_t a, std::uint32_t b, const auto& apart) {
+                           if (!add_pair(p, a, b)) return;
+                           const Triple<Real> way = apart.way(), before = apart.now() - way;
+                           const Real crosses = diameter_ + 4 * norm(way);
+                           if (squared_norm(before) < crosses * crosses)
+                             crossing_.push_back({pairs_.back(), before});
+                         });
   }
 
-  /// (diameter + half of it + way)^2 <= 2 ((3/2 diameter)^2 + way^2).
-  bool may_meet(const Particles<Real>& p, std::uint32_t a, std::uint32_t b) const {
-    const Point now = p.x[b] - p.x[a], before = p.previous[b] - p.previous[a];
-    return now.squaredNorm() <
-           2 * (Real(2.25) * diameter_ * diameter_ + (now - before).squaredNorm());
+  /// Of this step and those that follow.
+  void search_steps(const Particles<Real>& p, Real motion) {
+    pairs_.clear(), crossing_.clear(), searched_at_.clear();
+    skin_ = diameter_ / 2 + 2 * motion;
+    neighbours_.pairs(p.x, diameter_ + skin_,
+                      [&](std::uint32_t a, std::uint32_t b) { add_pair(p, a, b); });
+    for (std::size_t i = 0; i < p.size(); ++i) searched_at_.push_back(at(p.x, i));
   }
 
-  /// The largest of a particle against the cloth as a whole, between two times [m].
-  template <class Now, class Then>
-  Real largest_motion(const Now& now, const Then& then) const {
-    Point mean = Point::Zero();
-    for (std::size_t i = 0; i < rest_.size(); ++i) mean += now[i] - then[i];
-    mean /= static_cast<Real>(rest_.size());
+  bool add_pair(const Particles<Real>& p, std::uint32_t a, std::uint32_t b) {
+    const Real least = least_between(a, b), wa = p.w[a], wb = p.w[b];
+    if (least == 0 || wa + wb == 0) return false;
+    pairs_.push_back({static_cast<std::uint32_t>(p.layout->slot(a)),
+                      static_cast<std::uint32_t>(p.layout->slot(b)), least,
+                      wa == wb ? Real(0.5) : wa / (wa + wb)});
+    return true;
+  }
+
+  Real least_between(std::uint32_t a, std::uint32_t b) const {
+    for (std::uint32_t k = first_close_[a]; k < first_close_[a + 1]; ++k)
+      if (close_[k].partner == b) return close_[k].least;
+    return diameter_;
+  }
+
+  static Triple<Real> at(const Points<Real>& x, std::size_t i) {
+    const auto point = x[i];
+    return {point.x(), point.y(), point.z()};
+  }
+  static Triple<Real> at(const std::vector<Triple<Real>>& x, std::size_t i) { return x[i]; }
+
+  /// The largest of a particle against the cloth as a whole, between two times [m]: no two move by
+  /// more than twice that against each other. The cloth moves as the middle of all motions.
+  template <class Then>
+  Real largest_motion(const Points<Real>& now, const Then& then) const {
+    const std::size_t n = first_close_.size() - 1;
+    Triple<Real> least = at(now, 0) - at(then, 0), most = least;
+    for (std::size_t i = 1; i < n; ++i) {
+      const Triple<Real> moved = at(now, i) - at(then, i);
+      least = {lesser(least.x, moved.x), lesser(least.y, moved.y), lesser(least.z, moved.z)};
+      most = {greater(most.x, moved.x), greater(most.y, moved.y), greater(most.z, moved.z)};
+    }
+    const Triple<Real> middle = Real(0.5) * (least + most);
     Real largest2 = 0;
-    for (std::size_t i = 0; i < rest_.size(); ++i)
-      largest2 = std::max(largest2, (now[i] - then[i] - mean).squaredNorm());
+    for (std::size_t i = 0; i < n; ++i)
+      largest2 = std::max(largest2, squared_norm(at(now, i) - at(then, i) - middle));
     return std::sqrt(largest2);
   }
-  Real motion_since_search(const Points<Real>& x) const { return largest_motion(x, searched_at_); }
 
-  void link(const Scene& scene) {
-    std::vector<std::vector<std::uint32_t>> lists(rest_.size());
-    for (const Link& l : scene.links) {
-      lists[static_cast<std::size_t>(l.a)].push_back(static_cast<std::uint32_t>(l.b));
-      lists[static_cast<std::size_t>(l.b)].push_back(static_cast<std::uint32_t>(l.a));
+  void find_close_at_rest(const Scene& scene) {
+    const std::size_t n = scene.mesh.rest.size();
+    Points<Real> rest(std::make_shared<const Layout>(Layout::packed(n)));
+    for (std::size_t i = 0; i < n; ++i) rest.set(i, scene.mesh.rest[i].template cast<Real>());
+    std::vector<std::vector<CloseAtRest>> lists(n);
+    std::vector<std::vector<std::uint32_t>> linked(n);
+    for (const Link& link : scene.links) {
+      linked[static_cast<std::size_t>(link.a)].push_back(static_cast<std::uint32_t>(link.b));
+      linked[static_cast<std::size_t>(link.b)].push_back(static_cast<std::uint32_t>(link.a));
     }
+    neighbours_.pairs(rest, kMeets * diameter_, [&](std::uint32_t a, std::uint32_t b) {
+      const Real distance = norm(at(rest, b) - at(rest, a));
+      const bool link = std::find(linked[a].begin(), linked[a].end(), b) != linked[a].end();
+      if (!link && distance >= diameter_) return;
+      const Real least = link ? 0 : distance;
+      lists[a].push_back({b, least}), lists[b].push_back({a, least});
+    });
     for (const auto& list : lists) {
-      first_link_.push_back(static_cast<std::uint32_t>(links_.size()));
-      links_.insert(links_.end(), list.begin(), list.end());
+      first_close_.push_back(static_cast<std::uint32_t>(close_.size()));
+      close_.insert(close_.end(), list.begin(), list.end());
     }
-    first_link_.push_back(static_cast<std::uint32_t>(links_.size()));
-  }
-  bool linked(std::uint32_t a, std::uint32_t b) const {
-    const auto begin = links_.begin() + first_link_[a], end = links_.begin() + first_link_[a + 1];
-    return std::find(begin, end, b) != end;
+    first_close_.push_back(static_cast<std::uint32_t>(close_.size()));
   }
 
-  Real diameter_;  ///< m
+  static constexpr Real kMeets = Real(1.5);  ///< diameters within which a pair may meet in a step
+  Real diameter_;                            ///< m
+  std::size_t stride_ = 1;                   ///< of the particles' layout
   Neighbours<Real> neighbours_;
-  std::vector<Point> rest_;
-  std::vector<std::uint32_t> first_link_, links_;  ///< partners of particle i: [first, next first)
-  Real skin_ = 0;                                  ///< m
-  std::vector<Point> searched_at_;                 ///< [n] m; empty: to be searched
-  std::vector<Pair> pairs_, fast_;  ///< fast: may come from one side to the other in this step
+  std::vector<CloseAtRest> close_;  ///< to particle i: [first, next first)
+  std::vector<std::uint32_t> first_close_;
+  Real skin_ = 0;                          ///< m
+  std::vector<Triple<Real>> searched_at_;  ///< [n] m; empty: to be searched
+  std::vector<Pair> pairs_;
+  std::vector<Crossing> crossing_;
 };
 
 }  // namespace taut

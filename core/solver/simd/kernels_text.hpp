@@ -319,6 +319,32 @@ void collide(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& s
     collide_strips<Lane, swept>(contact, span);
 }
 
+template <class T, class Real>
+std::size_t meet(const MeetQuery<Real>& cell, Meeting* found) {
+  const T within(cell.within);
+  const auto gap = [](const Real* const(&of)[3], std::uint32_t k, std::uint32_t m)
+      __attribute__((always_inline)) {
+    return Triple<T>{load<T>(of[0] + m) - T(of[0][k]), load<T>(of[1] + m) - T(of[1][k]),
+                     load<T>(of[2] + m) - T(of[2][k])};
+  };
+  constexpr std::uint32_t step = kWidth<T>;
+  const Meeting* const none = found;
+  for (std::uint32_t k = cell.begin; k < cell.end; ++k)
+    for (int r = 0; r < cell.count; ++r) {
+      const auto& run = cell.runs[r];
+      for (std::uint32_t m = r == 0 ? k + 1 : run.begin; m < run.end; m += step) {
+        const T reach = within + norm(gap(cell.moved, k, m));
+        unsigned hits = bits(squared_norm(gap(cell.x, k, m)) < reach * reach);
+        if (run.end - m < step) hits &= (1u << (run.end - m)) - 1;
+        for (; hits != 0; hits &= hits - 1) {
+          const std::uint32_t hit = m + static_cast<std::uint32_t>(__builtin_ctz(hits));
+          if (cell.rows[hit] == run.row) *found++ = {k, hit};
+        }
+      }
+    }
+  return static_cast<std::size_t>(found - none);
+}
+
 /// Narrow and Wide compute along strips of 8 and 16 lanes, P on particles.
 template <class Real, class Narrow, class Wide, class P>
 constexpr Kernels<Real> make_kernels() {
@@ -331,7 +357,8 @@ constexpr Kernels<Real> make_kernels() {
            .ball = collide<Narrow, P, false, Real, BallSurface>,
            .ball_swept = collide<Narrow, P, true, Real, BallSurface>,
            .box = collide<Narrow, P, false, Real, BoxSurface>,
-           .box_swept = collide<Narrow, P, true, Real, BoxSurface>}};
+           .box_swept = collide<Narrow, P, true, Real, BoxSurface>},
+          meet<Narrow, Real>};
 }
 
 }  // namespace taut

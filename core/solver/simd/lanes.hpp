@@ -22,21 +22,27 @@ struct LaneMask {
   [[gnu::always_inline]] friend LaneMask operator||(LaneMask a, LaneMask b) { return {a.v | b.v}; }
   [[gnu::always_inline]] LaneMask operator!() const { return {~v}; }
 
-  /// Whether one lane is set.
-  [[gnu::always_inline]] friend bool any(LaneMask a) {
+  /// A bit for each lane, the first one lowest.
+  [[gnu::always_inline]] friend unsigned bits(LaneMask a) {
 #if defined(__AVX512F__)
-    if constexpr (sizeof(V) == 64) return _mm512_test_epi64_mask(__m512i(a.v), __m512i(a.v)) != 0;
+    if constexpr (sizeof(V) == 64 && width == 16)
+      return _mm512_test_epi32_mask(__m512i(a.v), __m512i(a.v));
+    if constexpr (sizeof(V) == 64 && width == 8)
+      return _mm512_test_epi64_mask(__m512i(a.v), __m512i(a.v));
 #endif
 #if defined(__AVX__)
-    if constexpr (sizeof(V) == 32) return _mm256_testz_si256(__m256i(a.v), __m256i(a.v)) == 0;
+    if constexpr (sizeof(V) == 32 && width == 8) return unsigned(_mm256_movemask_ps(__m256(a.v)));
+    if constexpr (sizeof(V) == 32 && width == 4) return unsigned(_mm256_movemask_pd(__m256d(a.v)));
 #endif
 #if defined(__x86_64__)
-    if constexpr (sizeof(V) == 16) return _mm_movemask_epi8(__m128i(a.v)) != 0;
+    if constexpr (sizeof(V) == 16 && width == 4) return unsigned(_mm_movemask_ps(__m128(a.v)));
+    if constexpr (sizeof(V) == 16 && width == 2) return unsigned(_mm_movemask_pd(__m128d(a.v)));
 #endif
-    Bits bits = 0;
-    for (int l = 0; l < width; ++l) bits |= a.v[l];
-    return bits != 0;
+    unsigned all = 0;
+    for (int l = 0; l < width; ++l) all |= unsigned(a.v[l] & 1) << l;
+    return all;
   }
+  [[gnu::always_inline]] friend bool any(LaneMask a) { return bits(a) != 0; }
 };
 
 /// `width` numbers that are computed with at once. The arithmetic is a number's, lane by lane, so
