@@ -135,10 +135,13 @@ class SelfCollidePass final : public Pass<Real> {
     return true;
   }
 
+  /// No early way out: so few are close that a branch costs more.
   Real least_between(std::uint32_t a, std::uint32_t b) const {
+    if (b < a) std::swap(a, b);
+    Real least = diameter_;
     for (std::uint32_t k = first_close_[a]; k < first_close_[a + 1]; ++k)
-      if (close_[k].partner == b) return close_[k].least;
-    return diameter_;
+      least = close_[k].partner == b ? close_[k].least : least;
+    return least;
   }
 
   static Triple<Real> at(const Points<Real>& x, std::size_t i) {
@@ -180,7 +183,7 @@ class SelfCollidePass final : public Pass<Real> {
       const bool link = std::find(linked[a].begin(), linked[a].end(), b) != linked[a].end();
       if (!link && distance >= diameter_) return;
       const Real least = link ? 0 : distance;
-      lists[a].push_back({b, least}), lists[b].push_back({a, least});
+      lists[std::min(a, b)].push_back({std::max(a, b), least});
     });
     for (const auto& list : lists) {
       first_close_.push_back(static_cast<std::uint32_t>(close_.size()));
@@ -193,7 +196,7 @@ class SelfCollidePass final : public Pass<Real> {
   Real diameter_;                            ///< m
   std::size_t stride_ = 1;                   ///< of the particles' layout
   Neighbours<Real> neighbours_;
-  std::vector<CloseAtRest> close_;  ///< to particle i: [first, next first)
+  std::vector<CloseAtRest> close_;  ///< to particle i, of a greater number: [first, next first)
   std::vector<std::uint32_t> first_close_;
   Real skin_ = 0;                          ///< m
   std::vector<Triple<Real>> searched_at_;  ///< [n] m; empty: to be searched

@@ -321,7 +321,7 @@ void collide(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& s
 
 template <class T, class Real>
 std::size_t meet(const MeetQuery<Real>& cell, Meeting* found) {
-  const T within(cell.within);
+  const T within2(cell.within * cell.within);
   const auto gap = [](const Real* const(&of)[3], std::uint32_t k, std::uint32_t m)
       __attribute__((always_inline)) {
     return Triple<T>{load<T>(of[0] + m) - T(of[0][k]), load<T>(of[1] + m) - T(of[1][k]),
@@ -333,8 +333,10 @@ std::size_t meet(const MeetQuery<Real>& cell, Meeting* found) {
     for (int r = 0; r < cell.count; ++r) {
       const auto& run = cell.runs[r];
       for (std::uint32_t m = r == 0 ? k + 1 : run.begin; m < run.end; m += step) {
-        const T reach = within + norm(gap(cell.moved, k, m));
-        unsigned hits = bits(squared_norm(gap(cell.x, k, m)) < reach * reach);
+        // |x| < within + |way|, without the roots
+        const T way2 = squared_norm(gap(cell.moved, k, m));
+        const T more = squared_norm(gap(cell.x, k, m)) - way2 - within2;
+        unsigned hits = bits(more < T(0.0) || more * more < T(4.0) * within2 * way2);
         if (run.end - m < step) hits &= (1u << (run.end - m)) - 1;
         for (; hits != 0; hits &= hits - 1) {
           const std::uint32_t hit = m + static_cast<std::uint32_t>(__builtin_ctz(hits));
