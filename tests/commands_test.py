@@ -126,6 +126,9 @@ class Verbs(CommandLine):
         self.assertIn("taut run", self.taut("plot", study, "--results", "nowhere", expect=2).err)
         self.assertIn("no folder", self.taut("check", "regression", expect=4).out)
 
+    def test_the_version_names_release_build_and_compiler(self):
+        self.assertRegex(self.taut("--version").out, r"^taut \d+\.\d+\.\d+\nprogram [0-9a-f]{10}\n\w+ \d+.*Bullet 3\.")
+
     def test_every_verb_has_help_with_an_example(self):
         verbs = self.taut("--help").out
         for verb in ["list", "run", "case", "plan", "merge", "doctor"]:

@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import shutil
+import struct
 
 from command_line import CommandLine, main
 
@@ -39,6 +40,10 @@ class Pictures(CommandLine):
         for words in [["--video", "--sheet"], ["-o", "a.jpg"], ["--video", "-o", "a.png"], ["-o", "."]]:
             self.taut("render", *SIDE_BY_SIDE, *words, expect=2)
         self.assertEqual(self.files(), [])
+
+    def test_a_video_says_what_a_frame_takes(self):
+        done = self.render(*SIDE_BY_SIDE, "--video", "--duration", "0.1", "-o", "film.mp4")
+        self.assertRegex(done.err, r"frame (\d+)/\1  [0-9.e-]+ s each")
 
     def test_obj_sequence(self):
         self.render(*SIDE_BY_SIDE, "--export", "obj", "-o", "frames")
@@ -106,6 +111,23 @@ class Pictures(CommandLine):
         done = self.render("--trajectory", "run.traj", *SMALL, "-o", "half.png")
         self.assertRegex(done.err, r"run\.traj: the writer was interrupted; dropped .* from byte \d+ on")
         self.assertNotEqual((self.folder / "half.png").read_bytes(), (self.folder / "whole.png").read_bytes())
+
+    def test_a_motion_that_explodes_half_way_is_drawn_up_to_its_last_sound_state(self):
+        file = self.kept("jakobsen")
+        data = bytearray(file.read_bytes())
+        first, vertices, _, real, channels = struct.unpack_from("<5I", data, 12)
+        size = 8 + 3 * vertices * real * channels
+        frames = (len(data) - first) // size
+        for k in range(frames // 2, frames):
+            struct.pack_into("<f" if real == 4 else "<d", data, first + k * size + 8, float("nan"))
+        self.render("--trajectory", "run.traj", *SMALL, "-o", "sound.png")
+        file.write_bytes(data)
+        self.render("--trajectory", "run.traj", *SMALL, "-o", "exploded.png")
+        self.assertNotEqual((self.folder / "sound.png").read_bytes(), (self.folder / "exploded.png").read_bytes())
+        struct.pack_into("<d", data, first + 8, float("nan"))
+        file.write_bytes(data)
+        done = self.render("--trajectory", "run.traj", *SMALL, "-o", "a.png", expect=2)
+        self.assertIn("no sound frame", done.err)
 
     def test_an_empty_or_headless_motion_names_file_and_byte(self):
         file = self.kept("jakobsen")

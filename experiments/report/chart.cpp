@@ -38,7 +38,7 @@ PlotArea layout(const Chart& chart) {
   const double strip = static_cast<double>(failing_curves(chart)) * kStripRow;
   double ticks = 0;
   for (const auto& tick : chart.y.ticks) ticks = std::max(ticks, text_width(tick.second));
-  return {std::max(68.0, ticks + 34), chart.width - right, (chart.title.empty() ? 14 : 48) + strip,
+  return {std::max(68.0, ticks + 40), chart.width - right, (chart.title.empty() ? 14 : 48) + strip,
           chart.height - 54.0,        chart.x.low,         chart.x.high};
 }
 
@@ -160,12 +160,12 @@ std::string floor_line(const Chart& chart, const PlotArea& area) {
   const bool below = floor < chart.y.low;
   const double t = below ? 0 : chart.y.position(std::min(floor, chart.y.high));
   const double y = area.bottom - t * (area.bottom - area.top);
-  std::string out =
-      "set label " +
-      gnuplot_string("reference's own error: " + chart.y.quantity.text(*chart.floor, 2) +
-                     (below ? ", below this plot" : "")) +
-      " at " + screen(area.left + 8, y - 8, chart) + " left tc rgb " + paint("muted") +
-      " font ',11'\n";
+  std::string out = "set label " +
+                    gnuplot_string("reference's own error: " +
+                                   (floor > 0 ? chart.y.quantity.text(*chart.floor, 2) : "none") +
+                                   (below && floor > 0 ? ", below this plot" : "")) +
+                    " at " + screen(area.left + 8, y - 8, chart) + " left tc rgb " +
+                    paint("muted") + " font ',11'\n";
   if (!below)
     out += "set arrow from " + screen(area.left, y, chart) + " to " + screen(area.right, y, chart) +
            " nohead dt (2,4) lw 1.4 lc rgb " + paint("axis") + "\n";

@@ -26,7 +26,8 @@ struct Options {
   bool sheet = false, video = false, dark = false;
 };
 
-/// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere.
+/// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere. The end
+/// says what one took: "frame 80/80  0.15 s each".
 class Countdown {
  public:
   explicit Countdown(std::string what) : what_(std::move(what)) {}
@@ -35,7 +36,10 @@ class Countdown {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
     const int left = static_cast<int>(spent.count() * (total - done) / done + 0.5);
     char text[80];
-    std::snprintf(text, sizeof text, " %d/%d  left %d:%02d", done, total, left / 60, left % 60);
+    if (done < total)
+      std::snprintf(text, sizeof text, " %d/%d  left %d:%02d", done, total, left / 60, left % 60);
+    else
+      std::snprintf(text, sizeof text, " %d/%d  %.2g s each", done, total, spent.count() / total);
     std::cerr << (terminal_ ? "\r\033[K" : "") << what_ << text;
     if (!terminal_ || done == total) std::cerr << '\n';
     std::cerr << std::flush;

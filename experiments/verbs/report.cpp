@@ -61,6 +61,12 @@ std::vector<report::SolverInfo> introductions() {
   return all;
 }
 
+/// "20261121T205040Z" as people write it: "2026-11-21 20:50 UTC".
+std::string readable(const std::string& stamp) {
+  return stamp.substr(0, 4) + "-" + stamp.substr(4, 2) + "-" + stamp.substr(6, 2) + " " +
+         stamp.substr(9, 2) + ":" + stamp.substr(11, 2) + " UTC";
+}
+
 int run(Options options) {
   const std::string command = command_line(options);
   if (options.studies.empty()) {
@@ -86,7 +92,7 @@ int run(Options options) {
   input.solvers = introductions();
   const std::string program = program_digest();
   input.provenance = {{"version", "program " + program.substr(0, 10)},
-                      {"made", utc_stamp()},
+                      {"made", readable(utc_stamp())},
                       {"built with", std::string(toolchain())},
                       {"preset", options.preset}};
   if (options.preset.empty()) input.provenance.pop_back();

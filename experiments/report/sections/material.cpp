@@ -6,8 +6,13 @@ namespace taut::report::section::material {
 
 namespace {
 
+constexpr double kLeast = 1e-5;  ///< strain; less is rounding
+
 std::string moment(const MaterialRow& row, const MaterialRow::Moment& one, double aspect) {
-  const std::string t = significant(one.t, 3) + " s", rms = quantity("stretch.rms").text(one.rms);
+  const Quantity strain = quantity("stretch.rms");
+  const std::string t = significant(one.t, 3) + " s";
+  const std::string rms =
+      one.rms < kLeast ? "under " + strain.text(kLeast, 1) : strain.text(one.rms);
   return "<figure style=\"--aspect:" + significant(aspect, 3) + "\"><img alt=\"" +
          escape_html(solver_title(row.solver)) + ": strain in material space at " + t + ", RMS " +
          rms + "\" src=\"data:image/png;base64," + base64(one.png) + "\"><figcaption><span>" + t +

@@ -35,7 +35,7 @@ std::string render(Page& page, const std::string& scene) {
                        {own, {}}, "Stability: " + solver_title(solver), legend(own)) +
            "</div>";
   }
-  return out;
+  return out.empty() ? "" : "<div class=\"wide cards\">" + out + "</div>";
 }
 
 }  // namespace
