@@ -3,6 +3,7 @@
 
 import csv
 import json
+import pathlib
 
 from command_line import CommandLine, main
 
@@ -128,6 +129,13 @@ class Verbs(CommandLine):
 
     def test_the_version_names_release_build_and_compiler(self):
         self.assertRegex(self.taut("--version").out, r"^taut \d+\.\d+\.\d+\nprogram [0-9a-f]{10}\n\w+ \d+.*Bullet 3\.")
+
+    def test_the_documentation_names_every_key_of_a_record_and_a_plan(self):
+        text = (pathlib.Path(__file__).parents[1] / "experiments/verbs/README.md").read_text()
+        for verb in ["case", "plan"]:
+            keys = json.loads(self.taut(verb, "./small.toml", "jakobsen", "--json").out)
+            for key in [*keys, *keys.get("plan", [{}])[0], *keys.get("status", {}), *keys.get("spec", {})]:
+                self.assertIn(f"`{key}`", text, verb)
 
     def test_every_verb_has_help_with_an_example(self):
         verbs = self.taut("--help").out
