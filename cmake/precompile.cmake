@@ -11,8 +11,9 @@ if(TAUT_PRECOMPILE)
   foreach(kind precompiled precompiled_brief)
     add_library(taut_${kind} OBJECT ${PROJECT_BINARY_DIR}/precompiled.cpp)
     target_link_libraries(taut_${kind} PRIVATE taut_flags Eigen3::Eigen)
-    target_precompile_headers(taut_${kind} PRIVATE <algorithm> <cmath> <functional> <iostream> <map> <memory> <optional>
-                              <sstream> <string> <vector> <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp>)
+    target_precompile_headers(taut_${kind} PRIVATE <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional>
+                              <iomanip> <iostream> <map> <memory> <numbers> <optional> <set> <span>
+                              <sstream> <string> <thread> <variant> <vector> <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp>)
     if(CCACHE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
       target_compile_options(taut_${kind} PRIVATE -fpch-preprocess)  # ccache asks for it
     endif()
