@@ -17,7 +17,7 @@ std::vector<std::size_t> ends(std::size_t count, std::size_t side) {
 }  // namespace
 
 Refinement::Refinement(std::size_t columns, std::size_t rows, std::size_t coarse)
-    : columns_(columns), rows_(rows), classes_(columns * rows), asked_(columns * rows, false) {
+    : columns_(columns), classes_(columns * rows), asked_(columns * rows, false) {
   const std::vector<std::size_t> xs = ends(columns, coarse), ys = ends(rows, coarse);
   const auto pairs = [](const std::vector<std::size_t>& e) {
     return std::max<std::size_t>(1, e.size() - 1);

@@ -46,7 +46,7 @@ class Refinement {
   std::vector<Block> split(const Block&) const;
   void ask(const Block&, std::vector<MapCell>&);
 
-  std::size_t columns_, rows_, run_ = 0;
+  std::size_t columns_, run_ = 0;
   std::vector<std::optional<int>> classes_;  ///< [columns x rows]
   std::vector<bool> asked_;
   std::vector<Block> blocks_;
