@@ -118,51 +118,107 @@ TEST(SelfCollision, IsNoPassUnlessTheSceneHasIt) {
   }
 }
 
+using Pairs = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
+
+template <class Real>
+Points<Real> points(const std::vector<Vec3>& x) {
+  Points<Real> p(std::make_shared<const Layout>(Layout::packed(x.size())));
+  for (std::size_t i = 0; i < x.size(); ++i) p.set(i, x[i].cast<Real>());
+  return p;
+}
+
+std::vector<Vec3> anywhere(std::size_t count, double far, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<> number(-far, far);
+  std::vector<Vec3> x(count);
+  for (Vec3& p : x) p = {number(random), number(random), number(random)};
+  return x;
+}
+
+template <class Real>
+Pairs all_within(const Points<Real>& x, std::size_t count, Real reach) {
+  Pairs pairs;
+  for (std::uint32_t a = 0; a < count; ++a) {
+    const typename Points<Real>::Point at = x[a];
+    for (std::uint32_t b = a + 1; b < count; ++b)
+      if ((x[b] - at).squaredNorm() < reach * reach) pairs.insert({a, b});
+  }
+  return pairs;
+}
+
+/// Everywhere, in a line along each axis, in a plane across the axes, in one cell.
+std::vector<std::vector<Vec3>> clouds() {
+  std::vector<std::vector<Vec3>> all;
+  const std::vector<Vec3> cube = anywhere(400, 2, 1);
+  for (const Vec3& size : {Vec3(1, 1, 1), Vec3(20, 0, 0), Vec3(0, 20, 0), Vec3(0, 0, 20),
+                           Vec3(5, 5, 0), Vec3(0, 5, 5), Vec3(0.01, 0.01, 0.01)}) {
+    all.emplace_back();
+    for (const Vec3& x : cube) all.back().push_back(x.cwiseProduct(size));
+  }
+  for (Vec3& x : all.emplace_back(cube)) x.z() = x.x() + x.y();
+  all.emplace_back(cube)[0] = {1e9, -1e9, 1e9};  // beyond the last cell
+  return all;
+}
+
 TEST(Neighbours, AreThoseOfAllPairs) {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<> number(-2, 2);
-  Points<double> x(std::make_shared<const Layout>(Layout::packed(500)));
-  for (std::size_t i = 0; i < 500; ++i) x.set(i, {number(random), number(random), number(random)});
-  x.set(0, {1e9, -1e9, 1e9});  // beyond the last cell
-  Neighbours<double> neighbours(500);
-  for (const double reach : {0.05, 0.4, 1.5, 10.0}) {
-    std::multiset<std::pair<std::uint32_t, std::uint32_t>> found, brute;
-    neighbours.pairs(x, reach,
-                     [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
-    for (std::uint32_t a = 0; a < 500; ++a)
-      for (std::uint32_t b = a + 1; b < 500; ++b)
-        if ((x[b] - x[a]).norm() < reach) brute.insert({a, b});
-    EXPECT_EQ(found, brute) << reach;
+  for (const std::vector<Vec3>& cloud : clouds()) {
+    const Points<double> x = points<double>(cloud);
+    for (const double reach : {0.02, 0.3, 1.0}) {
+      const Pairs brute = all_within(x, cloud.size(), reach);
+      for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+        if (!available(simd)) continue;
+        Pairs found;
+        Neighbours<double>(cloud.size(), simd)
+            .pairs(x, reach,
+                   [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
+        EXPECT_EQ(found, brute) << reach << ' ' << to_string(simd);
+      }
+    }
   }
 }
 
 TEST(Neighbours, ThatMeetAreThoseWithinTheirOwnWay) {
-  std::mt19937 random(2);
-  std::uniform_real_distribution<> number(-1, 1);
-  Points<float> x(std::make_shared<const Layout>(Layout::packed(400))), previous = x;
-  const auto somewhere = [&] {
-    return Points<float>::Point(Vec3(number(random), number(random), number(random)).cast<float>());
-  };
-  for (std::size_t i = 0; i < 400; ++i)
-    x.set(i, somewhere()), previous.set(i, x[i] + 0.2F * somewhere());
-  const float within = 0.1F, reach = within + 0.4F * std::sqrt(3.0F);
+  const std::vector<Vec3> now = anywhere(400, 1, 4);
+  std::vector<Vec3> before = now, rest = now;
+  const std::vector<Vec3> way = anywhere(800, 0.2, 5);
+  for (std::size_t i = 0; i < 400; ++i) before[i] += way[i], rest[i] += 4 * way[400 + i];
+  const auto x = points<float>(now), previous = points<float>(before),
+             at_rest = points<float>(rest);
+  const float within = 0.1F, reach = within + 0.4F * std::sqrt(3.0F), ignored = 0.8F;
   for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
     if (!available(simd)) continue;
     Neighbours<float> neighbours(400, simd);
-    std::multiset<std::pair<std::uint32_t, std::uint32_t>> found, brute;
+    neighbours.ignore(at_rest, ignored);
+    Pairs found, brute;
     neighbours.meetings(x, previous, within, reach,
-                        [&](std::uint32_t a, std::uint32_t b, const auto& apart) {
-                          found.insert(std::minmax(a, b));
-                          EXPECT_EQ(apart.now().x, x[b].x() - x[a].x());
-                        });
+                        [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
+    std::size_t left_out = 0;
     for (std::uint32_t a = 0; a < 400; ++a)
       for (std::uint32_t b = a + 1; b < 400; ++b) {
-        const Points<float>::Point now = x[b] - x[a];
-        const float way = (now - (previous[b] - previous[a])).norm();
-        if (now.norm() < within + way) brute.insert({a, b});
+        const Points<float>::Point gap = x[b] - x[a];
+        if (!(gap.norm() < within + (gap - (previous[b] - previous[a])).norm())) continue;
+        if ((at_rest[b] - at_rest[a]).norm() >= ignored)
+          brute.insert({a, b});
+        else
+          ++left_out;
       }
     EXPECT_EQ(found, brute) << to_string(simd);
     EXPECT_GT(found.size(), 1000u);
+    EXPECT_GT(left_out, 300u);
+  }
+}
+
+TEST(Neighbours, ComeInOneOrderFromEveryInstructionSet) {
+  const Points<float> x = points<float>(anywhere(3000, 2, 6));
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> first;
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+    if (!available(simd)) continue;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+    Neighbours<float>(3000, simd).pairs(x, 0.4F, [&](std::uint32_t a, std::uint32_t b) {
+      found.emplace_back(a, b);
+    });
+    if (first.empty()) first = found;
+    EXPECT_EQ(found, first) << to_string(simd);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/vec3.hpp"
+#include "core/solver/triple.hpp"
 
 namespace taut {
 
@@ -36,6 +37,8 @@ class Layout {
   [[gnu::always_inline]] std::size_t slot(std::size_t i) const {
     return slots_.empty() ? 4 * i : slots_[i];
   }
+  /// Where slots are looked up; null: 4 i.
+  const std::uint32_t* slots() const { return slots_.empty() ? nullptr : slots_.data(); }
   /// Which coordinate the number at `place` is: 0 x, 1 y, 2 z, 3 none. Repeats every kGrain.
   int axis(std::size_t place) const {
     return static_cast<int>(stride_ == 1 ? place % 4 : place / stride_ % 3);
@@ -88,6 +91,26 @@ class Points {
     r[0] = p.x(), r[s] = p.y(), r[2 * s] = p.z();
   }
   [[gnu::always_inline]] void add(std::size_t i, const Point& p) { set(i, (*this)[i] + p); }
+
+  /// For a loop that writes elsewhere too: what does not change in it has been looked up.
+  class Reader {
+   public:
+    [[gnu::always_inline]] Triple<Real> operator[](std::size_t i) const {
+      const Real* r = x_ + (slots_ ? slots_[i] : 4 * i);
+      return {r[0], r[stride_], r[2 * stride_]};
+    }
+
+   private:
+    friend class Points;
+    const Real* x_;
+    const std::uint32_t* slots_;
+    std::size_t stride_;
+  };
+  Reader reader() const {
+    Reader r;
+    r.x_ = values_.data(), r.slots_ = layout_->slots(), r.stride_ = layout_->stride();
+    return r;
+  }
 
   Real* data() { return values_.data(); }
   const Real* data() const { return values_.data(); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,168 +10,156 @@
 
 namespace taut {
 
-/// All pairs of particles within a reach, by a uniform hash grid with cells of that size, sorted
-/// by counting. The cells of one row along x lie in consecutive buckets, so that a cell and its
-/// neighbours are five runs of particles: the rest of its own row and half of the eight around,
+/// All pairs of particles within a reach, by a uniform grid with cells of that size, sorted by
+/// counting. Cell (i, j, k) is bucket i + row j + layer k, modulo the number of buckets: the grid
+/// is wound up like thread on a spool, without end and without a hash. Cells next to each other in
+/// x are buckets next to each other, so that a cell and its neighbours are five runs of particles,
 ///
-///     z + 1:  o o o     o: three cells of the row, C: the cell itself and the next,
+///     z + 1:  o o o     o: three cells of a row in x, C: the cell itself and the next,
 ///     z:      . C o     .: the pair is found from there
 ///     z - 1:  . . .     y to the right
 ///
-/// and the particles of a cell share the look-up. Linear in the number of particles and pairs; the
-/// order of the pairs depends on nothing but the positions.
+/// no two of which share a bucket, as a row has eight or more and a layer eight rows. Which sizes
+/// they have depends on the extent of the cloth, so that few cells lie on one another; those that
+/// do are far apart and meet only in vain. Linear in the number of particles and pairs; the order
+/// of the pairs depends on nothing but the positions.
 template <class Real>
 class Neighbours {
  public:
   explicit Neighbours(std::size_t particles, Simd simd = widest())
       : particles_(particles),
-        rows_(particles),
+        buckets_(particles),
         sorted_buckets_(particles),
-        cells_(particles),
         meet_(kernels<Real>(simd).meet) {
-    while (buckets_ < 2 * particles) buckets_ *= 2, --shift_;
-    starts_.resize(buckets_ + 1);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      x_[axis].resize(particles + kNarrow), moved_[axis].resize(particles + kNarrow);
-      query_.x[axis] = x_[axis].data(), query_.moved[axis] = moved_[axis].data();
-    }
-    query_.rows = rows_.data();
+    while (bucket_count_ < 2 * particles) bucket_count_ *= 2;
+    starts_.resize(bucket_count_ + 1);
+    for (Coordinates* c : {&now_, &moved_, &at_rest_})
+      for (auto& array : *c) array.resize(particles + kSearchLanes);
+    blocks_.resize(particles + 10);
+    found_.resize(particles + kAtOnce);
   }
-  Neighbours(const Neighbours&) = delete;  // it points into itself
 
+  std::size_t size() const { return particles_.size(); }  ///< particles
   std::size_t bytes() const {
-    return particles_.size() * (2 * sizeof particles_[0] + sizeof(Row) + sizeof(Cell)) +
-           6 * x_[0].size() * sizeof(Real) + starts_.size() * sizeof starts_[0] +
-           found_.capacity() * sizeof(Meeting);
+    return (3 * particles_.size() + starts_.size()) * sizeof starts_[0] +
+           9 * now_[0].size() * sizeof(Real) + rest_.size() * sizeof rest_[0] +
+           blocks_.size() * sizeof(SearchBlock) + found_.size() * sizeof(Meeting);
   }
 
-  /// From the first of a pair to the second [m].
-  class Apart {
-   public:
-    Triple<Real> now() const { return all_.gap(all_.x_, k_, m_); }
-    Triple<Real> way() const { return all_.gap(all_.moved_, k_, m_); }  ///< since `previous`
-
-   private:
-    friend class Neighbours;
-    Apart(const Neighbours& all, std::uint32_t k, std::uint32_t m) : all_(all), k_(k), m_(m) {}
-    const Neighbours& all_;
-    std::uint32_t k_, m_;
-  };
+  /// From now on ignores pairs that are less than `within` [m] apart at rest.
+  void ignore(const Points<Real>& rest, Real within) {
+    ignored_ = within;
+    const auto at = rest.reader();
+    for (std::size_t i = 0; i < particles_.size(); ++i) rest_.push_back(at[i]);
+  }
 
   /// Calls visit(a, b) once for every pair less than `reach` [m], > 0, apart.
   template <class Visit>
   void pairs(const Points<Real>& x, Real reach, const Visit& visit) {
-    meetings(x, x, reach, reach,
-             [&](std::uint32_t a, std::uint32_t b, const Apart&) { visit(a, b); });
+    meetings(x, x, reach, reach, visit);
   }
 
   /// The same for those less than `within` and their own way since `previous` apart, together at
-  /// most `reach`. Calls visit(a, b, apart).
+  /// most `reach`.
   template <class Visit>
   void meetings(const Points<Real>& x, const Points<Real>& previous, Real within, Real reach,
                 const Visit& visit) {
     sort(x, previous, reach);
-    query_.within = within;
-    const auto count = static_cast<std::uint32_t>(particles_.size());
-    for (std::uint32_t begin = 0, end; begin < count; begin = end) {
-      for (end = begin + 1; end < count && same_cell(begin, end);) ++end;
-      const std::size_t found = meet(begin, end);
-      for (std::size_t f = 0; f < found; ++f) {
-        const auto [k, m] = found_[f];
-        visit(particles_[k], particles_[m], Apart(*this, k, m));
-      }
+    const auto triple = [](const Coordinates& c, const Real*(&to)[3]) {
+      for (std::size_t axis = 0; axis < 3; ++axis) to[axis] = c[axis].data();
+    };
+    MeetQuery<Real> query{.buckets = sorted_buckets_.data(),
+                          .starts = starts_.data(),
+                          .particles = static_cast<std::uint32_t>(particles_.size()),
+                          .bucket_count = bucket_count_,
+                          .row = row_,
+                          .layer = layer_,
+                          .within = within,
+                          .ignored = ignored_,
+                          .blocks = blocks_.data(),
+                          .found = found_.data(),
+                          .room = found_.size()};
+    triple(now_, query.now), triple(moved_, query.moved), triple(at_rest_, query.rest);
+    for (std::uint32_t next = 0; next < query.particles;) {
+      const std::size_t count = meet_(query, next);
+      for (std::size_t f = 0; f < count; ++f)
+        visit(particles_[found_[f].a], particles_[found_[f].b]);
     }
   }
 
  private:
-  using Row = std::uint64_t;  ///< a cell's y and z
-  struct Cell {
-    Row row;
-    std::uint32_t bucket;
-  };
-  using Coordinates = std::vector<Real>[3];
+  static constexpr std::size_t kAtOnce = 1024;
+  using Coordinates = std::array<std::vector<Real>, 3>;
 
-  static constexpr Row pack(std::int64_t y, std::int64_t z) {
-    return static_cast<Row>(y + z * (1LL << 32));
+  static void set(Coordinates& to, std::size_t k, const Triple<Real>& p) {
+    to[0][k] = p.x, to[1][k] = p.y, to[2][k] = p.z;
   }
+
   /// Beyond a million cells everything shares the last one.
-  static std::int32_t number(Real v) {
+  static std::uint32_t number(Real v) {
     constexpr Real kFar = 1000000;
     const Real near = v > -kFar ? std::min(v, kFar) : -kFar;
     const auto towards_zero = static_cast<std::int32_t>(near);
-    return towards_zero - (static_cast<Real>(towards_zero) > near ? 1 : 0);
+    return static_cast<std::uint32_t>(towards_zero -
+                                      (static_cast<Real>(towards_zero) > near ? 1 : 0));
   }
-  std::uint32_t bucket_of(Row row, std::uint32_t x) const {
-    const auto first =
-        static_cast<std::uint32_t>((row * 0x9E3779B97F4A7C15u) >> shift_);  // Knuth's
-    return (first + x) & static_cast<std::uint32_t>(buckets_ - 1);
+
+  /// Sets row_ and layer_: the spool that fits the extent of x best.
+  void wind(const Points<Real>& x) {
+    const auto at = x.reader();
+    Triple<Real> least = at[0], most = least;
+    for (std::size_t i = 1; i < particles_.size(); ++i) {
+      const Triple<Real> p = at[i];
+      least = {lesser(least.x, p.x), lesser(least.y, p.y), lesser(least.z, p.z)};
+      most = {greater(most.x, p.x), greater(most.y, p.y), greater(most.z, p.z)};
+    }
+    const Triple<Real> extent = most - least;
+    std::uint32_t cells[3] = {8, 8, 8};
+    for (std::uint32_t all = 8 * 8 * 8; all < bucket_count_; all *= 2) {
+      const auto [a, b, c] = Triple<Real>{extent.x / static_cast<Real>(cells[0]),
+                                          extent.y / static_cast<Real>(cells[1]),
+                                          extent.z / static_cast<Real>(cells[2])};
+      cells[a >= b && a >= c ? 0 : b >= c ? 1 : 2] *= 2;
+    }
+    row_ = cells[0], layer_ = cells[0] * cells[1];
   }
 
   void sort(const Points<Real>& x, const Points<Real>& previous, Real reach) {
+    wind(x);
     const Real per_metre = 1 / reach;
+    const std::uint32_t wrap = bucket_count_ - 1;
+    const auto at = x.reader(), before = previous.reader();
+    std::uint32_t* const starts = starts_.data();
     std::fill(starts_.begin(), starts_.end(), 0);
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      const auto at = x[i];
-      const Row row = pack(number(at.y() * per_metre), number(at.z() * per_metre));
-      const auto column = static_cast<std::uint32_t>(number(at.x() * per_metre));
-      cells_[i] = {row, bucket_of(row, column)};
-      ++starts_[cells_[i].bucket];
+    for (std::size_t i = 0; i < buckets_.size(); ++i) {
+      const Triple<Real> cell = per_metre * at[i];
+      const std::uint32_t bucket =
+          (number(cell.x) + row_ * number(cell.y) + layer_ * number(cell.z)) & wrap;
+      buckets_[i] = bucket;
+      ++starts[bucket];
     }
     std::uint32_t sum = 0;
-    for (std::uint32_t& start : starts_) sum += start, start = sum;  // ends, for now
-    for (std::size_t i = cells_.size(); i-- > 0;) {
-      const std::uint32_t k = --starts_[cells_[i].bucket];
-      const auto at = x[i], before = previous[i];
-      particles_[k] = static_cast<std::uint32_t>(i);
-      rows_[k] = cells_[i].row, sorted_buckets_[k] = cells_[i].bucket;
-      x_[0][k] = at.x(), x_[1][k] = at.y(), x_[2][k] = at.z();
-      moved_[0][k] = at.x() - before.x(), moved_[1][k] = at.y() - before.y();
-      moved_[2][k] = at.z() - before.z();
+    for (std::size_t b = 0; b <= bucket_count_; ++b) sum += starts[b], starts[b] = sum;  // ends
+    for (std::size_t i = buckets_.size(); i-- > 0;) {
+      const std::uint32_t bucket = buckets_[i], k = --starts[bucket];
+      particles_[k] = static_cast<std::uint32_t>(i), sorted_buckets_[k] = bucket;
+      const Triple<Real> p = at[i];
+      set(now_, k, p), set(moved_, k, p - before[i]);
+      if (!rest_.empty()) set(at_rest_, k, rest_[i]);
     }
   }
 
-  bool same_cell(std::uint32_t k, std::uint32_t m) const {
-    return rows_[k] == rows_[m] && sorted_buckets_[k] == sorted_buckets_[m];
-  }
-  static Triple<Real> gap(const Coordinates& of, std::uint32_t k, std::uint32_t m) {
-    return {of[0][m] - of[0][k], of[1][m] - of[1][k], of[2][m] - of[2][k]};
-  }
-
-  /// Puts the pairs that the particles [begin, end) of a cell find into found_; how many.
-  std::size_t meet(std::uint32_t begin, std::uint32_t end) {
-    const Row row = rows_[begin];
-    const std::uint32_t bucket = sorted_buckets_[begin];
-    const std::uint32_t column = bucket - bucket_of(row, 0);
-    query_.begin = begin, query_.end = end, query_.count = 0;
-    add_run(bucket, 2, row);
-    query_.runs[0].begin = begin;
-    for (const Row step : {pack(1, 0), pack(-1, 1), pack(0, 1), pack(1, 1)})
-      add_run(bucket_of(row + step, column - 1), 3, row + step);
-    std::size_t most = 0;
-    for (int r = 0; r < query_.count; ++r) most += query_.runs[r].end - query_.runs[r].begin;
-    most *= end - begin;
-    if (found_.size() < most) found_.resize(most);
-    return meet_(query_, found_.data());
-  }
-  void add_run(std::uint32_t bucket, std::size_t count, Row row) {
-    const auto add = [&](std::uint32_t begin, std::uint32_t end) {
-      query_.runs[query_.count++] = {begin, end, row};
-    };
-    const std::size_t end = bucket + count;
-    add(starts_[bucket], starts_[std::min(end, buckets_)]);
-    if (end > buckets_) add(0, starts_[end - buckets_]);
-  }
-
-  std::vector<std::uint32_t> particles_;  ///< bucket after bucket
-  std::vector<Row> rows_;                 ///< in that order
-  std::vector<std::uint32_t> sorted_buckets_;
-  Coordinates x_, moved_;              ///< likewise; kNarrow more, which no run contains
-  std::vector<Cell> cells_;            ///< of each particle
-  std::size_t buckets_ = 64;           ///< a power of two
-  int shift_ = 64 - 6;                 ///< leaves the highest bits of a product, one per bucket
-  std::vector<std::uint32_t> starts_;  ///< [buckets + 1]
+  std::vector<std::uint32_t> particles_;       ///< bucket after bucket
+  std::vector<std::uint32_t> buckets_;         ///< of each particle
+  std::vector<std::uint32_t> sorted_buckets_;  ///< in the order of particles_
+  Coordinates now_, moved_, at_rest_;          ///< likewise; room for kSearchLanes more
+  std::vector<Triple<Real>> rest_;             ///< [particles] m; empty: none is ignored
+  Real ignored_ = 0;                           ///< m
+  std::uint32_t bucket_count_ = 8 * 8 * 8;     ///< a power of two
+  std::uint32_t row_ = 8, layer_ = 64;
+  std::vector<std::uint32_t> starts_;  ///< [bucket_count + 1]
   Meet<Real> meet_;
-  MeetQuery<Real> query_{};
+  std::vector<SearchBlock> blocks_;
   std::vector<Meeting> found_;
 };
 

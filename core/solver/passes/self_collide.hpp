@@ -1,13 +1,17 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "core/model/scene.hpp"
+#include "core/solver/adjacency.hpp"
 #include "core/solver/contact/neighbours.hpp"
 #include "core/solver/pass.hpp"
 
 namespace taut {
 
-/// The cloth against itself: every particle is a ball, no two may overlap. Pairs come from a hash
-/// grid and are projected in every sweep. Three things the report's octree lacks:
+/// The cloth against itself: every particle is a ball, no two may overlap. Pairs come from a
+/// uniform grid and are projected in every sweep. Three things the report's octree lacks:
 ///
 /// - pairs are found wherever they are, not only within one cell;
 /// - two particles keep at most their distance at rest, so that a radius larger than the spacing
@@ -19,7 +23,9 @@ namespace taut {
 /// In a cloth that moves fast, the pairs of a step are those within 3/2 diameters and their own way
 /// in it: half a diameter is left for what the sweeps do to them. In a slow one they are those
 /// within a diameter and a skin, and serve until a particle has moved a quarter of the skin against
-/// the cloth as a whole (L. Verlet, 1967): a cloth at rest does not search at all.
+/// the cloth as a whole (L. Verlet, 1967): a cloth at rest does not search at all. Those within 3/2
+/// diameters at rest are known once and for all and never searched for: they are nearly all that
+/// there is in a sheet that does not touch itself.
 template <class Real>
 class SelfCollidePass final : public Pass<Real> {
  public:
@@ -32,11 +38,11 @@ class SelfCollidePass final : public Pass<Real> {
   void restart() override { searched_at_.clear(); }
 
   void begin(Particles<Real>& p, double, double) override {
-    stride_ = p.layout->stride();
-    const Real motion = largest_motion(p.x, p.previous);
+    if (!placed_) place(p);
+    const Real motion = largest_motion(p.x, p.previous.reader());
     if (8 * motion >= diameter_)
       search_step(p, motion);
-    else if (searched_at_.empty() || 4 * largest_motion(p.x, searched_at_) > skin_)
+    else if (searched_at_.empty() || 4 * largest_motion(p.x, searched_at_.data()) > skin_)
       search_steps(p, motion);
   }
 
@@ -56,10 +62,9 @@ class SelfCollidePass final : public Pass<Real> {
     return {{.pass = "self-collide",
              .items = pairs_.size(),
              .bytes = sizeof(*this) + neighbours_.bytes() +
-                      searched_at_.capacity() * sizeof searched_at_[0] +
-                      pairs_.capacity() * sizeof(Pair) + crossing_.capacity() * sizeof(Crossing) +
-                      close_.size() * sizeof(CloseAtRest) +
-                      first_close_.size() * sizeof(std::uint32_t)}};
+                      searched_at_.capacity() * sizeof(Triple<Real>) +
+                      (close_.capacity() + pairs_.capacity()) * sizeof(Pair) +
+                      crossing_.capacity() * sizeof(Crossing)}};
   }
 
  private:
@@ -72,11 +77,6 @@ class SelfCollidePass final : public Pass<Real> {
   struct Crossing : Pair {
     Triple<Real> before;  ///< from a to b when the step began [m]
   };
-  struct CloseAtRest {
-    std::uint32_t partner;
-    Real least;  ///< m; 0: left to their link
-  };
-
   [[gnu::always_inline]] Triple<Real> between(const Points<Real>& x, const Pair& pair) const {
     const Real *a = x.data() + pair.a, *b = x.data() + pair.b;
     return {b[0] - a[0], b[stride_] - a[stride_], b[2 * stride_] - a[2 * stride_]};
@@ -102,69 +102,77 @@ class SelfCollidePass final : public Pass<Real> {
     move(p.x, pair.a, -pair.share * push, out), move(p.x, pair.b, (1 - pair.share) * push, out);
   }
 
+  void place(const Particles<Real>& p) {
+    stride_ = p.layout->stride();
+    for (Pair& pair : close_) pair = pair_of(p, pair.a, pair.b, pair.least);
+    placed_ = true;
+  }
+
   /// Of this step alone.
   void search_step(const Particles<Real>& p, Real motion) {
-    pairs_.clear(), crossing_.clear(), searched_at_.clear();
+    forget_pairs();
     const Real within = kMeets * diameter_;
+    const auto consider = [&](const Pair& pair) __attribute__((always_inline)) {
+      const Triple<Real> now = between(p.x, pair), before = between(p.previous, pair);
+      const Real way2 = squared_norm(now - before);
+      if (!less(squared_norm(now), within * within, way2)) return;
+      pairs_.push_back(pair);
+      if (less(squared_norm(before), diameter_ * diameter_, 16 * way2))
+        crossing_.push_back({pair, before});
+    };
+    for (const Pair& pair : close_) consider(pair);
     const Real reach = within + std::min(2 * motion, 4 * diameter_);
-    neighbours_.meetings(p.x, p.previous, within, reach,
-                         [&](std::uint32_t a, std::uint32_t b, const auto& apart) {
-                           if (!add_pair(p, a, b)) return;
-                           const Triple<Real> way = apart.way(), before = apart.now() - way;
-                           const Real crosses = diameter_ + 4 * norm(way);
-                           if (squared_norm(before) < crosses * crosses)
-                             crossing_.push_back({pairs_.back(), before});
-                         });
+    neighbours_.meetings(p.x, p.previous, within, reach, [&](std::uint32_t a, std::uint32_t b) {
+      if (p.w[a] + p.w[b] != 0) consider(pair_of(p, a, b, diameter_));
+    });
   }
 
   /// Of this step and those that follow.
   void search_steps(const Particles<Real>& p, Real motion) {
-    pairs_.clear(), crossing_.clear(), searched_at_.clear();
+    forget_pairs();
     skin_ = diameter_ / 2 + 2 * motion;
-    neighbours_.pairs(p.x, diameter_ + skin_,
-                      [&](std::uint32_t a, std::uint32_t b) { add_pair(p, a, b); });
-    for (std::size_t i = 0; i < p.size(); ++i) searched_at_.push_back(at(p.x, i));
+    const Real reach = diameter_ + skin_;
+    for (const Pair& pair : close_)
+      if (squared_norm(between(p.x, pair)) < reach * reach) pairs_.push_back(pair);
+    neighbours_.pairs(p.x, reach, [&](std::uint32_t a, std::uint32_t b) {
+      if (p.w[a] + p.w[b] != 0) pairs_.push_back(pair_of(p, a, b, diameter_));
+    });
+    const auto now = p.x.reader();
+    for (std::size_t i = 0; i < p.size(); ++i) searched_at_.push_back(now[i]);
   }
 
-  bool add_pair(const Particles<Real>& p, std::uint32_t a, std::uint32_t b) {
-    const Real least = least_between(a, b), wa = p.w[a], wb = p.w[b];
-    if (least == 0 || wa + wb == 0) return false;
-    pairs_.push_back({static_cast<std::uint32_t>(p.layout->slot(a)),
-                      static_cast<std::uint32_t>(p.layout->slot(b)), least,
-                      wa == wb ? Real(0.5) : wa / (wa + wb)});
-    return true;
+  void forget_pairs() { pairs_.clear(), crossing_.clear(), searched_at_.clear(); }
+
+  /// Whether a < b + c, of which the squares are given.
+  static bool less(Real a2, Real b2, Real c2) {
+    const Real more = a2 - c2 - b2;
+    return more < 0 || more * more < 4 * b2 * c2;
   }
 
-  /// No early way out: so few are close that a branch costs more.
-  Real least_between(std::uint32_t a, std::uint32_t b) const {
-    if (b < a) std::swap(a, b);
-    Real least = diameter_;
-    for (std::uint32_t k = first_close_[a]; k < first_close_[a + 1]; ++k)
-      least = close_[k].partner == b ? close_[k].least : least;
-    return least;
+  [[gnu::always_inline]] static Pair pair_of(const Particles<Real>& p, std::uint32_t a,
+                                             std::uint32_t b, Real least) {
+    const Real wa = p.w[a], wb = p.w[b];
+    return {static_cast<std::uint32_t>(p.layout->slot(a)),
+            static_cast<std::uint32_t>(p.layout->slot(b)), least,
+            wa == wb ? Real(0.5) : wa / (wa + wb)};
   }
-
-  static Triple<Real> at(const Points<Real>& x, std::size_t i) {
-    const auto point = x[i];
-    return {point.x(), point.y(), point.z()};
-  }
-  static Triple<Real> at(const std::vector<Triple<Real>>& x, std::size_t i) { return x[i]; }
 
   /// The largest of a particle against the cloth as a whole, between two times [m]: no two move by
   /// more than twice that against each other. The cloth moves as the middle of all motions.
   template <class Then>
-  Real largest_motion(const Points<Real>& now, const Then& then) const {
-    const std::size_t n = first_close_.size() - 1;
-    Triple<Real> least = at(now, 0) - at(then, 0), most = least;
+  Real largest_motion(const Points<Real>& x, const Then& then) const {
+    const std::size_t n = neighbours_.size();
+    const auto now = x.reader();
+    Triple<Real> least = now[0] - then[0], most = least;
     for (std::size_t i = 1; i < n; ++i) {
-      const Triple<Real> moved = at(now, i) - at(then, i);
+      const Triple<Real> moved = now[i] - then[i];
       least = {lesser(least.x, moved.x), lesser(least.y, moved.y), lesser(least.z, moved.z)};
       most = {greater(most.x, moved.x), greater(most.y, moved.y), greater(most.z, moved.z)};
     }
     const Triple<Real> middle = Real(0.5) * (least + most);
     Real largest2 = 0;
     for (std::size_t i = 0; i < n; ++i)
-      largest2 = std::max(largest2, squared_norm(at(now, i) - at(then, i) - middle));
+      largest2 = std::max(largest2, squared_norm(now[i] - then[i] - middle));
     return std::sqrt(largest2);
   }
 
@@ -172,32 +180,24 @@ class SelfCollidePass final : public Pass<Real> {
     const std::size_t n = scene.mesh.rest.size();
     Points<Real> rest(std::make_shared<const Layout>(Layout::packed(n)));
     for (std::size_t i = 0; i < n; ++i) rest.set(i, scene.mesh.rest[i].template cast<Real>());
-    std::vector<std::vector<CloseAtRest>> lists(n);
-    std::vector<std::vector<std::uint32_t>> linked(n);
-    for (const Link& link : scene.links) {
-      linked[static_cast<std::size_t>(link.a)].push_back(static_cast<std::uint32_t>(link.b));
-      linked[static_cast<std::size_t>(link.b)].push_back(static_cast<std::uint32_t>(link.a));
-    }
+    const std::vector<double> w = inverse_masses(scene);
+    const Adjacency links(scene.links, static_cast<int>(n));
     neighbours_.pairs(rest, kMeets * diameter_, [&](std::uint32_t a, std::uint32_t b) {
-      const Real distance = norm(at(rest, b) - at(rest, a));
-      const bool link = std::find(linked[a].begin(), linked[a].end(), b) != linked[a].end();
-      if (!link && distance >= diameter_) return;
-      const Real least = link ? 0 : distance;
-      lists[std::min(a, b)].push_back({std::max(a, b), least});
+      const auto leads_to_b = [b](const Adjacency::End& end) { return at(end.vertex) == b; };
+      const auto ends = links.of(static_cast<int>(a));
+      const Real distance = (rest[b] - rest[a]).norm();
+      if (w[a] + w[b] != 0 && distance > 0 && std::ranges::none_of(ends, leads_to_b))
+        close_.push_back({a, b, std::min(distance, diameter_), 0});
     });
-    for (const auto& list : lists) {
-      first_close_.push_back(static_cast<std::uint32_t>(close_.size()));
-      close_.insert(close_.end(), list.begin(), list.end());
-    }
-    first_close_.push_back(static_cast<std::uint32_t>(close_.size()));
+    neighbours_.ignore(rest, kMeets * diameter_);
   }
 
   static constexpr Real kMeets = Real(1.5);  ///< diameters within which a pair may meet in a step
   Real diameter_;                            ///< m
   std::size_t stride_ = 1;                   ///< of the particles' layout
   Neighbours<Real> neighbours_;
-  std::vector<CloseAtRest> close_;  ///< to particle i, of a greater number: [first, next first)
-  std::vector<std::uint32_t> first_close_;
+  std::vector<Pair> close_;                ///< at rest within kMeets diameters and not linked
+  bool placed_ = false;                    ///< until then by numbers of particles, not slots
   Real skin_ = 0;                          ///< m
   std::vector<Triple<Real>> searched_at_;  ///< [n] m; empty: to be searched
   std::vector<Pair> pairs_;

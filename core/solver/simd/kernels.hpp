@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/solver/contact/contact.hpp"
+#include "core/solver/contact/meet.hpp"
 
 namespace taut {
 
@@ -92,28 +93,6 @@ struct CollideKernels {
   Collide<Real, BallSurface> ball, ball_swept;
   Collide<Real, BoxSurface> box, box_swept;
 };
-
-/// Particles of one cell against those of runs of buckets.
-template <class Real>
-struct MeetQuery {
-  struct Run {
-    std::uint32_t begin, end;
-    std::uint64_t row;  ///< those of other rows do not count
-  };
-  /// [particles + kNarrow] x, y, z and how far each has moved in the step [m].
-  const Real *x[3], *moved[3];
-  const std::uint64_t* rows;  ///< [particles]
-  Real within;                ///< m
-  std::uint32_t begin, end;   ///< the particles
-  int count;
-  Run runs[10];  ///< the first begins with the cell: each of its particles meets what follows it
-};
-struct Meeting {
-  std::uint32_t a, b;
-};
-/// Writes all pairs that are less than `within` and their own way in the step apart; how many.
-template <class Real>
-using Meet = std::size_t (*)(const MeetQuery<Real>&, Meeting*);
 
 /// The loops that matter, once for each instruction set.
 template <class Real>

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "core/solver/contact/meet_text.hpp"
 #include "core/solver/distance.hpp"
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/lanes.hpp"
@@ -319,34 +320,6 @@ void collide(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& s
     collide_strips<Lane, swept>(contact, span);
 }
 
-template <class T, class Real>
-std::size_t meet(const MeetQuery<Real>& cell, Meeting* found) {
-  const T within2(cell.within * cell.within);
-  const auto gap = [](const Real* const(&of)[3], std::uint32_t k, std::uint32_t m)
-      __attribute__((always_inline)) {
-    return Triple<T>{load<T>(of[0] + m) - T(of[0][k]), load<T>(of[1] + m) - T(of[1][k]),
-                     load<T>(of[2] + m) - T(of[2][k])};
-  };
-  constexpr std::uint32_t step = kWidth<T>;
-  const Meeting* const none = found;
-  for (std::uint32_t k = cell.begin; k < cell.end; ++k)
-    for (int r = 0; r < cell.count; ++r) {
-      const auto& run = cell.runs[r];
-      for (std::uint32_t m = r == 0 ? k + 1 : run.begin; m < run.end; m += step) {
-        // |x| < within + |way|, without the roots
-        const T way2 = squared_norm(gap(cell.moved, k, m));
-        const T more = squared_norm(gap(cell.x, k, m)) - way2 - within2;
-        unsigned hits = bits(more < T(0.0) || more * more < T(4.0) * within2 * way2);
-        if (run.end - m < step) hits &= (1u << (run.end - m)) - 1;
-        for (; hits != 0; hits &= hits - 1) {
-          const std::uint32_t hit = m + static_cast<std::uint32_t>(__builtin_ctz(hits));
-          if (cell.rows[hit] == run.row) *found++ = {k, hit};
-        }
-      }
-    }
-  return static_cast<std::size_t>(found - none);
-}
-
 /// Narrow and Wide compute along strips of 8 and 16 lanes, P on particles.
 template <class Real, class Narrow, class Wide, class P>
 constexpr Kernels<Real> make_kernels() {
@@ -360,7 +333,7 @@ constexpr Kernels<Real> make_kernels() {
            .ball_swept = collide<Narrow, P, true, Real, BallSurface>,
            .box = collide<Narrow, P, false, Real, BoxSurface>,
            .box_swept = collide<Narrow, P, true, Real, BoxSurface>},
-          meet<Narrow, Real>};
+          meet<Wide, Real>};
 }
 
 }  // namespace taut
