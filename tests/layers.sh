@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Fails when an #include runs against the architecture, or a library leaks out of the files that may know it.
+# Fails when an #include runs against the architecture, a library leaks out of the files that may know it, or two types
+# of one namespace share a name: a linker takes the inline functions of one of them for both, and nobody warns.
 # Usage: layers.sh [ROOT]; `layers.sh --self-test` plants a violation of every rule in a copy and expects red.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
@@ -22,9 +23,21 @@ owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/.*\.cpp
 toml\+\+                | ^(core/model/document|experiments/lab/[a-z_]+)\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
-nlohmann/               | ^(experiments|tests)/.*\.cpp
+nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/lab/json\.hpp
 openssl/                | ^experiments/lab/.*\.cpp
 '
+
+# awk: types at the margin of a file, outside unnamed namespaces
+twice='
+FNR == 1 { space = ""; own = 0 }
+/^namespace \{/ { own = 1 }
+/^}  \/\/ namespace$/ { own = 0 }
+/^namespace [a-z:]+ \{/ { space = $2 }
+!own && /^(struct|class|enum class) [A-Za-z]+( final)?( :| \{)/ {
+  name = space "::" ($1 == "enum" ? $3 : $2)
+  if (name in seen && seen[name] != FILENAME) printf "%s:%d: %s is also in %s\n", FILENAME, FNR, name, seen[name]
+  seen[name] = FILENAME
+}'
 
 check() {
   local root=$1 bad=0 folder allowed what who file
@@ -48,6 +61,10 @@ check() {
       bad=1
     done < <(grep -rnE --include='*.?pp' "^#include [<\"]($what)" core bullet_ref experiments tests || true)
   done <<<"$owners"
+  while IFS= read -r line; do
+    printf '%s\n' "$line"
+    bad=1
+  done < <(find core bullet_ref experiments tests -name '*.[ch]pp' -print0 | sort -z | xargs -0 awk "$twice")
   return $bad
 }
 
@@ -56,11 +73,12 @@ self_test() {
   copy=$(mktemp -d)
   trap 'rm -rf "$copy"' EXIT
   cp -r "$here"/{core,bullet_ref,experiments,tests} "$copy"
-  while IFS='|' read -r file include; do
+  while IFS='|' read -r file text; do
     mkdir -p "$copy/${file%/*}"
-    printf '#include %s\n' "$include" >"$copy/$file"
+    [[ $text == namespace* ]] || text="#include $text"
+    printf '%s\n' "$text" | tr ';' '\n' >"$copy/$file"
     if (check "$copy") >/dev/null; then
-      echo "not noticed: $file including $include"
+      echo "not noticed: $file with $text"
       failures=1
     fi
     rm "$copy/$file"
@@ -76,6 +94,8 @@ bullet_ref/planted.hpp|<BulletSoftBody/btSoftBody.h>
 core/model/planted.hpp|<toml++/toml.h>
 core/solver/planted.cpp|<Eigen/Sparse>
 core/model/planted.cpp|<nlohmann/json.hpp>
+experiments/lab/planted.hpp|namespace taut {;struct Scene {
+experiments/report/planted.cpp|namespace taut {;enum class TruthVerdict {
 PLANTED
   return $failures
 }

@@ -172,7 +172,7 @@ TEST(Take, AnExplodedPanelIsMarked) {
   take = take_of(scene, take.trajectory);
   take.title = "Analytic", take.stop->why = "exploded";
   const std::vector<Take> takes{take};
-  const Layout layout(480, 360, 1);
+  const PageLayout layout(480, 360, 1);
   StudioOptions options = small();
   options.width = layout.panel_width, options.height = layout.panel_height;
   const Studio studio(scene, takes, options);
@@ -195,7 +195,7 @@ void expect_golden(const std::string& name, const Image& picture) {
 TEST(Golden, FigureOfTwoTakes) {
   const Scene scene = test::sheet_over_ball(17);
   const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
-  const Layout layout(640, 360, 2);
+  const PageLayout layout(640, 360, 2);
   StudioOptions options = small();
   options.width = layout.panel_width, options.height = layout.panel_height;
   const Studio studio(scene, takes, options);

@@ -43,10 +43,10 @@ TEST(Ledger, JudgesByTheToleranceAndNeverPassesNan) {
   ledger.below("a", "q", "m", std::nan(""), 1);
   ledger.deviates("a", "q", "m", 2.0, 1.0, 2.1, 0.2, "known");
   ledger.deviates("a", "q", "m", 2.0, 1.0, 3.0, 0.2, "known");
-  std::vector<Verdict> verdicts;
+  std::vector<TruthVerdict> verdicts;
   for (const Finding& f : ledger.findings()) verdicts.push_back(f.verdict);
-  EXPECT_EQ(verdicts, (std::vector{Verdict::passed, Verdict::broken, Verdict::broken,
-                                   Verdict::deviates, Verdict::broken}));
+  EXPECT_EQ(verdicts, (std::vector{TruthVerdict::passed, TruthVerdict::broken, TruthVerdict::broken,
+                                   TruthVerdict::deviates, TruthVerdict::broken}));
 }
 
 TEST(Ledger, KeepsOnlyTheSolversAskedFor) {
@@ -73,7 +73,7 @@ TEST(Textbook, TheSolverTakesTheStepsOfThePublishedListing) {
   Scene s = bare::sheet(6, 6, {.shear = true});
   s.pins = {0, 5};
   s.gravity = {0, -kG, 0};
-  Textbook textbook(s, 3);
+  TextbookWithTensions textbook(s, 3);
   textbook.load(s.start);
   Probe probe(s, jakobsen(3));
   for (int n = 0; n < 64; ++n) {

@@ -55,7 +55,7 @@ TEST_F(VideoTest, ADecodedFrameMatchesItsStill) {
   if (!have_ffmpeg()) GTEST_SKIP() << "no ffmpeg";
   const Scene scene = test::sheet_over_ball(17);
   const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
-  const Layout layout(640, 360, 2);
+  const PageLayout layout(640, 360, 2);
   StudioOptions look;
   look.width = layout.panel_width, look.height = layout.panel_height;
   look.quality = RenderQuality::draft();

@@ -41,7 +41,7 @@ std::vector<std::string> caption(const Studio& studio, const Take& take, double 
 }
 
 void draw_header(Canvas& canvas, const Studio& studio, const Take& take, double t, Point corner,
-                 const Layout& layout) {
+                 const PageLayout& layout) {
   const double u = layout.unit, left = corner.x + 70 * u;
   const double available = layout.panel_width - 90 * u;
   const double title_y = corner.y + 0.42 * layout.header, line_y = corner.y + 0.76 * layout.header;
@@ -61,7 +61,7 @@ void draw_header(Canvas& canvas, const Studio& studio, const Take& take, double 
 }
 
 void draw_inset(Image& picture, const Studio& studio, std::size_t take, double t, Point panel,
-                const Layout& layout) {
+                const PageLayout& layout) {
   const double u = layout.unit;
   const int side =
       static_cast<int>(std::min(0.18 * layout.panel_width, 0.22 * layout.panel_height));
@@ -80,7 +80,7 @@ void draw_inset(Image& picture, const Studio& studio, std::size_t take, double t
               {label, kMuted, Weight::regular, Align::centre});
 }
 
-void draw_footer(Canvas& canvas, const Studio& studio, const Layout& layout, double t) {
+void draw_footer(Canvas& canvas, const Studio& studio, const PageLayout& layout, double t) {
   const double u = layout.unit, top = layout.height - layout.footer;
   const TextStyle label{18 * u, kMuted, Weight::regular, Align::centre};
   const ColourScale& scale = studio.scale();
@@ -104,7 +104,7 @@ void draw_footer(Canvas& canvas, const Studio& studio, const Layout& layout, dou
 
 }  // namespace
 
-Layout::Layout(int w, int h, int panels)
+PageLayout::PageLayout(int w, int h, int panels)
     : width(w),
       height(h),
       columns(panels == 4 ? 2 : panels),
@@ -116,7 +116,7 @@ Layout::Layout(int w, int h, int panels)
   panel_height = (height - footer) / rows - header;
 }
 
-Image compose(const Studio& studio, const Layout& layout, double t) {
+Image compose(const Studio& studio, const PageLayout& layout, double t) {
   Image picture(layout.width, layout.height, rgb(0xFFFFFF));
   Canvas canvas(picture);
   for (std::size_t k = 0; k < studio.takes().size(); ++k) {

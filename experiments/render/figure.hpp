@@ -9,7 +9,7 @@ namespace taut {
 constexpr Rgb8 kInk = rgb(0x1B1F27), kMuted = rgb(0x5A6474), kRule = rgb(0xDDE0E6);
 
 /// Where the parts of a picture go; all in pixels.
-struct Layout {
+struct PageLayout {
   int width = 1920, height = 1080;
   int columns = 1, rows = 1;
   double unit = 1;  ///< 1 at a height of 1080
@@ -17,12 +17,12 @@ struct Layout {
   int panel_width = 0, panel_height = 0;
 
   /// One to four panels: side by side, four in two rows.
-  Layout(int width, int height, int panels);
+  PageLayout(int width, int height, int panels);
 };
 
 /// A picture of all takes at one moment: captions with live figures, panels, material space, the
 /// colour bar. Sizes come from the layout that the studio was made for.
-Image compose(const Studio&, const Layout&, double t);
+Image compose(const Studio&, const PageLayout&, double t);
 
 /// A contact sheet: a row for each moment, a column for each take. Precondition: times not empty.
 Image compose_sheet(const Studio&, const std::vector<double>& times);

@@ -332,7 +332,7 @@ void chain_tension(Ledger& ledger) {
     if (!claims(ledger, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(20000 / k);
-    Textbook textbook(s, k);
+    TextbookWithTensions textbook(s, k);
     textbook.load(probe.state());
     textbook.step();
     double worst = 0;

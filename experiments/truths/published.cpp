@@ -79,7 +79,7 @@ void xpbd_chain_force(Ledger& ledger) {
     if (!claims(ledger, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(12000 / k);
-    Textbook textbook(s, k);
+    TextbookWithTensions textbook(s, k);
     textbook.load(probe.state());
     textbook.step();
     ledger.equal(solver, "force of the top link of 20 at rest over the weight", "1",

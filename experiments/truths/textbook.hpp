@@ -9,9 +9,9 @@ namespace taut {
 /// The published TimeStep() in double, line by line, with nothing made fast: the oracle that the
 /// solvers are compared with, which also keeps what a solver need not keep, the corrections.
 /// Gravity, links in the scene's order and pins at rest; nothing else.
-class Textbook {
+class TextbookWithTensions {
  public:
-  Textbook(const Scene& scene, int iterations)
+  TextbookWithTensions(const Scene& scene, int iterations)
       : scene_(scene), iterations_(iterations), w_(inverse_masses(scene)) {}
 
   void load(const State& state) {

@@ -6,7 +6,7 @@
 
 namespace taut {
 
-std::string_view to_string(Verdict verdict) {
+std::string_view to_string(TruthVerdict verdict) {
   constexpr std::array<std::string_view, 4> names{"passed", "deviates", "not claimed", "broken"};
   return names[static_cast<std::size_t>(verdict)];
 }
@@ -47,7 +47,7 @@ Finding finding(std::string_view subject, std::string_view quantity, std::string
   Finding f;
   f.subject = subject, f.quantity = quantity, f.unit = unit;
   f.measured = measured, f.expected = expected, f.tolerance = tolerance;
-  f.verdict = within(measured, expected, tolerance) ? Verdict::passed : Verdict::broken;
+  f.verdict = within(measured, expected, tolerance) ? TruthVerdict::passed : TruthVerdict::broken;
   return f;
 }
 
@@ -74,14 +74,15 @@ void Ledger::deviates(std::string_view subject, std::string_view quantity, std::
                       double measured, double expected, double explained, double tolerance,
                       std::string_view why) {
   Finding f = finding(subject, quantity, unit, measured, expected, tolerance);
-  f.verdict = within(measured, explained, tolerance) ? Verdict::deviates : Verdict::broken;
+  f.verdict =
+      within(measured, explained, tolerance) ? TruthVerdict::deviates : TruthVerdict::broken;
   f.why = why;
   add(std::move(f));
 }
 
 void Ledger::not_claimed(std::string_view subject, std::string_view why) {
   Finding f;
-  f.subject = subject, f.verdict = Verdict::not_claimed, f.why = why;
+  f.subject = subject, f.verdict = TruthVerdict::not_claimed, f.why = why;
   f.measured = f.expected = std::nan("");
   add(std::move(f));
 }

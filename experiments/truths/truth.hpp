@@ -8,13 +8,13 @@
 namespace taut {
 
 /// How a measured number compares with what is known.
-enum class Verdict {
+enum class TruthVerdict {
   passed,       ///< agrees within the tolerance
   deviates,     ///< differs for a known reason, by as much as that reason explains
   not_claimed,  ///< the solver does not offer what the truth is about
   broken        ///< differs: the testbed or the solver is wrong
 };
-std::string_view to_string(Verdict);
+std::string_view to_string(TruthVerdict);
 
 /// One number of one subject against the truth.
 struct Finding {
@@ -25,7 +25,7 @@ struct Finding {
   double expected = 0;     ///< what the truth says
   double tolerance = 0;    ///< |measured - expected| may be this large; for `deviates` too
   double uncertainty = 0;  ///< one standard error of a fitted slope; 0: not fitted
-  Verdict verdict = Verdict::passed;
+  TruthVerdict verdict = TruthVerdict::passed;
   std::string why;  ///< of a deviation or of a claim not made
 };
 

@@ -85,7 +85,7 @@ void tell_written(const fs::path& file) { std::cout << file.string() << '\n'; }
 void draw_stills(const Options& options, const TakeSet& set, const std::vector<double>& times,
                  const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1920x1080" : options.size);
-  const Layout layout(width, height, static_cast<int>(set.takes.size()));
+  const PageLayout layout(width, height, static_cast<int>(set.takes.size()));
   StudioOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
   look.frame = Frame::beside_inset();
   look.from = times.front(), look.to = times.back();
@@ -116,7 +116,7 @@ void draw_sheet(const Options& options, const TakeSet& set, const std::vector<do
 /// Without ffmpeg: the last frame as a poster and five moments as a strip.
 void draw_video(const Options& options, const TakeSet& set, const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
-  const Layout layout(width, height, static_cast<int>(set.takes.size()));
+  const PageLayout layout(width, height, static_cast<int>(set.takes.size()));
   StudioOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
   look.frame = Frame::beside_inset();
   const Studio studio(set.scene, set.takes, look);

@@ -5,13 +5,13 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/truths/truth.hpp"
 #include "experiments/verbs/program.hpp"
 #include "experiments/verbs/verb.hpp"
@@ -77,14 +77,12 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
   return outcomes;
 }
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-nlohmann::ordered_json to_json(const std::vector<Outcome>& outcomes) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+Json to_json(const std::vector<Outcome>& outcomes) {
+  Json list = Json::array();
   for (const auto& [truth, findings, seconds] : outcomes) {
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    Json rows = Json::array();
     for (const Finding& f : findings)
       rows.push_back({{"subject", f.subject},
                       {"quantity", f.quantity},
@@ -115,7 +113,7 @@ std::string value(double v) {
 
 std::string line(const Finding& f) {
   std::string text = std::string(to_string(f.verdict)) + "  " + f.subject;
-  if (f.verdict == Verdict::not_claimed) return text + ": " + f.why;
+  if (f.verdict == TruthVerdict::not_claimed) return text + ": " + f.why;
   text += ": " + f.quantity + " " + value(f.measured);
   if (f.uncertainty > 0) text += " +- " + value(f.uncertainty);
   if (f.unit != "1") text += " " + f.unit;
@@ -167,7 +165,7 @@ int summary(const std::vector<Outcome>& outcomes) {
     bool broken = false;
     for (const Finding& f : outcome.findings) {
       ++counts[static_cast<std::size_t>(f.verdict)], ++findings;
-      broken = broken || f.verdict == Verdict::broken;
+      broken = broken || f.verdict == TruthVerdict::broken;
     }
     broken_truths += broken;
   }
