@@ -13,12 +13,13 @@ if(TAUT_PRECOMPILE)
     target_link_libraries(taut_${kind} PRIVATE taut_flags Eigen3::Eigen)
     target_precompile_headers(taut_${kind} PRIVATE <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional>
                               <iomanip> <iostream> <map> <memory> <numbers> <optional> <set> <span>
-                              <sstream> <string> <thread> <variant> <vector> <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp>)
+                              <sstream> <string> <thread> <variant> <vector> <Eigen/Core> <Eigen/Geometry>)
     if(CCACHE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
       target_compile_options(taut_${kind} PRIVATE -fpch-preprocess)  # ccache asks for it
     endif()
   endforeach()
   target_compile_options(taut_precompiled_brief PRIVATE ${taut_brief})
+  target_precompile_headers(taut_precompiled_brief PRIVATE <nlohmann/json.hpp>)
 endif()
 
 function(taut_precompile target)

@@ -9,6 +9,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/lab/data.hpp"
 #include "experiments/lab/files.hpp"
+#include "experiments/lab/fingerprint.hpp"
 #include "experiments/lab/key.hpp"
 
 namespace taut {

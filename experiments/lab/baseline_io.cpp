@@ -3,18 +3,17 @@
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/model/section.hpp"
 #include "experiments/lab/baseline.hpp"
+#include "experiments/lab/json.hpp"
 
 namespace taut {
 
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 std::string line_of(const BaselineRow& row) {
   Json json{{"id", row.id},
@@ -91,7 +90,7 @@ Baseline read_baseline(const fs::path& folder) {
         const BaselineRow& row = rows.back();
         if (row.solver() != file.stem())
           found.push_back({file.string(), number, 1, "this row belongs to " + row.solver()});
-      } catch (const nlohmann::json::exception& error) {
+      } catch (const Json::exception& error) {
         found.push_back(
             {file.string(), number, 1, std::string("no baseline row: ") + error.what()});
       }

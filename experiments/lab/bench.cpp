@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/lab/record_io.hpp"
 
 namespace taut {
@@ -17,8 +17,8 @@ Interval scaled(const Interval& i, double factor) {
   return {i.low * factor, i.mid * factor, i.high * factor};
 }
 
-nlohmann::json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
-Interval interval_of(const nlohmann::json& j) { return {j.at(0), j.at(1), j.at(2)}; }
+Json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
+Interval interval_of(const Json& j) { return {j.at(0), j.at(1), j.at(2)}; }
 
 }  // namespace
 
@@ -83,12 +83,11 @@ std::vector<Record> BenchSession::records() const {
 }
 
 std::string to_json(const BenchSession& session) {
-  nlohmann::json all{
-      {"schema", kBenchSchema}, {"study", session.study}, {"machine", session.machine}};
+  Json all{{"schema", kBenchSchema}, {"study", session.study}, {"machine", session.machine}};
   for (const SceneBench& scene : session.scenes) {
-    nlohmann::json one{{"scene", scene.scene}, {"control", json_of(scene.control)}};
+    Json one{{"scene", scene.scene}, {"control", json_of(scene.control)}};
     for (const auto& [record, timing] : scene.cases)
-      one["cases"].push_back({{"record", nlohmann::json::parse(to_json(record))},
+      one["cases"].push_back({{"record", Json::parse(to_json(record))},
                               {"cpu_seconds_per_step", timing.samples},
                               {"wall_seconds_per_step", timing.wall},
                               {"peak_bytes", timing.peak_bytes},
@@ -99,7 +98,7 @@ std::string to_json(const BenchSession& session) {
 }
 
 BenchSession bench_from_json(std::string_view text, const std::string& where) try {
-  const auto all = nlohmann::json::parse(text);
+  const auto all = Json::parse(text);
   if (all.at("schema") != kBenchSchema)
     throw InputError(where + ": not a bench of schema 2; run `taut bench` again");
   BenchSession session{all.at("study"), all.at("machine"), {}};
@@ -117,7 +116,7 @@ BenchSession bench_from_json(std::string_view text, const std::string& where) tr
     session.scenes.push_back(std::move(scene));
   }
   return session;
-} catch (const nlohmann::json::exception& error) {
+} catch (const Json::exception& error) {
   throw InputError(where + ": damaged bench: " + error.what());
 }
 

@@ -3,27 +3,25 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/lab/digest.hpp"
+#include "experiments/lab/json.hpp"
 
 namespace taut {
 
 namespace {
 
-using nlohmann::json;
-
-json status_json(const Status& status) {
+Json status_json(const Status& status) {
   return {{"kind", to_string(status.kind)},
           {"reason", status.reason},
           {"step", status.step},
           {"vertex", status.vertex}};
 }
 
-json result_json(const Record& r) {
-  json plan = json::array(), effective = json::array(), values = json::object();
+Json result_json(const Record& r) {
+  Json plan = Json::array(), effective = Json::array(), values = Json::object();
   for (const PassCost& p : r.plan)
     plan.push_back({{"pass", p.pass},
                     {"items", p.items},
@@ -32,7 +30,7 @@ json result_json(const Record& r) {
                     {"projections", p.projections}});
   for (const auto& [name, text] : r.effective) effective.push_back({name, text});
   for (const auto& [name, value] : r.values)
-    values[name] = std::isfinite(value) ? json(value) : json(nullptr);
+    values[name] = std::isfinite(value) ? Json(value) : Json(nullptr);
   return {{"status", status_json(r.status)}, {"values", values},
           {"projections", r.projections},    {"plan", plan},
           {"effective", effective},          {"digest", r.digest}};
@@ -55,7 +53,7 @@ std::string_view take(std::string_view& text, char separator) {
   return head;
 }
 
-Record from_json(const json& j) {
+Record from_json(const Json& j) {
   Record r;
   r.key = j.at("key");
   r.id = j.at("id");
@@ -67,17 +65,17 @@ Record from_json(const json& j) {
   r.steps = j.at("steps");
   r.vertices = j.at("vertices");
   r.links = j.at("links");
-  const json& status = j.at("status");
+  const Json& status = j.at("status");
   r.status = {status_kind(status.at("kind").get<std::string>()), status.at("reason"),
               status.at("step"), status.at("vertex")};
   for (const auto& [name, value] : j.at("values").items())
     r.values[name] =
         value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
   r.projections = j.at("projections");
-  for (const json& p : j.at("plan"))
+  for (const Json& p : j.at("plan"))
     r.plan.push_back(
         {p.at("pass"), p.at("items"), p.at("repeats"), p.at("bytes"), p.at("projections")});
-  for (const json& e : j.at("effective")) r.effective.emplace_back(e.at(0), e.at(1));
+  for (const Json& e : j.at("effective")) r.effective.emplace_back(e.at(0), e.at(1));
   r.digest = j.at("digest");
   return r;
 }
@@ -85,7 +83,7 @@ Record from_json(const json& j) {
 }  // namespace
 
 std::string to_json(const Record& r, int indent) {
-  json j = result_json(r);
+  Json j = result_json(r);
   j.update({{"schema", kRecordSchema},
             {"key", r.key},
             {"id", r.id},
@@ -98,21 +96,21 @@ std::string to_json(const Record& r, int indent) {
             {"steps", r.steps},
             {"vertices", r.vertices},
             {"links", r.links}});
-  return j.dump(indent, ' ', false, json::error_handler_t::replace);
+  return j.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 Record record_from_json(std::string_view text, const std::string& where) try {
-  const json j = json::parse(text);
+  const Json j = Json::parse(text);
   if (j.at("schema") != kRecordSchema)
     throw InputError(where + ": schema " + j.at("schema").dump() + ", this program reads " +
                      std::to_string(kRecordSchema));
   return from_json(j);
-} catch (const json::exception& error) {
+} catch (const Json::exception& error) {
   throw InputError(where + ": not a record: " + error.what());
 }
 
 std::string result_digest(const Record& r) {
-  return sha256(result_json(r).dump(-1, ' ', false, json::error_handler_t::replace));
+  return sha256(result_json(r).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string to_csv(const Series& series) {

@@ -1,11 +1,11 @@
 #include "experiments/lab/reference_store.hpp"
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/data.hpp"
 #include "experiments/lab/digest.hpp"
+#include "experiments/lab/json.hpp"
 
 namespace taut {
 
@@ -15,23 +15,23 @@ constexpr const char* kSchema = "taut-reference-1";
 
 std::string file_name(const Reference& reference) {
   if (reference.kind == "static") return "static.json";
-  std::string t = nlohmann::json(reference.t).dump();
+  std::string t = Json(reference.t).dump();
   return "motion-" + t + "s.json";
 }
 
 }  // namespace
 
 void write_reference(const Reference& reference, const std::filesystem::path& folder) {
-  nlohmann::ordered_json json{{"schema", kSchema},          {"scene", reference.scene},
-                              {"digest", reference.digest}, {"kind", reference.kind},
-                              {"t", reference.t},           {"derivation", reference.derivation},
-                              {"floor_m", reference.floor}, {"vertices", reference.x.size()}};
+  Json json{{"schema", kSchema},          {"scene", reference.scene},
+            {"digest", reference.digest}, {"kind", reference.kind},
+            {"t", reference.t},           {"derivation", reference.derivation},
+            {"floor_m", reference.floor}, {"vertices", reference.x.size()}};
   std::string text = json.dump(1);
   text.resize(text.size() - 2);  // "\n}": the coordinates follow, one vertex a line
   text += ",\n \"x\": [";
   for (std::size_t i = 0; i < reference.x.size(); ++i) {
     const Vec3& x = reference.x[i];
-    text += (i == 0 ? "\n  " : ",\n  ") + nlohmann::json{x.x(), x.y(), x.z()}.dump();
+    text += (i == 0 ? "\n  " : ",\n  ") + Json{x.x(), x.y(), x.z()}.dump();
   }
   text += "\n ]\n}\n";
   std::filesystem::create_directories(folder);
@@ -44,7 +44,7 @@ void write_reference(const Reference& reference, const std::filesystem::path& fo
 Reference read_reference(const std::filesystem::path& path) {
   std::ifstream file(path);
   try {
-    const nlohmann::json json = nlohmann::json::parse(file);
+    const Json json = Json::parse(file);
     if (json.at("schema") != kSchema) throw InputError(path.string() + ": unknown schema");
     Reference reference{json.at("scene"),
                         json.at("digest"),
@@ -53,10 +53,10 @@ Reference read_reference(const std::filesystem::path& path) {
                         json.at("derivation"),
                         json.at("floor_m"),
                         {}};
-    for (const nlohmann::json& x : json.at("x"))
+    for (const Json& x : json.at("x"))
       reference.x.emplace_back(x.at(0).get<double>(), x.at(1).get<double>(), x.at(2).get<double>());
     return reference;
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const Json::exception& error) {
     throw InputError(path.string() + ": not a reference: " + error.what());
   }
 }

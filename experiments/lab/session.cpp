@@ -5,18 +5,17 @@
 #include <charconv>
 #include <cstdlib>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/files.hpp"
-#include "experiments/lab/key.hpp"
+#include "experiments/lab/fingerprint.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/lab/record_io.hpp"
 
 namespace taut {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 namespace {
 
@@ -59,14 +58,14 @@ Session::Session(const Store& store, const std::string& command, const std::vect
   make_folder(folder_);
   char host[256] = "";
   gethostname(host, sizeof host - 1);
-  const json manifest{{"schema", kRecordSchema},  {"command", command},
+  const Json manifest{{"schema", kRecordSchema},  {"command", command},
                       {"started", utc_stamp()},   {"host", host},
                       {"toolchain", toolchain()}, {"shard", shard.index},
                       {"shards", shard.count},    {"cases", cases.size()}};
   write_durably(folder_ / "manifest.json", manifest.dump(1) + "\n");
   std::string plan;
   for (const Case& one : cases)
-    plan += json{{"key", one.key},
+    plan += Json{{"key", one.key},
                  {"id", one.id},
                  {"shard", shard_of(one.key, shard.count)},
                  {"shards", shard.count}}
@@ -78,7 +77,7 @@ Session::Session(const Store& store, const std::string& command, const std::vect
 void Session::done(const Record& record) const {
   append_line(
       folder_ / "journal.jsonl",
-      json{{"key", record.key}, {"id", record.id}, {"status", to_string(record.status.kind)}}
+      Json{{"key", record.key}, {"id", record.id}, {"status", to_string(record.status.kind)}}
           .dump());
 }
 
@@ -89,10 +88,10 @@ std::vector<Planned> planned(const fs::path& root) {
     if (!fs::exists(session.path() / "plan.jsonl")) continue;
     std::istringstream lines(read_text(session.path() / "plan.jsonl"));
     for (std::string line; std::getline(lines, line);) try {
-        const json j = json::parse(line);
+        const Json j = Json::parse(line);
         Planned one{j.at("key"), j.at("id"), j.at("shard"), j.at("shards")};
         all.emplace(one.key, std::move(one));
-      } catch (const json::exception& error) {
+      } catch (const Json::exception& error) {
         throw InputError((session.path() / "plan.jsonl").string() + ": " + error.what());
       }
   }

@@ -7,24 +7,23 @@
 #include <array>
 #include <cerrno>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/digest.hpp"
 #include "experiments/lab/files.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/lab/record_io.hpp"
 
 namespace taut {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 namespace {
 
 constexpr std::array kParts{"case.json", "series.csv", "stderr.txt"};
 
-json seal_of(const fs::path& folder, const Record& record) {
-  json seal{{"schema", kRecordSchema},
+Json seal_of(const fs::path& folder, const Record& record) {
+  Json seal{{"schema", kRecordSchema},
             {"key", record.key},
             {"status", to_string(record.status.kind)},
             {"result", result_digest(record)}};
@@ -35,7 +34,7 @@ json seal_of(const fs::path& folder, const Record& record) {
 
 /// The record of an entry; throws if a part is not what its seal says.
 Record open_entry(const fs::path& folder, const std::string& key) {
-  const json seal = json::parse(read_text(folder / "status.json"));
+  const Json seal = Json::parse(read_text(folder / "status.json"));
   for (const auto& [part, digest] : seal.at("files").items())
     if (sha256(read_text(folder / part)) != digest)
       throw InputError(part + " does not match its digest");

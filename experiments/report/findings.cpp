@@ -1,17 +1,15 @@
 #include "experiments/report/findings.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
 
 namespace taut::report {
 
 namespace {
-
-using Json = nlohmann::json;
 
 double number(const Json& json) { return json.is_number() ? json.get<double>() : std::nan(""); }
 

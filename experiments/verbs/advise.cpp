@@ -6,13 +6,13 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/advice.hpp"
 #include "experiments/lab/campaign.hpp"
 #include "experiments/lab/data.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/lab/store.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/verbs/verb.hpp"
@@ -273,9 +273,9 @@ void print_nearest(const Options& options, const Answer& answer) {
   std::cout << '\n';
 }
 
-nlohmann::json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
+Json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
 
-nlohmann::json json_of(const BenchedCase& c, const std::string& metric) {
+Json json_of(const BenchedCase& c, const std::string& metric) {
   return {{"setting", parse_solver(c.record.spec.solver).brief()},
           {"solver", c.record.solver},
           {"error", c.record.values.at(metric)},
@@ -285,14 +285,14 @@ nlohmann::json json_of(const BenchedCase& c, const std::string& metric) {
 }
 
 void print_json(const Options& options, const Answer& answer) {
-  nlohmann::json all{{"scene", options.scene},
-                     {"metric", options.metric},
-                     {"best", nullptr},
-                     {"runner_up", nullptr},
-                     {"cannot", answer.cannot},
-                     {"searched_seconds", answer.searched},
-                     {"complete", answer.cut.empty()},
-                     {"not_done", answer.cut}};
+  Json all{{"scene", options.scene},
+           {"metric", options.metric},
+           {"best", nullptr},
+           {"runner_up", nullptr},
+           {"cannot", answer.cannot},
+           {"searched_seconds", answer.searched},
+           {"complete", answer.cut.empty()},
+           {"not_done", answer.cut}};
   if (answer.wish.error) all["error"] = *answer.wish.error;
   if (answer.wish.budget) all["budget_cpu_seconds_per_second"] = *answer.wish.budget;
   for (const Offer& o : answer.tried)

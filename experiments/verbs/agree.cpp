@@ -1,13 +1,13 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/lab/agreement.hpp"
 #include "experiments/lab/files.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/verbs/verb.hpp"
 
 namespace taut::verb::agree {
@@ -60,7 +60,7 @@ Outcome with_bench(const BenchSession& a, const BenchSession& b, const Options& 
 }
 
 /// An answer of `taut advise --json` against what the bench says of the same scene and error.
-Outcome with_advice(const BenchSession& bench, const nlohmann::json& advice) {
+Outcome with_advice(const BenchSession& bench, const Json& advice) {
   const std::string scene = advice.at("scene"), metric = advice.at("metric");
   if (!advice.contains("error"))
     throw InputError("advice on a budget is not compared; ask with --error");
@@ -90,14 +90,14 @@ int run(const Options& options) {
   Outcome all;
   for (const std::string& file : options.others) {
     const std::string text = read_text(file);
-    const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    const Json json = Json::parse(text, nullptr, false);
     std::cout << options.bench << " and " << file << '\n';
     Outcome one;
     try {
       one = json.is_object() && json.contains("best")
                 ? with_advice(bench, json)
                 : with_bench(bench, bench_from_json(text, file), options);
-    } catch (const nlohmann::json::exception& error) {
+    } catch (const Json::exception& error) {
       throw InputError(file + ": neither a bench nor an advice: " + error.what());
     }
     all.compared += one.compared, all.contradictions += one.contradictions;

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
-#include "experiments/lab/key.hpp"
+#include "experiments/lab/fingerprint.hpp"
 #include "experiments/verbs/baseline_study.hpp"
 #include "experiments/verbs/verb.hpp"
 

@@ -2,10 +2,10 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
-#include "experiments/lab/key.hpp"
+#include "experiments/lab/fingerprint.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/verbs/baseline_study.hpp"
 #include "experiments/verbs/program.hpp"
@@ -75,7 +75,7 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
 /// What the report reads: how much was compared, and what differs.
 struct Notes {
   std::size_t cases = 0, values = 0;
-  nlohmann::ordered_json findings = nlohmann::ordered_json::array();
+  Json findings = Json::array();
 
   void add(const std::string& study, const Comparison& comparison) {
     cases += comparison.cases, values += comparison.values;
@@ -86,11 +86,11 @@ struct Notes {
   }
   void write(const std::string& results) const {
     report::write_file(std::filesystem::path(results) / "check.json",
-                       nlohmann::ordered_json{{"schema", "taut-check-1"},
-                                              {"program", program_digest()},
-                                              {"cases", cases},
-                                              {"values", values},
-                                              {"findings", findings}}
+                       Json{{"schema", "taut-check-1"},
+                            {"program", program_digest()},
+                            {"cases", cases},
+                            {"values", values},
+                            {"findings", findings}}
                                .dump(1) +
                            "\n");
   }

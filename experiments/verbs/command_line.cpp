@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/model/input_error.hpp"
-#include "experiments/lab/key.hpp"
+#include "experiments/lab/fingerprint.hpp"
 #include "experiments/verbs/arguments.hpp"
 #include "experiments/verbs/invoke.hpp"
 #include "experiments/verbs/program.hpp"

@@ -9,11 +9,11 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "experiments/lab/data.hpp"
-#include "experiments/lab/key.hpp"
+#include "experiments/lab/fingerprint.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/lab/store.hpp"
 #include "experiments/verbs/verb.hpp"
 
@@ -132,10 +132,10 @@ int run(bool as_json) {
   const char* verdict = trusted ? "timing can be trusted here"
                                 : "timing is for display only here: the machine is not quiet";
   if (as_json) {
-    nlohmann::json all = nlohmann::json::array();
+    Json all = Json::array();
     for (const Finding& f : findings)
       all.push_back({{"name", f.name}, {"value", f.value}, {"good", f.good}});
-    std::cout << nlohmann::json{{"findings", all}, {"timing_trusted", trusted}}.dump(2) << '\n';
+    std::cout << Json{{"findings", all}, {"timing_trusted", trusted}}.dump(2) << '\n';
     return kPass;
   }
   for (const Finding& f : findings)

@@ -4,12 +4,12 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "core/model/input_error.hpp"
 #include "core/model/section.hpp"
 #include "core/model/shortest.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/verbs/case_options.hpp"
 #include "experiments/verbs/progress.hpp"
 #include "experiments/verbs/verb.hpp"
@@ -17,8 +17,6 @@
 namespace taut::verb::frontier {
 
 namespace {
-
-using nlohmann::json;
 
 struct Options {
   CaseOptions which;
@@ -98,10 +96,10 @@ void print_text(const CaseFrontier& result, const std::optional<Prediction>& the
                           std::to_string(result.ran) + " were run now");
 }
 
-json to_json(const Options& options, const CaseFrontier& result,
+Json to_json(const Options& options, const CaseFrontier& result,
              const std::optional<Prediction>& theory) {
   const Frontier& found = result.frontier;
-  json probes = json::array();
+  Json probes = Json::array();
   for (std::size_t i = 0; i < found.probes.size(); ++i)
     probes.push_back({{"value", found.probes[i].value},
                       {"status", to_string(found.probes[i].status.kind)},
@@ -109,7 +107,7 @@ json to_json(const Options& options, const CaseFrontier& result,
                       {"step", found.probes[i].status.step},
                       {"id", result.records[i].id},
                       {"key", result.records[i].key}});
-  json all{{"of", options.of}, {"kind", to_string(found.kind)}, {"probes", probes}};
+  Json all{{"of", options.of}, {"kind", to_string(found.kind)}, {"probes", probes}};
   if (found.kind != Frontier::Kind::none_stable) all["stable"] = found.stable;
   if (found.kind != Frontier::Kind::all_stable) all["unstable"] = found.unstable;
   all["islands"] = found.islands;

@@ -1,12 +1,12 @@
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "core/model/input_error.hpp"
 #include "core/model/scene_io.hpp"
 #include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/lab/data.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/lab/study.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/verbs/verb.hpp"
@@ -14,8 +14,6 @@
 namespace taut::verb::list {
 
 namespace {
-
-using nlohmann::json;
 
 constexpr std::string_view kKinds[] = {"scenes", "solvers", "metrics", "studies"};
 
@@ -27,8 +25,8 @@ std::string allowed(const ParamSpec& spec) {
   return shortest(spec.min) + " to " + shortest(spec.max);
 }
 
-json list_scenes() {
-  json all = json::array();
+Json list_scenes() {
+  Json all = Json::array();
   for (const std::string& name : shipped("scenes")) {
     const Scene scene = load_scene(find_scene(name));
     all.push_back({{"name", name},
@@ -41,10 +39,10 @@ json list_scenes() {
   return all;
 }
 
-json list_solvers() {
-  json all = json::array();
+Json list_solvers() {
+  Json all = Json::array();
   for (const SolverEntry* entry : solvers()) {
-    json params = json::array();
+    Json params = Json::array();
     for (const ParamSpec& spec : entry->params)
       params.push_back({{"name", spec.name},
                         {"default", spec.default_value},
@@ -59,10 +57,10 @@ json list_solvers() {
   return all;
 }
 
-json list_metrics() {
-  json all = json::array();
+Json list_metrics() {
+  Json all = Json::array();
   for (const MetricEntry* entry : metrics()) {
-    json values = json::array();
+    Json values = Json::array();
     for (const ValueSpec& spec : entry->values)
       values.push_back({{"name", spec.name},
                         {"unit", spec.unit},
@@ -76,8 +74,8 @@ json list_metrics() {
   return all;
 }
 
-json list_studies() {
-  json all = json::array();
+Json list_studies() {
+  Json all = Json::array();
   for (const std::string& name : shipped("studies")) {
     const Study study = load_study(name);
     all.push_back({{"name", name},
@@ -89,34 +87,34 @@ json list_studies() {
   return all;
 }
 
-json list(std::string_view kind) {
+Json list(std::string_view kind) {
   if (kind == "scenes") return list_scenes();
   if (kind == "solvers") return list_solvers();
   return kind == "metrics" ? list_metrics() : list_studies();
 }
 
-std::string text(const json& value) { return value.is_string() ? value.get<std::string>() : ""; }
+std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
 
-void print_text(std::string_view kind, const json& all) {
+void print_text(std::string_view kind, const Json& all) {
   std::cout << kind << '\n';
-  for (const json& one : all) {
+  for (const Json& one : all) {
     std::cout << "  " << text(one["name"]) << ": "
               << text(one.contains("summary") ? one["summary"] : one["question"]) << '\n';
     if (one.contains("source")) std::cout << "      source: " << text(one["source"]) << '\n';
-    for (const json& param : one.value("params", json::array())) {
+    for (const Json& param : one.value("params", Json::array())) {
       std::cout << "      " << text(param["name"]) << '=' << text(param["default"]);
       if (const std::string unit = text(param["unit"]); !unit.empty())
         std::cout << " [" << unit << ']';
       std::cout << "  (" << text(param["allowed"]) << ")  " << text(param["help"]) << '\n';
     }
-    for (const json& value : one.value("values", json::array()))
+    for (const Json& value : one.value("values", Json::array()))
       std::cout << "      " << text(value["name"]) << " [" << text(value["unit"]) << "]  "
                 << text(value["help"]) << '\n';
   }
 }
 
 int run(const std::string& what, bool as_json) {
-  json all;
+  Json all;
   for (const std::string_view kind : kKinds)
     if (what.empty() || what == kind) all[std::string(kind)] = list(kind);
   if (as_json) {

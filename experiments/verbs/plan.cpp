@@ -1,8 +1,8 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "experiments/lab/json.hpp"
 #include "experiments/verbs/case_options.hpp"
 #include "experiments/verbs/verb.hpp"
 
@@ -10,8 +10,8 @@ namespace taut::verb::planning {
 
 namespace {
 
-nlohmann::json to_json(const Case& one, const std::vector<PassCost>& plan) {
-  nlohmann::json passes = nlohmann::json::array();
+Json to_json(const Case& one, const std::vector<PassCost>& plan) {
+  Json passes = Json::array();
   for (const PassCost& cost : plan)
     passes.push_back({{"pass", cost.pass},
                       {"items", cost.items},

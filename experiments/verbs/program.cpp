@@ -2,7 +2,7 @@
 
 #include "core/model/solver.hpp"
 #include "experiments/lab/digest.hpp"
-#include "experiments/lab/key.hpp"
+#include "experiments/lab/fingerprint.hpp"
 
 namespace taut {
 

@@ -10,7 +10,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/lab/data.hpp"
 #include "experiments/lab/files.hpp"
-#include "experiments/lab/key.hpp"
+#include "experiments/lab/fingerprint.hpp"
 #include "experiments/lab/map.hpp"
 #include "experiments/report/findings.hpp"
 #include "experiments/report/stored.hpp"

@@ -5,12 +5,12 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/campaign.hpp"
 #include "experiments/lab/files.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/verbs/verb.hpp"
 
 namespace taut::verb::scaling {
@@ -86,17 +86,17 @@ void print(const ScalingLine& line) {
             << exponent(line.wall) << ", memory " << exponent(line.memory) << '\n';
 }
 
-nlohmann::json json_of(const std::optional<PowerLaw>& law) {
+Json json_of(const std::optional<PowerLaw>& law) {
   if (!law) return nullptr;
   return {{"factor", law->factor}, {"exponent", law->slope}, {"standard_error", law->slope_error}};
 }
 
-nlohmann::json json_of(const ScalingLine& line) {
-  nlohmann::json all{{"setting", line.setting},
-                     {"skipped", line.skipped},
-                     {"cpu", json_of(line.cpu)},
-                     {"wall", json_of(line.wall)},
-                     {"memory", json_of(line.memory)}};
+Json json_of(const ScalingLine& line) {
+  Json all{{"setting", line.setting},
+           {"skipped", line.skipped},
+           {"cpu", json_of(line.cpu)},
+           {"wall", json_of(line.wall)},
+           {"memory", json_of(line.memory)}};
   for (const BenchedCase& c : line.cases)
     all["sizes"].push_back({{"vertices", c.record.vertices},
                             {"status", to_string(c.record.status.kind)},
@@ -105,8 +105,8 @@ nlohmann::json json_of(const ScalingLine& line) {
                             {"plan_bytes", plan_bytes(c.record)},
                             {"peak_bytes", c.timing.peak_bytes},
                             {"stretch.rms", c.record.values.count("stretch.rms")
-                                                ? nlohmann::json(c.record.values.at("stretch.rms"))
-                                                : nlohmann::json()}});
+                                                ? Json(c.record.values.at("stretch.rms"))
+                                                : Json()}});
   return all;
 }
 
@@ -134,7 +134,7 @@ int run(const Options& options) {
       cases, options.limit, [&](const Case& one) { return measure(one, store, options); });
   const auto file = keep(study, lines, options);
   if (options.json) {
-    nlohmann::json all;
+    Json all;
     for (const ScalingLine& line : lines) all.push_back(json_of(line));
     std::cout << all.dump(1) << '\n';
     return kPass;

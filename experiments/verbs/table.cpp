@@ -4,11 +4,11 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/model/input_error.hpp"
 #include "experiments/lab/campaign.hpp"
+#include "experiments/lab/json.hpp"
 #include "experiments/verbs/invoke.hpp"
 #include "experiments/verbs/verb.hpp"
 
@@ -76,12 +76,12 @@ void print(const Table& table, const std::string& value) {
   std::cout << "\n\n";
 }
 
-nlohmann::json json_of(const Table& table, const std::vector<std::string>& values) {
-  nlohmann::json all = nlohmann::json::array();
+Json json_of(const Table& table, const std::vector<std::string>& values) {
+  Json all = Json::array();
   for (const auto& [where, record] : table.records) {
-    nlohmann::json row{{"setting", where.first},
-                       {"scene", where.second},
-                       {"status", to_string(record.status.kind)}};
+    Json row{{"setting", where.first},
+             {"scene", where.second},
+             {"status", to_string(record.status.kind)}};
     for (const std::string& value : values)
       if (const auto at = record.values.find(value); at != record.values.end())
         row["values"][value] = at->second;  // NaN becomes null
