@@ -152,6 +152,26 @@ TEST(View, NamesAndAngles) {
   EXPECT_THROW(parse_quantity("stress"), InputError);
 }
 
+TEST(Camera, TheInsetHidesNoneOfThePoints) {
+  const Frame frame = Frame::beside_inset();
+  for (const double aspect : {0.6, 1.15, 2.0})
+    for (const Vec3& half : {Vec3(1, 0.3, 1), Vec3(0.3, 1, 0.3), Vec3(1, 1, 0.1)}) {
+      std::vector<Vec3> corners;
+      for (const double x : {-1.0, 1.0})
+        for (const double y : {-1.0, 1.0})
+          for (const double z : {-1.0, 1.0}) corners.push_back(half.cwiseProduct(Vec3(x, y, z)));
+      const Camera camera = fit_camera(corners, Vec3::UnitY(), View{}, aspect, frame);
+      const Eigen::Matrix4f clip = camera.world_to_clip(static_cast<float>(aspect));
+      for (const Vec3& p : corners) {
+        const Eigen::Vector4f seen = clip * p.cast<float>().homogeneous();
+        const double x = seen.x() / seen.w(), y = seen.y() / seen.w();
+        EXPECT_LT(std::max(std::abs(x), std::abs(y)), 0.9) << aspect << ": " << half.transpose();
+        EXPECT_FALSE(x > frame.inset_left + 1e-5 && y > frame.inset_bottom + 1e-5)
+            << aspect << ": " << half.transpose();
+      }
+    }
+}
+
 TEST(Take, EndsBeforeTheFirstUnsoundFrameAndSaysSo) {
   const Scene scene = test::level_sheet(5);
   Trajectory trajectory = test::stretched(scene, 0).trajectory;

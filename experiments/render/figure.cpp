@@ -16,8 +16,13 @@ std::string formatted(const char* format, double value) {
   return text;
 }
 
+/// Three digits are all that is told apart.
 std::string percent(double value, bool sign) {
-  const std::string digits = formatted("%.2f %%", std::abs(100 * value));
+  const double size = std::abs(100 * value);
+  const std::string digits = formatted(size < 9.995   ? "%.2f %%"
+                                       : size < 99.95 ? "%.1f %%"
+                                                      : "%.0f %%",
+                                       size);
   return (sign ? value < 0 ? "\u2212" : "+" : "") + digits;
 }
 
