@@ -189,6 +189,33 @@ TEST(Chart, EndLabelsKeepTheirOrderAndTheirDistance) {
   EXPECT_DOUBLE_EQ(at[3], 300);
 }
 
+TEST(Chart, ExactZerosShareNoPlaceWithATick) {
+  const auto records = synthetic::iterations("ball");  // zero from 64 sweeps on
+  const Chart chart = curves_chart(
+      {.kind = "penetration", .x = "iterations", .y = "penetration.max", .along = "iterations"},
+      records);
+  for (const auto& [at, label] : chart.y.ticks) EXPECT_GT(chart.y.position(at), 0.12) << label;
+}
+
+TEST(Chart, ANarrowOneGivesItsWidthToThePlot) {
+  const auto records = synthetic::iterations("ball");
+  FigureSpec spec{.kind = "error-iterations",
+                  .x = "iterations",
+                  .y = "stretch.rms",
+                  .along = "iterations",
+                  .width = 340,
+                  .height = 330};
+  const Drawing drawing = draw_chart(curves_chart(spec, records));
+  EXPECT_GT(drawing.area.right - drawing.area.left, 0.75 * 340);
+  EXPECT_NE(drawing.script.find("Bullet"), std::string::npos) << "its curves are named above it";
+}
+
+TEST(Format, SignsThatAKeyboardLacks) {
+  EXPECT_EQ(typeset("z^2 - 2 mu z >= 2e-12 m"), "z² − 2 μ z ≥ 2e−12 m");
+  EXPECT_EQ(typeset("0.0156 s x 1, +-mu, pi/2N"), "0.0156 s × 1, ±μ, π/2N");
+  EXPECT_EQ(typeset("much spins: shape-2, mu_s, box x"), "much spins: shape-2, mu_s, box x");
+}
+
 TEST(Format, NumbersReadAsPeopleWriteThem) {
   EXPECT_EQ(significant(0.01234), "0.012");
   EXPECT_EQ(significant(9.96), "10");

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
 
 #include "core/model/input_error.hpp"
@@ -15,8 +14,10 @@ namespace taut::report {
 
 namespace {
 
-constexpr double kLabelGap = 16;  ///< px between the labels at the ends of curves
-constexpr double kStripRow = 15;  ///< px for each curve with failures
+constexpr double kLabelGap = 16;   ///< px between the labels at the ends of curves
+constexpr double kStripRow = 15;   ///< px for each curve with failures
+constexpr double kKeyRow = 17;     ///< px for names above the plot
+constexpr double kKeyMarker = 16;  ///< px before a name
 
 std::string quoted(std::string_view colour) { return "'" + std::string(colour) + "'"; }
 std::string paint(std::string_view name) { return quoted(neutral(name).light); }
@@ -31,22 +32,48 @@ std::size_t failing_curves(const Chart& chart) {
       chart.curves, [](const Curve& c) { return std::ranges::any_of(c.points, failed); }));
 }
 
+bool is_narrow(const Chart& chart) { return chart.width < kNarrow; }
+
+/// Where the names above a narrow plot begin, as column [px] and row: as many a row as fit.
+std::vector<std::pair<double, int>> key_places(const Chart& chart) {
+  std::vector<std::pair<double, int>> places;
+  double x = 0;
+  int row = 0;
+  for (const Curve& curve : chart.curves) {
+    const double width = kKeyMarker + text_width(curve.label);
+    if (x > 0 && x + width > chart.width - 8) x = 0, ++row;
+    places.emplace_back(x, row);
+    x += width + 12;
+  }
+  return places;
+}
+
 PlotArea layout(const Chart& chart) {
   double widest = 0;
   for (const Curve& curve : chart.curves) widest = std::max(widest, text_width(curve.label));
-  const double right = std::min(widest + 22, chart.width * 0.42);
+  const bool narrow = is_narrow(chart);
+  const double right = narrow ? 14 : std::min(widest + 22, chart.width * 0.42);
   const double strip = static_cast<double>(failing_curves(chart)) * kStripRow;
+  const double key = narrow ? kKeyRow * (key_places(chart).back().second + 1) : 0;
   double ticks = 0;
   for (const auto& tick : chart.y.ticks) ticks = std::max(ticks, text_width(tick.second));
-  return {std::max(68.0, ticks + 40), chart.width - right, (chart.title.empty() ? 14 : 48) + strip,
-          chart.height - 54.0,        chart.x.low,         chart.x.high};
+  return {std::max(narrow ? 52.0 : 68.0, ticks + (narrow ? 37 : 40)),
+          chart.width - right,
+          (chart.title.empty() ? 14 : 48) + strip + key,
+          chart.height - 54.0,
+          chart.x.low,
+          chart.x.high};
 }
+
+/// Where exact zeros lie on a logarithmic axis: just above its end.
+double floor_of(const Axis& y) { return y.log ? y.low * std::pow(y.high / y.low, 0.035) : y.low; }
 
 /// Positions in the script: the last measured point of a curve, in px from the top.
 double end_height(const Chart& chart, const PlotArea& area, const Curve& curve) {
   double y = 0.5;
   for (const Point& p : curve.points)
-    if (p.measured()) y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));
+    if (p.measured())
+      y = chart.y.position(std::max(p.y * chart.y.quantity.scale, floor_of(chart.y)));
   return area.bottom - y * (area.bottom - area.top);
 }
 
@@ -65,7 +92,27 @@ std::string axis_titles(const Chart& chart, const PlotArea& area) {
          screen(14, (area.top + area.bottom) / 2, chart) + " center rotate by 90" + style;
 }
 
+/// The names above a narrow plot, each with the marker of its curve.
+std::string key(const Chart& chart) {
+  std::string out;
+  const auto places = key_places(chart);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Curve& curve = chart.curves[i];
+    const SolverStyle style = solver_style(curve.solver, curve.variant);
+    const std::string colour = " rgb " + quoted(style.colour.light);
+    const double y = (chart.title.empty() ? 10 : 44) + kKeyRow * places[i].second;
+    if (chart.markers)
+      out += "set label '' at " + screen(places[i].first + 6, y, chart) + " point pt " +
+             std::to_string(style.marker) + " ps " + exact(0.55 * style.marker_size) + " lc" +
+             colour + "\n";
+    out += "set label " + gnuplot_string(curve.label) + " at " +
+           screen(places[i].first + kKeyMarker, y, chart) + " left tc" + colour + " font ',12'\n";
+  }
+  return out;
+}
+
 std::string end_labels(const Chart& chart, const PlotArea& area) {
+  if (is_narrow(chart)) return key(chart);
   std::vector<double> at;
   for (const Curve& curve : chart.curves) at.push_back(end_height(chart, area, curve));
   at = spread_labels(at, kLabelGap, area.top + 4, area.bottom - 4);
@@ -109,8 +156,9 @@ std::string zero_label(const Chart& chart, const PlotArea& area) {
         return std::ranges::any_of(curve.points,
                                    [](const Point& p) { return p.measured() && p.y <= 0; });
       });
-  return any ? "set label '0' at " + screen(area.left - 9, area.bottom - 4, chart) +
-                   " right tc rgb " + paint("muted") + " font ',12'\n"
+  const double y = area.bottom - chart.y.position(floor_of(chart.y)) * (area.bottom - area.top);
+  return any ? "set label '0' at " + screen(area.left - 9, y, chart) + " right tc rgb " +
+                   paint("muted") + " font ',12'\n"
              : "";
 }
 
@@ -160,12 +208,14 @@ std::string floor_line(const Chart& chart, const PlotArea& area) {
   const bool below = floor < chart.y.low;
   const double t = below ? 0 : chart.y.position(std::min(floor, chart.y.high));
   const double y = area.bottom - t * (area.bottom - area.top);
-  std::string out = "set label " +
-                    gnuplot_string("reference's own error: " +
-                                   (floor > 0 ? chart.y.quantity.text(*chart.floor, 2) : "none") +
-                                   (below && floor > 0 ? ", below this plot" : "")) +
-                    " at " + screen(area.left + 8, y - 8, chart) + " left tc rgb " +
-                    paint("muted") + " font ',11'\n";
+  const std::string own = is_narrow(chart) ? "reference's: " : "reference's own error: ";
+  const std::string where = is_narrow(chart) ? ", below" : ", below this plot";
+  std::string out =
+      "set label " +
+      gnuplot_string(floor > 0 ? own + chart.y.quantity.text(*chart.floor, 2) + (below ? where : "")
+                               : "the reference is exact") +
+      " at " + screen(area.left + 8, y - 8, chart) + " left tc rgb " + paint("muted") +
+      " font ',11'\n";
   if (!below)
     out += "set arrow from " + screen(area.left, y, chart) + " to " + screen(area.right, y, chart) +
            " nohead dt (2,4) lw 1.4 lc rgb " + paint("axis") + "\n";
@@ -198,7 +248,7 @@ std::string make_csv(const Chart& chart) {
 std::string plot_commands(const Chart& chart, const std::string& slope) {
   const std::string sx = exact(chart.x.quantity.scale);
   const std::string sy = exact(chart.y.quantity.scale);
-  const std::string floor = exact(chart.y.low * (chart.y.log ? 1.12 : 1));
+  const std::string floor = exact(floor_of(chart.y));
   const std::string zero = chart.y.log ? "($4 <= 0 ? " + floor + " : $4*" + sy + ")" : "$4*" + sy;
   std::string out = "measured(s) = s eq 'ok' || s eq 'unsettled'\nplot 1/0 notitle";
   if (chart.stair && !pareto_front(chart.curves).empty())
@@ -243,7 +293,7 @@ struct Box {
 
 Box marker_at(const Chart& chart, const PlotArea& area, const Point& p) {
   const double x = chart.x.position(p.x * chart.x.quantity.scale);
-  const double y = chart.y.position(std::max(p.y * chart.y.quantity.scale, chart.y.low));
+  const double y = chart.y.position(std::max(p.y * chart.y.quantity.scale, floor_of(chart.y)));
   return {area.left + x * (area.right - area.left), area.bottom - y * (area.bottom - area.top), 8,
           8};
 }
@@ -335,73 +385,15 @@ std::string describe(const Chart& chart) {
   return out;
 }
 
-}  // namespace
-
-std::vector<Point> pareto_front(const std::vector<Curve>& curves) {
-  std::vector<Point> all;
-  for (const Curve& curve : curves)
-    for (const Point& p : curve.points)
-      if (p.measured()) all.push_back(p);
-  std::ranges::stable_sort(all, {}, [](const Point& p) { return std::pair(p.x, p.y); });
-  std::vector<Point> front;
-  for (const Point& p : all)
-    if (front.empty() || p.y < front.back().y) front.push_back(p);
-  return front;
+/// Keeps the lowest eighth of a logarithmic axis free of ticks, for exact zeros.
+void make_room_for_zeros(Axis& y) {
+  const double lowest = y.low;
+  y.low /= std::pow(y.high / y.low, 1.0 / 7);
+  std::erase_if(y.ticks, [&](const auto& tick) { return tick.first < lowest; });
 }
-
-std::vector<double> spread_labels(std::vector<double> at, double gap, double low, double high) {
-  if (at.size() < 2) return at;
-  std::vector<std::size_t> order(at.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return at[i]; });
-  gap = std::min(gap, std::max(1.0, (high - low) / static_cast<double>(at.size() - 1)));
-  // Equal shares of each overlap, over and over; a handful of labels settles within a few sweeps.
-  for (int sweep = 0; sweep < 200; ++sweep)
-    for (std::size_t k = 0; k + 1 < order.size(); ++k) {
-      double &a = at[order[k]], &b = at[order[k + 1]];
-      const double overlap = gap - (b - a);
-      if (overlap > 0) a -= overlap / 2, b += overlap / 2;
-      a = std::max(a, low + static_cast<double>(k) * gap);
-      b = std::min(b, high - static_cast<double>(order.size() - 2 - k) * gap);
-    }
-  return at;
-}
-
-double text_width(const std::string& utf8) {
-  const auto letters = std::ranges::count_if(
-      utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
-  return static_cast<double>(letters) * 7.1;
-}
-
-std::string script_preamble(const std::string& title, const PlotArea& area, int width, int height) {
-  const auto share = [](double px, int of) { return exact(std::round(px * 1e5 / of) / 1e5); };
-  std::string out = "set encoding utf8\nset datafile separator ','\nset key off\n";
-  out += "set lmargin at screen " + share(area.left, width) + "\nset rmargin at screen " +
-         share(area.right, width) + "\nset tmargin at screen " + share(height - area.top, height) +
-         "\nset bmargin at screen " + share(height - area.bottom, height) + "\n";
-  out += "set border 3 lw 1 lc rgb " + paint("axis") + "\nset tics nomirror out scale 0.4,0.2\n";
-  if (!title.empty())
-    out += "set label " + gnuplot_string(title) + " at screen " + share(area.left, width) +
-           ",screen " + share(height - 20, height) + " left tc rgb " + paint("ink") +
-           " font ',15'\n";
-  return out;
-}
-
-std::string script_ticks(const std::string& which, const Axis& axis) {
-  std::string out = "set " + which + "tics (";
-  for (const auto& [at, text] : axis.ticks)
-    out += gnuplot_string(text) + " " + exact(at) + (text.empty() ? " 1, " : ", ");
-  out.resize(out.size() - (axis.ticks.empty() ? 0 : 2));
-  out += ") textcolor rgb " + paint("muted") + " font ',12'\nset " + which + "range [" +
-         exact(axis.low) + ":" + exact(axis.high) + "]\n";
-  if (axis.log) out += "set logscale " + which + "\n";
-  return out + "set grid " + which + "tics lw 1 lt 1 lc rgb " + paint("grid") + "\n";
-}
-
-namespace {
 
 /// The value that says how exact the reference of an error is; nullptr if it has none.
-const char* floor_of(const std::string& error) {
+const char* reference_floor(const std::string& error) {
   if (error == "reference.rms" || error == "reference.max") return "reference.floor";
   if (error == "reference.motion") return "reference.motion_floor";
   return error.starts_with("stretch.") || error.starts_with("structural.") ? "reference.strain"
@@ -425,7 +417,8 @@ Chart curves_chart(const FigureSpec& spec, std::span<const Record> records) {
   if (!any) throw InputError("no case has both '" + spec.x + "' and '" + spec.y + "'");
   chart.x = spec.x == spec.along ? sweep_axis(qx, xs) : fit_axis(qx, xs, true);
   chart.y = fit_axis(qy, ys, true);
-  if (const char* const name = floor_of(spec.y))
+  if (std::ranges::any_of(ys, [](double y) { return y <= 0; })) make_room_for_zeros(chart.y);
+  if (const char* const name = reference_floor(spec.y))
     for (const Record& record : records)
       if (const double floor = value_of(record, name); std::isfinite(floor)) chart.floor = floor;
   return chart;

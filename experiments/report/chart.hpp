@@ -24,6 +24,9 @@ struct Chart {
   bool lines = true;
 };
 
+/// A chart narrower than this has the names of its curves above the plot, not at their ends.
+constexpr int kNarrow = 420;  ///< px
+
 /// Script, data, table and plot area. Failures become glyphs in a strip above the plot, in the row
 /// of their solver; exact zeros of a logarithmic axis lie on its floor as open triangles.
 Drawing draw_chart(const Chart&);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "core/model/shortest.hpp"
 
@@ -50,6 +52,37 @@ std::string tick_text(double value, int digits) {
 std::string exact(double value) { return std::isnan(value) ? "" : shortest(value); }
 
 std::string ratio(double value) { return significant(value, 2); }
+
+std::string typeset(std::string_view plain) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSigns{{{"^2", "²"},
+                                                                                 {"^3", "³"},
+                                                                                 {">=", "≥"},
+                                                                                 {"<=", "≤"},
+                                                                                 {"+-", "±"},
+                                                                                 {" x ", " × "},
+                                                                                 {" - ", " − "},
+                                                                                 {"mu", "μ"},
+                                                                                 {"pi", "π"}}};
+  const auto at = [&](std::size_t i) { return i < plain.size() ? plain[i] : ' '; };
+  const auto letter = [&](std::size_t i) {
+    return at(i) == '_' || std::isalnum(static_cast<unsigned char>(at(i)));
+  };
+  const auto digit = [&](std::size_t i) { return std::isdigit(static_cast<unsigned char>(at(i))); };
+  std::string out;
+  for (std::size_t i = 0; i < plain.size();) {
+    const auto found = std::ranges::find_if(kSigns, [&](const auto& sign) {
+      const bool word = std::isalpha(static_cast<unsigned char>(sign.first[0]));
+      return plain.substr(i).starts_with(sign.first) &&
+             (!word || (!letter(i - 1) && !letter(i + sign.first.size())));
+    });
+    const bool exponent = at(i) == '-' && at(i - 1) == 'e' && digit(i - 2) && digit(i + 1);
+    if (found != kSigns.end())
+      out += found->second, i += found->first.size();
+    else
+      out += exponent ? "−" : std::string(1, plain[i]), ++i;
+  }
+  return out;
+}
 
 std::string escape_html(std::string_view text) {
   std::string out;

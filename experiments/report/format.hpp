@@ -15,6 +15,9 @@ std::string tick_text(double value, int digits);
 /// A ratio for prose: "3.3", "12", "150".
 std::string ratio(double value);
 
+/// Plain text with the signs that a keyboard lacks: "dt^2 >= 2e-5, mu x 2" -> "dt² ≥ 2e−5, μ × 2".
+std::string typeset(std::string_view);
+
 std::string escape_html(std::string_view);  ///< & < > " '; control characters become U+FFFD
 std::string csv_field(
     std::string_view);  ///< quoted if it must be; one line always, as gnuplot wants

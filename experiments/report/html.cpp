@@ -37,7 +37,7 @@ std::string status_legend(const std::set<Status::Kind>& kinds, bool explained) {
 
 std::string html_table(const Table& table, const std::string& caption) {
   std::string out = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" +
-                    escape_html(caption) + "\"><table><caption class=\"sr\">" +
+                    escape_html(caption) + "\"><table class=\"stacks\"><caption class=\"sr\">" +
                     escape_html(caption) + "</caption><thead><tr>";
   for (const std::string& cell : table.header)
     out += "<th scope=\"col\">" + escape_html(cell) + "</th>";
@@ -46,7 +46,9 @@ std::string html_table(const Table& table, const std::string& caption) {
     out += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i)
       out += i == 0 ? "<th scope=\"row\">" + escape_html(row[i]) + "</th>"
-                    : "<td>" + escape_html(row[i]) + "</td>";
+                    : "<td data-label=\"" +
+                          escape_html(i < table.header.size() ? table.header[i] : "") + "\">" +
+                          escape_html(row[i]) + "</td>";
     out += "</tr>\n";
   }
   return out + "</tbody></table></div>";

@@ -24,7 +24,8 @@ std::string listed(const std::vector<std::string>& names);
 /// A swatch with its glyph and a name for each status; `explained`: with a few words more.
 std::string status_legend(const std::set<Status::Kind>&, bool explained);
 
-/// <table> with a caption for screen readers; the first column heads its row. Cells are escaped.
+/// <table> with a caption for screen readers; the first column heads its row. Cells are escaped. On
+/// a phone its rows become lists, each cell below its column's name.
 std::string html_table(const Table&, const std::string& caption);
 
 /// <details> with the table and a link that saves it as CSV. `csv` may be empty.

@@ -97,10 +97,13 @@ Figure Page::draw(FigureSpec spec, const FigureData& data, std::string& svg) {
 
 std::string Page::figure(FigureSpec spec, const FigureData& data, const std::string& heading,
                          const std::string& caption, const std::string& classes) {
-  std::string svg, note;
+  std::string svg, phone, note;
   Figure figure;
   try {
     figure = draw(spec, data, svg);
+    FigureSpec narrow = spec;
+    narrow.width = kPhoneWidth, narrow.height = std::min(spec.height, 330);
+    draw(narrow, data, phone);
   } catch (const PlotError& error) {
     note = absent(error.what(), "");
     const FigureEntry& entry = find_figure(spec.kind);
@@ -116,9 +119,9 @@ std::string Page::figure(FigureSpec spec, const FigureData& data, const std::str
   }
   return "<figure class=\"card " + classes + "\"><figcaption><h4>" + escape_html(heading) +
          "</h4><p>" + caption + "</p></figcaption>" +
-         (svg.empty() ? note
-                      : "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"" +
-                            escape_html(heading) + "\">" + svg + "</div>") +
+         (svg.empty()
+              ? note
+              : "<div class=\"broad\">" + svg + "</div><div class=\"narrow\">" + phone + "</div>") +
          html_data(figure.table, heading, read_file(figure.csv), figure.csv.filename().string()) +
          "</figure>\n";
 }

@@ -1,6 +1,7 @@
 #include "experiments/report/player.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/model/input_error.hpp"
@@ -12,11 +13,14 @@ namespace taut::report {
 
 namespace {
 
-/// The chart over time [px], across the page or half of it.
-struct Extent {
+/// A chart over time [px] and the class of the pages that show it.
+struct Variant {
+  const char* name;
   int width, height;
 };
-constexpr Extent kWide{1100, 190}, kHalf{540, 170};
+/// Across the page, half of it, on a phone.
+constexpr std::array kVariants{Variant{"wide", 1100, 190}, Variant{"half", 540, 170},
+                               Variant{"phone", kPhoneWidth, 180}};
 
 std::string data_uri(const std::string& type, const std::string& bytes) {
   return "data:" + type + ";base64," + base64(bytes);
@@ -25,8 +29,8 @@ std::string data_uri(const std::string& type, const std::string& bytes) {
 std::string names(const Clip& clip) {
   std::string out = "<div class=\"who\">";
   for (const auto& [solver, settings] : clip.panels)
-    out += "<span>" + solver_dot(solver) + "<b>" + escape_html(solver_title(solver)) + "</b> " +
-           escape_html(settings) + "</span>";
+    out += "<span>" + solver_dot(solver) + "<b>" + escape_html(solver_title(solver)) + "</b> <em>" +
+           escape_html(settings) + "</em></span>";
   return out + "</div>";
 }
 
@@ -88,43 +92,57 @@ std::vector<TimeSeries> curves_of(const Page& page, const std::string& scene, do
   return here;
 }
 
+std::string attribute(const char* name, double v) {
+  return std::string(" data-") + name + "=\"" + exact(v) + "\"";
+}
+
 /// Its plot area becomes attributes by which the playhead finds its place.
+std::string plot(const std::string& svg, const PlotArea& area, const Variant& variant) {
+  return std::string("<div class=\"plot ") + variant.name + "\"" +
+         attribute("left", area.left / variant.width) +
+         attribute("right", area.right / variant.width) + ">" + svg +
+         "<div class=\"playhead\" hidden></div></div>";
+}
+
+/// Where the slider begins and ends below the plot: thumb and playhead in line.
+std::string reach(const PlotArea& area, const Variant& variant) {
+  const std::string name = std::string("--") + variant.name;
+  return name + "-from:" + exact(area.left / variant.width) + ";" + name +
+         "-to:" + exact(area.right / variant.width) + ";";
+}
+
 std::string timeline(Page& page, const std::string& scene, const std::string& value, double until,
-                     Extent size) {
+                     bool half) {
   const std::vector<TimeSeries> here = curves_of(page, scene, until);
-  std::string svg;
-  const Quantity q = quantity(value);
+  const std::string heading = quantity(value).title + " over time, " + scene;
+  std::string plots, style;
+  Figure figure;
   try {
-    const Figure figure = page.draw({.kind = "series",
-                                     .y = value,
-                                     .title = q.title + " over time, " + scene,
-                                     .width = size.width,
-                                     .height = size.height},
-                                    {{}, here}, svg);
-    const PlotArea& a = figure.area;
-    const auto attribute = [](const char* name, double v) {
-      return std::string(" data-") + name + "=\"" + exact(v) + "\"";
-    };
-    return "<div class=\"timeline\"" + attribute("left", a.left / size.width) +
-           attribute("right", a.right / size.width) + attribute("low", a.low) +
-           attribute("high", a.high) +
-           "><div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"" +
-           escape_html(q.title + " over time, " + scene) + "\"><div class=\"plot\">" + svg +
-           "<div class=\"playhead\" hidden></div></div></div>" +
-           "<input type=\"range\" class=\"scrub\" min=\"" + exact(a.low) + "\" max=\"" +
-           exact(a.high) + "\" step=\"any\" value=\"" + exact(a.low) +
-           // Below the plot area, half a thumb wider at either end: thumb and playhead in line.
-           "\" style=\"--from:" + exact(a.left / size.width) +
-           ";--to:" + exact(a.right / size.width) + "\" aria-label=\"Simulated time of " +
-           escape_html(scene) + " in seconds\" hidden>" +
-           html_data(figure.table, q.title + " over time, " + scene, read_file(figure.csv),
-                     slug(scene) + "-series.csv") +
-           "</div>";
+    for (const Variant& variant : kVariants) {
+      if (half && &variant == &kVariants.front()) continue;
+      std::string svg;
+      Figure drawn = page.draw({.kind = "series",
+                                .y = value,
+                                .title = heading,
+                                .width = variant.width,
+                                .height = variant.height},
+                               {{}, here}, svg);
+      plots += plot(svg, drawn.area, variant);
+      style += reach(drawn.area, variant);
+      if (figure.table.rows.empty()) figure = std::move(drawn);
+    }
   } catch (const InputError&) {
     return "";
   } catch (const PlotError& error) {
     return absent(error.what(), "");
   }
+  const PlotArea& a = figure.area;
+  return "<div class=\"timeline\"" + attribute("low", a.low) + attribute("high", a.high) + ">" +
+         plots + "<input type=\"range\" class=\"scrub\" min=\"" + exact(a.low) + "\" max=\"" +
+         exact(a.high) + "\" step=\"any\" value=\"" + exact(a.low) + "\" style=\"" + style +
+         "\" aria-label=\"Simulated time of " + escape_html(scene) + " in seconds\" hidden>" +
+         html_data(figure.table, heading, read_file(figure.csv), slug(scene) + "-series.csv") +
+         "</div>";
 }
 
 /// "half", "one eighth"; "" in real time.
@@ -158,7 +176,7 @@ std::string scene_player(Page& page, const std::string& scene, bool half) {
     buttons = controls(scene, media);
     until = media.duration;
   }
-  const std::string chart = timeline(page, scene, "stretch.rms", until, half ? kHalf : kWide);
+  const std::string chart = timeline(page, scene, "stretch.rms", until, half);
   if (stage.empty() && chart.empty()) return "";
   const std::string missing = stage.empty() ? absent("No pictures were rendered; this makes them:",
                                                      "taut render " + scene + " --video")

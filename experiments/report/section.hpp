@@ -11,6 +11,9 @@
 
 namespace taut::report {
 
+/// Every chart is drawn twice: shrunk onto a phone its text could not be read.
+constexpr int kPhoneWidth = 340;  ///< px
+
 /// What sections share while one report is being written.
 class Page {
  public:
@@ -29,8 +32,8 @@ class Page {
   std::vector<Record> sweep(const std::string& scene, const std::string& setting,
                             const std::string& needs) const;
 
-  /// A card with a figure, its description and its numbers. Without gnuplot the card has a note and
-  /// the numbers. Empty text if there is nothing to draw.
+  /// A card with a figure, drawn for pages and for phones, its description and its numbers. Without
+  /// gnuplot the card has a note and the numbers. Empty text if there is nothing to draw.
   std::string figure(FigureSpec, const FigureData&, const std::string& heading,
                      const std::string& caption, const std::string& classes = "");
   /// The SVG alone, in the page's colours; throws as make_figure does.

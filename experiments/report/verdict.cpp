@@ -125,8 +125,8 @@ std::string dt_sentence(const Comparison& facts, const std::vector<std::string>&
   const Quantity q = quantity("dt");
   const std::size_t better = *dt[0] >= *dt[1] ? 0 : 1;
   const double factor = *dt[better] / *dt[1 - better];
-  if (factor < kAlike) return "; both stand time steps up to " + q.text(*dt[0]);
-  return "; " + solver_name(facts.contenders[better]) + " stands " + times(factor) +
+  if (factor < kAlike) return "; both stay sound at time steps up to " + q.text(*dt[0]);
+  return "; " + solver_name(facts.contenders[better]) + " stays sound at " + times(factor) +
          " longer time steps (" + q.text(*dt[better]) + " against " + q.text(*dt[1 - better]) + ")";
 }
 

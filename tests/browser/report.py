@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Opens a report in headless Chromium and uses it: no request leaves, no error is logged, the theme
-switches, every chart has its numbers, texts have contrast, the slider moves the videos, phones need no
-sideways scrolling. Pictures for a human look go to OUT.
+switches, every chart has its numbers, texts have contrast, the slider moves the videos, everything fits
+and can be read on a desk, a tablet, a phone and paper. Pictures for a human look go to OUT.
 
     report.py REPORT.html OUT        exit 0: all is well; 1: it is not; 77: there is no Chromium
 """
@@ -68,13 +68,39 @@ CUT_TEXTS = """
 })
 """
 
+# Charts that leave the window or whose text is shrunk: drawn at less than SCALE of their own size.
+HARD_TO_READ = """
+[...document.querySelectorAll('svg.chart')].filter(svg => svg.checkVisibility()).flatMap(svg => {
+  const box = svg.getBoundingClientRect(), scale = box.width / svg.viewBox.baseVal.width;
+  return scale >= SCALE && box.left >= 0 && box.right <= innerWidth
+      ? [] : [scale.toFixed(2) + ' to ' + box.right + ' px: ' + svg.querySelector('title').textContent];
+})
+"""
+
+# Charts that are shown twice, or not at all.
+SHOWN_ONCE = """
+[...document.querySelectorAll('figure, .timeline')].filter(box => box.querySelector('svg.chart') &&
+    [...box.querySelectorAll('svg.chart')].filter(svg => svg.checkVisibility()).length !== 1)
+    .map(box => box.querySelector('svg.chart title').textContent)
+"""
+
+# Pictures of films narrower than a stamp, and films that leave the cell beside them empty.
+LOST_FILMS = """
+[...document.querySelectorAll('.clip')].filter(clip => clip.getBoundingClientRect().width < 90)
+    .map(clip => 'squeezed: ' + clip.innerText)
+    .concat([...document.querySelectorAll('.films')].filter(films =>
+        Math.abs(films.lastElementChild.getBoundingClientRect().right - films.getBoundingClientRect().right) > 1)
+    .map(films => 'an empty cell after ' + films.lastElementChild.id))
+"""
+
 SCRUB = """
 (async () => {
   const box = document.querySelectorAll('.player')[PLAYER];
   const videos = [...box.querySelectorAll('video')];
   box.scrollIntoView();  // what is far off is not loaded
   await Promise.all(videos.map(v => v.readyState > 1 || new Promise(r => v.addEventListener('canplay', r))));
-  const scrub = box.querySelector('.scrub'), head = box.querySelector('.playhead');
+  const scrub = box.querySelector('.scrub');
+  const head = [...box.querySelectorAll('.playhead')].find(e => e.checkVisibility());
   const play = box.querySelector('.play');
   play.textContent.startsWith('pause') && play.click();
   const at = async share => {
@@ -150,9 +176,11 @@ ACCESSIBILITY = r"""
 # its poster, its film, its clock and its playhead, which is read from its place between the ends of the chart.
 STATE = """(box => {
   const v = box.querySelector('video'), line = box.querySelector('.timeline').dataset;
-  const head = parseFloat(box.querySelector('.playhead').style.left) / 100;
+  const plot = [...box.querySelectorAll('.plot')].find(e => e.checkVisibility());
+  const head = parseFloat(plot.querySelector('.playhead').style.left) / 100;
   return [v.paused, Number(v.dataset.poster), v.currentTime * v.dataset.speed, parseFloat(box.querySelector('.clock').textContent),
-          Number(line.low) + (head - line.left) / (line.right - line.left) * (line.high - line.low), Number(v.dataset.frame)];
+          Number(line.low) + (head - plot.dataset.left) / (plot.dataset.right - plot.dataset.left) * (line.high - line.low),
+          Number(v.dataset.frame)];
 })(document.querySelector('.player'))"""
 # Films far below the window: how many there are, and how many are loaded already.
 FAR = """(far => [far.length, far.filter(v => v.src).length])([...document.querySelectorAll('video')]
@@ -266,6 +294,19 @@ def check_keys(page, checks, report):
     page.call("Emulation.setEmulatedMedia", features=[])
 
 
+def check_fit(page, checks, medium, width, scale):
+    """On paper, a phone and a desk: charts fit and can be read, films have room."""
+    page.call("Emulation.setEmulatedMedia", media="print" if medium == "print" else "")
+    page.size(width, 900)
+    checks.true(page.run("document.documentElement.scrollWidth") <= width, f"{medium}: no sideways scrolling",
+                page.run("document.documentElement.scrollWidth"))
+    checks.empty(page.run(CUT_TEXTS), f"{medium}: no text of a chart is cut off")
+    checks.empty(page.run(HARD_TO_READ.replace("SCALE", str(scale))), f"{medium}: every chart fits and can be read")
+    checks.empty(page.run(SHOWN_ONCE), f"{medium}: every chart is shown once")
+    checks.empty(page.run(LOST_FILMS), f"{medium}: every film has room, and no cell is empty")
+    page.call("Emulation.setEmulatedMedia", media="")
+
+
 def check_axe(page, checks):
     script = axe_core()
     if script is None:
@@ -291,16 +332,15 @@ def main(report, out):
         checks.true(page.run("document.querySelectorAll('svg.chart').length") > 0, "there are charts")
         checks.empty(page.run(BARE_CHARTS), "every chart has title, description and a data table")
         checks.empty(page.run(REPEATED_IDS), "no id is used twice")
-        checks.empty(page.run(CUT_TEXTS), "no text of a chart is cut off")
-        checks.true(page.run("document.documentElement.scrollWidth") <= 1280, "desktop: no sideways scrolling")
+        for medium, width, scale in (("print", 688, 0.8), ("tablet", 768, 0.9), ("phone", 390, 0.9),
+                                     ("desktop", 1280, 0.9)):
+            check_fit(page, checks, medium, width, scale)
         check_theme(page, checks, out)
         checks.empty(page.run(ACCESSIBILITY), "accessibility: the serious rules, written out")
         check_media(page, checks)
         check_axe(page, checks)
         check_keys(page, checks, report)
         page.size(390, 844)
-        checks.true(page.run("document.documentElement.scrollWidth") <= 390, "phone: no sideways scrolling",
-                    page.run("document.documentElement.scrollWidth"))
         page.screenshot(os.path.join(out, "phone.png"))
         page.pdf(os.path.join(out, "print.pdf"))
         requests, errors = logged(page.events)

@@ -28,21 +28,24 @@ const makePlayer = (box) => {
   const clock = box.querySelector('.clock');
   const line = box.querySelector('.timeline');
   const scrub = line && line.querySelector('.scrub');
-  const head = line && line.querySelector('.playhead');
-  const place = line && {
-    left: Number(line.dataset.left), right: Number(line.dataset.right),
-    low: Number(line.dataset.low), high: Number(line.dataset.high)
-  };
+  // The chart as pages and phones show it; one of them is seen.
+  const plots = line ? [...line.querySelectorAll('.plot')].map((box) => ({
+    box, head: box.querySelector('.playhead'),
+    left: Number(box.dataset.left), right: Number(box.dataset.right)
+  })) : [];
+  const low = line && Number(line.dataset.low), high = line && Number(line.dataset.high);
   let untouched = true;  // still at its poster: playing starts at the beginning
   let wanted = poster;   // what is shown before the film has arrived, and sought once it has
   box.querySelector('.controls').hidden = false;
-  if (line) scrub.hidden = head.hidden = false;
+  if (line) scrub.hidden = false;
+  for (const plot of plots) plot.head.hidden = false;
 
   const show = (time) => {
     clock.textContent = time.toFixed(2) + ' s';
     if (!line) return;
-    const share = Math.min(1, Math.max(0, (time - place.low) / (place.high - place.low)));
-    head.style.left = 100 * (place.left + share * (place.right - place.left)) + '%';
+    const share = Math.min(1, Math.max(0, (time - low) / (high - low)));
+    for (const {head, left, right} of plots)
+      head.style.left = 100 * (left + share * (right - left)) + '%';
     scrub.value = time;
     scrub.setAttribute('aria-valuetext', time.toFixed(2) + ' seconds');
   };
@@ -104,13 +107,14 @@ const makePlayer = (box) => {
   box.querySelector('.forward').addEventListener('click', () => step(1));
   if (line) {
     scrub.addEventListener('input', () => { pause(); seek(Number(scrub.value)); });
-    const plot = line.querySelector('.plot');
+  }
+  for (const {box: plot, left, right} of plots) {
     const drag = (event) => {
       if (!(event.buttons & 1)) return;
       const edge = plot.getBoundingClientRect();
-      const share = ((event.clientX - edge.left) / edge.width - place.left) / (place.right - place.left);
+      const share = ((event.clientX - edge.left) / edge.width - left) / (right - left);
       pause();
-      seek(place.low + Math.min(1, Math.max(0, share)) * (place.high - place.low));
+      seek(low + Math.min(1, Math.max(0, share)) * (high - low));
     };
     plot.addEventListener('pointerdown', drag);
     plot.addEventListener('pointermove', drag);

@@ -13,6 +13,8 @@ namespace taut::report::figure::stability {
 namespace {
 
 constexpr double kGap = 0.045;        ///< between cells, in cells
+constexpr double kBeside = 56;        ///< px between panels side by side
+constexpr double kBelow = 60;         ///< px between panels one below the other
 constexpr double kInferredGap = 0.3;  ///< around a cell that was not run
 
 struct Cell {
@@ -97,7 +99,7 @@ std::string make_csv(const Map& map) {
 
 std::string cell_text(const Quantity& q, double si) {
   const double shown = si * q.scale;
-  const bool whole = std::abs(shown - std::round(shown)) < 1e-6 * shown && shown < 1e4;
+  const bool whole = std::abs(shown - std::round(shown)) < 1e-6 * shown && shown < 9999.5;
   return whole ? exact(std::round(shown)) : tick_text(shown, 2);
 }
 
@@ -115,17 +117,19 @@ std::string index_ticks(const std::string& which, const Quantity& q, const std::
 }
 
 /// Axis titles, placed by hand: gnuplot's own would leave the picture.
-std::string panel_titles(const FigureSpec& spec, const PlotArea& area, double left, double right,
-                         bool first) {
+std::string panel_titles(const FigureSpec& spec, const PlotArea& whole, const PlotArea& panel,
+                         bool lowest, bool first) {
   const auto at = [&](double x, double y) {
     return " at screen " + exact(x / spec.width) + ",screen " +
            exact((spec.height - y) / spec.height) + " center tc rgb " + muted() + " font ',12'";
   };
-  std::string out = "set label 101 " + gnuplot_string(quantity(spec.x).label()) +
-                    at((left + right) / 2, area.bottom + 38) + "\n";
+  std::string out;
+  if (lowest)
+    out += "set label 101 " + gnuplot_string(quantity(spec.x).label()) +
+           at((panel.left + panel.right) / 2, panel.bottom + 38) + "\n";
   if (first)
     out += "set label 102 " + gnuplot_string(quantity(spec.y).label()) +
-           at(14, (area.top + area.bottom) / 2) + " rotate by 90\n";
+           at(14, (whole.top + whole.bottom) / 2) + " rotate by 90\n";
   return out;
 }
 
@@ -192,21 +196,38 @@ double head_room(const Map& map, const FigureSpec& spec) {
          (spec.legend || map.panels.size() > 1 ? 22 : 0);
 }
 
+/// The place of a panel: side by side, in a narrow figure one below the other.
+PlotArea place(const PlotArea& whole, const FigureSpec& spec, std::size_t index,
+               std::size_t count) {
+  PlotArea panel = whole;
+  const auto k = static_cast<double>(index), n = static_cast<double>(count);
+  if (spec.width < kNarrow) {
+    const double pitch = (whole.bottom - whole.top + kBelow) / n;
+    panel.top = whole.top + k * pitch, panel.bottom = panel.top + pitch - kBelow;
+  } else {
+    const double pitch = (whole.right - whole.left + kBeside) / n;
+    panel.left = whole.left + k * pitch, panel.right = panel.left + pitch - kBeside;
+  }
+  return panel;
+}
+
 std::string make_script(const Map& map, const FigureSpec& spec, const PlotArea& whole) {
-  const double count = static_cast<double>(map.panels.size());
-  const double pitch = (whole.right - whole.left + 56) / count;
+  const std::size_t count = map.panels.size();
+  const bool stacked = spec.width < kNarrow;
   std::string out = script_preamble(spec.title, whole, spec.width, spec.height) +
                     "unset border\nset multiplot\n" +
                     (spec.legend ? legend(map, spec, spec.title.empty() ? 12 : 46) : "");
-  for (std::size_t i = 0; i < map.panels.size(); ++i) {
-    const double left = whole.left + static_cast<double>(i) * pitch, right = left + pitch - 56;
+  for (std::size_t i = 0; i < count; ++i) {
+    const PlotArea at = place(whole, spec, i, count);
     const Panel& panel = map.panels[i];
-    out += "set lmargin at screen " + exact(left / spec.width) + "\nset rmargin at screen " +
-           exact(right / spec.width) + "\n" +
+    out += "set lmargin at screen " + exact(at.left / spec.width) + "\nset rmargin at screen " +
+           exact(at.right / spec.width) + "\nset tmargin at screen " +
+           exact(1 - at.top / spec.height) + "\nset bmargin at screen " +
+           exact(1 - at.bottom / spec.height) + "\n" +
            (spec.legend || map.panels.size() > 1 ? panel_name(panel) : "") +
-           index_ticks("x", quantity(spec.x), map.columns, right - left) +
-           index_ticks("y", quantity(spec.y), map.rows, (whole.bottom - whole.top) * 1.6);
-    out += panel_titles(spec, whole, left, right, i == 0);
+           index_ticks("x", quantity(spec.x), map.columns, at.right - at.left) +
+           index_ticks("y", quantity(spec.y), map.rows, (at.bottom - at.top) * 1.6);
+    out += panel_titles(spec, whole, at, !stacked || i + 1 == count, i == 0);
     out += plot_panel(map, i);
     if (i == 0)
       out +=

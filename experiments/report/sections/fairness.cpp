@@ -50,7 +50,7 @@ std::string panel(const std::vector<const Record*>& examples, const Comparison& 
     });
     out += std::string("<tr") + (same ? "" : " class=\"differs\"") + "><th scope=\"row\">" +
            escape_html(name) + (same ? "" : "<span class=\"sr\"> (differs)</span>") + "</th>";
-    for (const std::string& cell : cells) out += "<td>" + escape_html(cell) + "</td>";
+    for (const std::string& cell : cells) out += "<td>" + escape_html(typeset(cell)) + "</td>";
     out += "</tr>\n";
   };
   for (const std::string& name : names) {
@@ -82,8 +82,8 @@ std::string refusals(const Page& page) {
     out += "<li>" + solver_name(c.solver, solver_title(c.solver)) + " ";
     if (solver->cannot.empty()) out += "can run every shipped scene.";
     for (const auto& [reason, scenes] : solver->cannot)
-      out += (&reason == &solver->cannot.front().first ? "cannot: " : "; ") + escape_html(reason) +
-             " (" + listed(scenes) + ")";
+      out += (&reason == &solver->cannot.front().first ? "cannot run " : "; ") + listed(scenes) +
+             " (" + escape_html(reason) + ")";
     out += "</li>\n";
   }
   return out.empty()

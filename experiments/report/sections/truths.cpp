@@ -36,9 +36,10 @@ std::string body(const ReportInput& input) {
   Table apart{{"truth", "solver", "expected", "measured", "verdict"}, {}}, all = apart;
   std::map<std::string, int> verdicts;
   for (const TruthRow& row : truths.rows) {
-    const std::vector<std::string> cells{row.statement + " (" + row.source + ")",
-                                         breakable(row.subject), row.expected, row.measured,
-                                         row.verdict + (row.why.empty() ? "" : ": " + row.why)};
+    const std::vector<std::string> cells{
+        typeset(row.statement + " (" + row.source + ")"), breakable(row.subject),
+        typeset(row.expected), typeset(row.measured),
+        typeset(row.verdict + (row.why.empty() ? "" : ": " + row.why))};
     all.rows.push_back(cells);
     if (row.verdict == "passed") continue;
     ++verdicts[row.verdict];
