@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/model/vec3.hpp"
-#include "core/solver/triple.hpp"
+#include "core/solver/contact/quad.hpp"
 
 namespace taut {
 
@@ -92,24 +92,19 @@ class Points {
   }
   [[gnu::always_inline]] void add(std::size_t i, const Point& p) { set(i, (*this)[i] + p); }
 
-  /// For a loop that writes elsewhere too: what does not change in it has been looked up.
-  class Reader {
-   public:
-    [[gnu::always_inline]] Triple<Real> operator[](std::size_t i) const {
-      const Real* r = x_ + (slots_ ? slots_[i] : 4 * i);
-      return {r[0], r[stride_], r[2 * stride_]};
-    }
-
-   private:
-    friend class Points;
-    const Real* x_;
-    const std::uint32_t* slots_;
-    std::size_t stride_;
-  };
-  Reader reader() const {
-    Reader r;
-    r.x_ = values_.data(), r.slots_ = layout_->slots(), r.stride_ = layout_->stride();
-    return r;
+  /// Calls f(at), where at(points, i) is particle i of any points with this layout, which has been
+  /// looked up: for loops over all.
+  template <class F>
+  void read(const F& f) const {
+    const std::uint32_t* const slots = layout_->slots();
+    const std::size_t stride = layout_->stride();
+    if (slots)
+      f([ slots, stride ](const Points& points, std::size_t i) __attribute__((always_inline)) {
+        return load_quad<false>(points.data() + slots[i], stride);
+      });
+    else
+      f([](const Points& points, std::size_t i)
+            __attribute__((always_inline)) { return load_quad<true>(points.data() + 4 * i, 1); });
   }
 
   Real* data() { return values_.data(); }

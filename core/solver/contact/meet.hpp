@@ -6,7 +6,7 @@
 namespace taut {
 
 /// A search looks at up to so many particles at once.
-inline constexpr std::uint32_t kSearchLanes = 16;
+inline constexpr std::uint32_t kSearchLanes = 8;
 
 /// As many particles from the first on as there are lanes, a bit for each that counts.
 struct SearchBlock {

@@ -64,10 +64,10 @@ struct Seeker {
   template <class Real>
   [[gnu::always_inline]] std::uint32_t meets(const MeetQuery<Real>& q, std::uint32_t m) const {
     // |gap| < within + |way|, without the roots
-    const T way2 = squared_norm(lanes(q.moved, m) - moved);
-    const T more = squared_norm(lanes(q.now, m) - now) - way2 - within2;
+    const T way2 = squared_norm(moved - lanes(q.moved, m));
+    const T more = squared_norm(now - lanes(q.now, m)) - way2 - within2;
     const auto meet = more < T(0.0) || more * more < T(4.0) * within2 * way2;
-    return bits(meet && squared_norm(lanes(q.rest, m) - rest) >= ignored2);
+    return bits(meet && squared_norm(rest - lanes(q.rest, m)) >= ignored2);
   }
 
  private:

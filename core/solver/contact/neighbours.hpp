@@ -49,8 +49,9 @@ class Neighbours {
   /// From now on ignores pairs that are less than `within` [m] apart at rest.
   void ignore(const Points<Real>& rest, Real within) {
     ignored_ = within;
-    const auto at = rest.reader();
-    for (std::size_t i = 0; i < particles_.size(); ++i) rest_.push_back(at[i]);
+    rest.read([&](const auto& at) {
+      for (std::size_t i = 0; i < particles_.size(); ++i) rest_.push_back(at(rest, i));
+    });
   }
 
   /// Calls visit(a, b) once for every pair less than `reach` [m], > 0, apart.
@@ -64,7 +65,7 @@ class Neighbours {
   template <class Visit>
   void meetings(const Points<Real>& x, const Points<Real>& previous, Real within, Real reach,
                 const Visit& visit) {
-    sort(x, previous, reach);
+    x.read([&](const auto& at) { sort(x, previous, reach, at); });
     const auto triple = [](const Coordinates& c, const Real*(&to)[3]) {
       for (std::size_t axis = 0; axis < 3; ++axis) to[axis] = c[axis].data();
     };
@@ -91,60 +92,53 @@ class Neighbours {
   static constexpr std::size_t kAtOnce = 1024;
   using Coordinates = std::array<std::vector<Real>, 3>;
 
-  static void set(Coordinates& to, std::size_t k, const Triple<Real>& p) {
-    to[0][k] = p.x, to[1][k] = p.y, to[2][k] = p.z;
+  static constexpr Real kCells = 1000000;
+
+  [[gnu::always_inline]] static void set(Coordinates& to, std::size_t k, Quad<Real> p) {
+    to[0][k] = p.v[0], to[1][k] = p.v[1], to[2][k] = p.v[2];
   }
 
-  /// Beyond a million cells everything shares the last one.
-  static std::uint32_t number(Real v) {
-    constexpr Real kFar = 1000000;
-    const Real near = v > -kFar ? std::min(v, kFar) : -kFar;
-    const auto towards_zero = static_cast<std::int32_t>(near);
-    return static_cast<std::uint32_t>(towards_zero -
-                                      (static_cast<Real>(towards_zero) > near ? 1 : 0));
-  }
-
-  /// Sets row_ and layer_: the spool that fits the extent of x best.
-  void wind(const Points<Real>& x) {
-    const auto at = x.reader();
-    Triple<Real> least = at[0], most = least;
-    for (std::size_t i = 1; i < particles_.size(); ++i) {
-      const Triple<Real> p = at[i];
-      least = {lesser(least.x, p.x), lesser(least.y, p.y), lesser(least.z, p.z)};
-      most = {greater(most.x, p.x), greater(most.y, p.y), greater(most.z, p.z)};
-    }
-    const Triple<Real> extent = most - least;
+  /// Sets where the cells begin and how wide they are, and row_ and layer_: the spool that fits
+  /// the extent of x best. At most a million cells along an axis, so that their numbers are exact.
+  template <class At>
+  void wind(const Points<Real>& x, Real reach, const At& at) {
+    Quad<Real> least = at(x, 0), most = least;
+    for (std::size_t i = 1; i < particles_.size(); ++i)
+      least = lesser(least, at(x, i)), most = greater(most, at(x, i));
+    const Quad<Real> extent = most - least;
+    const Real widest = std::max({extent.v[0], extent.v[1], extent.v[2]});
+    origin_ = least, per_metre_ = 1 / std::max(reach, widest / kCells);
     std::uint32_t cells[3] = {8, 8, 8};
     for (std::uint32_t all = 8 * 8 * 8; all < bucket_count_; all *= 2) {
-      const auto [a, b, c] = Triple<Real>{extent.x / static_cast<Real>(cells[0]),
-                                          extent.y / static_cast<Real>(cells[1]),
-                                          extent.z / static_cast<Real>(cells[2])};
-      cells[a >= b && a >= c ? 0 : b >= c ? 1 : 2] *= 2;
+      const auto share = [&](int axis) { return extent.v[axis] / static_cast<Real>(cells[axis]); };
+      const bool x_longest = share(0) >= share(1) && share(0) >= share(2);
+      cells[x_longest ? 0 : share(1) >= share(2) ? 1 : 2] *= 2;
     }
     row_ = cells[0], layer_ = cells[0] * cells[1];
   }
 
-  void sort(const Points<Real>& x, const Points<Real>& previous, Real reach) {
-    wind(x);
-    const Real per_metre = 1 / reach;
-    const std::uint32_t wrap = bucket_count_ - 1;
-    const auto at = x.reader(), before = previous.reader();
+  std::uint32_t bucket_of(Quad<Real> x) const {
+    const Quad<Real> cell = per_metre_ * (x - origin_);
+    // A state that has gone to infinity has some cell, too.
+    const auto number = [&](int axis) {
+      return static_cast<std::uint32_t>(cell.v[axis] < 2 * kCells ? cell.v[axis] : 0);
+    };
+    return (number(0) + row_ * number(1) + layer_ * number(2)) & (bucket_count_ - 1);
+  }
+
+  template <class At>
+  void sort(const Points<Real>& x, const Points<Real>& previous, Real reach, const At& at) {
+    wind(x, reach, at);
     std::uint32_t* const starts = starts_.data();
     std::fill(starts_.begin(), starts_.end(), 0);
-    for (std::size_t i = 0; i < buckets_.size(); ++i) {
-      const Triple<Real> cell = per_metre * at[i];
-      const std::uint32_t bucket =
-          (number(cell.x) + row_ * number(cell.y) + layer_ * number(cell.z)) & wrap;
-      buckets_[i] = bucket;
-      ++starts[bucket];
-    }
+    for (std::size_t i = 0; i < buckets_.size(); ++i) ++starts[buckets_[i] = bucket_of(at(x, i))];
     std::uint32_t sum = 0;
     for (std::size_t b = 0; b <= bucket_count_; ++b) sum += starts[b], starts[b] = sum;  // ends
     for (std::size_t i = buckets_.size(); i-- > 0;) {
       const std::uint32_t bucket = buckets_[i], k = --starts[bucket];
       particles_[k] = static_cast<std::uint32_t>(i), sorted_buckets_[k] = bucket;
-      const Triple<Real> p = at[i];
-      set(now_, k, p), set(moved_, k, p - before[i]);
+      const Quad<Real> p = at(x, i);
+      set(now_, k, p), set(moved_, k, p - at(previous, i));
       if (!rest_.empty()) set(at_rest_, k, rest_[i]);
     }
   }
@@ -153,10 +147,12 @@ class Neighbours {
   std::vector<std::uint32_t> buckets_;         ///< of each particle
   std::vector<std::uint32_t> sorted_buckets_;  ///< in the order of particles_
   Coordinates now_, moved_, at_rest_;          ///< likewise; room for kSearchLanes more
-  std::vector<Triple<Real>> rest_;             ///< [particles] m; empty: none is ignored
+  std::vector<Quad<Real>> rest_;               ///< [particles] m; empty: none is ignored
   Real ignored_ = 0;                           ///< m
   std::uint32_t bucket_count_ = 8 * 8 * 8;     ///< a power of two
   std::uint32_t row_ = 8, layer_ = 64;
+  Quad<Real> origin_{};
+  Real per_metre_ = 1;
   std::vector<std::uint32_t> starts_;  ///< [bucket_count + 1]
   Meet<Real> meet_;
   std::vector<SearchBlock> blocks_;

@@ -39,30 +39,30 @@ class SelfCollidePass final : public Pass<Real> {
 
   void begin(Particles<Real>& p, double, double) override {
     if (!placed_) place(p);
-    const Real motion = largest_motion(p.x, p.previous.reader());
-    if (8 * motion >= diameter_)
-      search_step(p, motion);
-    else if (searched_at_.empty() || 4 * largest_motion(p.x, searched_at_.data()) > skin_)
-      search_steps(p, motion);
+    p.x.read([&](const auto& at) {
+      const auto motion_since = [&](const auto& then) {
+        return largest_motion([&](std::size_t i) { return at(p.x, i) - then(i); });
+      };
+      const Real motion = motion_since([&](std::size_t i) { return at(p.previous, i); });
+      if (8 * motion >= diameter_) {
+        stride_ == 1 ? search_step<true>(p, motion) : search_step<false>(p, motion);
+      } else if (searched_at_.empty() ||
+                 4 * motion_since([&](std::size_t i) { return searched_at_[i]; }) > skin_) {
+        search_steps(p, motion);
+        for (std::size_t i = 0; i < p.size(); ++i) searched_at_.push_back(at(p.x, i));
+      }
+    });
   }
 
   void apply(Particles<Real>& p, double, double) override {
-    for (const Crossing& pair : crossing_) {
-      const Triple<Real> now = between(p.x, pair);
-      if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
-        separate(p, pair, pair.before);
-    }
-    for (const Pair& pair : pairs_) {
-      const Triple<Real> now = between(p.x, pair);
-      if (squared_norm(now) < pair.least * pair.least) separate(p, pair, now);
-    }
+    stride_ == 1 ? sweep<true>(p.x) : sweep<false>(p.x);
   }
 
   std::vector<PassCost> cost() const override {
     return {{.pass = "self-collide",
              .items = pairs_.size(),
              .bytes = sizeof(*this) + neighbours_.bytes() +
-                      searched_at_.capacity() * sizeof(Triple<Real>) +
+                      searched_at_.capacity() * sizeof(Quad<Real>) +
                       (close_.capacity() + pairs_.capacity()) * sizeof(Pair) +
                       crossing_.capacity() * sizeof(Crossing)}};
   }
@@ -75,31 +75,48 @@ class SelfCollidePass final : public Pass<Real> {
   };
   /// A pair that may come from one side to the other in this step.
   struct Crossing : Pair {
-    Triple<Real> before;  ///< from a to b when the step began [m]
+    Quad<Real> before;  ///< from a to b when the step began [m]
   };
-  [[gnu::always_inline]] Triple<Real> between(const Points<Real>& x, const Pair& pair) const {
-    const Real *a = x.data() + pair.a, *b = x.data() + pair.b;
-    return {b[0] - a[0], b[stride_] - a[stride_], b[2 * stride_] - a[2 * stride_]};
+  template <bool packed>
+  void sweep(Points<Real>& x) const {
+    for (const Crossing& pair : crossing_) {
+      const Quad<Real> now = between<packed>(x, pair);
+      if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
+        separate<packed>(x, pair, pair.before);
+    }
+    for (const Pair& pair : pairs_) {
+      const Quad<Real> now = between<packed>(x, pair);
+      if (squared_norm(now) < pair.least * pair.least) separate<packed>(x, pair, now);
+    }
   }
-  void move(Points<Real>& x, std::size_t slot, Real far, const Triple<Real>& along) const {
+
+  template <bool packed>
+  [[gnu::always_inline]] Quad<Real> between(const Points<Real>& x, const Pair& pair) const {
+    return load_quad<packed>(x.data() + pair.b, stride_) -
+           load_quad<packed>(x.data() + pair.a, stride_);
+  }
+  template <bool packed>
+  void move(Points<Real>& x, std::size_t slot, Quad<Real> by) const {
     Real* const r = x.data() + slot;
-    r[0] += far * along.x, r[stride_] += far * along.y, r[2 * stride_] += far * along.z;
+    store_quad<packed>(r, stride_, load_quad<packed>(r, stride_) + by);
   }
 
   /// Whether the way from `before` to `now` comes nearer to the origin than `least`.
-  static bool passed(const Triple<Real>& before, const Triple<Real>& now, Real least) {
-    const Triple<Real> way = now - before;
+  static bool passed(Quad<Real> before, Quad<Real> now, Real least) {
+    const Quad<Real> way = now - before;
     const Real share = std::clamp(-dot(before, way) / squared_norm(way), Real(0), Real(1));
     return squared_norm(before + share * way) < least * least;
   }
 
   /// Moves the two apart along `out` until they are pair.least apart in that direction.
-  void separate(Particles<Real>& p, const Pair& pair, const Triple<Real>& out) const {
-    const Real length = norm(out);
+  template <bool packed>
+  void separate(Points<Real>& x, const Pair& pair, Quad<Real> out) const {
+    const Real length = std::sqrt(squared_norm(out));
     if (!(length > 0)) return;  // at one place: no direction is better than another
-    const Real gap = dot(out, between(p.x, pair)) / length;
+    const Real gap = dot(out, between<packed>(x, pair)) / length;
     const Real push = (pair.least - gap) / length;
-    move(p.x, pair.a, -pair.share * push, out), move(p.x, pair.b, (1 - pair.share) * push, out);
+    move<packed>(x, pair.a, -pair.share * push * out);
+    move<packed>(x, pair.b, (1 - pair.share) * push * out);
   }
 
   void place(const Particles<Real>& p) {
@@ -109,11 +126,12 @@ class SelfCollidePass final : public Pass<Real> {
   }
 
   /// Of this step alone.
+  template <bool packed>
   void search_step(const Particles<Real>& p, Real motion) {
     forget_pairs();
     const Real within = kMeets * diameter_;
     const auto consider = [&](const Pair& pair) __attribute__((always_inline)) {
-      const Triple<Real> now = between(p.x, pair), before = between(p.previous, pair);
+      const Quad<Real> now = between<packed>(p.x, pair), before = between<packed>(p.previous, pair);
       const Real way2 = squared_norm(now - before);
       if (!less(squared_norm(now), within * within, way2)) return;
       pairs_.push_back(pair);
@@ -133,12 +151,10 @@ class SelfCollidePass final : public Pass<Real> {
     skin_ = diameter_ / 2 + 2 * motion;
     const Real reach = diameter_ + skin_;
     for (const Pair& pair : close_)
-      if (squared_norm(between(p.x, pair)) < reach * reach) pairs_.push_back(pair);
+      if (squared_norm(between<false>(p.x, pair)) < reach * reach) pairs_.push_back(pair);
     neighbours_.pairs(p.x, reach, [&](std::uint32_t a, std::uint32_t b) {
       if (p.w[a] + p.w[b] != 0) pairs_.push_back(pair_of(p, a, b, diameter_));
     });
-    const auto now = p.x.reader();
-    for (std::size_t i = 0; i < p.size(); ++i) searched_at_.push_back(now[i]);
   }
 
   void forget_pairs() { pairs_.clear(), crossing_.clear(), searched_at_.clear(); }
@@ -159,20 +175,16 @@ class SelfCollidePass final : public Pass<Real> {
 
   /// The largest of a particle against the cloth as a whole, between two times [m]: no two move by
   /// more than twice that against each other. The cloth moves as the middle of all motions.
-  template <class Then>
-  Real largest_motion(const Points<Real>& x, const Then& then) const {
+  template <class Moved>
+  Real largest_motion(const Moved& moved) const {
     const std::size_t n = neighbours_.size();
-    const auto now = x.reader();
-    Triple<Real> least = now[0] - then[0], most = least;
-    for (std::size_t i = 1; i < n; ++i) {
-      const Triple<Real> moved = now[i] - then[i];
-      least = {lesser(least.x, moved.x), lesser(least.y, moved.y), lesser(least.z, moved.z)};
-      most = {greater(most.x, moved.x), greater(most.y, moved.y), greater(most.z, moved.z)};
-    }
-    const Triple<Real> middle = Real(0.5) * (least + most);
+    Quad<Real> least = moved(0), most = least;
+    for (std::size_t i = 1; i < n; ++i)
+      least = lesser(least, moved(i)), most = greater(most, moved(i));
+    const Quad<Real> middle = Real(0.5) * (least + most);
     Real largest2 = 0;
     for (std::size_t i = 0; i < n; ++i)
-      largest2 = std::max(largest2, squared_norm(now[i] - then[i] - middle));
+      largest2 = std::max(largest2, squared_norm(moved(i) - middle));
     return std::sqrt(largest2);
   }
 
@@ -196,10 +208,10 @@ class SelfCollidePass final : public Pass<Real> {
   Real diameter_;                            ///< m
   std::size_t stride_ = 1;                   ///< of the particles' layout
   Neighbours<Real> neighbours_;
-  std::vector<Pair> close_;                ///< at rest within kMeets diameters and not linked
-  bool placed_ = false;                    ///< until then by numbers of particles, not slots
-  Real skin_ = 0;                          ///< m
-  std::vector<Triple<Real>> searched_at_;  ///< [n] m; empty: to be searched
+  std::vector<Pair> close_;              ///< at rest within kMeets diameters and not linked
+  bool placed_ = false;                  ///< until then by numbers of particles, not slots
+  Real skin_ = 0;                        ///< m
+  std::vector<Quad<Real>> searched_at_;  ///< [n] m; empty: to be searched
   std::vector<Pair> pairs_;
   std::vector<Crossing> crossing_;
 };

@@ -333,7 +333,7 @@ constexpr Kernels<Real> make_kernels() {
            .ball_swept = collide<Narrow, P, true, Real, BallSurface>,
            .box = collide<Narrow, P, false, Real, BoxSurface>,
            .box_swept = collide<Narrow, P, true, Real, BoxSurface>},
-          meet<Wide, Real>};
+          meet<Narrow, Real>};
 }
 
 }  // namespace taut
