@@ -185,6 +185,20 @@ TEST(Take, EndsBeforeTheFirstUnsoundFrameAndSaysSo) {
   EXPECT_THROW(take_of(scene, trajectory), InputError);
 }
 
+TEST(Take, OneIterationIsNotTwo) {
+  EXPECT_EQ(readable_settings("bullet:iterations=1,substeps=2,order=mesh"),
+            "1 iteration · 2 substeps · order mesh");
+}
+
+TEST(Studio, ATakeThatBlewUpLeavesTheOthersTheirColours) {
+  const Scene scene = test::level_sheet(5);
+  std::vector<Take> takes{test::stretched(scene, 0.06), test::stretched(scene, 40)};
+  takes[1].stop = Take::Stop{0.5, "exploded"};
+  EXPECT_DOUBLE_EQ(Studio(scene, takes, small()).scale().high, 0.06);
+  takes.erase(takes.begin());
+  EXPECT_DOUBLE_EQ(Studio(scene, takes, small()).scale().high, 1) << "none is sound: 100 % at most";
+}
+
 TEST(Take, AnExplodedPanelIsMarked) {
   const Scene scene = test::level_sheet(5);
   Take take = test::stretched(scene, 0);

@@ -16,24 +16,14 @@ std::string formatted(const char* format, double value) {
   return text;
 }
 
-/// Three digits are all that is told apart.
-std::string percent(double value, bool sign) {
-  const double size = std::abs(100 * value);
-  const std::string digits = formatted(size < 9.995   ? "%.2f %%"
-                                       : size < 99.95 ? "%.1f %%"
-                                                      : "%.0f %%",
-                                       size);
-  return (sign ? value < 0 ? "\u2212" : "+" : "") + digits;
-}
-
 /// "t = 2.48 s    max |ε| = 4.10 %    mean ε = +0.72 %    33 × 33 vertices"
 std::vector<std::string> caption(const Studio& studio, const Take& take, double t) {
   const Scene& scene = studio.scene();
   const auto& frame = take.at(t);
   const LiveFigures live = live_figures(scene, frame.state, frame.t);
   std::vector<std::string> parts{formatted("t = %.2f s", frame.t),
-                                 "max |ε| = " + percent(live.max_strain, false),
-                                 "mean ε = " + percent(live.mean_strain, true)};
+                                 "max |ε| = " + strain_text(live.max_strain, false),
+                                 "mean ε = " + strain_text(live.mean_strain, true)};
   if (studio.scale().quantity == Quantity::penetration)
     parts.push_back("max depth = " + formatted("%.3g mm", 1e3 * live.max_depth));
   if (studio.scale().quantity == Quantity::speed)
@@ -108,6 +98,15 @@ void draw_footer(Canvas& canvas, const Studio& studio, const PageLayout& layout,
 }
 
 }  // namespace
+
+std::string strain_text(double value, bool sign) {
+  const double size = std::abs(100 * value);
+  const std::string digits = formatted(size < 9.995   ? "%.2f %%"
+                                       : size < 99.95 ? "%.1f %%"
+                                                      : "%.0f %%",
+                                       size);
+  return (sign ? value < 0 ? "\u2212" : "+" : "") + digits;
+}
 
 PageLayout::PageLayout(int w, int h, int panels)
     : width(w),

@@ -20,6 +20,10 @@ struct PageLayout {
   PageLayout(int width, int height, int panels);
 };
 
+/// "4.10 %", "27.4 %", "1153 %", with its sign if that is wanted: three digits are what is told
+/// apart.
+std::string strain_text(double value, bool sign);
+
 /// A picture of all takes at one moment: captions with live figures, panels, material space, the
 /// colour bar. Sizes come from the layout that the studio was made for.
 Image compose(const Studio&, const PageLayout&, double t);

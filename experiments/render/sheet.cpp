@@ -34,10 +34,11 @@ Image compose_sheet(const Studio& studio, const std::vector<double>& times) {
       if (take.stop && t > take.stop->t) mark_stop(panel, *take.stop, u * 0.8);
       const auto& frame = take.at(t);
       const LiveFigures live = live_figures(studio.scene(), frame.state, frame.t);
-      char text[80];
-      std::snprintf(text, sizeof text, "t = %.2f s    max |ε| = %.2f %%", frame.t,
-                    100 * live.max_strain);
-      Canvas(panel).text({18 * u, 30 * u}, text, {15 * u, on_stage});
+      char time[32];
+      std::snprintf(time, sizeof time, "t = %.2f s    ", frame.t);
+      Canvas(panel).text({18 * u, 30 * u},
+                         time + ("max |ε| = " + strain_text(live.max_strain, false)),
+                         {15 * u, on_stage});
       picture.paste(panel, column * (wide + gap), head + row * (high + gap));
     }
   }

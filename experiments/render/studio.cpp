@@ -28,20 +28,27 @@ std::vector<double> Studio::sampled_times() const {
   return times;
 }
 
-/// The bar ends at a round number that 98 of 100 vertices do not exceed.
+/// The bar ends at a round number that 98 of 100 vertices do not exceed. A take that blew up has no
+/// say beside sound ones, and strain ends at 100 %: else all that is sound would look unstrained.
 void Studio::choose_scale() {
   if (scale_.high > 0) return;
+  constexpr double kMostStrain = 1;
+  const auto sound = [](const Take& take) { return !take.stop; };
+  const bool any_sound = std::ranges::any_of(takes_, sound);
   std::vector<double> magnitudes;
   for (const double t : sampled_times())
-    for (const Take& take : takes_)
+    for (const Take& take : takes_) {
+      if (any_sound && !sound(take)) continue;
       for (const double v : vertex_values(scene_, scale_.quantity, take.at(t).state, take.at(t).t))
         if (std::isfinite(v)) magnitudes.push_back(std::abs(v));
+    }
   const auto rank = static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(magnitudes.size() - 1));
   std::nth_element(magnitudes.begin(), magnitudes.begin() + rank, magnitudes.end());
   const double least = scale_.quantity == Quantity::strain        ? 1e-3
                        : scale_.quantity == Quantity::penetration ? 1e-3 * extent(scene_)
                                                                   : 0.1;
   scale_.high = round_up(magnitudes[static_cast<std::size_t>(rank)], least);
+  if (scale_.quantity == Quantity::strain) scale_.high = std::min(scale_.high, kMostStrain);
 }
 
 std::vector<Skin> Studio::skins(const TrajectoryReader::Frame& frame, const Vec3& centre) const {

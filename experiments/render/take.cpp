@@ -71,8 +71,9 @@ std::string readable_settings(const std::string& solver) {
     if (equals == std::string::npos) continue;
     const std::string name = pair.substr(0, equals), value = pair.substr(equals + 1);
     const bool plural = name == "iterations" || name == "substeps";
+    const std::string counted = value == "1" ? name.substr(0, name.size() - 1) : name;
     settings +=
-        (settings.empty() ? "" : " · ") + (plural ? value + " " + name : name + " " + value);
+        (settings.empty() ? "" : " · ") + (plural ? value + " " + counted : name + " " + value);
   }
   return settings;
 }

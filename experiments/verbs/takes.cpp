@@ -28,9 +28,10 @@ Rgb8 colour_of(std::string_view hex) {
 std::string caption_settings(const SolverChoice& choice) {
   std::string settings = readable_settings(choice.brief());
   for (const ParamSpec& spec : choice.params.specs())
-    if (spec.name == "iterations" && settings.find("iterations") == std::string::npos)
-      settings = std::string(choice.params.value("iterations")) + " iterations" +
-                 (settings.empty() ? "" : " · " + settings);
+    if (spec.name == "iterations" && settings.find("iteration") == std::string::npos)
+      settings =
+          readable_settings(":iterations=" + std::string(choice.params.value("iterations"))) +
+          (settings.empty() ? "" : " · " + settings);
   return settings;
 }
 

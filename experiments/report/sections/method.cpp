@@ -10,14 +10,24 @@ namespace taut::report::section::method {
 
 namespace {
 
+/// "15.62 ms", "100 ms": four digits, but no zeros behind the point.
+std::string plain(const Quantity& q, double value) {
+  std::string text = q.text(value, 4);
+  const std::size_t end = std::min(text.find("\u00A0"), text.size());
+  if (text.find('.') >= end) return text;
+  std::size_t last = text.find_last_not_of('0', end - 1);
+  if (text[last] == '.') --last;
+  return text.erase(last + 1, end - last - 1);
+}
+
 /// "1, 2, 4" or "1 to 256 (9 values)".
 std::string range_of(const std::set<double>& values, const Quantity& q) {
   if (values.empty()) return "–";
   if (values.size() > 3)
-    return q.text(*values.begin(), 4) + " to " + q.text(*values.rbegin(), 4) + " (" +
+    return plain(q, *values.begin()) + " to " + plain(q, *values.rbegin()) + " (" +
            std::to_string(values.size()) + " values)";
   std::string out;
-  for (const double v : values) out += (out.empty() ? "" : ", ") + q.text(v, 4);
+  for (const double v : values) out += (out.empty() ? "" : ", ") + plain(q, v);
   return out;
 }
 
