@@ -1,14 +1,18 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
+#include <cstdint>
 #include <thread>
 #include <vector>
 
 namespace taut {
 
-/// Threads that wait for work and split it evenly. What they compute must not depend on how it is
-/// split; then nothing depends on how many there are.
+/// Threads that wait for work and share it. What they compute must not depend on how it is split;
+/// then nothing depends on how many there are.
+///
+/// Each has a share of its own, the same one every time, so that its data stay in its cache, and
+/// helps the others when that is done. Whoever has not come yet is not waited for: on a busy
+/// machine the caller does the work alone.
 class Team {
  public:
   explicit Team(int threads);  ///< >= 1, the caller included; 1 starts none
@@ -36,13 +40,19 @@ class Team {
     void (*call)(const void*, std::size_t, std::size_t) = nullptr;
     std::size_t count = 0;
   };
+  static constexpr std::uint32_t kParts = 4;  ///< of a share
+  /// How many of its parts are taken; all, between two rounds.
+  struct alignas(64) Share {
+    std::atomic<std::uint32_t> taken{kParts};
+  };
   void dispatch(const Job&);
-  void part(std::size_t member) const;
+  void work_off(std::size_t member);
   void serve(std::size_t member);
 
   Job job_;
-  std::atomic<unsigned> round_{0};
-  std::atomic<unsigned> busy_{0};
+  std::vector<Share> shares_;
+  std::atomic<std::uint32_t> round_{0};
+  std::atomic<std::uint32_t> left_{0};  ///< parts of this round that are not done
   std::atomic<bool> stop_{false};
   std::vector<std::thread> threads_;
 };
