@@ -16,6 +16,10 @@ struct KernelRow {
   int bytes = 0;     ///< read and written in one projection, as the program asks for them
   double floor = 0;  ///< ns: flops at the machine's measured rate
   std::vector<double> samples;  ///< ns per projection, one of each round
+  /// ns per projection from the fastest parts of all samples: what it costs while nothing else
+  /// uses the core. A neighbour on a core's other thread slows wide vectors by half and more, and
+  /// the textbook, which waits for its own results, hardly at all.
+  double fastest = 0;
   /// A step without a sweep (integration, pins), in sweeps over the structural links alone, one of
   /// each round.
   std::vector<double> fixed;
@@ -25,6 +29,8 @@ struct KernelRow {
 struct KernelBench {
   int side = 0;                 ///< vertices of the square sheet's side
   std::vector<KernelRow> rows;  ///< the first is the textbook
+  /// ns of a square-root-free projection in registers (seconds_per_projection).
+  double arithmetic_float = 0, arithmetic_double = 0;
   /// Median over rounds of rows[i]'s cost over rows[j]'s cost.
   Interval ratio(std::size_t i, std::size_t j) const;
 };
@@ -44,5 +50,8 @@ KernelBench bench_kernels(const KernelBenchOptions&);
 /// Seconds of one addition or multiplication of floats (doubles) on this machine's widest vectors
 /// when nothing stands in the way.
 double seconds_per_flop(bool single);
+/// Seconds of one square-root-free projection of particles that are in registers already: its
+/// arithmetic with the division, without loads and stores.
+double seconds_per_projection(bool single);
 
 }  // namespace taut

@@ -1,5 +1,6 @@
-// How fast this machine adds and multiplies when nothing stands in the way: twelve independent
-// chains of alternating multiplications and additions in vectors of the widest kind.
+// How fast this machine computes when nothing stands in the way, in vectors of the widest kind:
+// twelve independent chains of alternating multiplications and additions; and projections of
+// particles that stay in registers.
 #include <algorithm>
 #include <ctime>
 
@@ -47,31 +48,49 @@ Real widest_sse2(Real f) {
   return Vectors<Real, 16 / sizeof(Real)>::chains(f);
 }
 
-template <class Real>
-double measure() {
-  const Simd simd = widest();
-  const auto run = simd == Simd::avx512 ? widest_avx512<Real>
-                   : simd == Simd::avx2 ? widest_avx2<Real>
-                                        : widest_sse2<Real>;
-  const std::size_t lanes = (simd == Simd::avx512 ? 64
-                             : simd == Simd::avx2 ? 32
-                                                  : 16) /
-                            sizeof(Real);
+/// CPU seconds of one call: the fastest of twenty.
+template <class Real, class F>
+double fastest(const F& run, Real value) {
   double best = 1;
-  volatile Real factor = static_cast<Real>(0.5);
+  volatile Real keep = value;
   for (int attempt = 0; attempt < 20; ++attempt) {
     timespec from, to;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &from);
-    factor = factor + 0 * run(factor);
+    keep = keep + 0 * run(keep);
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &to);
     best = std::min(best, static_cast<double>(to.tv_sec - from.tv_sec) +
                               1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec));
   }
-  return best / (2.0 * kChains * kRounds * static_cast<double>(lanes));
+  return best;
+}
+
+template <class Real>
+double flop() {
+  const Simd simd = widest();
+  const auto run = simd == Simd::avx512 ? widest_avx512<Real>
+                   : simd == Simd::avx2 ? widest_avx2<Real>
+                                        : widest_sse2<Real>;
+  const std::size_t bytes = simd == Simd::avx512 ? 64 : simd == Simd::avx2 ? 32 : 16;
+  return fastest(run, static_cast<Real>(0.5)) /
+         (2.0 * kChains * kRounds * static_cast<double>(bytes / sizeof(Real)));
+}
+
+template <class Real>
+double projection() {
+  const Kernels<Real>& widest_kernels = kernels<Real>(widest());
+  int projections = 0;
+  const auto run = [&](Real rest) {
+    return widest_kernels.in_registers(rest, kRounds, projections);
+  };
+  return fastest(run, Real(1)) / projections;
 }
 
 }  // namespace
 
-double seconds_per_flop(bool single) { return single ? measure<float>() : measure<double>(); }
+double seconds_per_flop(bool single) { return single ? flop<float>() : flop<double>(); }
+
+double seconds_per_projection(bool single) {
+  return single ? projection<float>() : projection<double>();
+}
 
 }  // namespace taut

@@ -104,6 +104,9 @@ struct Kernels {
   void (*batches[2])(const BatchRun<Real>&, Real* x);
   CollideKernels<Real> collide;
   Meet<Real> meet;
+  /// Projects independent pairs without loading or storing anything: what the arithmetic alone
+  /// costs, for benchmarks. Says how many projections that were.
+  Real (*in_registers)(Real rest, int rounds, int& projections);
 };
 
 enum class Simd { scalar, sse2, avx2, avx512 };

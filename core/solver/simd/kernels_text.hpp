@@ -320,6 +320,25 @@ void collide(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& s
     collide_strips<Lane, swept>(contact, span);
 }
 
+template <class T, Projection kind, class Real>
+Real in_registers(Real rest, int rounds, int& projections) {
+  constexpr int pairs = 4;
+  const T r(rest), half(0.5);
+  Triple<T> a[pairs], b[pairs];
+  four_times([&](auto i) {
+    const T start(static_cast<Real>(i));
+    a[i] = {start, start, start}, b[i] = {start + r, start + r, start};
+  });
+  for (int n = 0; n < rounds; ++n)
+    four_times([&](auto i) { project_distance<kind>(a[i], b[i], r, half, half); });
+  projections = pairs * rounds * kWidth<T>;
+  T sum(0.0);
+  four_times([&](auto i) { sum += a[i].x + b[i].y; });
+  Real first;
+  std::memcpy(&first, &sum, sizeof first);
+  return first;
+}
+
 /// Narrow and Wide compute along strips of 8 and 16 lanes, P on particles.
 template <class Real, class Narrow, class Wide, class P>
 constexpr Kernels<Real> make_kernels() {
@@ -333,7 +352,8 @@ constexpr Kernels<Real> make_kernels() {
            .ball_swept = collide<Narrow, P, true, Real, BallSurface>,
            .box = collide<Narrow, P, false, Real, BoxSurface>,
            .box_swept = collide<Narrow, P, true, Real, BoxSurface>},
-          meet<Narrow, Real>};
+          meet<Narrow, Real>,
+          in_registers<Wide, sqrt_free, Real>};
 }
 
 }  // namespace taut
