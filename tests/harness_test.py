@@ -154,6 +154,19 @@ class Store(CommandLine):
             (self.folder / "locked").mkdir(mode=0o500)
             self.assertIn("Permission denied", self.taut("run", study, "--out", "locked", expect=2).err)
 
+    def test_a_program_that_vanishes_is_no_result(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="sweep.variant = [0, 1, 2, 3]\n")
+        mine = self.folder / "taut-faulty"
+        shutil.copy(BINARIES / "taut-faulty", mine)
+        process = self.start("run", study, "-j", 1, program=mine)  # an absolute path stays what it is
+        while not self.entries():
+            time.sleep(0.05)
+        mine.unlink()
+        _, said = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 2, said)
+        self.assertIn("cannot be executed", said)
+        self.assertEqual({record["status"]["kind"] for record in self.records()}, {"ok"})
+
     def test_a_full_disk_loses_nothing_finished(self):
         place = self.folder / "disk"
         place.mkdir()

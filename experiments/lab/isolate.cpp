@@ -98,9 +98,8 @@ IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limit
                 std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                     std::chrono::duration<double>(5 * limits.seconds))) {
   const auto program_of = case_.choice.entry->program;
-  const std::string program =
-      sibling_program(std::string(program_of ? program_of(case_.choice.params) : ""));
-  std::vector<std::string> words{program,           "case",   case_.spec.scene,
+  program_ = sibling_program(std::string(program_of ? program_of(case_.choice.params) : ""));
+  std::vector<std::string> words{program_.string(), "case",   case_.spec.scene,
                                  case_.spec.solver, "--into", folder_};
   for (const std::string& text : case_.spec.overrides) words.insert(words.end(), {"--set", text});
   std::vector<char*> argv;
@@ -114,7 +113,7 @@ IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limit
   pid_ = fork();
   if (pid_ == 0) {
     restrict_child(limits, parent, out);
-    execv(program.c_str(), argv.data());
+    execv(program_.c_str(), argv.data());
     _exit(127);
   }
   close(out);
@@ -173,12 +172,13 @@ Record IsolatedCase::record_of(int wait_status, bool timed_out) const {
       }
     case kOutOfMemory:
       return failed(Kind::oom, "out of memory");
-    case kCannotWrite:  // no property of the case, so no record; on a full disk its words are lost
-                        // too
+    // What is no property of the case leaves no record: it would be taken for the case's result.
+    case kCannotWrite:  // on a full disk its words are lost too
       throw InputError(said.empty() ? folder_.string() + ": cannot write: " + std::strerror(ENOSPC)
                                     : said);
     case 127:
-      return failed(Kind::error, "cannot execute the program" + (said.empty() ? "" : ": " + said));
+      throw InputError(program_.string() + ": cannot be executed" +
+                       (said.empty() ? "; was it removed while the study ran?" : ": " + said));
     default:
       return failed(Kind::error,
                     said.empty() ? "exit code " + std::to_string(WEXITSTATUS(wait_status)) : said);

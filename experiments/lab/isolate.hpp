@@ -60,7 +60,7 @@ class IsolatedCase {
  private:
   Record record_of(int wait_status, bool timed_out) const;
   Case case_;
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, program_;
   std::chrono::steady_clock::time_point deadline_;
   int pid_ = -1;
   int fd_ = -1;
