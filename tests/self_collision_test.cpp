@@ -53,6 +53,41 @@ TEST(SelfCollision, AFastParticleDoesNotPassWithinAStep) {
   EXPECT_GT(run(scene, "self=octree", 3).x[0].x(), 0.4);
 }
 
+TEST(SelfCollision, NoneOfManyFastPairsPassesWhereverTheCellsLie) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<> number(-1, 1);
+  std::vector<Vec3> x, v, apart;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 at = Vec3(3 * (i % 6), 3 * (i / 6 % 6), 3 * (i / 36)) +
+                    0.5 * Vec3(number(random), number(random), number(random));
+    const Vec3 along = Vec3(number(random), number(random), number(random)).normalized();
+    const double gap = 0.11 + 0.1 * std::abs(number(random));
+    const double way = 0.2 + 0.19 * std::abs(number(random));  // of four diameters: of each, half
+    x.push_back(at), x.push_back(at + gap * along);
+    v.push_back(32 * way * along), v.push_back(-32 * way * along);
+    apart.push_back(along);
+  }
+  const State state = run(particles(x, v), "self=grid,iterations=1", 1);
+  for (std::size_t i = 0; i < apart.size(); ++i)
+    EXPECT_GE((state.x[2 * i + 1] - state.x[2 * i]).dot(apart[i]), 0.1 - 1e-12) << i;
+}
+
+TEST(SelfCollision, SlowParticlesNeverOverlapThoughTheyAreSearchedSeldom) {
+  for (double gap = 0.11; gap < 0.3; gap += 0.007) {
+    const Vec3 v(0.08, 0, 0);  // an 80th of the diameter in a step
+    const Scene scene = particles({{0, 0, 0}, {gap, 0, 0}}, {v, -v});
+    const SolverChoice choice = parse_solver("jakobsen:precision=double,self=grid");
+    const auto solver = choice.entry->make(scene, choice.params);
+    solver->load(scene.start);
+    State state;
+    for (int n = 0; n < 80; ++n) {
+      solver->step(n * scene.dt, scene.dt);
+      solver->store(state);
+      ASSERT_GE(state.x[1].x() - state.x[0].x(), 0.1 - 1e-12) << "gap " << gap << ", step " << n;
+    }
+  }
+}
+
 TEST(SelfCollision, TheOctreeDoesNotSeeAcrossASplitAndTheGridDoes) {
   // Two slow particles meet at the middle of a box whose corners hold the others.
   std::vector<Vec3> x{{-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}};
@@ -146,12 +181,13 @@ Pairs all_within(const Points<Real>& x, std::size_t count, Real reach) {
   return pairs;
 }
 
-/// Everywhere, in a line along each axis, in a plane across the axes, in one cell.
+/// Everywhere, in a line along each axis, in planes and thick layers, in one cell.
 std::vector<std::vector<Vec3>> clouds() {
   std::vector<std::vector<Vec3>> all;
   const std::vector<Vec3> cube = anywhere(400, 2, 1);
-  for (const Vec3& size : {Vec3(1, 1, 1), Vec3(20, 0, 0), Vec3(0, 20, 0), Vec3(0, 0, 20),
-                           Vec3(5, 5, 0), Vec3(0, 5, 5), Vec3(0.01, 0.01, 0.01)}) {
+  for (const Vec3& size :
+       {Vec3(1, 1, 1), Vec3(20, 0, 0), Vec3(0, 20, 0), Vec3(0, 0, 20), Vec3(5, 5, 0), Vec3(0, 5, 5),
+        Vec3(0.2, 2, 2), Vec3(2, 0.2, 2), Vec3(2, 2, 0.2), Vec3(0.01, 0.01, 0.01)}) {
     all.emplace_back();
     for (const Vec3& x : cube) all.back().push_back(x.cwiseProduct(size));
   }

@@ -97,6 +97,7 @@ class Subject {
     const double unit = 1e9 / static_cast<double>(row_.particles);
     const double links = (t[0][1] - t[0][0]) / kMore, both = (t[1][1] - t[1][0]) / kMore;
     row_.sweep.push_back(unit * links);
+    row_.bare.push_back(unit * (t[0][0] - (kSweeps[0] - 1) * links));
     row_.each_sweep.push_back(unit * (both - links));
     row_.each_step.push_back(unit * (t[1][0] - t[0][0] - kSweeps[0] * (both - links)));
   }

@@ -17,6 +17,7 @@ struct ContactRow {
   /// CPU nanoseconds per particle, one of each round: a sweep over the structural links; contact in
   /// every sweep; what contact costs a step besides.
   std::vector<double> sweep, each_sweep, each_step;
+  std::vector<double> bare;  ///< likewise: a step of one sweep without contact
 
   /// Contact of a step of so many sweeps, in structural sweeps.
   Interval ratio(int sweeps) const;

@@ -18,10 +18,12 @@ struct Options {
 
 using Rows = std::vector<ContactRow>;
 
-/// Of a step with one sweep [s].
+double seconds(const ContactRow& row, double ns_per_particle) {
+  return 1e-9 * static_cast<double>(row.particles) * ns_per_particle;
+}
+/// Contact of a step with one sweep [s].
 double seconds_per_step(const ContactRow& row) {
-  return 1e-9 * static_cast<double>(row.particles) *
-         (median(row.each_step) + median(row.each_sweep));
+  return seconds(row, median(row.each_step) + median(row.each_sweep));
 }
 
 std::string in_sweeps(const Interval& ratio) {
@@ -63,7 +65,16 @@ void print_exponents(const std::vector<Rows>& sizes) {
   }
 }
 
-/// Self-collision of a step, octree beside grid, over the number of particles.
+Record plotted(const ContactRow& row, const std::string& self, double seconds_per_step) {
+  Record record;
+  record.scene = "crumple", record.solver = "jakobsen";
+  record.params = {{"self", self}};
+  record.vertices = static_cast<int>(row.particles);
+  record.values = {{"cpu.per_step", seconds_per_step}};
+  return record;
+}
+
+/// A whole step over the number of particles: without self-collision, by octree and by grid.
 void plot(const std::vector<Rows>& sizes, const std::string& folder) {
   std::vector<Record> records;
   for (const Rows& rows : sizes)
@@ -71,16 +82,14 @@ void plot(const std::vector<Rows>& sizes, const std::string& folder) {
       if (row.scene != "crumple, 0.3 s" || row.steps != 1 ||
           row.setting.find("order=mesh") == std::string::npos)
         continue;
-      Record record;
-      record.scene = "crumple", record.solver = "jakobsen";
-      record.params = {{"self", row.setting.substr(5, row.setting.find(',') - 5)}};
-      record.vertices = static_cast<int>(row.particles);
-      record.values = {{"cpu.per_step", seconds_per_step(row)}};
-      records.push_back(std::move(record));
+      const std::string self = row.setting.substr(5, row.setting.find(',') - 5);
+      const double bare = seconds(row, median(row.bare));
+      records.push_back(plotted(row, self, bare + seconds_per_step(row)));
+      if (self == "grid") records.push_back(plotted(row, "off", bare));
     }
   const report::Figure figure =
       report::make_figure({.kind = "scaling",
-                           .title = "Self-collision of a step with one sweep",
+                           .title = "A step of one sweep, by what keeps the cloth from itself",
                            .file = "self-collision-scaling",
                            .slope = 1},
                           {records, {}}, folder);
@@ -95,7 +104,8 @@ std::function<int()> bind(Arguments& arguments) {
   arguments.option("--rounds", o->rounds, "Interleaved rounds forth and back (default: 11)")
       .range(1, 1000);
   arguments.option("--seconds", o->seconds, "Of one sample (default: 0.01)").positive();
-  arguments.option("--plot", o->plot, "Folder for a figure of self-collision over particles");
+  arguments.option("--plot", o->plot,
+                   "Folder for a figure of a step over particles: off, octree and grid");
   return [o] {
     std::vector<Rows> sizes;
     for (const int side : o->sizes) {

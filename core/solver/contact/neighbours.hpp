@@ -94,7 +94,7 @@ class Neighbours {
 
   static constexpr Real kCells = 1000000;
 
-  [[gnu::always_inline]] static void set(Coordinates& to, std::size_t k, Quad<Real> p) {
+  [[gnu::always_inline]] static void set(Coordinates& to, std::size_t k, const Quad<Real>& p) {
     to[0][k] = p.v[0], to[1][k] = p.v[1], to[2][k] = p.v[2];
   }
 
@@ -117,7 +117,7 @@ class Neighbours {
     row_ = cells[0], layer_ = cells[0] * cells[1];
   }
 
-  std::uint32_t bucket_of(Quad<Real> x) const {
+  std::uint32_t bucket_of(const Quad<Real>& x) const {
     const Quad<Real> cell = per_metre_ * (x - origin_);
     // A state that has gone to infinity has some cell, too.
     const auto number = [&](int axis) {

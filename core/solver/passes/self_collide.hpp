@@ -96,13 +96,13 @@ class SelfCollidePass final : public Pass<Real> {
            load_quad<packed>(x.data() + pair.a, stride_);
   }
   template <bool packed>
-  void move(Points<Real>& x, std::size_t slot, Quad<Real> by) const {
+  void move(Points<Real>& x, std::size_t slot, const Quad<Real>& by) const {
     Real* const r = x.data() + slot;
     store_quad<packed>(r, stride_, load_quad<packed>(r, stride_) + by);
   }
 
   /// Whether the way from `before` to `now` comes nearer to the origin than `least`.
-  static bool passed(Quad<Real> before, Quad<Real> now, Real least) {
+  static bool passed(const Quad<Real>& before, const Quad<Real>& now, Real least) {
     const Quad<Real> way = now - before;
     const Real share = std::clamp(-dot(before, way) / squared_norm(way), Real(0), Real(1));
     return squared_norm(before + share * way) < least * least;
@@ -110,7 +110,7 @@ class SelfCollidePass final : public Pass<Real> {
 
   /// Moves the two apart along `out` until they are pair.least apart in that direction.
   template <bool packed>
-  void separate(Points<Real>& x, const Pair& pair, Quad<Real> out) const {
+  void separate(Points<Real>& x, const Pair& pair, const Quad<Real>& out) const {
     const Real length = std::sqrt(squared_norm(out));
     if (!(length > 0)) return;  // at one place: no direction is better than another
     const Real gap = dot(out, between<packed>(x, pair)) / length;
