@@ -197,6 +197,15 @@ TEST(Chart, ExactZerosShareNoPlaceWithATick) {
   for (const auto& [at, label] : chart.y.ticks) EXPECT_GT(chart.y.position(at), 0.12) << label;
 }
 
+TEST(Chart, FailuresAloneAreNoFigureOfAValueThatTheSceneLacks) {
+  auto records = synthetic::iterations("ball");  // one case explodes, none has a reference
+  FigureSpec spec{
+      .kind = "error-iterations", .x = "iterations", .y = "reference.rms", .along = "iterations"};
+  EXPECT_THROW(curves_chart(spec, records), InputError);
+  for (Record& r : records) synthetic::fail(r, Status::Kind::exploded, "nonfinite");
+  EXPECT_NO_THROW(curves_chart(spec, records)) << "that everything failed is worth a figure";
+}
+
 TEST(Chart, ANarrowOneGivesItsWidthToThePlot) {
   const auto records = synthetic::iterations("ball");
   FigureSpec spec{.kind = "error-iterations",

@@ -407,14 +407,16 @@ Chart curves_chart(const FigureSpec& spec, std::span<const Record> records) {
   chart.curves = make_curves(records, spec.x, spec.y, spec.along);
   const Quantity qx = quantity(spec.x), qy = quantity(spec.y);
   std::vector<double> xs, ys;
-  bool any = false;
+  bool failures = false, lacking = false;  // a sound case without the value: this scene has none
   for (const Curve& curve : chart.curves)
     for (const Point& p : curve.points) {
       xs.push_back(p.x * qx.scale);
       if (p.measured()) ys.push_back(p.y * qy.scale);
-      any = any || (std::isfinite(p.x) && (p.measured() || failed(p)));
+      failures = failures || (std::isfinite(p.x) && failed(p));
+      lacking = lacking || (!p.measured() && !failed(p));
     }
-  if (!any) throw InputError("no case has both '" + spec.x + "' and '" + spec.y + "'");
+  if (ys.empty() && (lacking || !failures))
+    throw InputError("no case has both '" + spec.x + "' and '" + spec.y + "'");
   chart.x = spec.x == spec.along ? sweep_axis(qx, xs) : fit_axis(qx, xs, true);
   chart.y = fit_axis(qy, ys, true);
   if (std::ranges::any_of(ys, [](double y) { return y <= 0; })) make_room_for_zeros(chart.y);

@@ -84,6 +84,14 @@ SHOWN_ONCE = """
     .map(box => box.querySelector('svg.chart title').textContent)
 """
 
+# Charts that do not fill the box in which their playhead moves.
+ASTRAY = """
+[...document.querySelectorAll('.plot')].filter(plot => plot.checkVisibility()).filter(plot => {
+  const a = plot.getBoundingClientRect(), b = plot.querySelector('svg').getBoundingClientRect();
+  return Math.abs(a.left - b.left) > 1 || Math.abs(a.right - b.right) > 1;
+}).map(plot => plot.querySelector('title').textContent)
+"""
+
 # Pictures of films narrower than a stamp, and films that leave the cell beside them empty.
 LOST_FILMS = """
 [...document.querySelectorAll('.clip')].filter(clip => clip.getBoundingClientRect().width < 90)
@@ -303,6 +311,7 @@ def check_fit(page, checks, medium, width, scale):
     checks.empty(page.run(CUT_TEXTS), f"{medium}: no text of a chart is cut off")
     checks.empty(page.run(HARD_TO_READ.replace("SCALE", str(scale))), f"{medium}: every chart fits and can be read")
     checks.empty(page.run(SHOWN_ONCE), f"{medium}: every chart is shown once")
+    checks.empty(page.run(ASTRAY), f"{medium}: playheads move over their charts")
     checks.empty(page.run(LOST_FILMS), f"{medium}: every film has room, and no cell is empty")
     page.call("Emulation.setEmulatedMedia", media="")
 
