@@ -62,6 +62,28 @@ TEST(Tethers, HoldAHangingSheetAndLeaveASlackOneAlone) {
   EXPECT_EQ(simulate(scene, "jakobsen:tethers=on", 1).x, simulate(scene, "jakobsen", 1).x);
 }
 
+/// A net that is held by corners closer than it is wide shears: its vertices are farther from the
+/// pins than in the flat sheet, and no link is too long.
+TEST(Accelerators, LeaveANetAloneThatShears) {
+  Scene net = hanging_sheet(17, 17, {true, false, false});
+  net.gravity.setZero();
+  for (int j = 0; j < 17; ++j)
+    for (int i = 0; i < 17; ++i) {  // a V: the columns hang straight down from it
+      const double u = i / 16.0, fall = 0.5 * std::min(u, 1 - u);
+      net.start.x[static_cast<std::size_t>(17 * j + i)] +=
+          Vec3((std::sqrt(0.75) - 1) * u, -fall, 0);
+    }
+  for (const Link& link : net.links)
+    ASSERT_NEAR((net.start.x[static_cast<std::size_t>(link.a)] -
+                 net.start.x[static_cast<std::size_t>(link.b)])
+                    .norm(),
+                link.rest, 1e-12);
+  for (const char* more : {",tethers=on", ",levels=4"}) {
+    const State moved = simulate(net, std::string("jakobsen:precision=double") + more, 1);
+    EXPECT_LT(largest_distance(moved.x, net.start.x), 1e-9) << more;
+  }
+}
+
 TEST(Hierarchy, HalvesTheVerticesAndEveryChildHasParents) {
   const Scene scene = hanging_sheet(16, 16);
   const auto levels = make_hierarchy(scene, inverse_masses(scene), 4);

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "core/model/index.hpp"
-#include "core/model/mesh.hpp"
+#include "core/model/scene.hpp"
 
 namespace taut {
 
@@ -34,5 +35,13 @@ class Adjacency {
   std::vector<int> first_;
   std::vector<End> ends_;
 };
+
+/// Whether no two vertices can be farther apart than they are in the flat sheet: a regular sheet
+/// with shear links. One without is a net: pulled along its diagonals it grows longer, up to the
+/// way along its links.
+inline bool keeps_flat_distances(const Scene& scene) {
+  return scene.mesh.grid && std::any_of(scene.links.begin(), scene.links.end(),
+                                        [](const Link& l) { return l.family == Family::shear; });
+}
 
 }  // namespace taut

@@ -26,15 +26,18 @@ std::vector<bool> choose(const std::vector<int>& vertices, const Adjacency& neig
   return coarse;
 }
 
-/// Links between coarse vertices that are linked or share a finer neighbour. A flat sheet's are
-/// straight; elsewhere the way through the neighbour counts, which a fold can only shorten.
-std::vector<Link> coarse_links(const Mesh& mesh, std::span<const Link> links,
+/// Links between coarse vertices that are linked or share a finer neighbour. They are straight
+/// where a sheet keeps flat distances; elsewhere the way through the neighbour counts, which a fold
+/// can only shorten.
+std::vector<Link> coarse_links(const Scene& scene, std::span<const Link> links,
                                const Adjacency& neighbours, const std::vector<bool>& coarse,
                                const std::vector<int>& vertices) {
+  const std::vector<Vec3>& flat = scene.mesh.rest;
+  const bool straight = keeps_flat_distances(scene);
   std::map<std::pair<int, int>, double> rest;
   const auto offer = [&](int a, int b, double length) {
     if (a == b) return;
-    if (mesh.grid) length = (mesh.rest[at(a)] - mesh.rest[at(b)]).norm();
+    if (straight) length = (flat[at(a)] - flat[at(b)]).norm();
     const auto [place, is_new] = rest.try_emplace(std::minmax(a, b), length);
     place->second = std::min(place->second, length);
   };
@@ -83,7 +86,7 @@ std::vector<Level> make_hierarchy(const Scene& scene, std::span<const double> w,
       if (child.end > child.first) level.children.push_back(child);
     }
     if (level.vertices.size() == vertices.size()) break;
-    links = coarse_links(scene.mesh, links, neighbours, coarse, vertices);
+    links = coarse_links(scene, links, neighbours, coarse, vertices);
     level.links = make_sticks<double>(links, w, {.stiffness = {INFINITY, INFINITY, INFINITY}});
     vertices = level.vertices;
     hierarchy.insert(hierarchy.begin(), std::move(level));

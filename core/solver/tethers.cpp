@@ -59,6 +59,7 @@ std::vector<Way> ways(const std::vector<int>& group, std::span<const Link> links
 std::vector<Tether> make_tethers(const Scene& scene) {
   std::vector<Link> links = scene.links;
   std::erase_if(links, [](const Link& l) { return l.family == Family::bend; });
+  const bool straight = keeps_flat_distances(scene);
   const Adjacency neighbours(links, scene.mesh.size());
   std::vector<std::vector<Tether>> candidates(at(scene.mesh.size()));
   for (const auto& group : pin_groups(scene, neighbours)) {
@@ -67,7 +68,7 @@ std::vector<Tether> make_tethers(const Scene& scene) {
       const auto& [length, pin] = way[at(v)];
       if (pin < 0 || std::binary_search(scene.pins.begin(), scene.pins.end(), v)) continue;
       const Vec3 line = scene.mesh.rest[at(v)] - scene.mesh.rest[at(pin)];
-      candidates[at(v)].push_back({v, pin, scene.mesh.grid ? line.norm() : length});
+      candidates[at(v)].push_back({v, pin, straight ? line.norm() : length});
     }
   }
   std::vector<Tether> tethers;

@@ -14,7 +14,7 @@ struct Tether {
 
 /// Long-range attachments (Kim, Chentanez, Mueller-Fischer: Long Range Attachments, SCA 2012): for
 /// every vertex that can move, one to the nearest pin of each group of linked pins, at most
-/// four. Length: the straight line on a regular sheet, which is flat at rest, else the shortest way
+/// four. Length: the straight line on a sheet that keeps flat distances, else the shortest way
 /// along structural and shear links, an upper bound of the geodesic.
 std::vector<Tether> make_tethers(const Scene&);
 
