@@ -163,7 +163,7 @@ TEST(Camera, TheInsetHidesNoneOfThePoints) {
       const Camera camera = fit_camera(corners, Vec3::UnitY(), View{}, aspect, frame);
       const Eigen::Matrix4f clip = camera.world_to_clip(static_cast<float>(aspect));
       for (const Vec3& p : corners) {
-        const Eigen::Vector4f seen = clip * p.cast<float>().homogeneous();
+        const Eigen::Vector4d seen = (clip * p.cast<float>().homogeneous()).cast<double>();
         const double x = seen.x() / seen.w(), y = seen.y() / seen.w();
         EXPECT_LT(std::max(std::abs(x), std::abs(y)), 0.9) << aspect << ": " << half.transpose();
         EXPECT_FALSE(x > frame.inset_left + 1e-5 && y > frame.inset_bottom + 1e-5)
