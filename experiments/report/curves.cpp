@@ -53,8 +53,10 @@ std::map<std::string, std::string> settings(const Record& record, const std::str
   return all;
 }
 
-bool is_number(const std::string& text) {
-  return !text.empty() && text.find_first_not_of("0123456789.+-e/") == std::string::npos;
+/// "mesh" speaks for itself; "4" and "on" do not.
+bool needs_its_key(const std::string& value) {
+  return value == "on" || value == "off" ||
+         value.find_first_not_of("0123456789.+-e/") == std::string::npos;
 }
 
 }  // namespace
@@ -85,7 +87,7 @@ std::vector<Curve> make_curves(std::span<const Record> records, const std::strin
       Curve curve{solver_title(record.solver), record.solver, variants[record.solver]++, {}};
       for (const auto& [key, value] : all)
         if (varies(record, key))
-          curve.label += " " + (is_number(value) ? key + "=" + value : value);
+          curve.label += " " + (needs_its_key(value) ? key + "=" + value : value);
       curves.push_back(std::move(curve));
     }
     Point point{value_of(record, x), value_of(record, y), value_of(record, along), &record};
