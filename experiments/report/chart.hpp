@@ -29,7 +29,7 @@ constexpr int kNarrow = 420;  ///< px
 
 /// Script, data, table and plot area. Failures become glyphs in a strip above the plot, in the row
 /// of their solver; exact zeros of a logarithmic axis lie on its floor as open triangles.
-Drawing draw_chart(const Chart&);
+Drawing draw_chart(Chart);
 
 /// The chart of spec.y over spec.x for these records: sweeps get an axis of their own values, all
 /// else fitted logarithmic axes. Throws InputError if no record has both.
@@ -41,9 +41,6 @@ std::vector<Point> pareto_front(const std::vector<Curve>&);
 /// Moves label positions (px, any order) apart to at least `gap`, inside [low, high] as far as they
 /// fit; keeps their order and moves them as little as it can.
 std::vector<double> spread_labels(std::vector<double> at, double gap, double low, double high);
-
-/// Width of a text in a 12 px sans-serif font [px], a little more than it needs.
-double text_width(const std::string& utf8);
 
 /// Lines that every script begins with: fonts, border, grid.
 std::string script_preamble(const std::string& title, const PlotArea&, int width, int height);

@@ -46,12 +46,6 @@ std::vector<double> spread_labels(std::vector<double> at, double gap, double low
   return at;
 }
 
-double text_width(const std::string& utf8) {
-  const auto letters = std::ranges::count_if(
-      utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
-  return static_cast<double>(letters) * 7.1;
-}
-
 std::string script_preamble(const std::string& title, const PlotArea& area, int width, int height) {
   const auto share = [](double px, int of) { return exact(std::round(px * 1e5 / of) / 1e5); };
   std::string out = "set encoding utf8\nset datafile separator ','\nset key off\n";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/lab/record.hpp"
+#include "experiments/report/labels.hpp"
 
 namespace taut::report {
 
@@ -63,6 +64,8 @@ struct Drawing {
   std::string description;  ///< what is to be seen, for screen readers: one or two sentences
   Table table;
   PlotArea area;
+  std::vector<Label> texts = {};  ///< of charts: every text with its place
+  std::vector<Box> marks = {};    ///< of charts: every marker's place
 };
 
 /// A drawn figure.

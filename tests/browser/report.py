@@ -68,6 +68,32 @@ CUT_TEXTS = """
 })
 """
 
+# Texts of one chart that lie on each other or on a marker: the boxes of their letters, turned as they are, share
+# an area.
+OVERLAPS = r"""
+[...document.querySelectorAll('svg.chart')].filter(svg => svg.checkVisibility()).flatMap(svg => {
+  const box = (e, text, from, to) => {
+    const b = e.getBBox(), m = e.getScreenCTM(), [top, bottom] = [b.y + b.height * from, b.y + b.height * to];
+    const corners = [[b.x, top], [b.x + b.width, top], [b.x + b.width, bottom], [b.x, bottom]]
+        .map(([x, y]) => [m.a * x + m.c * y + m.e, m.b * x + m.d * y + m.f]);
+    return {text, corners};
+  };
+  // A line of text is higher than its letters: a sixth above them and a tenth below.
+  const texts = [...svg.querySelectorAll('text')].filter(text => text.textContent.trim())
+      .map(text => box(text, text.textContent.trim(), 1 / 6, .9));
+  const marks = [...svg.querySelectorAll('use')].map(mark => box(mark, 'a marker', 0, 1));
+  const separated = (a, b) => [[0, 1], [1, 2]].some(([i, j]) => {
+    const [dx, dy] = [a[j][0] - a[i][0], a[j][1] - a[i][1]], length = Math.hypot(dx, dy) || 1;
+    const along = p => (p[0] * dx + p[1] * dy) / length;
+    const [u, v] = [a.map(along), b.map(along)];
+    return Math.max(...u) <= Math.min(...v) + .3 || Math.max(...v) <= Math.min(...u) + .3;
+  });
+  const meets = (a, b) => !separated(a.corners, b.corners) && !separated(b.corners, a.corners);
+  return texts.flatMap((a, i) => [...texts.slice(i + 1), ...marks].filter(b => meets(a, b))
+      .map(b => '"' + a.text + '" on "' + b.text + '" in ' + svg.querySelector('title').textContent));
+})
+"""
+
 # Charts that leave the window or whose text is shrunk: drawn at less than SCALE of their own size.
 HARD_TO_READ = """
 [...document.querySelectorAll('svg.chart')].filter(svg => svg.checkVisibility()).flatMap(svg => {
@@ -309,6 +335,7 @@ def check_fit(page, checks, medium, width, scale):
     checks.true(page.run("document.documentElement.scrollWidth") <= width, f"{medium}: no sideways scrolling",
                 page.run("document.documentElement.scrollWidth"))
     checks.empty(page.run(CUT_TEXTS), f"{medium}: no text of a chart is cut off")
+    checks.empty(page.run(OVERLAPS), f"{medium}: no text of a chart lies on another or on a marker")
     checks.empty(page.run(HARD_TO_READ.replace("SCALE", str(scale))), f"{medium}: every chart fits and can be read")
     checks.empty(page.run(SHOWN_ONCE), f"{medium}: every chart is shown once")
     checks.empty(page.run(ASTRAY), f"{medium}: playheads move over their charts")

@@ -140,7 +140,16 @@ std::set<Status::Kind> kinds_in(const Map& map) {
   return kinds;
 }
 
-std::string plot_panel(const Map& map, std::size_t index) {
+/// A glyph fits its cell [px]; where it could not be read the colour stands alone.
+std::string glyph_font(const Map& map, const PlotArea& at) {
+  const double cell = std::min((at.right - at.left) / static_cast<double>(map.columns.size()),
+                               (at.bottom - at.top) / static_cast<double>(map.rows.size()));
+  const double size = std::min(13.0, std::floor(cell * 0.95));
+  return size < 6 ? "" : "' font '," + exact(size) + "' notitle";
+}
+
+std::string plot_panel(const Map& map, std::size_t index, const PlotArea& at) {
+  const std::string font = glyph_font(map, at);
   std::string out = "plot ";
   bool first = true;
   for (const Status::Kind kind : kinds_in(map)) {
@@ -154,11 +163,10 @@ std::string plot_panel(const Map& map, std::size_t index) {
         "(strcol(9) eq 'no' ? " + exact(0.5 - kInferredGap) + " : " + exact(0.5 - kGap) + ")";
     out += source + half + ":" + half + " with boxxyerror fs solid 1 noborder lc rgb '" +
            std::string(style.colour.light) + "' notitle";
-    if (!style.glyph.empty())
+    if (!style.glyph.empty() && !font.empty())
       out += ", \\\n  '@CSV@' index " + std::to_string(index) + " using (strcol(6) eq '" + name +
              "' && strcol(9) eq 'yes' ? $2 : 1/0):3:(" + gnuplot_string(style.glyph) +
-             ") with labels center tc rgb '" + std::string(style.ink.light) +
-             "' font ',13' notitle";
+             ") with labels center tc rgb '" + std::string(style.ink.light) + font;
   }
   return out + "\n";
 }
@@ -228,7 +236,7 @@ std::string make_script(const Map& map, const FigureSpec& spec, const PlotArea& 
            index_ticks("x", quantity(spec.x), map.columns, at.right - at.left) +
            index_ticks("y", quantity(spec.y), map.rows, (at.bottom - at.top) * 1.6);
     out += panel_titles(spec, whole, at, !stacked || i + 1 == count, i == 0);
-    out += plot_panel(map, i);
+    out += plot_panel(map, i, at);
     if (i == 0)
       out +=
           "unset label 102\nunset for [k=1:90] label k\n"
@@ -240,7 +248,10 @@ std::string make_script(const Map& map, const FigureSpec& spec, const PlotArea& 
 Drawing draw(const FigureSpec& spec, const FigureData& data) {
   const Map map = make_map(spec, data);
   Drawing drawing;
-  drawing.area = {64,
+  const Quantity qx = quantity(spec.x), qy = quantity(spec.y);
+  double ticks = 0;
+  for (const double row : map.rows) ticks = std::max(ticks, text_width(cell_text(qy, row)));
+  drawing.area = {std::max(64.0, ticks + 36),
                   spec.width - 12.0,
                   head_room(map, spec),
                   spec.height - 50.0,
@@ -248,7 +259,6 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
                   static_cast<double>(map.columns.size())};
   drawing.csv = make_csv(map);
   drawing.script = make_script(map, spec, drawing.area);
-  const Quantity qx = quantity(spec.x), qy = quantity(spec.y);
   drawing.table.header = {"solver", qx.title, qy.title, "status"};
   drawing.description = "Outcome for each " + qx.title + " and " + qy.title + ". ";
   if (!data.inferred.empty())
