@@ -115,6 +115,48 @@ TEST(Studio, MovingTheClothMovesThePicture) {
   EXPECT_GT(difference(studio.panel(0, 0), studio.panel(0, 1)).mean, 2);
 }
 
+// What fell through a thin plate must not look as if it had never been there.
+TEST(Studio, ClothThatLeavesThePictureIsMissedAndSaidSo) {
+  Scene scene = test::sheet_over_ball(9);
+  Take gone = test::draped(scene, 7);
+  for (auto& frame : gone.trajectory.frames)
+    if (frame.t > 0.5)
+      for (Vec3& x : frame.state.x) x.y() -= 20;
+  const std::vector<Take> takes{test::draped(scene, 7), gone};
+  const PageLayout layout(640, 360, 2);
+  StudioOptions options = small();
+  options.width = layout.panel_width, options.height = layout.panel_height;
+  const Studio studio(scene, takes, options);
+  EXPECT_TRUE(studio.in_sight(0, 1));
+  EXPECT_TRUE(studio.in_sight(1, 0.25));
+  EXPECT_FALSE(studio.in_sight(1, 1));
+  // Without the sheet both halves show the same ball; the plate with the text stands in one.
+  Image empty = studio.panel(1, 1), marked = empty;
+  mark_gone(marked, layout.unit);
+  EXPECT_GT(difference(empty, marked).largest, 100);
+  const Image page = compose(studio, layout, 1);
+  const int x = layout.panel_width + static_cast<int>(24 * layout.unit),
+            y = layout.header + layout.panel_height - static_cast<int>(40 * layout.unit);
+  EXPECT_EQ(page.at(x + 8, y), marked.at(x + 8 - layout.panel_width, y - layout.header));
+}
+
+TEST(Studio, VerticesAreProjectedToWhereTheyAreDrawn) {
+  const Scene scene = test::level_sheet(9);
+  const std::vector<Take> takes{test::stretched(scene, 0)};
+  StudioOptions options = small();
+  options.view = parse_view("top");
+  options.range = 0.05;
+  const Studio studio(scene, takes, options);
+  const Image panel = studio.panel(0, 0.5);
+  const auto points = studio.projected(0, 0.5);
+  ASSERT_EQ(points.size(), scene.mesh.rest.size());
+  const auto middle = points[points.size() / 2];
+  const Rgb8 there = panel.at(static_cast<int>((middle.x() + 1) / 2 * 240),
+                              static_cast<int>((1 - middle.y()) / 2 * 180) + 3);
+  EXPECT_GT(there.g, 120) << "cloth, not the floor around it";
+  for (const auto& p : points) EXPECT_LT(std::max(std::abs(p.x()), std::abs(p.y())), 1);
+}
+
 // Cloth that sinks into a ball is lifted to its surface, and only hatched there.
 TEST(Studio, SunkenClothStaysVisible) {
   const Scene scene = test::sheet_over_ball(17);

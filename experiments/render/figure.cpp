@@ -130,7 +130,10 @@ Image compose(const Studio& studio, const PageLayout& layout, double t) {
     const int y = row * (layout.header + layout.panel_height);
     const Take& take = studio.takes()[k];
     Image panel = studio.panel(k, t);
-    if (take.stop && t > take.stop->t) mark_stop(panel, *take.stop, layout.unit);
+    if (take.stop && t > take.stop->t)
+      mark_stop(panel, *take.stop, layout.unit);
+    else if (!studio.in_sight(k, t))
+      mark_gone(panel, layout.unit);
     picture.paste(panel, x, y + layout.header);
     draw_header(canvas, studio, take, t, {1.0 * x, 1.0 * y}, layout);
     draw_inset(picture, studio, k, t, {1.0 * x, 1.0 * y + layout.header}, layout);
@@ -163,6 +166,19 @@ void draw_colour_bar(Canvas& canvas, const ColourScale& scale, const BarPlace& p
   }
 }
 
+namespace {
+
+/// A line of text on a plate, in the lower left corner.
+void plate(Image& panel, const std::string& text, Rgb8 colour, double unit) {
+  Canvas canvas(panel);
+  const double size = std::max(11.0, 19 * unit), wide = text_width(text, size, Weight::bold);
+  const double x = 24 * unit, y = panel.height() - 24 * unit - 2 * size;
+  canvas.fill_rounded(x, y, wide + 2 * size, 2 * size, size * 0.4, colour);
+  canvas.text({x + size, y + 1.35 * size}, text, {size, rgb(0xFFFFFF), Weight::bold});
+}
+
+}  // namespace
+
 void mark_stop(Image& panel, const Take::Stop& stop, double unit) {
   Canvas canvas(panel);
   const double edge = std::max(3.0, 5 * unit);
@@ -171,11 +187,11 @@ void mark_stop(Image& panel, const Take::Stop& stop, double unit) {
   canvas.fill(0, height - edge, width, edge, kAlarm);
   canvas.fill(0, 0, edge, height, kAlarm);
   canvas.fill(width - edge, 0, edge, height, kAlarm);
-  const std::string text = stop.why + formatted(" after t = %.2f s: last good state", stop.t);
-  const double size = std::max(11.0, 19 * unit), wide = text_width(text, size, Weight::bold);
-  const double x = 24 * unit, y = height - 24 * unit - 2 * size;
-  canvas.fill_rounded(x, y, wide + 2 * size, 2 * size, size * 0.4, kAlarm);
-  canvas.text({x + size, y + 1.35 * size}, text, {size, rgb(0xFFFFFF), Weight::bold});
+  plate(panel, stop.why + formatted(" after t = %.2f s: last good state", stop.t), kAlarm, unit);
+}
+
+void mark_gone(Image& panel, double unit) {
+  plate(panel, "has left the picture", rgb(0x4A5361), unit);
 }
 
 }  // namespace taut

@@ -41,4 +41,7 @@ void draw_colour_bar(Canvas&, const ColourScale&, const BarPlace&, double unit);
 /// Says on a panel that the run ended before this moment.
 void mark_stop(Image& panel, const Take::Stop&, double unit);
 
+/// Says on a panel that its cloth is out of sight.
+void mark_gone(Image& panel, double unit);
+
 }  // namespace taut

@@ -27,27 +27,52 @@ std::vector<double> frame_times(const Scene& scene, const std::vector<Take>& tak
   return times;
 }
 
-/// The cloth laid flat, in the panel's upper right corner.
+/// Where the cloth laid flat stands in a panel: its upper right corner [px].
+struct FlatPlace {
+  static constexpr int kRim = 3;
+  int side, margin;
+  explicit FlatPlace(int height) : side(height / 5), margin(height / 28) {}
+
+  /// Some of the cloth lies below it.
+  bool hides(const std::vector<Eigen::Vector2f>& cloth, int width, int height) const {
+    const float x = 1 - 2.f * static_cast<float>(side + margin + kRim) / static_cast<float>(width);
+    const float y = 1 - 2.f * static_cast<float>(side + margin + kRim) / static_cast<float>(height);
+    return std::ranges::any_of(
+        cloth, [&](const auto& p) { return p.x() > x && p.x() < 1 && p.y() > y && p.y() < 1; });
+  }
+};
+
 void add_flat(Image& panel, const Studio& studio, std::size_t take, double t) {
-  const int side = panel.height() / 5, margin = panel.height() / 28, pad = 3;
-  const Image flat = studio.material_space(take, t, side);
+  const FlatPlace place(panel.height());
+  const int pad = FlatPlace::kRim;
+  const Image flat = studio.material_space(take, t, place.side);
   if (flat.width() == 0) return;
-  const int x = panel.width() - margin - flat.width(), y = margin;
+  const int x = panel.width() - place.margin - flat.width(), y = place.margin;
   Canvas(panel).fill_rounded(x - pad, y - pad, flat.width() + 2 * pad, flat.height() + 2 * pad, pad,
                              rgb(0x4A5361));
   panel.paste(flat, x, y);
 }
 
 Image side_by_side(const Studio& studio, const MediaOptions& options, double t) {
-  const int count = static_cast<int>(studio.takes().size());
+  const int count = static_cast<int>(studio.takes().size()), width = options.width / count;
   Image picture(options.width, options.height, studio.options().theme.top);
+  std::vector<std::vector<Eigen::Vector2f>> cloth;
+  for (std::size_t k = 0; k < studio.takes().size(); ++k) cloth.push_back(studio.projected(k, t));
+  // In the first moments a sheet may reach into the corner: all panels do without the flat then.
+  const FlatPlace place(options.height);
+  const bool hides = std::ranges::any_of(
+      cloth, [&](const auto& one) { return place.hides(one, width, options.height); });
   for (int k = 0; k < count; ++k) {
     const auto index = static_cast<std::size_t>(k);
     Image panel = studio.panel(index, t);
-    add_flat(panel, studio, index, t);
+    if (!hides) add_flat(panel, studio, index, t);
     const auto& stop = studio.takes()[index].stop;
-    if (stop && t > stop->t) mark_stop(panel, *stop, options.height / 836.0);
-    picture.paste(panel, k * (options.width / count), 0);
+    const double unit = options.height / 836.0;
+    if (stop && t > stop->t)
+      mark_stop(panel, *stop, unit);
+    else if (!studio.in_sight(index, t))
+      mark_gone(panel, unit);
+    picture.paste(panel, k * width, 0);
   }
   return picture;
 }
@@ -140,7 +165,7 @@ Media render_media(const Scene& scene, const std::vector<Take>& takes, const Med
   look.quality = options.quality;
   look.view = options.view;
   look.quantity = options.quantity;
-  look.frame = {-0.94, 0.84, -0.64, 0.74};  // the flat may hide a corner of the first moments
+  look.frame = {-0.94, 0.84, -0.64, 0.74};
   look.to = media.t.back();
   const Studio studio(scene, takes, look);
   media.scale = studio.scale();

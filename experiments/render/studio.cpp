@@ -69,6 +69,26 @@ std::vector<Skin> Studio::skins(const TrajectoryReader::Frame& frame, const Vec3
   return skins;
 }
 
+std::vector<Eigen::Vector2f> Studio::projected(std::size_t take, double t) const {
+  const auto& frame = takes_[take].at(t);
+  Camera camera = placing_.camera;
+  if (placing_.follows) camera.eye += centroid(takes_, frame.t).cast<float>();
+  const Eigen::Matrix4f to_clip = camera.world_to_clip(static_cast<float>(options_.width) /
+                                                       static_cast<float>(options_.height));
+  std::vector<Eigen::Vector2f> points;
+  for (const Vec3& x : frame.state.x) {
+    const Eigen::Vector4f clip = to_clip * x.cast<float>().homogeneous();
+    if (clip.w() > 0) points.emplace_back(clip.head<2>() / clip.w());
+  }
+  return points;
+}
+
+bool Studio::in_sight(std::size_t take, double t) const {
+  return std::ranges::any_of(projected(take, t), [](const Eigen::Vector2f& p) {
+    return std::abs(p.x()) < 1 && std::abs(p.y()) < 1;
+  });
+}
+
 Image Studio::panel(std::size_t index, double t) const {
   const auto& frame = takes_[index].at(t);
   const Vec3 moved = placing_.follows ? centroid(takes_, frame.t) : Vec3::Zero();

@@ -44,6 +44,10 @@ class Studio {
   /// Depth [m] below a collider from which cloth is hatched: 0.2 % of the scene's extent.
   double hatch_depth() const { return 0.002 * extent(scene_); }
   Image panel(std::size_t take, double t) const;
+  /// Where its vertices lie in the panel: x and y from -1 to 1, y upwards.
+  std::vector<Eigen::Vector2f> projected(std::size_t take, double t) const;
+  /// Some vertex of it lies in the panel.
+  bool in_sight(std::size_t take, double t) const;
   /// Colours of a sheet laid flat: one pixel block per vertex, no light. Empty image: no sheet.
   Image material_space(std::size_t take, double t, int longest_side) const;
 
