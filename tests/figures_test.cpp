@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart.hpp"
@@ -220,12 +221,36 @@ TEST(Chart, ANarrowOneGivesItsWidthToThePlot) {
 }
 
 TEST(Format, SignsThatAKeyboardLacks) {
-  EXPECT_EQ(typeset("z^2 - 2 mu z >= 2e-12 m"), "z² − 2 μ z ≥ 2e−12 m");
+  EXPECT_EQ(typeset("z^2 - 2 mu z >= 2e-12 m"), "z² − 2 μ z ≥ 2×10⁻¹² m");
   EXPECT_EQ(typeset("0.0156 s x 1, +-mu, pi/2N"), "0.0156 s × 1, ±μ, π/2N");
+  EXPECT_EQ(typeset("default: -10, 1e5 to x-2, re-1"), "default: −10, 1×10⁵ to x-2, re-1");
   EXPECT_EQ(typeset("much spins: shape-2, mu_s, box x"), "much spins: shape-2, mu_s, box x");
 }
 
+TEST(Palette, SixSettingsOfOneSolverHaveSixDashes) {
+  for (const char* solver : {"jakobsen", "bullet", "xpbd", "mass-spring", "bullet-deformable"}) {
+    std::set<std::string_view> dashes;
+    for (int variant = 0; variant < 6; ++variant) dashes.insert(solver_style(solver, variant).dash);
+    EXPECT_EQ(dashes.size(), 6U) << solver;
+  }
+}
+
+TEST(Format, AnIntervalHasTheDigitsThatItCarries) {
+  EXPECT_EQ(decimals_for(0.47), 1);   // 2.79 to 3.26: 3.2 (2.8-3.3)
+  EXPECT_EQ(decimals_for(0.108), 2);  // 0.962 to 1.07: 1.00 (0.96-1.07)
+  EXPECT_EQ(decimals_for(2.93), 1);   // 6.07 to 9.00: 7.4 (6.1-9.0)
+  EXPECT_EQ(decimals_for(8.5), 0);
+  EXPECT_EQ(decimals_for(62), 0);
+  EXPECT_EQ(decimals_for(0), 6);
+  EXPECT_EQ(fixed(-0.934, 2), "−0.93");
+  EXPECT_EQ(fixed(-0.003, 2), "0.00");
+  EXPECT_EQ(fixed(40.81, 0), "41");
+}
+
 TEST(Format, NumbersReadAsPeopleWriteThem) {
+  EXPECT_EQ(significant(3.4e-13), "3.4×10⁻¹³");
+  EXPECT_EQ(significant(-2e-12), "−2×10⁻¹²");
+  EXPECT_EQ(significant(1e7), "10⁷");
   EXPECT_EQ(significant(0.01234), "0.012");
   EXPECT_EQ(significant(9.96), "10");
   EXPECT_EQ(significant(22.04), "22");

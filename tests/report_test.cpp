@@ -105,6 +105,26 @@ TEST(Report, AbsentDataNameTheCommandThatMakesThem) {
     EXPECT_NE(html.find(command), std::string::npos) << command;
 }
 
+TEST(Report, ATruthThatDeviatesForManyIsSaidOnce) {
+  ReportInput input = example();
+  Truths truths;
+  for (const char* solver : {"jakobsen", "bullet"})
+    for (const char* value : {"0.10", "0.55", "1.35"})
+      truths.rows.push_back(
+          {"chains", "modes obey theory", "a book", solver, value, "2", "deviates", "links turn"});
+  truths.rows.push_back(
+      {"chains", "another", "a book", "bullet", "1", "2", "deviates", "links turn"});
+  truths.truths = 2, truths.findings = 7;
+  input.truths = truths;
+  const std::string html = make_report(input);
+  const std::size_t begins = html.find("<section id=\"truths\"");
+  const std::string shown = html.substr(begins, html.find("<details", begins) - begins);
+  EXPECT_EQ(count(shown, "modes obey theory"), 1U);
+  EXPECT_EQ(count(shown, "rowspan=\"6\""), 2U) << "statement and verdict";
+  EXPECT_EQ(count(shown, "links turn"), 2U) << "not shared with the next truth";
+  EXPECT_EQ(count(shown, "<tr>"), 8U);
+}
+
 TEST(Report, NamesFromOutsideStayText) {
   ReportInput input = example();
   const std::string evil = "<script>alert(1)</script>\"'&";
@@ -239,7 +259,8 @@ TEST(Verdict, EqualSolversAreAlike) {
       r.values["stretch.rms"] = 0.1 / value_of(r, "iterations"), r.status = {};
   const std::string text = verdict(compare(input), {"hang", "ball"});
   EXPECT_NE(text.find("<b>the same stretch</b> on all 2 scenes"), std::string::npos) << text;
-  EXPECT_NE(text.find("both stay sound at time steps up to 100"), std::string::npos) << text;
+  EXPECT_NE(text.find("both stay sound at every time step tried, up to 100"), std::string::npos)
+      << text;
   EXPECT_NE(text.find("No case failed."), std::string::npos) << text;
 }
 
@@ -252,9 +273,23 @@ TEST(Comparison, RatiosPairOnlyCasesThatBothEndedWell) {
   // time-steps pairs have ratio 1; of 2 x 9 sweeps pairs with ratio 3 Bullet's k = 128 failed.
   EXPECT_GT(facts.stretch[1]->mean, 1);
   EXPECT_LT(facts.stretch[1]->mean, 3);
-  const auto dt = largest_stable_dt(facts.contenders[1], "hang", 4);
+  const auto dt = largest_sound_step(facts.contenders[1], "hang", 4);
   ASSERT_TRUE(dt);
-  EXPECT_LT(*dt, 0.1);
+  EXPECT_LT(dt->dt, 0.1);
+  EXPECT_FALSE(dt->no_limit);
+}
+
+TEST(Comparison, AStepThatWentWellIsNoLimit) {
+  ReportInput input = example();
+  for (Record& r : input.studies[1].records) r.status = {};
+  SoundSteps steps = sound_steps(compare(input), {"hang", "ball"});
+  EXPECT_TRUE(steps.no_limit);
+  EXPECT_DOUBLE_EQ(steps.dt.at(0), 0.1);
+  // Steps within a factor of two say nothing about limits.
+  std::erase_if(input.studies[1].records, [](const Record& r) {
+    return r.scene == "ball" && (r.dt < 0.008 || r.dt > 0.016);
+  });
+  EXPECT_EQ(sound_steps(compare(input), {"hang", "ball"}).scenes, std::vector<std::string>{"hang"});
 }
 
 TEST(Comparison, ASolverWithoutSweepsHasNoSayInWhichAreQuoted) {

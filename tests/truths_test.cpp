@@ -43,10 +43,12 @@ TEST(Ledger, JudgesByTheToleranceAndNeverPassesNan) {
   ledger.below("a", "q", "m", std::nan(""), 1);
   ledger.deviates("a", "q", "m", 2.0, 1.0, 2.1, 0.2, "known");
   ledger.deviates("a", "q", "m", 2.0, 1.0, 3.0, 0.2, "known");
+  ledger.deviates("a", "q", "m", 2.0, 1.9, 2.1, 0.2, "known");
   std::vector<TruthVerdict> verdicts;
   for (const Finding& f : ledger.findings()) verdicts.push_back(f.verdict);
-  EXPECT_EQ(verdicts, (std::vector{TruthVerdict::passed, TruthVerdict::broken, TruthVerdict::broken,
-                                   TruthVerdict::deviates, TruthVerdict::broken}));
+  EXPECT_EQ(verdicts,
+            (std::vector{TruthVerdict::passed, TruthVerdict::broken, TruthVerdict::broken,
+                         TruthVerdict::deviates, TruthVerdict::broken, TruthVerdict::passed}));
 }
 
 TEST(Ledger, KeepsOnlyTheSolversAskedFor) {

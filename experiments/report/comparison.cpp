@@ -138,38 +138,44 @@ bool quoted_at(const Record& record, int sweeps) {
   return std::isnan(own) || own == sweeps;
 }
 
-std::optional<double> largest_stable_dt(const Contender& contender, const std::string& scene,
-                                        int sweeps) {
-  std::map<double, bool> stable;
+std::optional<SoundStep> largest_sound_step(const Contender& contender, const std::string& scene,
+                                            int sweeps) {
+  constexpr std::size_t kLeastSteps = 3;
+  constexpr double kLeastRange = 4;
+  std::map<double, bool> sound;
   for (const Record& r : contender.records) {
     if (r.scene != scene || !quoted_at(r, sweeps)) continue;
-    const auto [at, fresh] = stable.try_emplace(r.dt, true);
+    const auto [at, fresh] = sound.try_emplace(r.dt, true);
     at->second = at->second && usable(r);
   }
-  if (stable.size() < 3) return std::nullopt;
-  double largest = 0;
-  for (const auto& [dt, good] : stable) {
-    if (!good) break;
-    largest = dt;
+  if (sound.size() < kLeastSteps || sound.rbegin()->first < kLeastRange * sound.begin()->first)
+    return std::nullopt;
+  SoundStep step;
+  for (const auto& [dt, good] : sound) {
+    step.no_limit = step.no_limit && good;
+    if (step.no_limit) step.dt = dt;
   }
-  return largest;
+  return step;
 }
 
-std::vector<std::optional<double>> stable_dt(const Comparison& facts,
-                                             const std::vector<std::string>& scenes) {
+SoundSteps sound_steps(const Comparison& facts, const std::vector<std::string>& scenes) {
+  SoundSteps steps;
   std::vector<std::vector<double>> found(facts.contenders.size());
   for (const std::string& scene : scenes) {
-    std::vector<double> here;
+    std::vector<SoundStep> here;
     for (const Contender& c : facts.contenders)
-      if (const auto dt = largest_stable_dt(c, scene, facts.sweeps); dt && *dt > 0)
-        here.push_back(*dt);
+      if (const auto step = largest_sound_step(c, scene, facts.sweeps); step && step->dt > 0)
+        here.push_back(*step);
     if (here.size() != facts.contenders.size()) continue;
-    for (std::size_t i = 0; i < here.size(); ++i) found[i].push_back(here[i]);
+    steps.scenes.push_back(scene);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      found[i].push_back(here[i].dt);
+      steps.no_limit = steps.no_limit && here[i].no_limit;
+    }
   }
-  std::vector<std::optional<double>> means;
-  for (const auto& values : found)
-    means.push_back(values.empty() ? std::nullopt : std::optional(geometric(values)));
-  return means;
+  if (!steps.scenes.empty())
+    for (const auto& values : found) steps.dt.push_back(geometric(values));
+  return steps;
 }
 
 std::optional<double> value_at(const Contender& contender, const std::string& scene, int sweeps,

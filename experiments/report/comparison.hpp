@@ -54,14 +54,21 @@ std::optional<Ratio> ratio_of(const Contender&, const Contender& first, const st
 /// none.
 bool quoted_at(const Record&, int sweeps);
 
-/// The largest dt [s] of a contender's cases on `scene` at `sweeps` below which (itself included)
-/// every tried dt ended ok or unsettled; nullopt if fewer than three were tried, 0 if the smallest
-/// failed.
-std::optional<double> largest_stable_dt(const Contender&, const std::string& scene, int sweeps);
+/// A time step up to which (itself included) every tried one ended ok or unsettled.
+struct SoundStep {
+  double dt = 0;         ///< s; 0 if the smallest that was tried failed
+  bool no_limit = true;  ///< nothing that was tried failed: dt is no limit but the longest tried
+};
+/// A contender's on `scene` at `sweeps`; nullopt unless three steps and a range of 4 were tried.
+std::optional<SoundStep> largest_sound_step(const Contender&, const std::string& scene, int sweeps);
 
-/// Geometric mean over scenes of the largest stable dt, scenes where all contenders have one.
-std::vector<std::optional<double>> stable_dt(const Comparison&,
-                                             const std::vector<std::string>& scenes);
+/// The same for all contenders, over the scenes where each has one.
+struct SoundSteps {
+  std::vector<double> dt;  ///< s, geometric means over the scenes; empty: no scene
+  std::vector<std::string> scenes;
+  bool no_limit = true;  ///< on none of them did any step fail
+};
+SoundSteps sound_steps(const Comparison&, const std::vector<std::string>& scenes);
 
 /// The value of the one case on `scene` at `sweeps` and the most common dt; nullopt if it failed.
 std::optional<double> value_at(const Contender&, const std::string& scene, int sweeps,

@@ -22,8 +22,8 @@ std::string terminal(Format format, const FigureSpec& spec) {
   if (format == Format::svg)
     return "svg noenhanced size " + std::to_string(spec.width) + "," + std::to_string(spec.height) +
            " font 'sans-serif,13' background '#ffffff'";
-  return "pdfcairo noenhanced size " + significant(spec.width / 100.0, 4) + "in," +
-         significant(spec.height / 100.0, 4) + "in font 'sans,13' fontscale 0.72 linewidth 0.72";
+  return "pdfcairo noenhanced size " + exact(spec.width / 100.0) + "in," +
+         exact(spec.height / 100.0) + "in font 'sans,13' fontscale 0.72 linewidth 0.72";
 }
 
 }  // namespace

@@ -36,9 +36,21 @@ TruthRow row_of(const Json& truth, const Json& finding) {
                verdict,
                finding.at("why")};
   if (verdict == "not claimed") return row;
-  row.expected = expected == 0 ? "at most " + with_unit(slack, unit, 2)
-                               : significant(expected, 6) + " ± " + with_unit(slack, unit, 2);
-  row.measured = with_unit(number(finding.at("measured")), unit, expected == 0 ? 2 : 6);
+  const double measured = number(finding.at("measured"));
+  if (expected == 0) {
+    row.expected = "at most " + with_unit(slack, unit, 2),
+    row.measured = with_unit(measured, unit, 2);
+    return row;
+  }
+  // As many digits as the tolerance lets matter.
+  const int decimals = decimals_for(slack);
+  const bool plain = slack >= 1e-6 && std::abs(measured) < 1e6;
+  const std::string suffix = unit == "1" ? "" : " " + unit;
+  row.expected = plain       ? fixed(expected, decimals) + " ± " + fixed(slack, decimals) + suffix
+                 : slack > 0 ? significant(expected, 6) + " ± " + with_unit(slack, unit, 2)
+                             : "exactly " + with_unit(expected, unit, 3);
+  row.measured =
+      plain ? fixed(measured, decimals) + suffix : with_unit(measured, unit, slack > 0 ? 6 : 3);
   return row;
 }
 

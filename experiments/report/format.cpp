@@ -19,7 +19,43 @@ std::string print(const char* format, int precision, double value) {
   return {text.data(), static_cast<std::size_t>(std::max(0, size))};
 }
 
+constexpr std::array<const char*, 10> kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+
+/// 10 to this power.
+std::string power_of_ten(int exponent) {
+  std::string text = exponent < 0 ? "10⁻" : "10";
+  for (const char digit : std::to_string(std::abs(exponent)))
+    text += kRaised[static_cast<std::size_t>(digit - '0')];
+  return text;
+}
+
+/// "3.40e-13" -> "3.4×10⁻¹³", "1e+06" -> "10⁶".
+std::string powers(const std::string& scientific) {
+  const auto e = scientific.find('e');
+  std::string mantissa = scientific.substr(0, e);
+  if (mantissa.find('.') != std::string::npos) {
+    mantissa.erase(mantissa.find_last_not_of('0') + 1);
+    if (mantissa.back() == '.') mantissa.pop_back();
+  }
+  return (mantissa == "1" ? "" : mantissa + "×") +
+         power_of_ten(std::stoi(scientific.substr(e + 1)));
+}
+
 }  // namespace
+
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return significant(value);
+  const std::string text = print("%.*f", decimals, std::abs(value));
+  const bool nothing = text.find_first_not_of("0.") == std::string::npos;
+  return (value < 0 && !nothing ? "−" : "") + text;
+}
+
+int decimals_for(double width) {
+  if (!(width > 0) || !std::isfinite(width)) return 6;
+  const double exponent = std::floor(std::log10(width));
+  const bool two = width / std::pow(10.0, exponent) < 3;
+  return std::clamp(static_cast<int>(two ? 1 - exponent : -exponent), 0, 6);
+}
 
 std::string significant(double value, int digits) {
   if (std::isnan(value)) return "–";
@@ -31,22 +67,17 @@ std::string significant(double value, int digits) {
   const int exponent = std::stoi(rounded.substr(rounded.find('e') + 1));
   std::string text;
   if (exponent < -4 || exponent > 5)
-    text = print("%.*g", digits, magnitude);
+    text = powers(rounded);
   else
     text = print("%.*f", std::max(0, digits - 1 - exponent), magnitude);
   return (value < 0 ? "−" : "") + text;
 }
 
 std::string tick_text(double value, int digits) {
-  static constexpr std::array<const char*, 10> kRaised{"⁰", "¹", "²", "³", "⁴",
-                                                       "⁵", "⁶", "⁷", "⁸", "⁹"};
   const double exponent = value > 0 ? std::log10(value) : 0;
   const auto whole = static_cast<int>(std::lround(exponent));
   if (std::abs(exponent - whole) > 1e-9 || std::abs(whole) < 4) return significant(value, digits);
-  std::string text = whole < 0 ? "10⁻" : "10";
-  for (const char digit : std::to_string(std::abs(whole)))
-    text += kRaised[static_cast<std::size_t>(digit - '0')];
-  return text;
+  return power_of_ten(whole);
 }
 
 std::string exact(double value) { return std::isnan(value) ? "" : shortest(value); }
@@ -75,11 +106,18 @@ std::string typeset(std::string_view plain) {
       return plain.substr(i).starts_with(sign.first) &&
              (!word || (!letter(i - 1) && !letter(i + sign.first.size())));
     });
-    const bool exponent = at(i) == '-' && at(i - 1) == 'e' && digit(i - 2) && digit(i + 1);
-    if (found != kSigns.end())
+    const bool minus = at(i) == '-' && digit(i + 1) && (at(i - 1) == ' ' || at(i - 1) == '(');
+    std::size_t end = i + 1;  // of an exponent behind a digit: e-12
+    if (at(end) == '-' || at(end) == '+') ++end;
+    const std::size_t digits = end;
+    while (digit(end)) ++end;
+    if (found != kSigns.end()) {
       out += found->second, i += found->first.size();
-    else
-      out += exponent ? "−" : std::string(1, plain[i]), ++i;
+    } else if (at(i) == 'e' && digit(i - 1) && end > digits && !letter(end)) {
+      out += "×" + power_of_ten(std::stoi(std::string(plain.substr(i + 1, end - i - 1)))), i = end;
+    } else {
+      out += minus ? "−" : std::string(1, plain[i]), ++i;
+    }
   }
   return out;
 }

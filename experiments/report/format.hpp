@@ -6,8 +6,13 @@
 namespace taut::report {
 
 /// Fewest digits that carry `digits` significant ones, no exponent between 1e-4 and 1e6:
-/// 0.01234 -> "0.012", 22.04 -> "22". NaN and infinities give "–" and "∞".
+/// 0.01234 -> "0.012", 22.04 -> "22", 3.4e-13 -> "3.4×10⁻¹³". NaN and infinities give "–" and "∞".
 std::string significant(double value, int digits = 2);
+/// So many decimals: -0.934 -> "−0.93"; never "−0.00".
+std::string fixed(double value, int decimals);
+/// The decimals that a value deserves whose uncertainty spans `width`: one digit of it, two where
+/// the first is below 3; at most six.
+int decimals_for(double width);
 /// Every bit, shortest form: for data files. NaN gives "".
 std::string exact(double value);
 /// A number beside an axis: powers of ten from 10⁴ on as such, all else by significant().
@@ -15,7 +20,8 @@ std::string tick_text(double value, int digits);
 /// A ratio for prose: "3.3", "12", "150".
 std::string ratio(double value);
 
-/// Plain text with the signs that a keyboard lacks: "dt^2 >= 2e-5, mu x 2" -> "dt² ≥ 2e−5, μ × 2".
+/// Plain text with the signs that a keyboard lacks: "dt^2 >= 2e-5, mu x 2" ->
+/// "dt² ≥ 2×10⁻⁵, μ × 2".
 std::string typeset(std::string_view);
 
 std::string escape_html(std::string_view);  ///< & < > " '; control characters become U+FFFD

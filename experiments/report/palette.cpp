@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <stdexcept>
+#include <vector>
 
 namespace taut::report {
 
@@ -51,7 +52,9 @@ constexpr std::array kOthers{
     Known{"", "s-green", 11, 10, 1.05, "(9,3,2,3)"}, Known{"", "s-magenta", 13, 12, 1.05, "(2,3)"},
     Known{"", "s-slate", 5, 4, 0.85, "(6,2)"},
 };
-constexpr std::array<std::string_view, 4> kVariantDashes{"", "(7,4)", "(2,3)", "(10,3,2,3)"};
+/// Of settings of one solver: eight that nobody takes for each other.
+constexpr std::array<std::string_view, 8> kVariantDashes{
+    "", "(7,4)", "(2,3)", "(10,3,2,3)", "(16,4)", "(4,2)", "(10,3,2,3,2,3)", "(2,6)"};
 
 const Known& known(std::string_view solver) {
   const auto found = std::ranges::find(kKnown, solver, &Known::solver);
@@ -67,8 +70,10 @@ SolverStyle solver_style(std::string_view solver, int variant) {
   const Known& k = known(solver);
   SolverStyle style{colour(k.colour), k.marker, k.hollow, k.size, k.dash};
   if (variant > 0) {
-    style.dash = kVariantDashes[static_cast<std::size_t>(variant) % kVariantDashes.size()];
-    if (style.dash == k.dash) style.dash = "(4,2)";
+    std::vector<std::string_view> others;  // the solver's own pattern belongs to its first setting
+    for (const std::string_view dash : kVariantDashes)
+      if (dash != k.dash && !dash.empty()) others.push_back(dash);
+    style.dash = others[static_cast<std::size_t>(variant - 1) % others.size()];
     if (variant % 2 == 1) std::swap(style.marker, style.hollow);
   }
   return style;

@@ -71,7 +71,7 @@ std::string colour_bar(const ColourBar& bar) {
     const std::string beyond = k + 1 == bar.ticks.size()    ? "≥ "
                                : at == 0 && label[0] != '0' ? "≤ "
                                                             : "";
-    ticks += "<span style=\"left:" + significant(100 * at, 3) + "%\">" + beyond +
+    ticks += "<span style=\"left:" + exact(std::round(1000 * at) / 10) + "%\">" + beyond +
              escape_html(label) + "</span>";
   }
   return "<div class=\"scale\"><p>" + escape_html(bar.title) +

@@ -78,7 +78,7 @@ std::string price_verdict(const Comparison& facts) {
   }
   if (out.empty()) return "";
   return "For <b>" + quantity(kPricedMetric).text(kPricedError, 1) + " " +
-         quantity(kPricedMetric).title + "</b>, each at its cheapest setting, " + out +
+         quantity(kPricedMetric).title + "</b>, each at the cheapest setting tried, " + out +
          ". <small>The same code timed against itself strayed by up to " +
          significant(100 * strayed, 2) + " %.</small>";
 }

@@ -119,15 +119,21 @@ std::string depth_sentence(const Comparison& facts, const std::vector<std::strin
   return out;
 }
 
+/// Time steps that were tried and went well are no limit; only what failed is one.
 std::string dt_sentence(const Comparison& facts, const std::vector<std::string>& scenes) {
-  const auto dt = stable_dt(facts, scenes);
-  if (dt.size() < 2 || !dt[0] || !dt[1]) return "";
+  const SoundSteps steps = sound_steps(facts, scenes);
+  if (steps.dt.size() < 2) return "";
   const Quantity q = quantity("dt");
-  const std::size_t better = *dt[0] >= *dt[1] ? 0 : 1;
-  const double factor = *dt[better] / *dt[1 - better];
-  if (factor < kAlike) return "; both stay sound at time steps up to " + q.text(*dt[0]);
+  const std::string on = " on " + listed(steps.scenes);
+  if (steps.no_limit)
+    return "; " + std::string(steps.dt.size() == 2 ? "both" : "all") +
+           " stay sound at every time step tried, up to " + q.text(steps.dt.front()) + on;
+  const std::size_t better = steps.dt[0] >= steps.dt[1] ? 0 : 1;
+  const double factor = steps.dt[better] / steps.dt[1 - better];
+  if (factor < kAlike) return "; both stay sound at time steps up to " + q.text(steps.dt[0]) + on;
   return "; " + solver_name(facts.contenders[better]) + " stays sound at " + times(factor) +
-         " longer time steps (" + q.text(*dt[better]) + " against " + q.text(*dt[1 - better]) + ")";
+         " longer time steps" + on + " (" + q.text(steps.dt[better]) + " against " +
+         q.text(steps.dt[1 - better]) + ")";
 }
 
 std::string cost_sentence(const Comparison& facts) {

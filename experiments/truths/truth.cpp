@@ -74,8 +74,11 @@ void Ledger::deviates(std::string_view subject, std::string_view quantity, std::
                       double measured, double expected, double explained, double tolerance,
                       std::string_view why) {
   Finding f = finding(subject, quantity, unit, measured, expected, tolerance);
-  f.verdict =
-      within(measured, explained, tolerance) ? TruthVerdict::deviates : TruthVerdict::broken;
+  const bool agrees = f.verdict == TruthVerdict::passed;
+  if (!within(measured, explained, tolerance))
+    f.verdict = TruthVerdict::broken;
+  else if (!agrees)
+    f.verdict = TruthVerdict::deviates;
   f.why = why;
   add(std::move(f));
 }

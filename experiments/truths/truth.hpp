@@ -48,6 +48,7 @@ class Ledger {
   void slope(std::string_view subject, std::string_view quantity, double measured,
              double uncertainty, double expected, double tolerance);
   /// The truth says `expected`; this subject legitimately gives `explained` (within tolerance).
+  /// Where both are within the tolerance it passes: nobody could tell them apart.
   void deviates(std::string_view subject, std::string_view quantity, std::string_view unit,
                 double measured, double expected, double explained, double tolerance,
                 std::string_view why);

@@ -12,13 +12,18 @@ namespace {
 
 std::string caption(const std::vector<Record>& records, double dt) {
   std::string out = "Δt = " + quantity("dt").text(dt, 3);
+  const Quantity stretch = quantity("stretch.rms");
+  if (std::ranges::none_of(
+          records, [&](const Record& r) { return value_of(r, stretch.name) >= kNoStretch; }))
+    return out + "; every value is below " + stretch.text(kNoStretch, 1) +
+           ", which the verdict counts as no stretch at all";
   const std::string fitted = "; fitted exponent over the second half of the sweeps: ";
   std::string slopes;
   for (const Curve& curve : make_curves(records, "iterations", "stretch.rms", "iterations")) {
     const double from = curve.points[curve.points.size() / 2].x;
     if (const double slope = fitted_slope(curve, from); std::isfinite(slope))
       slopes += (slopes.empty() ? "" : ", ") + solver_name(curve.solver, curve.label) + " " +
-                significant(slope, 2);
+                fixed(slope, 2);
   }
   return out + (slopes.empty() ? "" : fitted + slopes);
 }

@@ -48,7 +48,7 @@ std::string draw(const Comparison& facts, const Tile& tile) {
     const Contender& c = facts.contenders[i];
     bars += "<li><span class=\"sr\">" + escape_html(c.label) + ": </span><span class=\"number\">" +
             (value ? tile.quantity.text(*value) : "–") +
-            "</span><i class=\"bar\"><i style=\"width:" + significant(share, 3) +
+            "</span><i class=\"bar\"><i style=\"width:" + exact(std::round(share * 10) / 10) +
             "%;background:var(--" + std::string(solver_style(c.solver).colour.name) +
             ")\"></i></i></li>";
   }
@@ -63,7 +63,7 @@ std::optional<Tile> cost(const Comparison& facts) {
   const Price& price = *facts.price[1];
   const Quantity error = quantity(kPricedMetric);
   Tile tile{"Cost of " + error.text(kPricedError, 1) + " stretch",
-            "CPU time per simulated second, cheapest setting, mean of scenes",
+            "CPU time per simulated second, cheapest setting tried, geometric mean of scenes",
             {"", "", "ms", 1e3},
             {price.first_cost, price.other_cost},
             true,
@@ -111,6 +111,23 @@ std::vector<std::optional<double>> means(const Page& page, const std::string& va
   return out;
 }
 
+/// Up to which time step all went well. What never failed has no limit, and so no winner.
+Tile sound_step(const Page& page) {
+  const SoundSteps steps = sound_steps(page.facts(), page.scenes());
+  Tile tile{"Longest sound step",
+            "at " + std::to_string(page.facts().sweeps) + " sweeps, ",
+            quantity("dt"),
+            {steps.dt.begin(), steps.dt.end()},
+            false,
+            "longer",
+            "shorter"};
+  std::string scenes;
+  for (const std::string& scene : steps.scenes) scenes += (scenes.empty() ? "" : ", ") + scene;
+  tile.caption += steps.scenes.size() > 1 ? "geometric mean of " + scenes : scenes;
+  if (steps.no_limit) tile.judged = "<p class=\"even\">no step that was tried failed</p>";
+  return tile;
+}
+
 bool any(const std::vector<std::optional<double>>& values) {
   return std::ranges::any_of(values, [](const auto& v) { return v.has_value(); });
 }
@@ -118,7 +135,7 @@ bool any(const std::vector<std::optional<double>>& values) {
 std::string render(Page& page, const std::string&) {
   const Comparison& facts = page.facts();
   const std::string at = "at " + std::to_string(facts.sweeps) + " sweeps";
-  std::vector<Tile> tiles{{"Residual stretch", "RMS, last second, mean of scenes, " + at,
+  std::vector<Tile> tiles{{"Residual stretch", "RMS, last second, geometric mean of scenes, " + at,
                            quantity("stretch.rms"), means(page, "stretch.rms", true), true, "more",
                            "less"}};
   auto cpu = means(page, kCpuValue, true);
@@ -135,8 +152,7 @@ std::string render(Page& page, const std::string&) {
   else
     tiles.push_back({"Work", "constraint projections per step, " + at, quantity("projections"),
                      means(page, "projections", true), true, "more", "less"});
-  tiles.push_back({"Largest stable step", at + ", mean of scenes", quantity("dt"),
-                   stable_dt(facts, page.scenes()), false, "longer", "shorter"});
+  tiles.push_back(sound_step(page));
   tiles.push_back({"Penetration", "deepest vertex of any scene, last second, " + at,
                    quantity("penetration.max"), means(page, "penetration.max", false), true, "more",
                    "less"});

@@ -2,6 +2,8 @@
 #include <limits>
 
 #include "experiments/report/axis.hpp"
+#include "experiments/report/curves.hpp"
+#include "experiments/report/format.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
@@ -14,8 +16,9 @@ constexpr double kQuestion = kPricedError;  ///< the level of "which solver at w
 constexpr double kFrame = 1.0 / 60;         ///< s; budgets are CPU time within it
 
 std::string span_text(const Interval& i, const char* unit, double scale = 1) {
-  return significant(i.mid * scale, 3) + unit + " (" + significant(i.low * scale, 3) + "–" +
-         significant(i.high * scale, 3) + ")";
+  const int decimals = decimals_for((i.high - i.low) * scale);
+  return fixed(i.mid * scale, decimals) + unit + " (" + fixed(i.low * scale, decimals) + "–" +
+         fixed(i.high * scale, decimals) + ")";
 }
 
 std::string setting(const BenchedCase& c) {
@@ -76,7 +79,15 @@ std::vector<std::string> answer(const SceneBench& scene) {
           again};
 }
 
-Table levels(const SceneBench& scene) {
+/// A setting as the chart beside it names it: "2 × 1, coloured".
+std::string brief(const BenchedCase& c, const std::vector<Record>& records) {
+  std::string label = knob_label(c.record, records);
+  if (const auto times = label.find(" × "); times != std::string::npos)
+    label.replace(times, std::string(" × ").size(), "\u00A0×\u00A0");
+  return label.empty() ? "" : ": " + label;
+}
+
+Table levels(const SceneBench& scene, const std::vector<Record>& records) {
   Table table{{"to reach"}, {}};
   for (const std::string& solver : solvers_of(scene)) table.header.push_back(solver_title(solver));
   for (const double level : kErrorLevels) {
@@ -85,13 +96,13 @@ Table levels(const SceneBench& scene) {
       table.rows.back().push_back(
           !r.at ? never(scene, r.solver)
                 : span_text(scene.cases[*r.at].cost(), " ms", 1e3) +
-                      (r.times && r.times->mid > 1 ? ", " + span_text(*r.times, " ×") : "") + ", " +
-                      setting(scene.cases[*r.at]));
+                      (r.times && r.times->mid > 1 ? ", " + span_text(*r.times, " ×") : "") +
+                      brief(scene.cases[*r.at], records));
   }
   return table;
 }
 
-Table budgets(const SceneBench& scene) {
+Table budgets(const SceneBench& scene, const std::vector<Record>& records) {
   Table table{{"within, per frame"}, {}};
   const std::vector<Offer> offers = scene.offers(kMetric);
   for (const std::string& solver : solvers_of(scene)) table.header.push_back(solver_title(solver));
@@ -100,8 +111,8 @@ Table budgets(const SceneBench& scene) {
     for (const std::string& solver : solvers_of(scene)) {
       const auto at = best_within(offers, solver, budget / kFrame);
       table.rows.back().push_back(at ? quantity(kMetric).text(offers[*at].error) + " for " +
-                                           span_text(offers[*at].cost, " ms", 1e3 * kFrame) + ", " +
-                                           setting(scene.cases[*at])
+                                           span_text(offers[*at].cost, " ms", 1e3 * kFrame) +
+                                           brief(scene.cases[*at], records)
                                      : "nothing that cheap");
     }
   }
@@ -120,13 +131,12 @@ std::string scene_part(Page& page, const SceneBench& scene, const std::vector<Re
                      {records, {}}, "Error over cost",
                      "down and left is better; labels are substeps × sweeps; " + control) +
          "<div class=\"card\"><h4>Cost of an error</h4><p>CPU time per simulated second, its 95 % "
-         "interval, and the ratio to the cheapest.</p>" +
-         html_table(levels(scene), "Cost of an error, " + scene.scene) +
+         "interval, the ratio to the cheapest, and the setting as the chart names it.</p>" +
+         html_table(levels(scene, records), "Cost of an error, " + scene.scene) +
          "</div><div class=\"card wide\"><h4>Error within a budget</h4><p>The least error within a "
-         "budget of CPU time per frame "
-         "of "
-         "1/60 s, what it costs and with which setting.</p>" +
-         html_table(budgets(scene), "Error within a budget, " + scene.scene) + "</div></div>\n";
+         "budget of CPU time per frame of 1/60 s, what it costs and with which setting.</p>" +
+         html_table(budgets(scene, records), "Error within a budget, " + scene.scene) +
+         "</div></div>\n";
 }
 
 std::string render(Page& page, const std::string&) {
@@ -146,7 +156,7 @@ std::string render(Page& page, const std::string&) {
          quantity(kMetric).text(kQuestion, 1) + " " + quantity(kMetric).title + "? Measured on " +
          escape_html(bench.machine) +
          ", CPU time of a step alone, forth and back between processes; intervals are 95 %. "
-         "Factors in the last but one column are costs over the cheapest.</p><div class=\"card\">" +
+         "The others' factors are their costs over that of the cheapest.</p><div class=\"card\">" +
          html_table(table, "Cheapest setting for the level") + "</div>" + parts + "</section>\n";
 }
 

@@ -1,5 +1,6 @@
 #include <map>
 
+#include "experiments/report/format.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
 
@@ -24,6 +25,45 @@ std::string breakable(const std::string& settings) {
   std::string out;
   for (const char c : settings) out += c == ',' ? ", " : std::string(1, c);
   return out;
+}
+
+/// A table whose first cell stands once for all rows that share it, and so does the last one within
+/// them.
+std::string grouped_table(const Table& table, const std::string& caption) {
+  const std::vector<std::vector<std::string>>& rows = table.rows;
+  const std::size_t last = table.header.size() - 1;
+  const auto run = [&](std::size_t from, const auto& same) {
+    std::size_t n = 1;
+    while (from + n < rows.size() && same(rows[from], rows[from + n])) ++n;
+    return n;
+  };
+  const auto same_first = [](const auto& a, const auto& b) { return a.front() == b.front(); };
+  const auto same_ends = [&](const auto& a, const auto& b) {
+    return a.front() == b.front() && a[last] == b[last];
+  };
+  const auto span = [](std::size_t n) {
+    return n > 1 ? " rowspan=\"" + std::to_string(n) + "\"" : std::string();
+  };
+  std::string out = html_table({table.header, {}}, caption), body;
+  std::size_t first_until = 0, last_until = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    body += "<tr>";
+    if (i == first_until) {
+      const std::size_t n = run(i, same_first);
+      body += "<th scope=\"row\"" + span(n) + ">" + escape_html(rows[i].front()) + "</th>";
+      first_until += n;
+    }
+    for (std::size_t k = 1; k < last; ++k)
+      body += "<td data-label=\"" + table.header[k] + "\">" + escape_html(rows[i][k]) + "</td>";
+    if (i == last_until) {
+      const std::size_t n = run(i, same_ends);
+      body += "<td data-label=\"" + table.header[last] + "\"" + span(n) + ">" +
+              escape_html(rows[i][last]) + "</td>";
+      last_until += n;
+    }
+    body += "</tr>\n";
+  }
+  return out.insert(out.find("<tbody>") + 7, body);
 }
 
 /// What is not simply as theory has it stays in sight; the rest is behind a click.
@@ -55,7 +95,8 @@ std::string body(const ReportInput& input) {
       out += ", " + std::to_string(n) + " " +
              (verdict == "deviates" && n > 1 ? std::string("deviate") : verdict);
   out += ".</p>";
-  if (!apart.rows.empty()) out += html_table(apart, "Where a solver differs from theory, and why");
+  if (!apart.rows.empty())
+    out += grouped_table(apart, "Where a solver differs from theory, and why");
   return out + html_data(all, "each truth, the number nearest to its tolerance", csv(truths),
                          "truths.csv");
 }
