@@ -285,9 +285,9 @@ TEST(Comparison, AStepThatWentWellIsNoLimit) {
   SoundSteps steps = sound_steps(compare(input), {"hang", "ball"});
   EXPECT_TRUE(steps.no_limit);
   EXPECT_DOUBLE_EQ(steps.dt.at(0), 0.1);
-  // Steps within a factor of two say nothing about limits.
+  // Three steps within a factor of four say nothing about limits.
   std::erase_if(input.studies[1].records, [](const Record& r) {
-    return r.scene == "ball" && (r.dt < 0.008 || r.dt > 0.016);
+    return r.scene == "ball" && (r.dt < 0.0039 || r.dt > 0.016);
   });
   EXPECT_EQ(sound_steps(compare(input), {"hang", "ball"}).scenes, std::vector<std::string>{"hang"});
 }

@@ -40,7 +40,8 @@ std::string render(Page& page, const std::string&) {
       "Visual quality. Less stretch is not always better looking; damping and relaxation change "
       "motion as well as error.");
   point(
-      "Other machines. Results are deterministic on one build; another compiler or processor may "
+      "Other machines. Results repeat bit for bit on one build; a Bullet built otherwise or "
+      "another kind of processor may "
       "change the last digits.");
   std::size_t records = 0, planned = 0;
   for (const StudyResult& study : input.studies)

@@ -12,7 +12,7 @@ std::string moment(const MaterialRow& row, const MaterialRow::Moment& one, doubl
   const Quantity strain = quantity("stretch.rms");
   const std::string t = significant(one.t, 3) + " s";
   const std::string rms =
-      one.rms < kLeast ? "under " + strain.text(kLeast, 1) : strain.text(one.rms);
+      one.rms < kLeast ? "&lt; " + strain.text(kLeast, 1) : strain.text(one.rms);
   return "<figure style=\"--aspect:" + exact(std::round(aspect * 1e3) / 1e3) + "\"><img alt=\"" +
          escape_html(solver_title(row.solver)) + ": strain in material space at " + t + ", RMS " +
          rms + "\" src=\"data:image/png;base64," + base64(one.png) + "\"><figcaption><span>" + t +

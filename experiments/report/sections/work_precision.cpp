@@ -10,6 +10,16 @@ namespace taut::report::section::work_precision {
 
 namespace {
 
+/// Where this scene's CPU time is to be found, or how to get it.
+std::string about_time(const Page& page, const std::string& scene) {
+  const auto& bench = page.input().bench;
+  const bool there =
+      bench && std::ranges::find(bench->scenes, scene, &SceneBench::scene) != bench->scenes.end();
+  return "; work counted in projections, " +
+         std::string(there ? "CPU time is under <a href=\"#trade\">what accuracy costs</a>"
+                           : "<code>taut bench</code> measures CPU time");
+}
+
 std::string render(Page& page, const std::string& scene) {
   const auto all = page.sweep(scene, "iterations", "stretch.rms");
   const bool timed = std::ranges::any_of(
@@ -25,7 +35,7 @@ std::string render(Page& page, const std::string& scene) {
       {slice.records, {}}, "Work–precision",
       std::string("down and left is better; numbers are sweeps, the grey stair is the Pareto "
                   "front") +
-          (timed ? "" : "; work counted in projections, <code>taut bench</code> adds CPU time"));
+          (timed ? "" : about_time(page, scene)));
 }
 
 }  // namespace
