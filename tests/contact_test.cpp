@@ -294,7 +294,7 @@ TEST(FaceContact, LeavesPinsAlone) {
 /// Nearest points in the solver's closed forms against the model's surface().
 template <template <class> class SurfaceOf, class Shape_>
 void expect_model_surface(const Shape_& shape) {
-  const SurfaceOf<double> fast = surface_of<double>(shape);
+  const SurfaceOf<double> fast = surface_of(shape);
   std::mt19937 random(3);
   std::uniform_real_distribution<> number(-1, 1);
   for (int k = 0; k < 2000; ++k) {
@@ -320,7 +320,7 @@ void expect_model_surface(const Shape_& shape) {
 /// entry() against marching along the path.
 template <template <class> class SurfaceOf, class Shape_>
 void expect_first_hit(const Shape_& shape) {
-  const SurfaceOf<double> fast = surface_of<double>(shape);
+  const SurfaceOf<double> fast = surface_of(shape);
   std::mt19937 random(4);
   std::uniform_real_distribution<> number(-1, 1);
   int hits = 0, misses = 0;

@@ -29,7 +29,7 @@ std::string line_of(const BaselineRow& row) {
   for (const auto& [name, value] : row.values)
     values[name] = std::isnan(value) ? Json() : Json(value);  // null: no meaning
   json["values"] = std::move(values);
-  return json.dump() + "\n";
+  return to_text(json) + "\n";
 }
 
 BaselineRow row_of(const Json& json) {
@@ -86,7 +86,7 @@ Baseline read_baseline(const fs::path& folder) {
     for (std::string line; std::getline(in, line);) {
       ++number;
       try {
-        rows.push_back(row_of(Json::parse(line)));
+        rows.push_back(row_of(parse_json(line)));
         const BaselineRow& row = rows.back();
         if (row.solver() != file.stem())
           found.push_back({file.string(), number, 1, "this row belongs to " + row.solver()});

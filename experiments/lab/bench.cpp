@@ -87,25 +87,25 @@ std::string to_json(const BenchSession& session) {
   for (const SceneBench& scene : session.scenes) {
     Json one{{"scene", scene.scene}, {"control", json_of(scene.control)}};
     for (const auto& [record, timing] : scene.cases)
-      one["cases"].push_back({{"record", Json::parse(to_json(record))},
+      one["cases"].push_back({{"record", parse_json(to_json(record))},
                               {"cpu_seconds_per_step", timing.samples},
                               {"wall_seconds_per_step", timing.wall},
                               {"peak_bytes", timing.peak_bytes},
                               {"failure", timing.failure}});
     all["scenes"].push_back(std::move(one));
   }
-  return all.dump(1) + "\n";
+  return to_text(all, 1) + "\n";
 }
 
 BenchSession bench_from_json(std::string_view text, const std::string& where) try {
-  const auto all = Json::parse(text);
+  const auto all = parse_json(text);
   if (all.at("schema") != kBenchSchema)
     throw InputError(where + ": not a bench of schema 2; run `taut bench` again");
   BenchSession session{all.at("study"), all.at("machine"), {}};
   for (const auto& one : all.at("scenes")) {
     SceneBench scene{one.at("scene"), interval_of(one.at("control")), {}};
     for (const auto& c : one.at("cases")) {
-      BenchedCase benched{record_from_json(c.at("record").dump(), where), {}};
+      BenchedCase benched{record_from_json(to_text(c.at("record")), where), {}};
       benched.timing = {.spec = benched.record.spec,
                         .samples = c.at("cpu_seconds_per_step"),
                         .wall = c.at("wall_seconds_per_step"),

@@ -14,7 +14,7 @@ std::string case_key(const Scene& scene, const std::string& scene_digest,
       {"solver", choice.canonical()}, {"implementation", implementation(choice.entry->name)},
       {"measurement", measurement()}, {"dt", scene.dt},
       {"steps", scene.steps}};
-  return sha256(parts.dump());
+  return sha256(to_text(parts));
 }
 
 }  // namespace taut

@@ -96,22 +96,20 @@ std::string to_json(const Record& r, int indent) {
             {"steps", r.steps},
             {"vertices", r.vertices},
             {"links", r.links}});
-  return j.dump(indent, ' ', false, Json::error_handler_t::replace);
+  return to_text(j, indent);
 }
 
 Record record_from_json(std::string_view text, const std::string& where) try {
-  const Json j = Json::parse(text);
+  const Json j = parse_json(text);
   if (j.at("schema") != kRecordSchema)
-    throw InputError(where + ": schema " + j.at("schema").dump() + ", this program reads " +
+    throw InputError(where + ": schema " + to_text(j.at("schema")) + ", this program reads " +
                      std::to_string(kRecordSchema));
   return from_json(j);
 } catch (const Json::exception& error) {
   throw InputError(where + ": not a record: " + error.what());
 }
 
-std::string result_digest(const Record& r) {
-  return sha256(result_json(r).dump(-1, ' ', false, Json::error_handler_t::replace));
-}
+std::string result_digest(const Record& r) { return sha256(to_text(result_json(r))); }
 
 std::string to_csv(const Series& series) {
   std::string text;

@@ -5,6 +5,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/lab/data.hpp"
 #include "experiments/lab/digest.hpp"
+#include "experiments/lab/files.hpp"
 #include "experiments/lab/json.hpp"
 
 namespace taut {
@@ -15,7 +16,7 @@ constexpr const char* kSchema = "taut-reference-1";
 
 std::string file_name(const Reference& reference) {
   if (reference.kind == "static") return "static.json";
-  std::string t = Json(reference.t).dump();
+  std::string t = to_text(Json(reference.t));
   return "motion-" + t + "s.json";
 }
 
@@ -26,12 +27,12 @@ void write_reference(const Reference& reference, const std::filesystem::path& fo
             {"digest", reference.digest}, {"kind", reference.kind},
             {"t", reference.t},           {"derivation", reference.derivation},
             {"floor_m", reference.floor}, {"vertices", reference.x.size()}};
-  std::string text = json.dump(1);
+  std::string text = to_text(json, 1);
   text.resize(text.size() - 2);  // "\n}": the coordinates follow, one vertex a line
   text += ",\n \"x\": [";
   for (std::size_t i = 0; i < reference.x.size(); ++i) {
     const Vec3& x = reference.x[i];
-    text += (i == 0 ? "\n  " : ",\n  ") + Json{x.x(), x.y(), x.z()}.dump();
+    text += (i == 0 ? "\n  " : ",\n  ") + to_text(Json{x.x(), x.y(), x.z()});
   }
   text += "\n ]\n}\n";
   std::filesystem::create_directories(folder);
@@ -42,9 +43,8 @@ void write_reference(const Reference& reference, const std::filesystem::path& fo
 }
 
 Reference read_reference(const std::filesystem::path& path) {
-  std::ifstream file(path);
   try {
-    const Json json = Json::parse(file);
+    const Json json = parse_json(read_text(path));
     if (json.at("schema") != kSchema) throw InputError(path.string() + ": unknown schema");
     Reference reference{json.at("scene"),
                         json.at("digest"),

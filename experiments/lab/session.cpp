@@ -62,23 +62,21 @@ Session::Session(const Store& store, const std::string& command, const std::vect
                       {"started", utc_stamp()},   {"host", host},
                       {"toolchain", toolchain()}, {"shard", shard.index},
                       {"shards", shard.count},    {"cases", cases.size()}};
-  write_durably(folder_ / "manifest.json", manifest.dump(1) + "\n");
+  write_durably(folder_ / "manifest.json", to_text(manifest, 1) + "\n");
   std::string plan;
   for (const Case& one : cases)
-    plan += Json{{"key", one.key},
-                 {"id", one.id},
-                 {"shard", shard_of(one.key, shard.count)},
-                 {"shards", shard.count}}
-                .dump() +
+    plan += to_text(Json{{"key", one.key},
+                         {"id", one.id},
+                         {"shard", shard_of(one.key, shard.count)},
+                         {"shards", shard.count}}) +
             "\n";
   write_durably(folder_ / "plan.jsonl", plan);
 }
 
 void Session::done(const Record& record) const {
-  append_line(
-      folder_ / "journal.jsonl",
-      Json{{"key", record.key}, {"id", record.id}, {"status", to_string(record.status.kind)}}
-          .dump());
+  append_line(folder_ / "journal.jsonl", to_text(Json{{"key", record.key},
+                                                      {"id", record.id},
+                                                      {"status", to_string(record.status.kind)}}));
 }
 
 std::vector<Planned> planned(const fs::path& root) {
@@ -88,7 +86,7 @@ std::vector<Planned> planned(const fs::path& root) {
     if (!fs::exists(session.path() / "plan.jsonl")) continue;
     std::istringstream lines(read_text(session.path() / "plan.jsonl"));
     for (std::string line; std::getline(lines, line);) try {
-        const Json j = Json::parse(line);
+        const Json j = parse_json(line);
         Planned one{j.at("key"), j.at("id"), j.at("shard"), j.at("shards")};
         all.emplace(one.key, std::move(one));
       } catch (const Json::exception& error) {

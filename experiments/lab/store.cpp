@@ -34,7 +34,7 @@ Json seal_of(const fs::path& folder, const Record& record) {
 
 /// The record of an entry; throws if a part is not what its seal says.
 Record open_entry(const fs::path& folder, const std::string& key) {
-  const Json seal = Json::parse(read_text(folder / "status.json"));
+  const Json seal = parse_json(read_text(folder / "status.json"));
   for (const auto& [part, digest] : seal.at("files").items())
     if (sha256(read_text(folder / part)) != digest)
       throw InputError(part + " does not match its digest");
@@ -114,7 +114,7 @@ fs::path Store::stage(const std::string& key) const {
 
 Store::Commit Store::commit(const fs::path& staged, const Record& record) const {
   write_durably(staged / "case.json", to_json(record, 1) + "\n");
-  write_durably(staged / "status.json", seal_of(staged, record).dump(1) + "\n");
+  write_durably(staged / "status.json", to_text(seal_of(staged, record), 1) + "\n");
   sync_folder(staged);
   const fs::path target = folder(record.key);
   make_folder(target.parent_path());

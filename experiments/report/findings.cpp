@@ -57,7 +57,7 @@ TruthRow row_of(const Json& truth, const Json& finding) {
 std::optional<Json> document(const std::filesystem::path& file, const std::string& schema,
                              std::string_view program) {
   if (!std::filesystem::exists(file)) return std::nullopt;
-  Json json = Json::parse(read_file(file), nullptr, false);
+  Json json = try_parse_json(read_file(file));
   if (json.is_discarded() || json.value("schema", "") != schema)
     throw InputError(file.string() + ": not a file of schema " + schema + "; remove it");
   if (json.value("program", "") != program) return std::nullopt;

@@ -311,7 +311,7 @@ void print_json(const Options& options, const Answer& answer) {
       all["runner_up"] = json_of(answer.bench.cases[*advice.runner_up], options.metric);
     if (advice.ratio) all["ratio"] = json_of(*advice.ratio);
   }
-  std::cout << all.dump(1) << '\n';
+  std::cout << to_text(all, 1) << '\n';
 }
 
 int run(Options options) {

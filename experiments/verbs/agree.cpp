@@ -90,7 +90,7 @@ int run(const Options& options) {
   Outcome all;
   for (const std::string& file : options.others) {
     const std::string text = read_text(file);
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = try_parse_json(text);
     std::cout << options.bench << " and " << file << '\n';
     Outcome one;
     try {

@@ -86,12 +86,12 @@ struct Notes {
   }
   void write(const std::string& results) const {
     report::write_file(std::filesystem::path(results) / "check.json",
-                       Json{{"schema", "taut-check-1"},
-                            {"program", program_digest()},
-                            {"cases", cases},
-                            {"values", values},
-                            {"findings", findings}}
-                               .dump(1) +
+                       to_text(Json{{"schema", "taut-check-1"},
+                                    {"program", program_digest()},
+                                    {"cases", cases},
+                                    {"values", values},
+                                    {"findings", findings}},
+                               1) +
                            "\n");
   }
 };

@@ -163,7 +163,7 @@ int run(const Options& options) {
   if (result.frontier.kind == Frontier::Kind::not_answered) return not_answered(result);
   const std::optional<Prediction> theory = predicted_frontier(question);
   if (options.json) {
-    std::cout << to_json(options, result, theory).dump(2) << '\n';
+    std::cout << to_text(to_json(options, result, theory), 2) << '\n';
     return judge(options, result.frontier);
   }
   const CaseSpec spec = question.base;

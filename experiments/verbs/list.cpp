@@ -118,7 +118,7 @@ int run(const std::string& what, bool as_json) {
   for (const std::string_view kind : kKinds)
     if (what.empty() || what == kind) all[std::string(kind)] = list(kind);
   if (as_json) {
-    std::cout << (what.empty() ? all : all[what]).dump(2) << '\n';
+    std::cout << to_text(what.empty() ? all : all[what], 2) << '\n';
     return kPass;
   }
   bool first = true;

@@ -49,7 +49,7 @@ int run(const Case& one, bool json) {
   const std::unique_ptr<Solver> solver = one.choice.entry->make(*one.scene, one.choice.params);
   solver->load(one.scene->start);
   if (json)
-    std::cout << to_json(one, solver->plan()).dump(2) << '\n';
+    std::cout << to_text(to_json(one, solver->plan()), 2) << '\n';
   else
     print_text(one, solver->plan());
   return kPass;

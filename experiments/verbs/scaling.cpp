@@ -136,7 +136,7 @@ int run(const Options& options) {
   if (options.json) {
     Json all;
     for (const ScalingLine& line : lines) all.push_back(json_of(line));
-    std::cout << all.dump(1) << '\n';
+    std::cout << to_text(all, 1) << '\n';
     return kPass;
   }
   for (const ScalingLine& line : lines) print(line);

@@ -109,7 +109,7 @@ int run(Options options) {
   if (code != kPass) return code;
   const Table table = run_all(study, Store(options.out));
   if (options.json) {
-    std::cout << json_of(table, options.values).dump(1) << '\n';
+    std::cout << to_text(json_of(table, options.values), 1) << '\n';
     return kPass;
   }
   for (const std::string& value : options.values) print(table, value);

@@ -180,7 +180,7 @@ int summary(const std::vector<Outcome>& outcomes) {
 
 int run(const Options& options) {
   const std::vector<Outcome> outcomes = check(choose(options), options);
-  const std::string json = to_json(outcomes).dump(1);
+  const std::string json = to_text(to_json(outcomes), 1);
   if (!options.out.empty()) {
     std::ofstream file(options.out);
     file << json << '\n';

@@ -7,6 +7,13 @@ namespace taut {
 
 // Between the model and the numbers of the contact loops, which know no Eigen.
 
+PlaneSurface<double> surface_of(const Plane&);
+BallSurface<double> surface_of(const Ball&);
+BoxSurface<double> surface_of(const Box&);
+
+/// From time t to t + dt [s].
+Carry<double> carry_of(const Motion&, double t, double dt);
+
 template <class Real, class Vector>
 Triple<Real> triple(const Vector& v) {
   return {static_cast<Real>(v.x()), static_cast<Real>(v.y()), static_cast<Real>(v.z())};
@@ -16,55 +23,31 @@ Eigen::Matrix<Real, 3, 1> point(const Triple<Real>& t) {
   return {t.x, t.y, t.z};
 }
 
+// The same in the solver's precision.
 template <class Real>
-PlaneSurface<Real> surface_of(const Plane& plane) {
-  return {triple<Real>(plane.normal), static_cast<Real>(plane.offset)};
+Triple<Real> rounded(const Triple<double>& t) {
+  return {static_cast<Real>(t.x), static_cast<Real>(t.y), static_cast<Real>(t.z)};
 }
 template <class Real>
-BallSurface<Real> surface_of(const Ball& ball) {
-  return {triple<Real>(ball.center), static_cast<Real>(ball.radius)};
+PlaneSurface<Real> rounded(const PlaneSurface<double>& plane) {
+  return {rounded<Real>(plane.normal), static_cast<Real>(plane.offset)};
 }
 template <class Real>
-BoxSurface<Real> surface_of(const Box& box) {
-  const Eigen::Matrix3d axes = box.rotation.toRotationMatrix();
-  return {triple<Real>(box.center),
-          triple<Real>(box.half_extents),
-          {triple<Real>(axes.col(0)), triple<Real>(axes.col(1)), triple<Real>(axes.col(2))},
-          static_cast<Real>(box.half_extents.norm())};
+BallSurface<Real> rounded(const BallSurface<double>& ball) {
+  return {rounded<Real>(ball.center), static_cast<Real>(ball.radius)};
 }
-
-/// From time t to t + dt [s].
 template <class Real>
-Carry<Real> carry_of(const Motion& motion, double t, double dt) {
-  if (motion.at_rest()) return {};
-  const Eigen::Matrix3d turn =
-      (motion.rotation(t + dt) * motion.rotation(t).conjugate()).toRotationMatrix();
-  const Vec3 shift =
-      motion.pivot + motion.displacement(t + dt) - turn * (motion.pivot + motion.displacement(t));
-  return {true,
-          {triple<Real>(turn.row(0).transpose()), triple<Real>(turn.row(1).transpose()),
-           triple<Real>(turn.row(2).transpose())},
-          triple<Real>(shift)};
+BoxSurface<Real> rounded(const BoxSurface<double>& box) {
+  return {rounded<Real>(box.center),
+          rounded<Real>(box.half),
+          {rounded<Real>(box.axes[0]), rounded<Real>(box.axes[1]), rounded<Real>(box.axes[2])},
+          static_cast<Real>(box.far)};
 }
-
-/// A collider of one kind, step after step.
-template <class Real, template <class> class SurfaceOf>
-class ColliderInMotion {
- public:
-  ColliderInMotion(const Collider& collider, double thickness)
-      : collider_(collider), thickness_(thickness) {}
-
-  /// As the step [t, t + dt] sees it.
-  Contact<Real, SurfaceOf> at(double t, double dt) const {
-    return {
-        surface_of<Real>(std::get<typename SurfaceOf<Real>::Shape>(shape_at(collider_, t + dt))),
-        carry_of<Real>(collider_.motion, t, dt), static_cast<Real>(thickness_),
-        static_cast<Real>(collider_.friction)};
-  }
-
- private:
-  Collider collider_;
-  double thickness_;
-};
+template <class Real>
+Carry<Real> rounded(const Carry<double>& c) {
+  return {c.moves,
+          {rounded<Real>(c.turn[0]), rounded<Real>(c.turn[1]), rounded<Real>(c.turn[2])},
+          rounded<Real>(c.shift)};
+}
 
 }  // namespace taut

@@ -1,7 +1,6 @@
 #include "core/solver/contact/responses.hpp"
 
 #include "core/solver/jakobsen_params.hpp"
-#include "core/solver/passes/collide.hpp"
 #include "core/solver/passes/face_contact.hpp"
 #include "core/solver/passes/octree.hpp"
 #include "core/solver/passes/report_fixes.hpp"
@@ -11,13 +10,12 @@ namespace taut {
 
 namespace {
 
-template <class Real, template <class> class SurfaceOf>
+template <class Real>
 void add_response(const Collider& collider, const Scene& scene, const Params& params,
                   ContactPasses<Real>& passes) {
-  const std::size_t n = scene.start.x.size();
-  const double thickness = scene.thickness;
+  const Simd simd = simd_of(params);
   const auto project = [&](bool swept) {
-    return std::make_unique<CollidePass<Real, SurfaceOf>>(collider, scene, swept, simd_of(params));
+    return std::make_unique<CollidePass<Real>>(collider, scene, swept, simd);
   };
   if (params.is("contact", "swept"))
     passes.sweep.push_back(project(true));
@@ -28,9 +26,9 @@ void add_response(const Collider& collider, const Scene& scene, const Params& pa
   else if (params.is("contact", "after"))
     passes.after.push_back(project(false));
   else if (params.is("contact", "freeze"))
-    passes.sweep.push_back(std::make_unique<FreezePass<Real, SurfaceOf>>(collider, thickness, n));
+    passes.sweep.push_back(std::make_unique<FreezePass<Real>>(collider, scene, simd));
   else
-    passes.before.push_back(std::make_unique<HaltPass<Real, SurfaceOf>>(collider, thickness, n));
+    passes.before.push_back(std::make_unique<HaltPass<Real>>(collider, scene, simd));
 }
 
 }  // namespace
@@ -47,14 +45,7 @@ ContactPasses<Real> make_contact(const Scene& scene, const Params& params) {
         !scene.mesh.triangles.empty())
       passes.sweep.push_back(
           std::make_unique<FaceContactPass<Real>>(collider, scene.thickness, scene.mesh.triangles));
-  for (const Collider& collider : scene.colliders) {
-    if (std::holds_alternative<Plane>(collider.shape))
-      add_response<Real, PlaneSurface>(collider, scene, params, passes);
-    else if (std::holds_alternative<Ball>(collider.shape))
-      add_response<Real, BallSurface>(collider, scene, params, passes);
-    else
-      add_response<Real, BoxSurface>(collider, scene, params, passes);
-  }
+  for (const Collider& collider : scene.colliders) add_response(collider, scene, params, passes);
   return passes;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/model/triangle.hpp"
+#include "core/solver/contact/exit.hpp"
 #include "core/solver/contact/place.hpp"
 #include "core/solver/pass.hpp"
 
@@ -22,7 +22,7 @@ class FaceContactPass final : public Pass<Real> {
 
   void begin(Particles<Real>&, double t, double dt) override {
     shape_ = shape_at(collider_, t + dt);
-    carry_ = carry_of<double>(collider_.motion, t, dt);
+    carry_ = carry_of(collider_.motion, t, dt);
     if (Ball* ball = std::get_if<Ball>(&shape_)) {
       ball->radius += thickness_;
       center_ = ball->center, reach_ = ball->radius;
@@ -39,7 +39,7 @@ class FaceContactPass final : public Pass<Real> {
       const double side2 = std::max((t[1] - t[0]).squaredNorm(), (t[2] - t[0]).squaredNorm());
       // every point of the face is within a side of its first corner
       if ((t[0] - center_).squaredNorm() >= 2 * (reach_ * reach_ + side2)) continue;
-      const Exit exit = way_out(t);
+      const Exit exit = way_out(shape_, t);
       if (exit.length > 0) push(p, face, exit);
     }
   }
@@ -51,38 +51,6 @@ class FaceContactPass final : public Pass<Real> {
   }
 
  private:
-  /// How the deepest point of a face leaves the solid.
-  struct Exit {
-    double length = 0;           ///< m; <= 0: it is outside
-    Vec3 normal = Vec3::Zero();  ///< unit
-    TrianglePoint point;
-  };
-
-  Exit way_out(const Corners& t) const {
-    if (const Ball* ball = std::get_if<Ball>(&shape_)) {
-      const Deepest deepest = deepest_in(*ball, t);
-      if (deepest.depth <= 0) return {};
-      return {deepest.depth, surface(*ball, deepest.at.position).normal, deepest.at};
-    }
-    const Box& box = std::get<Box>(shape_);
-    const Deepest deepest = deepest_in(box, t);
-    if (deepest.depth <= 0) return {};
-    return over_edge(box, deepest);
-  }
-
-  /// A point that is equally deep below several sides leaves between them, over their common edge
-  /// or corner: along n = sum of their normals, by depth / (n . one of them).
-  static Exit over_edge(const Box& box, const Deepest& deepest) {
-    const Vec3 local = box.rotation.conjugate() * (deepest.at.position - box.center);
-    const Vec3 depths = box.half_extents - local.cwiseAbs();
-    Vec3 out = Vec3::Zero();
-    for (Eigen::Index axis = 0; axis < 3; ++axis)
-      if (depths[axis] <= deepest.depth * (1 + 1e-6)) out[axis] = local[axis] < 0 ? -1 : 1;
-    const double sides = out.norm();  // sqrt(how many)
-    if (sides == 0) return {};
-    return {deepest.depth * sides, box.rotation * out / sides, deepest.at};
-  }
-
   void push(Particles<Real>& p, const Triangle& face, const Exit& exit) const {
     double sum = 0;
     Vec3 previous = Vec3::Zero();
