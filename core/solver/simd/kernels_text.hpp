@@ -276,48 +276,37 @@ template <bool swept, class Contact, class T>
     return any(contact.project(x, previous));
 }
 
-/// Vectors of strips.
+/// kWidth<T> particles at once, of strips or packed.
 template <class T, bool swept, class Real, template <class> class SurfaceOf>
-void collide_strips(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& span) {
-  const std::size_t lanes = span.lanes;
-  for (std::size_t v = 0; v < span.count; ++v)
-    for (std::size_t l = 0; l < lanes; l += kWidth<T>) {
-      const auto triple = [&](const Real* r) __attribute__((always_inline)) {
-        return Triple<T>{load<T>(r), load<T>(r + lanes), load<T>(r + 2 * lanes)};
-      };
-      Real* const at = span.x + 3 * lanes * v + l;
-      Triple<T> x = triple(at);
-      if (collide_points<swept>(contact, x, triple(span.previous + (at - span.x))))
-        store(at, x.x), store(at + lanes, x.y), store(at + 2 * lanes, x.z);
-    }
-}
-
-/// Packed particles; what is left at the end goes through a buffer.
-template <class T, bool swept, class Real, template <class> class SurfaceOf>
-void collide_packed(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& span) {
+void collide(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& span) {
   constexpr std::size_t step = kWidth<T>;
+  const std::size_t lanes = span.lanes;
+  const bool packed = lanes == 1;
+  const auto triple = [&](const Real* r) __attribute__((always_inline)) {
+    return packed ? load_packed<T>(r)
+                  : Triple<T>{load<T>(r), load<T>(r + lanes), load<T>(r + 2 * lanes)};
+  };
   Real last_x[4 * step] = {}, last_previous[4 * step] = {};
-  for (std::size_t i = 0; i < span.count; i += step) {
-    const std::size_t left = span.count - i;
-    Real* at = span.x + 4 * i;
-    const Real* previous = span.previous + 4 * i;
-    if (left < step) {
+  std::size_t first = 0, lane = 0;
+  for (std::size_t left = span.count * lanes; left > 0; left -= left < step ? left : step) {
+    Real* at = span.x + first;
+    const Real* previous = span.previous + first;
+    if (left < step) {  // packed particles at the end go through a buffer
       std::memcpy(last_x, at, 4 * left * sizeof(Real));
       std::memcpy(last_previous, previous, 4 * left * sizeof(Real));
       at = last_x, previous = last_previous;
     }
-    Triple<T> x = load_packed<T>(at);
-    if (collide_points<swept>(contact, x, load_packed<T>(previous))) store_packed(at, x);
-    if (left < step) std::memcpy(span.x + 4 * i, last_x, 4 * left * sizeof(Real));
+    Triple<T> x = triple(at);
+    if (collide_points<swept>(contact, x, triple(previous))) {
+      if (packed)
+        store_packed(at, x);
+      else
+        store(at, x.x), store(at + lanes, x.y), store(at + 2 * lanes, x.z);
+    }
+    if (left < step) std::memcpy(span.x + first, last_x, 4 * left * sizeof(Real));
+    first += packed ? 4 * step : step, lane += step;
+    if (!packed && lane == lanes) first += 2 * lanes, lane = 0;
   }
-}
-
-template <class Lane, class P, bool swept, class Real, template <class> class SurfaceOf>
-void collide(const Contact<Real, SurfaceOf>& contact, const CollideSpan<Real>& span) {
-  if (span.lanes == 1)
-    collide_packed<P, swept>(contact, span);
-  else
-    collide_strips<Lane, swept>(contact, span);
 }
 
 template <class T, Projection kind, class Real>
@@ -339,7 +328,8 @@ Real in_registers(Real rest, int rounds, int& projections) {
   return first;
 }
 
-/// Narrow and Wide compute along strips of 8 and 16 lanes, P on particles.
+/// Narrow and Wide compute along strips of 8 and 16 lanes, P on some
+/// particles, and all of them where they collide.
 template <class Real, class Narrow, class Wide, class P>
 constexpr Kernels<Real> make_kernels() {
   constexpr Projection exact = Projection::exact, sqrt_free = Projection::sqrt_free;
@@ -347,11 +337,11 @@ constexpr Kernels<Real> make_kernels() {
           {strips<Narrow, kNarrow, exact, Real>, strips<Narrow, kNarrow, sqrt_free, Real>},
           {strips<Wide, kWide, exact, Real>, strips<Wide, kWide, sqrt_free, Real>},
           {batches<P, exact, Real>, batches<P, sqrt_free, Real>},
-          {.plane = collide<Narrow, P, false, Real, PlaneSurface>,
-           .ball = collide<Narrow, P, false, Real, BallSurface>,
-           .ball_swept = collide<Narrow, P, true, Real, BallSurface>,
-           .box = collide<Narrow, P, false, Real, BoxSurface>,
-           .box_swept = collide<Narrow, P, true, Real, BoxSurface>},
+          {.plane = collide<P, false, Real, PlaneSurface>,
+           .ball = collide<P, false, Real, BallSurface>,
+           .ball_swept = collide<P, true, Real, BallSurface>,
+           .box = collide<P, false, Real, BoxSurface>,
+           .box_swept = collide<P, true, Real, BoxSurface>},
           meet<Narrow, Real>,
           in_registers<Wide, sqrt_free, Real>};
 }
