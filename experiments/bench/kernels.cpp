@@ -198,7 +198,9 @@ KernelBench bench_kernels(const KernelBenchOptions& options) {
   KernelBench bench{.side = options.side,
                     .rows = {},
                     .arithmetic_float = 1e9 * seconds_per_projection(true),
-                    .arithmetic_double = 1e9 * seconds_per_projection(false)};
+                    .arithmetic_double = 1e9 * seconds_per_projection(false),
+                    .carried_float = 1e9 * seconds_per_carried_link(scene, true),
+                    .carried_double = 1e9 * seconds_per_carried_link(scene, false)};
   for (Kernel& kernel : kernels) {
     kernel.row.fastest = 1e9 * (kernel.fastest_many - kernel.fastest_few) / kernel.projections;
     bench.rows.push_back(std::move(kernel.row));

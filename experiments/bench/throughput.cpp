@@ -1,10 +1,11 @@
 // How fast this machine computes when nothing stands in the way, in vectors of the widest kind:
-// twelve independent chains of alternating multiplications and additions; and projections of
-// particles that stay in registers.
+// twelve independent chains of alternating multiplications and additions; projections of particles
+// that stay in registers; and particles that are moved for projections that are left out.
 #include <algorithm>
 #include <ctime>
+#include <limits>
 
-#include "core/solver/simd/kernels.hpp"
+#include "core/solver/batch.hpp"
 #include "experiments/bench/kernels.hpp"
 
 namespace taut {
@@ -85,12 +86,35 @@ double projection() {
   return fastest(run, Real(1)) / projections;
 }
 
+template <class Real>
+double carried(const Scene& scene) {
+  const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.links, scene.mesh));
+  constexpr double kStick = std::numeric_limits<double>::infinity();
+  const BatchPlan<Real> plan(
+      colour(scene.links, scene.mesh), inverse_masses(scene),
+      {.stiffness = {kStick, kStick, kStick}, .omega = 1, .substep = scene.dt, .iterations = 1},
+      layout);
+  std::vector<Real> x(layout.length());
+  const auto carry = kernels<Real>(widest()).carry;
+  const auto sweep = [&](Real) {
+    for (std::size_t phase = 0; phase < plan.phases(); ++phase)
+      for (std::size_t tile = 0; tile < plan.tiles(phase); ++tile)
+        for (const BatchRun<Real>& run : plan.runs(phase, tile)) carry(run, x.data());
+    return x[0];
+  };
+  return fastest(sweep, Real(0)) / static_cast<double>(plan.order(layout).size());
+}
+
 }  // namespace
 
 double seconds_per_flop(bool single) { return single ? flop<float>() : flop<double>(); }
 
 double seconds_per_projection(bool single) {
   return single ? projection<float>() : projection<double>();
+}
+
+double seconds_per_carried_link(const Scene& scene, bool single) {
+  return single ? carried<float>(scene) : carried<double>(scene);
 }
 
 }  // namespace taut

@@ -107,6 +107,8 @@ struct Kernels {
   /// Projects independent pairs without loading or storing anything: what the arithmetic alone
   /// costs, for benchmarks. Says how many projections that were.
   Real (*in_registers)(Real rest, int rounds, int& projections);
+  /// Loads and stores what batches do and hardly computes: what moving the particles alone costs.
+  void (*carry)(const BatchRun<Real>&, Real* x);
 };
 
 enum class Simd { scalar, sse2, avx2, avx512 };

@@ -244,6 +244,32 @@ void batches(const BatchRun<Real>& run, Real* x) {
   }
 }
 
+/// What batches() loads and stores, with nothing but an addition in between.
+template <class T, class Real>
+void carry(const BatchRun<Real>& run, Real* x) {
+  const T little(static_cast<Real>(0.001));
+  for (std::size_t n = 0; n < run.count; ++n) {
+    const Batch<Real>& batch = run.batches[n];
+    if constexpr (kWidth<T> == 1) {
+      for (int l = 0; l < kLanes; ++l)
+        for (int axis = 0; axis < 3; ++axis)
+          x[batch.a[l] + axis] += little, x[batch.b[l] + axis] -= little;
+    } else {
+      for (int g = 0; g < kLanes; g += kWidth<T>) {
+        T x1[4], x2[4];
+        four_times([&](auto l) {
+          x1[l] = load_particles<T>(x, batch.a + g + l);
+          x2[l] = load_particles<T>(x, batch.b + g + l);
+        });
+        four_times([&](auto l) {
+          store_particles(x, batch.a + g + l, x1[l] + little);
+          store_particles(x, batch.b + g + l, x2[l] - little);
+        });
+      }
+    }
+  }
+}
+
 /// kWidth<T> packed particles, one after the other.
 template <class T, class Real>
 [[gnu::always_inline]] inline Triple<T> load_packed(const Real* x) {
@@ -343,7 +369,8 @@ constexpr Kernels<Real> make_kernels() {
            .box = collide<P, false, Real, BoxSurface>,
            .box_swept = collide<P, true, Real, BoxSurface>},
           meet<Narrow, Real>,
-          in_registers<Wide, sqrt_free, Real>};
+          in_registers<Wide, sqrt_free, Real>,
+          carry<P, Real>};
 }
 
 }  // namespace taut
