@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <ranges>
 
 #include "experiments/report/format.hpp"
 
@@ -112,9 +111,11 @@ double Labels::crossed(const Label& label) const {
   double sum = 0;
   Box box = label.box();
   if (box.angle != 0) {  // the upright box around it: such texts are few
-    const auto corners = box.corners();
-    const auto [left, right] = std::ranges::minmax(corners | std::views::keys);
-    const auto [top, bottom] = std::ranges::minmax(corners | std::views::values);
+    double left = box.x, right = box.x, top = box.y, bottom = box.y;
+    for (const auto& [x, y] : box.corners()) {
+      left = std::min(left, x), right = std::max(right, x);
+      top = std::min(top, y), bottom = std::max(bottom, y);
+    }
     box = {(left + right) / 2, (top + bottom) / 2, right - left, bottom - top};
   }
   for (const Line& l : lines_) sum += inside(box, l.x0, l.y0, l.x1, l.y1);

@@ -6,7 +6,8 @@ namespace taut::report::section::material {
 
 namespace {
 
-constexpr double kLeast = 1e-5;  ///< strain; less is rounding
+/// Strain; less is rounding of the positions that a film keeps, far from the origin.
+constexpr double kLeast = 1e-4;
 
 std::string moment(const MaterialRow& row, const MaterialRow::Moment& one, double aspect) {
   const Quantity strain = quantity("stretch.rms");
