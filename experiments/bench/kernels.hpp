@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/scene.hpp"
 #include "experiments/lab/statistics.hpp"
 
 namespace taut {
