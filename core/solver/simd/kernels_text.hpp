@@ -252,7 +252,7 @@ void carry(const BatchRun<Real>& run, Real* x) {
     const Batch<Real>& batch = run.batches[n];
     if constexpr (kWidth<T> == 1) {
       for (int l = 0; l < kLanes; ++l)
-        for (int axis = 0; axis < 3; ++axis)
+        for (unsigned axis = 0; axis < 3; ++axis)
           x[batch.a[l] + axis] += little, x[batch.b[l] + axis] -= little;
     } else {
       for (int g = 0; g < kLanes; g += kWidth<T>) {
