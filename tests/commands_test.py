@@ -4,6 +4,7 @@
 import csv
 import json
 import pathlib
+import re
 
 from command_line import CommandLine, main
 
@@ -233,6 +234,8 @@ class Verbs(CommandLine):
         fixed = [float(line.split()[-1]) for line in out.splitlines() if line.startswith("jakobsen:")]
         self.assertGreater(len(fixed), 8)
         self.assertNotIn(0, fixed)
+        traffic = re.search(r"loads and stores, .*: ([\d.]+) ns in float, ([\d.]+) ns in double", out)
+        self.assertGreater(min(map(float, traffic.groups())), 0)
         out = self.taut("bench", "contact", *short).out
         for text in ["contact=swept,order=mesh", "self=grid,order=coloured", "8 x 8, 64 particles"]:
             self.assertIn(text, out)

@@ -239,6 +239,15 @@ TEST(Contact, RestartForgetsWhatWasFrozen) {
   }
 }
 
+TEST(Contact, APinInsideAColliderStays) {
+  Scene scene = points({0, 0, 0});
+  scene.pins = {5};
+  scene.colliders = {{.shape = Ball{scene.start.x[5] + Vec3(0, 0.01, 0), 0.1}}};
+  for (const char* response : {"swept", "sweep", "before", "after", "freeze", "halt"})
+    EXPECT_EQ(Runner(scene, std::string(",contact=") + response).step(3).x[5], scene.start.x[5])
+        << response;
+}
+
 TEST(Contact, WithoutCollidersThereIsNoPass) {
   for (const PassCost& cost : Runner(points({0, 0, 0}), "").solver().plan())
     EXPECT_TRUE(cost.pass == "verlet" || cost.pass == "pins") << cost.pass;

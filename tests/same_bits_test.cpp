@@ -83,7 +83,7 @@ TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
     scene.thickness = 0.002;
     scene.self_collision = SelfCollision{.radius = 0.02};
     for (const char* precision : {"float", "double"})
-      for (const char* contact : {"swept", "sweep", "after"}) {
+      for (const char* contact : {"swept", "sweep", "after", "freeze", "halt"}) {
         const std::string method =
             std::string("jakobsen:iterations=3,contact=") + contact + ",precision=" + precision;
         for (const char* order : {",order=mesh", ",order=coloured"}) {
@@ -175,6 +175,33 @@ TEST(SameBits, AsRecorded) {
   EXPECT_EQ(run("jakobsen:order=coloured,layout=packed,projection=exact,precision=double"),
             7898678465999565491u);
   EXPECT_EQ(run("jakobsen:method=jacobi-averaged"), 1211506826981364154u);
+}
+
+/// The benchmark's measure of traffic: each end of a link is loaded, changed and stored once.
+template <class Real>
+void expect_both_ends_carried(Simd simd) {
+  Batch<Real> batch{};
+  std::vector<Real> x(4 * 2 * kLanes);
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    batch.a[l] = static_cast<std::uint32_t>(4 * ((5 * l) % kLanes));
+    batch.b[l] = static_cast<std::uint32_t>(4 * (kLanes + (3 * l) % kLanes));
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<Real>(i);
+  kernels<Real>(simd).carry({.batches = &batch, .count = 1, .half = 0, .shares = nullptr},
+                            x.data());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (i % 4 != 3) {
+      EXPECT_NEAR(x[i] - static_cast<Real>(i), i < x.size() / 2 ? 0.001 : -0.001, 1e-5) << i;
+    }
+}
+
+TEST(SameBits, CarryingMovesBothEndsOfEachLink) {
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
+    if (available(simd)) {
+      SCOPED_TRACE(to_string(simd));
+      expect_both_ends_carried<float>(simd);
+      expect_both_ends_carried<double>(simd);
+    }
 }
 
 }  // namespace
