@@ -10,6 +10,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/scene_io.hpp"
 #include "core/model/solver.hpp"
+#include "tests/cloths.hpp"
 
 #ifndef TAUT_BULLET_PRECISION
 #define TAUT_BULLET_PRECISION "double"
@@ -63,7 +64,7 @@ TEST(BulletLibrary, OneStepOfTheHangingSheetIsOursToRounding) {
   const Scene scene =
       load_scene(TAUT_SOURCE_DIR "/experiments/scenes/hang.toml", {"cloth.grid=[20, 20]"});
   const std::string common = "precision=" + kPrecision + ",iterations=8";
-  const auto ours = solver("jakobsen:projection=sqrt-free," + common, scene);
+  const auto ours = solver(listing("projection=sqrt-free," + common), scene);
   const auto bullet = solver("bullet:" + common, scene);
   State p, q;
   ours->step(0, scene.dt), bullet->step(0, scene.dt);

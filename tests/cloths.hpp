@@ -38,6 +38,17 @@ inline Scene crumpled(Scene scene, double amount) {
   return scene;
 }
 
+/// "jakobsen:..." as Jakobsen lists it, unless `params` ("iterations=8,order=reversed") say
+/// otherwise: one substep, the links in the scene's own order.
+inline std::string listing(const std::string& params = "") {
+  const auto open = [&](const char* key) { return params.find(key) == std::string::npos; };
+  std::string text = "jakobsen:";
+  if (open("substeps=")) text += "substeps=1,";
+  if (open("order=")) text += "order=mesh,";
+  if (params.empty()) text.pop_back();
+  return text + params;
+}
+
 inline State simulate(const Scene& scene, const std::string& solver, int steps) {
   const SolverChoice choice = parse_solver(solver);
   const auto instance = choice.entry->make(scene, choice.params);

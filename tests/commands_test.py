@@ -216,9 +216,9 @@ class Verbs(CommandLine):
         self.assertEqual((never["best"], len(never["tried"]) > 0), (None, True))
 
     def test_plan(self):
-        plan = json.loads(self.taut("plan", "./small.toml", "jakobsen:iterations=2", "--json").out)
+        plan = json.loads(self.taut("plan", "./small.toml", "jakobsen:iterations=2,substeps=3", "--json").out)
         structural, = [p for p in plan["passes"] if p["pass"] == "structural"]
-        self.assertEqual((structural["items"], structural["repeats"]), (24, 2))
+        self.assertEqual((structural["items"], structural["repeats"]), (24, 6))
         self.assertIn("projections", self.taut("plan", "hang", "bullet").out)
 
     def test_doctor(self):

@@ -9,6 +9,7 @@
 #include "core/model/solver.hpp"
 #include "core/model/triangle.hpp"
 #include "core/solver/contact/place.hpp"
+#include "tests/cloths.hpp"
 
 namespace taut {
 namespace {
@@ -36,7 +37,7 @@ class Runner {
  public:
   Runner(const Scene& scene, const std::string& params)
       : scene_(scene),
-        choice_(parse_solver("jakobsen:precision=double" + params)),
+        choice_(parse_solver(listing("precision=double" + params))),
         solver_(choice_.entry->make(scene, choice_.params)) {
     solver_->load(scene.start);
   }
@@ -227,7 +228,7 @@ TEST(Contact, RestartForgetsWhatWasFrozen) {
   Scene scene = points({0, 0.05, 0});
   scene.colliders = {{.shape = Plane{}}};
   for (const char* response : {"freeze", "halt"}) {
-    const SolverChoice choice = parse_solver(std::string("jakobsen:contact=") + response);
+    const SolverChoice choice = parse_solver(listing(std::string("contact=") + response));
     const auto solver = choice.entry->make(scene, choice.params);
     State first, second;
     for (State* state : {&first, &second}) {

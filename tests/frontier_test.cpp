@@ -131,20 +131,20 @@ TEST(LinearStability, AChainOfSpringsHasItsClosedForm) {
 }
 
 TEST(LinearStability, SweepsOfRelaxation) {
-  EXPECT_NEAR(margin(hung_chain(1), "jakobsen:iterations=1,omega=1.33", 0.01),
+  EXPECT_NEAR(margin(hung_chain(1), listing("iterations=1,omega=1.33"), 0.01),
               0.33 + std::sqrt(0.33 * 0.33 + 0.33), 1e-9);
-  EXPECT_TRUE(linear_stability(hung_chain(1), parse_solver("jakobsen:iterations=1,omega=1.3333"))
+  EXPECT_TRUE(linear_stability(hung_chain(1), parse_solver(listing("iterations=1,omega=1.3333")))
                   ->stable());
-  EXPECT_FALSE(linear_stability(hung_chain(1), parse_solver("jakobsen:iterations=1,omega=1.3334"))
+  EXPECT_FALSE(linear_stability(hung_chain(1), parse_solver(listing("iterations=1,omega=1.3334")))
                    ->stable());
-  const double odd = margin(hung_chain(32), "jakobsen:iterations=1,method=jacobi", 0.01);
+  const double odd = margin(hung_chain(32), listing("iterations=1,method=jacobi"), 0.01);
   EXPECT_NEAR(odd, 2.402, 0.02);
   EXPECT_LT(odd, 1 + std::sqrt(2));
-  EXPECT_LE(margin(hung_chain(32), "jakobsen:iterations=2,method=jacobi", 0.01), 1 + 1e-6);
+  EXPECT_LE(margin(hung_chain(32), listing("iterations=2,method=jacobi"), 0.01), 1 + 1e-6);
   // |z| = rho^(k/2), rho = cos^2(pi/2N)
-  EXPECT_NEAR(margin(hung_chain(16), "jakobsen:iterations=4", 0.01),
+  EXPECT_NEAR(margin(hung_chain(16), listing("iterations=4"), 0.01),
               std::pow(std::cos(std::acos(-1.0) / 32), 4), 1e-6);
-  EXPECT_FALSE(linear_stability(hanging_sheet(20, 20), parse_solver("jakobsen"))) << "too many";
+  EXPECT_FALSE(linear_stability(hanging_sheet(20, 20), parse_solver(listing()))) << "too many";
 }
 
 /// Longest stable step of the scene by running it.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/model/solver.hpp"
+#include "tests/cloths.hpp"
 
 namespace taut {
 namespace {
@@ -18,7 +19,7 @@ Scene falling_sheet() {
 
 TEST(Motion, FreeFallMatchesTheDiscreteParabola) {
   const Scene scene = falling_sheet();
-  const SolverChoice choice = parse_solver("jakobsen:precision=double");
+  const SolverChoice choice = parse_solver(listing("precision=double"));
   const auto solver = choice.entry->make(scene, choice.params);
   solver->load(scene.start);
   for (int n = 0; n < scene.steps; ++n) solver->step(n * scene.dt, scene.dt);

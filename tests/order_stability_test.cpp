@@ -160,7 +160,7 @@ TEST(OrderStability, AtOneSweepALargeUndampedSheetExplodesInSequentialOrdersOnly
   const Scene scene = hanging_sheet(32, 32);
   const auto fastest = [&](const std::string& order) {
     const State state =
-        simulate(scene, "jakobsen:precision=double,iterations=1,order=" + order, 128);
+        simulate(scene, listing("precision=double,iterations=1,order=" + order), 128);
     double most = 0;
     for (const Vec3& v : state.v) most = std::max(most, v.norm());
     return most;

@@ -8,6 +8,7 @@
 
 #include "experiments/lab/digest.hpp"
 #include "experiments/lab/verdict.hpp"
+#include "tests/cloths.hpp"
 
 namespace taut {
 namespace {
@@ -98,7 +99,7 @@ TEST(Verdict, LeavingTheWorldIsAnExplosion) {
 TEST(Verdict, FreeFallIsNoExplosionHoweverLong) {
   Scene scene = at_rest({.nu = 3, .nv = 3, .width = 1, .height = 1, .mass = 0.2});
   scene.steps = 64 * 60;
-  EXPECT_EQ(verdict_on(scene, "jakobsen:precision=double").kind, Status::Kind::ok);
+  EXPECT_EQ(verdict_on(scene, listing("precision=double")).kind, Status::Kind::ok);
 }
 
 // One sweep at dt = 1/10 s stretches the top link to dozens of its rest length: soft, not unstable.
@@ -107,7 +108,7 @@ TEST(Verdict, LegitimateStrainIsNoExplosion) {
     for (const double dt : {1.0 / 10, 1.0 / 30, 1.0 / 60, 1.0 / 480})
       for (const char* projection : {"exact", "sqrt-free"}) {
         const Status status = verdict_on(
-            chain(links, dt), "jakobsen:iterations=1,projection=" + std::string(projection));
+            chain(links, dt), listing("iterations=1,projection=") + std::string(projection));
         EXPECT_NE(status.kind, Status::Kind::exploded)
             << links << " links, dt " << dt << ", " << projection << ": " << status.reason
             << " at step " << status.step;
@@ -118,23 +119,23 @@ TEST(Verdict, DrivenScenesAreNoExplosion) {
   Scene flag = at_rest({.nu = 12, .nv = 8, .width = 1, .height = 0.7, .mass = 0.05});
   for (int j = 0; j < 8; ++j) flag.pins.push_back(flag.mesh.grid->index(0, j));
   flag.wind = Wind{.velocity = {12, 0, 3}, .strength = 1};
-  EXPECT_EQ(verdict_on(flag, "jakobsen:iterations=8").kind, Status::Kind::ok);
+  EXPECT_EQ(verdict_on(flag, listing("iterations=8")).kind, Status::Kind::ok);
 
   Scene dragged = chain(20, 1.0 / 64);
   dragged.gravity.setZero();
   dragged.pin_motions = {{{0}, {.velocity = {5, 0, 0}}}};
-  EXPECT_EQ(verdict_on(dragged, "jakobsen:iterations=8").kind, Status::Kind::ok);
+  EXPECT_EQ(verdict_on(dragged, listing("iterations=8")).kind, Status::Kind::ok);
 
   Scene whirled = chain(20, 1.0 / 64);
   whirled.pin_motions = {{{0}, {.spin = {0, 0, 9}, .pivot = {0.5, 0, 0}}}};
-  EXPECT_EQ(verdict_on(whirled, "jakobsen:iterations=8").kind, Status::Kind::ok);
+  EXPECT_EQ(verdict_on(whirled, listing("iterations=8")).kind, Status::Kind::ok);
 }
 
 TEST(Verdict, AStartFarFromRestMaySnapBack) {
   Scene scene = chain(10, 1.0 / 64);
   scene.gravity.setZero();
   for (Vec3& x : scene.start.x) x *= 4;
-  EXPECT_EQ(verdict_on(scene, "jakobsen:iterations=16,projection=exact").kind, Status::Kind::ok);
+  EXPECT_EQ(verdict_on(scene, listing("iterations=16,projection=exact")).kind, Status::Kind::ok);
 }
 
 TEST(Verdict, SettlingTimeIsKnownForHangingClothOnly) {
@@ -166,7 +167,7 @@ TEST(Verdict, WhatNeverRestsIsUnsettled) {
   verdict.finish();
   EXPECT_EQ(verdict.status().kind, Status::Kind::unsettled);
   EXPECT_EQ(verdict.status().vertex, 3);
-  EXPECT_EQ(verdict_on(scene, "jakobsen:iterations=16").kind, Status::Kind::ok)
+  EXPECT_EQ(verdict_on(scene, listing("iterations=16")).kind, Status::Kind::ok)
       << "the same chain comes to rest under relaxation";
 }
 
@@ -187,7 +188,7 @@ TEST(RunCase, UnsupportedScenesAreSaidSoAndNotRun) {
 
 TEST(RunCase, TheRecordNamesWhatWasRun) {
   const Scene scene = chain(16, 1.0 / 64);
-  const CaseRun run = run_case(scene, parse_solver("jakobsen:iterations=8"), {.series_rows = 120});
+  const CaseRun run = run_case(scene, parse_solver(listing("iterations=8")), {.series_rows = 120});
   EXPECT_EQ(run.record.solver, "jakobsen");
   EXPECT_EQ(run.record.params.at("iterations"), "8");
   EXPECT_EQ(run.record.params.at("substeps"), "1");
@@ -206,7 +207,7 @@ TEST(RunCase, TheRecordNamesWhatWasRun) {
 
 TEST(RunCase, RunsRepeatToTheBit) {
   const Scene scene = chain(16, 1.0 / 64);
-  const SolverChoice choice = parse_solver("jakobsen:iterations=8");
+  const SolverChoice choice = parse_solver(listing("iterations=8"));
   EXPECT_EQ(run_case(scene, choice).record.digest, run_case(scene, choice).record.digest);
 }
 

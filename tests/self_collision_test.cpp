@@ -9,6 +9,7 @@
 #include "core/model/solver.hpp"
 #include "core/solver/contact/neighbours.hpp"
 #include "experiments/lab/run_case.hpp"
+#include "tests/cloths.hpp"
 
 namespace taut {
 namespace {
@@ -27,7 +28,7 @@ Scene particles(std::vector<Vec3> x, std::vector<Vec3> v) {
 }
 
 State run(const Scene& scene, const char* params, int steps) {
-  const SolverChoice choice = parse_solver(std::string("jakobsen:precision=double,") + params);
+  const SolverChoice choice = parse_solver(listing(std::string("precision=double,") + params));
   const auto solver = choice.entry->make(scene, choice.params);
   solver->load(scene.start);
   for (int n = 0; n < steps; ++n) solver->step(n * scene.dt, scene.dt);
@@ -76,7 +77,7 @@ TEST(SelfCollision, SlowParticlesNeverOverlapThoughTheyAreSearchedSeldom) {
   for (double gap = 0.11; gap < 0.3; gap += 0.007) {
     const Vec3 v(0.08, 0, 0);  // an 80th of the diameter in a step
     const Scene scene = particles({{0, 0, 0}, {gap, 0, 0}}, {v, -v});
-    const SolverChoice choice = parse_solver("jakobsen:precision=double,self=grid");
+    const SolverChoice choice = parse_solver(listing("precision=double,self=grid"));
     const auto solver = choice.entry->make(scene, choice.params);
     solver->load(scene.start);
     State state;

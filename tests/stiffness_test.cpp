@@ -19,7 +19,7 @@ Scene chain(int n, double dt) {
 }
 
 std::string soft(double stiffness, int iterations, const char* projection = "exact") {
-  return "jakobsen:precision=double,structural_stiffness=" + std::to_string(stiffness) +
+  return listing("precision=double,structural_stiffness=") + std::to_string(stiffness) +
          ",iterations=" + std::to_string(iterations) + ",projection=" + projection;
 }
 

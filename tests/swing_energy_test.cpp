@@ -37,7 +37,7 @@ TEST(SwingEnergy, IsKeptByTheReferenceNearlyBySubstepsAndNotBySweeps) {
   for (int n = 0; n < 512; ++n) ASSERT_TRUE(shake.step());
   EXPECT_NEAR(energy(scene, shake.state()), start, 0.002 * unit);
   const auto lost = [&](const char* setting) {
-    const State state = simulate(scene, std::string("jakobsen:precision=double,") + setting, 64);
+    const State state = simulate(scene, listing(std::string("precision=double,") + setting), 64);
     return (start - energy(scene, state)) / unit;
   };
   const double sweeps = lost("iterations=16"), substeps = lost("iterations=1,substeps=16"),

@@ -29,13 +29,13 @@ class Extremes {
     static const char* const kOrders[]{"mesh", "reversed", "random", "coloured"};
     static const int kSweeps[]{0, 1, 3, 17};
     const std::size_t method = below(3);
-    std::string text = "jakobsen:iterations=" + std::to_string(kSweeps[below(4)]) +
+    std::string text = "iterations=" + std::to_string(kSweeps[below(4)]) +
                        ",method=" + kMethods[method] +
                        ",projection=" + (coin() ? "exact" : "sqrt-free") +
                        ",precision=" + (coin() ? "float" : "double");
     if (method == 0) text += std::string(",order=") + kOrders[below(4)];
     if (below(4) == 0) text += ",structural_stiffness=" + std::to_string(decades(1e-3, 1e9));
-    return text;
+    return listing(text);
   }
 
  private:
@@ -173,8 +173,7 @@ TEST(Torture, TenThousandSweepsAndNone) {
   const Scene scene = hanging_sheet(4, 4);
   for (const char* precision : {"float", "double"})
     for (const char* sweeps : {"0", "10000"}) {
-      const std::string solver =
-          std::string("jakobsen:iterations=") + sweeps + ",precision=" + precision;
+      const std::string solver = listing("iterations=") + sweeps + ",precision=" + precision;
       EXPECT_TRUE(finite(simulate(scene, solver, 5))) << solver;
     }
 }

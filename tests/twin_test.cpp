@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/model/solver.hpp"
+#include "tests/cloths.hpp"
 
 namespace taut {
 namespace {
@@ -57,7 +58,7 @@ double distance(const Solver& a, const Solver& b) {
 /// Largest distance [m] between the two after each of the steps 1, 2, ..., last.
 std::vector<double> distances(const Scene& scene, int last, const std::string& more = "") {
   const std::string common = "precision=double,iterations=8" + more;
-  const auto ours = solver("jakobsen:projection=sqrt-free," + common, scene);
+  const auto ours = solver(listing("projection=sqrt-free," + common), scene);
   const auto bullet = solver("bullet:" + common, scene);
   std::vector<double> all;
   for (int n = 0; n < last; ++n) {

@@ -23,7 +23,7 @@ double cpu_now() {
 
 std::unique_ptr<Solver> make(const Scene& scene, const std::string& setting, int sweeps) {
   const SolverChoice choice =
-      parse_solver("jakobsen:iterations=" + std::to_string(sweeps) + "," + setting);
+      parse_solver("jakobsen:substeps=1,iterations=" + std::to_string(sweeps) + "," + setting);
   return choice.entry->make(scene, choice.params);
 }
 

@@ -105,7 +105,7 @@ std::vector<Kernel> kernels_of(const Scene& scene, bool bullet) {
     const int points = layout == "strips" ? 12 : 16;  // numbers read and written
     const int list = layout == "strips" ? 0 : 8 + word;
     all.push_back(of_solver(scene,
-                            "jakobsen:order=coloured,layout=" + layout +
+                            "jakobsen:substeps=1,order=coloured,layout=" + layout +
                                 ",projection=" + (exact ? "exact" : "sqrt-free") +
                                 ",precision=" + (single ? "float" : "double") +
                                 (threads > 1 ? ",threads=" + std::to_string(threads) : "") + name,

@@ -54,7 +54,7 @@ class Knobs {
   std::vector<std::pair<std::string, std::string>> extras() const {
     static const std::pair<const char*, std::vector<std::string>> kExtras[] = {
         {"precision", {"float", "double"}},
-        {"order", {"coloured"}},
+        {"order", {"coloured", "mesh"}},
         {"omega", {"1.3", "1.6"}},
         {"levels", {"2", "3"}},
         {"tethers", {"on"}},

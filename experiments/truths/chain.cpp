@@ -47,8 +47,7 @@ void elastic_chain(Ledger& ledger) {
   for (const char* integrator : {"explicit-euler", "symplectic-euler", "verlet"})
     check(mass_spring(integrator, stiffness, 5), n, 1e-10);
   check("xpbd:iterations=100,substeps=1,structural=0.001,precision=double", n, 1e-10);
-  check("jakobsen:iterations=3,projection=exact,precision=double,structural_stiffness=1000", 1,
-        1e-10);
+  check(jakobsen(3, "exact", "structural_stiffness=1000"), 1, 1e-10);
 }
 
 void spring_chain_modes(Ledger& ledger) {

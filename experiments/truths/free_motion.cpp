@@ -49,7 +49,7 @@ void free_fall(Ledger& ledger) {
   }
   check(mass_spring("explicit-euler", 1), "distance from v0 t + g t^2/2 - g t dt/2 over 1 s", -1,
         Vec3::Zero());
-  const std::string in_float = "jakobsen:precision=float";
+  const std::string in_float = "jakobsen:substeps=1,order=mesh,precision=float";
   Scene s = thrown();
   if (!claims(ledger, in_float, s)) return;
   Probe probe(s, in_float);

@@ -27,7 +27,8 @@ double projected(std::string_view solver, double strain, double mass1 = 1, doubl
 double sqrt_free(double e) { return -e * e / (2 + 2 * e + e * e); }
 
 std::string in_float(std::string_view projection) {
-  return "jakobsen:iterations=1,projection=" + std::string(projection) + kFloat;
+  return "jakobsen:iterations=1,substeps=1,order=mesh,projection=" + std::string(projection) +
+         kFloat;
 }
 
 template <class F>

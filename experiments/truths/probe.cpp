@@ -9,19 +9,6 @@
 
 namespace taut {
 
-namespace {
-
-SolverChoice choose(std::string_view solver) {
-  SolverChoice choice = parse_solver(solver);
-  for (const ParamSpec& spec : choice.entry->params)
-    if (spec.name == "order" && spec.choices.find("mesh") != std::string_view::npos &&
-        solver.find("order=") == std::string_view::npos)
-      return parse_solver(with(solver, "order=mesh"));
-  return choice;
-}
-
-}  // namespace
-
 std::string with(std::string_view solver, std::string_view more) {
   std::string text(solver);
   if (more.empty()) return text;
@@ -30,7 +17,7 @@ std::string with(std::string_view solver, std::string_view more) {
 }
 
 Probe::Probe(const Scene& scene, std::string_view solver) : scene_(scene), state_(scene.start) {
-  const SolverChoice choice = choose(solver);
+  const SolverChoice choice = parse_solver(solver);
   solver_ = choice.entry->make(scene_, choice.params);
   solver_->load(state_);
 }
@@ -49,7 +36,7 @@ bool claims(Ledger& ledger, std::string_view solver, const Scene& scene) {
   if (!ledger.wants(solver)) return false;
   std::vector<std::string> reasons;
   try {
-    const SolverChoice choice = choose(solver);
+    const SolverChoice choice = parse_solver(solver);
     reasons = choice.entry->cannot(scene, choice.params);
     if (reasons.empty()) choice.entry->make(scene, choice.params);
   } catch (const InputError& error) {  // a solver or a precision that this program does not have
@@ -60,9 +47,11 @@ bool claims(Ledger& ledger, std::string_view solver, const Scene& scene) {
 }
 
 std::string jakobsen(int iterations, std::string_view projection, std::string_view more) {
-  return with("jakobsen:iterations=" + std::to_string(iterations) +
-                  ",projection=" + std::string(projection) + ",precision=double",
-              more);
+  const auto open = [&](std::string_view key) { return more.find(key) == std::string_view::npos; };
+  std::string text = "jakobsen:iterations=" + std::to_string(iterations);
+  if (open("substeps=")) text += ",substeps=1";
+  if (open("order=")) text += ",order=mesh";
+  return with(text + ",projection=" + std::string(projection) + ",precision=double", more);
 }
 
 std::string bullet(int iterations) {

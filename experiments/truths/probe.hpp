@@ -36,8 +36,8 @@ bool claims(Ledger&, std::string_view solver, const Scene&);
 constexpr const char* kStatic = "reference:static";  ///< core/reference/static_equilibrium
 constexpr const char* kShake = "reference:shake";    ///< core/reference/shake
 
-/// "jakobsen:iterations=k,projection=exact,precision=double" and its rivals: the settings that the
-/// truths hold to rounding.
+/// The settings that the truths hold to rounding: ours as published, one substep, the links in the
+/// scene's own order, unless `more` says otherwise; and its rivals.
 std::string jakobsen(int iterations, std::string_view projection = "exact",
                      std::string_view more = "");
 std::string bullet(int iterations);
