@@ -236,6 +236,8 @@ class Verbs(CommandLine):
         self.assertNotIn(0, fixed)
         traffic = re.search(r"loads and stores, .*: ([\d.]+) ns in float, ([\d.]+) ns in double", out)
         self.assertGreater(min(map(float, traffic.groups())), 0)
+        cores = re.search(r"two threads: ([\d.]+) .* sheets at once: ([\d.]+) .* get ([\d.]+) ", out)
+        self.assertGreater(min(map(float, cores.groups())), 0)
         out = self.taut("bench", "contact", *short).out
         for text in ["contact=swept,order=mesh", "self=grid,order=coloured", "8 x 8, 64 particles"]:
             self.assertIn(text, out)

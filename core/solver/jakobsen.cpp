@@ -114,8 +114,10 @@ class Jakobsen final : public Solver {
                                 .keep = static_cast<Real>(std::exp(-damping_ * dt)),
                                 .dt2 = static_cast<Real>(dt * dt),
                                 .g = g};
+    const Kernels<Real>& k = kernels<Real>(simd_);
+    const auto kernel = p_.layout->stride() == kWide ? k.wide_verlet : k.narrow_verlet;
     team_.run(p_.layout->length() / kGrain, [&](std::size_t begin, std::size_t end) {
-      kernels<Real>(simd_).verlet(step, begin * kGrain, end * kGrain);
+      kernel(step, begin * kGrain, end * kGrain);
     });
   }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/scene.hpp"
+#include "experiments/bench/two_cores.hpp"
 #include "experiments/lab/statistics.hpp"
 
 namespace taut {
@@ -34,6 +35,7 @@ struct KernelBench {
   double arithmetic_float = 0, arithmetic_double = 0;
   /// ns to load and store the particles of a packed link (seconds_per_carried_link).
   double carried_float = 0, carried_double = 0;
+  TwoCores two_cores;
   /// Median over rounds of rows[i]'s cost over rows[j]'s cost.
   Interval ratio(std::size_t i, std::size_t j) const;
 };

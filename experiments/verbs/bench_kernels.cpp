@@ -54,6 +54,21 @@ void print(const KernelBench& bench) {
       "a packed projection that loads and stores, but adds a constant instead: %.3f ns in float, "
       "%.3f ns in double\n",
       bench.arithmetic_float, bench.arithmetic_double, bench.carried_float, bench.carried_double);
+  const TwoCores& cores = bench.two_cores;
+  const auto text = [](const Interval& i) {
+    char number[64];
+    std::snprintf(number, sizeof number, "%.2f [%.2f %.2f]", i.mid, i.low, i.high);
+    return std::string(number);
+  };
+  std::printf(
+      "two threads: %s times one, wall time; two unrelated sheets at once: %s; so two threads get "
+      "%s of what two cores give\n",
+      text(cores.threads).c_str(), text(cores.unrelated).c_str(), text(cores.share).c_str());
+  if (cores.free > 0)
+    std::printf(
+        "two threads while both cores were free (%.0f %% of the rounds: unrelated sheets at %.1f "
+        "and more): %s times one\n",
+        100 * cores.free, TwoCores::kFree, text(cores.threads_while_free).c_str());
   std::fflush(stdout);
 }
 

@@ -97,7 +97,10 @@ struct CollideKernels {
 /// The loops that matter, once for each instruction set.
 template <class Real>
 struct Kernels {
-  void (*verlet)(const VerletStep<Real>&, std::size_t begin, std::size_t end);
+  /// As wide as the sweep: a few 512-bit instructions in each step slow down the shorter ones of
+  /// all its sweeps (strips of 32 x 32 by a sixth, packed links by 4 %).
+  void (*narrow_verlet)(const VerletStep<Real>&, std::size_t begin, std::size_t end);
+  void (*wide_verlet)(const VerletStep<Real>&, std::size_t begin, std::size_t end);
   /// Rows [begin, end) of a sweep; by Projection, with kNarrow and with kWide lanes.
   void (*narrow_strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);
   void (*wide_strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);

@@ -359,7 +359,8 @@ Real in_registers(Real rest, int rounds, int& projections) {
 template <class Real, class Narrow, class Wide, class P>
 constexpr Kernels<Real> make_kernels() {
   constexpr Projection exact = Projection::exact, sqrt_free = Projection::sqrt_free;
-  return {verlet<Wide, Real>,
+  return {verlet<Narrow, Real>,
+          verlet<Wide, Real>,
           {strips<Narrow, kNarrow, exact, Real>, strips<Narrow, kNarrow, sqrt_free, Real>},
           {strips<Wide, kWide, exact, Real>, strips<Wide, kWide, sqrt_free, Real>},
           {batches<P, exact, Real>, batches<P, sqrt_free, Real>},
