@@ -264,6 +264,18 @@ TEST(Verdict, EqualSolversAreAlike) {
   EXPECT_NE(text.find("No case failed."), std::string::npos) << text;
 }
 
+TEST(Verdict, SubstepsThatDifferAreSaid) {
+  ReportInput input = example();
+  const auto text = [&](const char* theirs) {
+    for (StudyResult& study : input.studies)
+      for (Record& r : study.records) r.params["substeps"] = r.solver == "bullet" ? theirs : "5";
+    return verdict(compare(input), {"hang", "ball"});
+  };
+  EXPECT_EQ(text("5").find("substeps"), std::string::npos);
+  EXPECT_NE(text("1").find("cannot be compared (their substeps differ"), std::string::npos);
+  EXPECT_FALSE(equal_substeps(compare(input)));
+}
+
 TEST(Comparison, RatiosPairOnlyCasesThatBothEndedWell) {
   const Comparison facts = compare(example());
   ASSERT_EQ(facts.contenders.size(), 2U);

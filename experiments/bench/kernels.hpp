@@ -22,8 +22,8 @@ struct KernelRow {
   /// uses the core. A neighbour on a core's other thread slows wide vectors by half and more, and
   /// the textbook, which waits for its own results, hardly at all.
   double fastest = 0;
-  /// A step without a sweep (integration, pins), in sweeps over the structural links alone, one of
-  /// each round.
+  /// A step without a sweep (integration, pins) of a sheet that begins to fall, in sweeps over the
+  /// structural links alone, one of each round.
   std::vector<double> fixed;
   Interval cost() const { return bootstrap_median(samples); }
 };

@@ -64,7 +64,8 @@ TwoCores bench_two_cores(const Scene& scene, int rounds, double seconds) {
   std::vector<double> threads, unrelated, share, while_free;
   for (int round = 0; round < rounds; ++round) {
     const double before = time_of(*one, steps, dt), shared = time_of(*two, steps, dt);
-    const double both = time_of_both(*one, *another, steps, dt), after = time_of(*one, steps, dt);
+    const double after = time_of(*one, steps, dt);  // meanwhile the second thread falls asleep
+    const double both = time_of_both(*one, *another, steps, dt);
     threads.push_back(before / shared);
     unrelated.push_back(2 * after / both);
     share.push_back(both / 2 / shared);

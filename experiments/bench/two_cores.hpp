@@ -17,9 +17,9 @@ struct TwoCores {
   static constexpr double kFree = 1.9;
 };
 
-/// Interleaved: each round times one thread, two threads, two unrelated sheets and one thread
-/// again, `seconds` each. The first single thread is what the threads are compared with and the
-/// last one what the unrelated sheets are, so that a slow one does not choose the rounds.
+/// Interleaved: each round times one thread, two threads, one thread again and two unrelated
+/// sheets, `seconds` each. The first single thread is what the threads are compared with and the
+/// second one what the unrelated sheets are: no slow sample is in both ratios.
 TwoCores bench_two_cores(const Scene&, int rounds, double seconds);
 
 }  // namespace taut

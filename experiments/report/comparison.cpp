@@ -133,6 +133,17 @@ Comparison compare(const ReportInput& input) {
   return facts;
 }
 
+bool equal_substeps(const Comparison& facts) {
+  std::set<std::set<double>> all;
+  for (const Contender& c : facts.contenders) {
+    std::set<double> own;
+    for (const Record& r : c.records)
+      if (const double n = value_of(r, "substeps"); std::isfinite(n)) own.insert(n);
+    if (!own.empty()) all.insert(own);
+  }
+  return all.size() <= 1;
+}
+
 bool quoted_at(const Record& record, int sweeps) {
   const double own = value_of(record, "iterations");
   return std::isnan(own) || own == sweeps;

@@ -54,6 +54,10 @@ std::optional<Ratio> ratio_of(const Contender&, const Contender& first, const st
 /// none.
 bool quoted_at(const Record&, int sweeps);
 
+/// Whether all contenders that have substeps ran with the same ones: only then is a sweep of one as
+/// much work as a sweep of the other.
+bool equal_substeps(const Comparison&);
+
 /// A time step up to which (itself included) every tried one ended ok or unsettled.
 struct SoundStep {
   double dt = 0;         ///< s; 0 if the smallest that was tried failed

@@ -28,7 +28,7 @@ std::string knob_label(const Record& record, std::span<const Record> records) {
       return r.solver == record.solver && r.params.contains(knob) &&
              r.params.at(knob) != at->second;
     });
-    if (!varies || at->second == "off" || at->second == "mesh") continue;
+    if (!varies || at->second == "off") continue;
     const bool count = std::string_view(knob) == "iterations" && !text.empty();
     text += (text.empty() ? "" : count ? " × " : ", ") + (at->second == "on" ? knob : at->second);
   }

@@ -167,7 +167,10 @@ std::string verdict(const Comparison& facts, const std::vector<std::string>& sce
     out += (out.empty() ? "" : ". ") + one;
   }
   if (out.empty())
-    out = "No case ended well for two solvers under equal settings: stretch cannot be compared";
+    out =
+        std::string(
+            "No case ended well for two solvers under equal settings: stretch cannot be compared") +
+        (equal_substeps(facts) ? "" : " (their substeps differ; name the same for all)");
   return out + depth_sentence(facts, scenes) + dt_sentence(facts, scenes) + cost_sentence(facts) +
          ". " + failure_sentence(facts);
 }

@@ -262,6 +262,6 @@ TAUT_VERB(bench) = {
         "Measures cost: interleaved, CPU time of Solver::step alone, with confidence intervals",
     .example =
         "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
-        "jakobsen:iterations=16 --solver "
-        "bullet:iterations=16\n  taut bench kernels\n  taut bench contact",
+        "jakobsen:iterations=1,substeps=16 --solver "
+        "bullet:iterations=1,substeps=16\n  taut bench kernels\n  taut bench contact",
     .bind = taut::verb::bench::bind};

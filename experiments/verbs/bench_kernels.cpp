@@ -28,7 +28,8 @@ std::string times(const Interval& ratio) {
 void print(const KernelBench& bench) {
   std::printf(
       "\n%d x %d, %s: structural, shear and bend links; ns per projection; fixed: what a step "
-      "costs without a sweep, in structural sweeps; fastest: of all parts of all samples, while "
+      "costs without a sweep, in structural sweeps; rows of two threads in wall time; fastest: "
+      "of all parts of all samples, while "
       "nothing else used the core\n",
       bench.side, bench.side, std::string(to_string(widest())).c_str());
   std::printf("%-78s %7s %-15s %-21s %-21s %7s %8s %8s %6s %5s %5s %6s\n", "", "median", "[95 %]",

@@ -106,5 +106,5 @@ std::function<int()> bind(Arguments& arguments) {
 TAUT_VERB(case) = {
     .name = "case",
     .summary = "Runs one case in this process; a numerical failure is a result (exit 0)",
-    .example = "taut case hang jakobsen:iterations=8 --dt 1/120 --final-state hang.csv",
+    .example = "taut case hang jakobsen:iterations=1,substeps=15 --dt 1/120 --final-state hang.csv",
     .bind = taut::verb::one_case ::bind};

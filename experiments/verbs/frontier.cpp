@@ -83,7 +83,11 @@ void print_text(const CaseFrontier& result, const std::optional<Prediction>& the
     print_line("stable up to", outcome(found.stable));
   if (found.kind != Frontier::Kind::all_stable)
     print_line("unstable from", outcome(found.unstable));
-  if (theory) print_theory(*theory, found, unit);
+  if (theory)
+    print_theory(*theory, found, unit);
+  else
+    print_line("theory",
+               "none for these settings; there is one for few links, with jakobsen in order=mesh");
   std::string above = std::to_string(found.above) + " values above the bracket, ";
   if (found.islands.empty()) {
     above += "none stable";
@@ -202,6 +206,6 @@ TAUT_VERB(frontier) = {
     .summary = "Finds how far a setting can go before a solver fails, beside what theory says",
     .example =
         "taut frontier chain mass-spring:substeps=1 --tolerance 0.001\n"
-        "  taut frontier chain jakobsen:iterations=1 --of omega --from 1\n"
+        "  taut frontier chain jakobsen:iterations=1,substeps=1,order=mesh --of omega --from 1\n"
         "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000",
     .bind = taut::verb::frontier::bind};

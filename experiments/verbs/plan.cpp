@@ -69,5 +69,5 @@ std::function<int()> bind(Arguments& arguments) {
 TAUT_VERB(plan) = {
     .name = "plan",
     .summary = "Shows the passes of one step, what they visit and what they hold in memory",
-    .example = "taut plan ball jakobsen:iterations=8",
+    .example = "taut plan ball jakobsen:iterations=1,substeps=15",
     .bind = taut::verb::planning::bind};

@@ -244,7 +244,7 @@ TAUT_VERB(render) = {
     .name = "render",
     .summary = "Pictures and videos of solvers side by side",
     .example =
-        "taut render ball --solver jakobsen:iterations=20 --solver bullet --at 0.6\n"
-        "  taut render flag --solver jakobsen --solver bullet --video --duration 4\n"
-        "  taut render ball --trajectory run.traj --solver bullet --sheet",
+        "taut render ball --solver jakobsen --solver bullet:substeps=5 --at 0.6\n"
+        "  taut render flag --solver jakobsen --solver bullet:substeps=5 --video --duration 4\n"
+        "  taut render ball --trajectory run.traj --solver bullet:substeps=5 --sheet",
     .bind = taut::verb::render::bind};

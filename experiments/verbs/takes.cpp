@@ -24,15 +24,17 @@ Rgb8 colour_of(std::string_view hex) {
   return rgb(static_cast<std::uint32_t>(std::stoul(std::string(hex.substr(1)), nullptr, 16)));
 }
 
-/// What tells this choice from the solver's defaults; the number of sweeps is always said.
+/// The work of a step, sweeps and substeps, and what else tells this choice from the defaults.
+/// Defaults differ between solvers: of work nothing goes without saying.
 std::string caption_settings(const SolverChoice& choice) {
-  std::string settings = readable_settings(choice.brief());
-  for (const ParamSpec& spec : choice.params.specs())
-    if (spec.name == "iterations" && settings.find("iteration") == std::string::npos)
-      settings =
-          readable_settings(":iterations=" + std::string(choice.params.value("iterations"))) +
-          (settings.empty() ? "" : " · " + settings);
-  return settings;
+  std::string settings;
+  for (const ParamSpec& spec : choice.params.specs()) {
+    const std::string_view value = choice.params.value(spec.name);
+    if (spec.name == "iterations" || spec.name == "substeps" || value != spec.default_value)
+      settings +=
+          (settings.empty() ? ":" : ",") + std::string(spec.name) + "=" + std::string(value);
+  }
+  return readable_settings(settings);
 }
 
 /// The same of a text that some program wrote: as it stands if this one knows no such solver.

@@ -99,8 +99,12 @@ std::string render(Page& page, const std::string&) {
          "same case (" +
          escape_html(page.hero()) + ", " + std::to_string(page.facts().sweeps) +
          " sweeps), after mapping. Marked rows differ: differences in the results may come from "
-         "them. Equal sweeps are equal numbers of projections, not equal time. What none of this "
-         "shows is said <a href=\"#limits\">at the end</a>.</p><div class=\"card\">" +
+         "them. " +
+         std::string(equal_substeps(page.facts())
+                         ? "Equal sweeps are equal numbers of projections, not equal time."
+                         : "Substeps differ: equal sweeps are not equal work here.") +
+         " What none of this shows is said <a href=\"#limits\">at the end</a>.</p><div "
+         "class=\"card\">" +
          panel(examples, page.facts()) + refusals(page) + "</div></section>\n";
 }
 
