@@ -47,6 +47,8 @@ def main(binaries, out):
         "what no study ran is shown apart": 'id="film-disc"' in text and 'id="film-twist"' in text,
         "who refuses a scene says why": "cannot run this scene</p><p>self-collision" in text,
         "both engines are in it": "Jakobsen" in text and "Bullet" in text,
+        "captions name sweeps and substeps": "iterations · 5 substeps" in text and "iterations · 1 substep<" in text,
+        "that substeps differ is said": "their substeps differ" in text and "not equal work" in text,
         "the truths are filled": "No truth is broken" in text,
         "what was not made names its command": "taut check --record" in text,
     }.items():
