@@ -15,7 +15,7 @@ namespace taut {
 ///                                            x2 -= w2/(w1 + w2) f delta
 ///
 /// The report prints a splice of the two listings whose sign is wrong; see
-/// tests/projection_test.cpp.
+/// tests/solver/projection_test.cpp.
 enum class Projection { exact, sqrt_free };
 
 /// Shorter than any link [m]. Added so that coincident particles give 0 and not 0/0; it changes no

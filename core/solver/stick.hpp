@@ -23,7 +23,7 @@ struct Stick {
 /// has to lose the fraction c = K h^2 (w1 + w2) / (1 + K h^2 (w1 + w2)) of its stretch in a substep
 /// of h seconds, so each of n sweeps removes 1 - (1 - c)^(1/n). Hence K means the same for every
 /// time step and every number of sweeps, and a mass m hanging from such a link stretches it by m g
-/// / K (tests/stiffness_test.cpp). K = inf is Jakobsen's stick: c = 1.
+/// / K (tests/solver/stiffness_test.cpp). K = inf is Jakobsen's stick: c = 1.
 struct Firmness {
   std::array<double, kFamilies.size()> stiffness{};  ///< N/m by family
   double omega = 1;                                  ///< over-relaxation

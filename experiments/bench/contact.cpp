@@ -5,9 +5,9 @@
 #include <ctime>
 #include <memory>
 
-#include "core/model/scene_io.hpp"
+#include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/lab/data.hpp"
+#include "experiments/system/data.hpp"
 
 namespace taut {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/lab/statistics.hpp"
+#include "experiments/timing/statistics.hpp"
 
 namespace taut {
 

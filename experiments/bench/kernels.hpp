@@ -6,7 +6,7 @@
 
 #include "core/model/scene.hpp"
 #include "experiments/bench/two_cores.hpp"
-#include "experiments/lab/statistics.hpp"
+#include "experiments/timing/statistics.hpp"
 
 namespace taut {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/model/scene.hpp"
-#include "experiments/lab/statistics.hpp"
+#include "experiments/timing/statistics.hpp"
 
 namespace taut {
 

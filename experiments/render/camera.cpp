@@ -6,8 +6,8 @@
 #include <map>
 #include <numbers>
 
+#include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/scene_io.hpp"
 
 namespace taut {
 

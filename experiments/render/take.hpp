@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "experiments/lab/record.hpp"
-#include "experiments/lab/trajectory.hpp"
+#include "experiments/case/record.hpp"
+#include "experiments/case/trajectory.hpp"
 #include "experiments/render/image.hpp"
 
 namespace taut {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/lab/record.hpp"
+#include "experiments/case/record.hpp"
 
 namespace taut::report {
 

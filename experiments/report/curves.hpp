@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/lab/record.hpp"
+#include "experiments/case/record.hpp"
 
 namespace taut::report {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/lab/record.hpp"
+#include "experiments/case/record.hpp"
 #include "experiments/report/labels.hpp"
 
 namespace taut::report {

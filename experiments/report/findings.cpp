@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "core/model/input_error.hpp"
-#include "experiments/lab/json.hpp"
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::report {
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/lab/bench.hpp"
-#include "experiments/lab/record.hpp"
+#include "experiments/case/record.hpp"
 #include "experiments/report/figures.hpp"
+#include "experiments/timing/bench.hpp"
 
 namespace taut::report {
 

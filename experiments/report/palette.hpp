@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/lab/record.hpp"
+#include "experiments/case/record.hpp"
 
 namespace taut::report {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/lab/bench.hpp"
+#include "experiments/timing/bench.hpp"
 
 namespace taut::report {
 

@@ -5,12 +5,12 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/lab/map.hpp"
 #include "experiments/report/axis.hpp"
 #include "experiments/report/comparison.hpp"
 #include "experiments/report/curves.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/palette.hpp"
+#include "experiments/study/map.hpp"
 
 namespace taut::report {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/lab/campaign.hpp"
 #include "experiments/report/input.hpp"
+#include "experiments/study/campaign.hpp"
 
 namespace taut::report {
 

@@ -1,0 +1,251 @@
+#include "core/io/cloth_io.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/io/mesh_io.hpp"
+#include "core/io/motion_io.hpp"
+#include "core/model/angle.hpp"
+#include "core/model/index.hpp"
+#include "core/model/shortest.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr int kMaxVertices = 1 << 24;
+
+std::optional<Grid> read_grid(Section& cloth) {
+  if (!cloth.find("grid")) cloth.missing("grid");
+  const auto counts = cloth.numbers("grid", 2, {1, kMaxVertices});
+  if (!counts) return std::nullopt;
+  for (const double count : *counts)
+    if (count != std::floor(count)) {
+      cloth.report("grid", "must hold whole numbers, not " + shortest(count));
+      return std::nullopt;
+    }
+  const double all = (*counts)[0] * (*counts)[1];
+  if (all < 2) {
+    cloth.report("grid", "makes a cloth of one vertex; it needs two at least");
+  } else if (all > kMaxVertices) {
+    cloth.report("grid", "makes " + shortest(all) + " vertices; at most " +
+                             std::to_string(kMaxVertices) + " are allowed");
+  } else {
+    return Grid{static_cast<int>((*counts)[0]), static_cast<int>((*counts)[1])};
+  }
+  return std::nullopt;
+}
+
+/// Sides of the sheet [m]; a side along which there is only one vertex may be zero.
+bool read_size(Section& cloth, SheetShape& shape) {
+  if (!cloth.find("size")) cloth.missing("size");
+  const auto size = cloth.numbers("size", 2, Range::non_negative(kFar));
+  if (!size) return false;
+  shape.width = (*size)[0];
+  shape.height = (*size)[1];
+  const auto too_small = [](int count, double side) {
+    return count > 1 && side / (count - 1) < 1e-9;
+  };
+  if (!too_small(shape.nu, shape.width) && !too_small(shape.nv, shape.height)) return true;
+  cloth.report("size",
+               "puts vertices on top of each other; sides must be greater than 0 (links "
+               "need 1e-9 m at least)");
+  return false;
+}
+
+Lumping read_lumping(Section& cloth) {
+  const std::string name = cloth.choice("lumping", {"area", "equal"}, "area");
+  return name == "area" ? Lumping::area : Lumping::equal;
+}
+
+/// Total mass [kg], from `mass` or `area_density`; `area` [m^2].
+std::optional<double> read_mass(Section& cloth, double area) {
+  const bool both = cloth.find("mass") && cloth.find("area_density");
+  if (both) cloth.report("area_density", "excludes 'mass': give one of them");
+  const auto mass = cloth.number("mass", {1e-9, 1e9});
+  const double density = cloth.number("area_density", {1e-9, 1e9}, 0.2);
+  if (both) return std::nullopt;
+  if (cloth.find("mass")) return mass;
+  if (area > 0) return density * area;
+  cloth.report(cloth.find("area_density") ? "area_density" : "size",
+               "means nothing for a cloth without area: give 'mass'");
+  return std::nullopt;
+}
+
+/// A row of count vertices whose ends are `span` apart, as a circular arc: every link keeps its
+/// rest length. Offsets along u and v of each vertex [m].
+std::vector<std::pair<double, double>> arc(int count, double width, double span) {
+  const int links = count - 1;
+  const double chord = width / links;
+  // span / chord = sin(links a / 2) / sin(a / 2) falls from `links` to 0 as the angle a between
+  // neighbouring links goes from 0 to 2 pi / links.
+  double low = 0, high = 2 * std::numbers::pi / links;
+  for (int k = 0; k < 200; ++k) {
+    const double a = (low + high) / 2;
+    const bool wide = std::sin(links * a / 2) * chord > span * std::sin(a / 2);
+    (wide ? low : high) = a;
+  }
+  std::vector<std::pair<double, double>> row{{0, 0}};
+  for (int k = 0; k < links; ++k) {
+    const double slope = low * ((links - 1) / 2.0 - k);
+    const auto [u, v] = row.back();
+    row.emplace_back(u + chord * std::cos(slope), v + chord * std::sin(slope));
+  }
+  row.back() = {span, 0};  // without the bisection's rounding
+  return row;
+}
+
+/// Where the sheet starts: its rest shape, or hung between sides that are closer than its width,
+/// then turned about its top edge.
+void start_sheet(Section& cloth, const SheetShape& shape, Scene& scene) {
+  const auto span = cloth.number("span", Range::positive(kFar));
+  const double tilt = cloth.number("tilt", Range::within(360), 0) * kDegree;
+  if (span && shape.nu < 3) {
+    cloth.report("span", "needs three vertices along u at least");
+  } else if (span && *span > shape.width) {
+    cloth.report("span",
+                 "must be at most the width " + shortest(shape.width) + ", not " + shortest(*span));
+  } else if (span && *span < shape.width) {
+    const auto row = arc(shape.nu, shape.width, *span);
+    const Grid& g = *scene.mesh.grid;
+    for (int j = 0; j < g.nv; ++j)
+      for (int i = 0; i < g.nu; ++i) {
+        const Vec3 down = scene.mesh.rest[at(g.index(0, j))];
+        scene.start.x[at(g.index(i, j))] =
+            down + row[at(i)].first * shape.u + row[at(i)].second * shape.v;
+      }
+  }
+  if (tilt != 0)
+    for (Vec3& x : scene.start.x)
+      x = shape.origin + Eigen::AngleAxisd(tilt, shape.u) * (x - shape.origin);
+}
+
+bool read_sheet(Section& cloth, const LinkChoice& links, Scene& scene) {
+  SheetShape shape;
+  shape.origin = cloth.vec3("origin", kFar, Vec3::Zero());
+  shape.u = cloth.direction("u", Vec3::UnitX());
+  shape.v = cloth.direction("v", -Vec3::UnitY());
+  shape.lumping = read_lumping(cloth);
+  const double sine = shape.u.cross(shape.v).norm();
+  if (sine < 1e-3) cloth.report("v", "must not be parallel to 'u'");
+  const auto grid = read_grid(cloth);
+  if (grid) shape.nu = grid->nu, shape.nv = grid->nv;
+  const bool sized = read_size(cloth, shape);
+  const auto mass = read_mass(cloth, grid && sized ? shape.width * shape.height * sine : 1);
+  if (!grid || !sized || !mass || sine < 1e-3) return false;
+  shape.mass = *mass;
+  scene.mesh = make_sheet(shape);
+  scene.links = grid_links(scene.mesh, links);
+  scene.start.x = scene.mesh.rest;
+  start_sheet(cloth, shape, scene);
+  return true;
+}
+
+/// The surface in an OBJ file, scaled, turned and moved. False and the file's own errors if it is
+/// none.
+bool read_surface(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
+                  Scene& scene) {
+  const double scale = cloth.number("scale", {1e-6, 1e6}, 1);
+  const Eigen::Quaterniond rotation = read_rotation(cloth);
+  const Vec3 origin = cloth.vec3("origin", kFar, Vec3::Zero());
+  const Lumping lumping = read_lumping(cloth);
+  const auto name = cloth.string("mesh");
+  Polygons surface;
+  try {
+    if (name) surface = read_obj(folder / *name);
+  } catch (const InputError& error) {
+    cloth.judge().report(error.diagnostics());
+  }
+  for (Vec3& x : surface.vertices) {
+    x = origin + rotation * (scale * x);
+    if (x.cwiseAbs().maxCoeff() <= kFar) continue;
+    cloth.report("mesh", "reaches farther than " + shortest(kFar) + " m from the origin");
+    return false;
+  }
+  const auto mass = read_mass(cloth, surface.faces.empty() ? 1 : area(surface));
+  if (!mass || surface.faces.empty()) return false;
+  scene.mesh = make_mesh(surface, *mass, lumping);
+  scene.links = mesh_links(surface, links);
+  scene.start.x = scene.mesh.rest;
+  return true;
+}
+
+/// The shape at the start as a multiple of the rest shape: every link is strained alike.
+void stretch_start(Section& cloth, Scene& scene) {
+  const double factor = cloth.number("stretch", {1e-3, 1e3}, 1);
+  if (factor == 1 || scene.start.x.empty()) return;
+  const Vec3 fixed = scene.start.x.front();
+  for (Vec3& x : scene.start.x) x = fixed + factor * (x - fixed);
+}
+
+/// Vertices that are heavier or lighter than the lumping says.
+void read_weights(Section& cloth, Scene& scene) {
+  for (const Value* entry : cloth.tables("weights")) {
+    Section weight(cloth.judge(), *entry, "'weights' in [cloth]");
+    for (const char* key : {"vertices", "factor"})
+      if (!weight.find(key)) weight.missing(key);
+    const double factor = weight.number("factor", {1e-9, 1e9}, 1);
+    for (const int vertex : read_vertices(weight, "vertices", scene.mesh))
+      scene.mesh.mass[at(vertex)] *= factor;
+    weight.finish();
+  }
+}
+
+/// Vertices that start elsewhere than the shape says.
+void read_placed(Section& cloth, Scene& scene) {
+  for (const Value* entry : cloth.tables("placed")) {
+    Section placed(cloth.judge(), *entry, "'placed' in [cloth]");
+    for (const char* key : {"vertex", "at"})
+      if (!placed.find(key)) placed.missing(key);
+    const Value* vertex = placed.find("vertex");
+    const auto target = placed.vec3("at", kFar);
+    placed.finish();
+    if (!vertex || !target) continue;
+    // A lone pair is one vertex here, where read_vertices sees an array of two.
+    Value one = *entry;
+    for (std::size_t i = 0; i < one.keys.size(); ++i)
+      if (one.keys[i].text == "vertex" && one.items[i].is_array()) {
+        Value list = one.items[i];
+        list.items = {one.items[i]};
+        one.items[i] = list;
+      }
+    Section single(cloth.judge(), one, "'placed' in [cloth]");
+    const auto vertices = read_vertices(single, "vertex", scene.mesh);
+    if (vertices.size() > 1) placed.report("vertex", "must name one vertex");
+    if (vertices.size() == 1) scene.start.x[at(vertices[0])] = *target;
+  }
+}
+
+/// Keys that mean nothing for this kind of cloth; they are named here so that the message can say
+/// why.
+void refuse(Section& cloth, const std::vector<std::string>& keys, const std::string& why) {
+  for (const std::string& key : keys)
+    if (cloth.find(key)) cloth.report(key, why);
+}
+
+}  // namespace
+
+bool read_cloth(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
+                Scene& scene) {
+  const bool surface = cloth.find("mesh");
+  if (surface)
+    refuse(cloth, {"grid", "size", "u", "v", "span", "tilt"}, "belongs to a grid, not to a mesh");
+  else
+    refuse(cloth, {"scale", "rotation"}, "belongs to a mesh, not to a grid");
+  scene.thickness = cloth.number("thickness", Range::non_negative(kFar), 0);
+  const Vec3 velocity = cloth.vec3("velocity", kFar, Vec3::Zero());
+  const bool built =
+      surface ? read_surface(cloth, folder, links, scene) : read_sheet(cloth, links, scene);
+  for (const char* key : {"span", "tilt", "stretch", "weights", "pins", "placed"})
+    cloth.find(key);  // known in any case
+  if (!built) return false;
+  scene.start.v.assign(scene.start.x.size(), velocity);
+  scene.pins = read_vertices(cloth, "pins", scene.mesh);
+  for (const int pin : scene.pins) scene.start.v[at(pin)].setZero();
+  stretch_start(cloth, scene);
+  read_weights(cloth, scene);
+  read_placed(cloth, scene);
+  return true;
+}
+
+}  // namespace taut

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/io/section.hpp"
+#include "core/model/scene.hpp"
+
+namespace taut {
+
+/// Largest coordinate, size or displacement that a scene may hold [m].
+inline constexpr double kFar = 1e6;
+
+/// Reads [cloth]: mesh, links, start, pins and thickness of the scene; a mesh file is relative to
+/// `folder`. Reports what is wrong; false if there is no mesh to go on with.
+bool read_cloth(Section&, const std::filesystem::path& folder, const LinkChoice&, Scene&);
+
+/// The vertices that a value names: a vertex number, a pair [i, j], the name of an edge or corner
+/// of a grid ("top", "bottom-left"), a box {min, max} around rest positions, or an array of these.
+/// Sorted, unique. Reports what names none; `key` is for the messages.
+std::vector<int> read_vertices(Section&, const std::string& key, const Mesh&);
+
+}  // namespace taut

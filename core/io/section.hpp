@@ -1,0 +1,106 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/io/document.hpp"
+#include "core/model/vec3.hpp"
+
+namespace taut {
+
+/// Collects everything that is wrong with a document.
+class Judge {
+ public:
+  explicit Judge(const Document& document) : document_(document) {}
+  void report(const Place& place, const std::string& message) {
+    found_.push_back(document_.diagnostic(place, message));
+  }
+  void report(std::vector<Diagnostic> more) {
+    for (Diagnostic& d : more) found_.push_back(std::move(d));
+  }
+  bool clean() const { return found_.empty(); }
+  /// Throws InputError with all that was reported, in the order of the file; returns if none was.
+  void verdict();
+
+ private:
+  const Document& document_;
+  std::vector<Diagnostic> found_;
+};
+
+/// What a number may be. Non-finite numbers are never allowed.
+struct Range {
+  double min = -std::numeric_limits<double>::max();
+  double max = std::numeric_limits<double>::max();
+  bool above_min = false;  ///< min itself is excluded
+
+  static Range positive(double max) { return {0, max, true}; }
+  static Range non_negative(double max) { return {0, max, false}; }
+  static Range within(double bound) { return {-bound, bound, false}; }
+  bool holds(double value) const {
+    return (above_min ? value > min : value >= min) && value <= max;
+  }
+  std::string text() const;  ///< "greater than 0 and at most 10"
+};
+
+/// Reads the keys of one table. Every key that is asked for is known; finish() reports the others.
+/// A value that is wrong is reported and then treated as absent, so that reading goes on.
+class Section {
+ public:
+  /// `name` as messages print it: "[cloth]".
+  Section(Judge& judge, const Value& table, std::string name);
+  Section(const Section&) = delete;
+  Section& operator=(const Section&) = delete;
+
+  const Place& place() const { return table_.place; }
+  const std::string& name() const { return name_; }
+  Judge& judge() { return judge_; }
+  /// The raw value; nullptr if it is absent.
+  const Value* find(const std::string& key);
+  /// Where the key stands, or the section if it is absent.
+  Place place(const std::string& key) const;
+  void missing(const std::string& key);
+  void report(const std::string& key, const std::string& message);
+
+  std::optional<double> number(const std::string& key, const Range&);
+  double number(const std::string& key, const Range& range, double fallback) {
+    return number(key, range).value_or(fallback);
+  }
+  std::optional<Vec3> vec3(const std::string& key, double bound);
+  Vec3 vec3(const std::string& key, double bound, const Vec3& fallback) {
+    return vec3(key, bound).value_or(fallback);
+  }
+  /// A direction: any length but zero; given back as a unit vector.
+  Vec3 direction(const std::string& key, const Vec3& fallback);
+  /// `count` numbers.
+  std::optional<std::vector<double>> numbers(const std::string& key, std::size_t count,
+                                             const Range&);
+  bool boolean(const std::string& key, bool fallback);
+  std::optional<std::string> string(const std::string& key);
+  std::string choice(const std::string& key, const std::vector<std::string>& choices,
+                     const std::string& fallback);
+  /// A table; nullptr if it is absent.
+  const Value* table(const std::string& key);
+  /// The elements of an array of tables.
+  std::vector<const Value*> tables(const std::string& key);
+
+  /// Reports every key that nobody asked for.
+  void finish();
+
+ private:
+  std::optional<double> judged(const Value&, const std::string& key, const Range&);
+  void wrong_type(const Value&, const std::string& key, const std::string& wanted);
+
+  Judge& judge_;
+  const Value& table_;
+  std::string name_;
+  std::vector<std::string> known_;
+};
+
+/// The number that a value stands for: a number or a fraction such as "1/64"; nothing if it is
+/// neither. May be non-finite.
+std::optional<double> as_number(const Value&);
+
+}  // namespace taut

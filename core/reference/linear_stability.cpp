@@ -1,0 +1,182 @@
+#include "core/reference/linear_stability.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "core/model/index.hpp"
+#include "core/reference/dense.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr std::size_t kMostLinks = 128;  ///< of a dense sweep: its eigenvalues cost n^3
+
+/// A link between two particles as linear theory sees it.
+struct Bar {
+  int a, b;
+  Eigen::Vector3d along;  ///< unit vector
+  double stiffness;       ///< N/m
+};
+
+std::vector<Bar> bars(const Scene& scene, const std::vector<double>& w,
+                      const std::array<double, kFamilies.size()>& stiffness) {
+  std::vector<Bar> result;
+  for (const Link& link : scene.links) {
+    const Vec3 delta = scene.start.x[at(link.b)] - scene.start.x[at(link.a)];
+    const double k = stiffness[static_cast<std::size_t>(link.family)];
+    if (k > 0 && delta.norm() > 0 && w[at(link.a)] + w[at(link.b)] > 0)
+      result.push_back({link.a, link.b, delta.normalized(), k});
+  }
+  return result;
+}
+
+/// Largest eigenvalue of a symmetric operator on R^n, given as y = A x: Lanczos with full
+/// reorthogonalisation (Golub & Van Loan, 10.3).
+template <class Apply>
+double largest_eigenvalue(Eigen::Index n, const Apply& apply) {
+  const Eigen::Index most = std::min<Eigen::Index>(n, 100);
+  Eigen::MatrixXd basis(n, most);
+  Eigen::VectorXd diagonal(most), off(most);
+  Eigen::VectorXd x(n);
+  for (Eigen::Index i = 0; i < n; ++i) x[i] = std::sin(1.7 * static_cast<double>(i) + 0.3);
+  x.normalize();
+  Eigen::Index size = 0;
+  while (size < most) {
+    basis.col(size) = x;
+    Eigen::VectorXd y = apply(x);
+    diagonal[size++] = x.dot(y);
+    const auto spanned = basis.leftCols(size);
+    for (int pass = 0; pass < 2; ++pass) y -= spanned * (spanned.transpose() * y);
+    off[size - 1] = y.norm();
+    if (off[size - 1] < 1e-13 * std::abs(diagonal[0])) break;
+    x = y / off[size - 1];
+  }
+  return reference::tridiagonal_eigenvalues(diagonal.head(size), off.head(size - 1))[size - 1];
+}
+
+/// Largest eigenvalue of M^-1/2 (stiff K + damped C) M^-1/2, C = drag times unity on free
+/// particles.
+double spring_eigenvalue(const std::vector<Bar>& springs, const std::vector<double>& w,
+                         double stiff, double damped) {
+  const auto n = static_cast<Eigen::Index>(3 * w.size());
+  return largest_eigenvalue(n, [&](const Eigen::VectorXd& x) {
+    Eigen::VectorXd y(n);
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(3 * i);
+      y.segment<3>(k) = damped * w[i] * x.segment<3>(k);
+    }
+    for (const Bar& s : springs) {
+      const double ra = std::sqrt(w[at(s.a)]), rb = std::sqrt(w[at(s.b)]);
+      const double stretch = s.along.dot(rb * x.segment<3>(3 * s.b) - ra * x.segment<3>(3 * s.a));
+      y.segment<3>(3 * s.b) += stiff * s.stiffness * stretch * rb * s.along;
+      y.segment<3>(3 * s.a) -= stiff * s.stiffness * stretch * ra * s.along;
+    }
+    return y;
+  });
+}
+
+std::optional<LinearStability> springs(const Scene& scene, const Params& params) {
+  if (scene.wind) return {};
+  const std::vector<double> w = inverse_masses(scene);
+  const double h = scene.dt / params.integer("substeps"), drag = params.real("drag");
+  const double q = std::exp(-scene.damping * h);
+  const std::vector<Bar> all =
+      bars(scene, w, {params.real("structural"), params.real("shear"), params.real("bend")});
+  if (all.empty()) return {};
+  if (params.is("integrator", "explicit-euler")) {
+    if (drag > 0 || scene.damping > 0) return {};
+    const double growth = std::sqrt(1 + spring_eigenvalue(all, w, h * h, 0));
+    return LinearStability{growth, growth, "explicit Euler grows by sqrt(1 + w^2 dt^2) at any dt"};
+  }
+  const bool central = params.is("drag-at", "central");
+  const double damped = central ? -(1 - q) * h * drag : 2 * h * drag;
+  const double margin = spring_eigenvalue(all, w, h * h, damped) / (2 * (1 + q));
+  const bool shrunk = drag > 0 && !central;
+  return LinearStability{
+      margin, 0,
+      shrunk ? "substep < (2/w)(sqrt(1 + zeta^2) - zeta), w the fastest mode of the springs"
+             : "substep < 2/w, w the fastest mode of the springs"};
+}
+
+/// One sweep in strain space: correcting link j by its strain e_j changes all strains by
+/// -omega e_j A_:j / A_jj, A = J M^-1 J^T.
+Eigen::MatrixXd sweep(const std::vector<Bar>& links, const std::vector<double>& w, double omega,
+                      bool jacobi) {
+  const auto n = static_cast<Eigen::Index>(links.size());
+  Eigen::MatrixXd coupling(n, n);
+  const auto side = [&](const Bar& s, int vertex) {
+    return vertex == s.b ? 1.0 : vertex == s.a ? -1.0 : 0.0;
+  };
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const Bar &p = links[static_cast<std::size_t>(i)], &q = links[static_cast<std::size_t>(j)];
+      coupling(i, j) = p.along.dot(q.along) * (w[at(p.a)] * side(p, p.a) * side(q, p.a) +
+                                               w[at(p.b)] * side(p, p.b) * side(q, p.b));
+    }
+  Eigen::MatrixXd g = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const Eigen::VectorXd push = omega * coupling.col(j) / coupling(j, j);
+    if (jacobi)
+      g.col(j) -= push;
+    else
+      g -= push * g.row(j).eval();
+  }
+  return g;
+}
+
+/// Largest |z| of z^2 - (1 + q) mu z + q mu over the eigenvalues mu of G^k.
+double growth(const Eigen::MatrixXd& g, int k, double q) {
+  double most = 0;
+  for (const std::complex<double>& one : reference::eigenvalues(g)) {
+    const std::complex<double> mu = std::pow(one, k), half = (1 + q) * mu / 2.0;
+    const std::complex<double> root = std::sqrt(half * half - q * mu);
+    most = std::max({most, std::abs(half + root), std::abs(half - root)});
+  }
+  return most;
+}
+
+std::optional<LinearStability> relaxation(const Scene& scene, const std::vector<Bar>& links,
+                                          const std::vector<double>& w, double omega, bool jacobi,
+                                          int sweeps, int substeps) {
+  if (links.empty() || links.size() > kMostLinks) return {};
+  const double q = std::exp(-scene.damping * scene.dt / substeps);
+  const double fastest = growth(sweep(links, w, omega, jacobi), sweeps, q);
+  return LinearStability{fastest, fastest,
+                         "z^2 - 2 mu z + mu = 0, mu the eigenvalues of " + std::to_string(sweeps) +
+                             (jacobi ? " Jacobi sweeps" : " Gauss-Seidel sweeps")};
+}
+
+bool hard(const Params& params, const char* value, std::initializer_list<const char*> names) {
+  return std::all_of(names.begin(), names.end(),
+                     [&](const char* name) { return params.value(name) == value; });
+}
+
+}  // namespace
+
+std::optional<LinearStability> linear_stability(const Scene& scene, const SolverChoice& choice) {
+  const Params& params = choice.params;
+  if (choice.entry->name == "mass-spring") return springs(scene, params);
+  const std::vector<double> w = inverse_masses(scene);
+  const std::vector<Bar> links = bars(scene, w, {1, 1, 1});
+  if (choice.entry->name == "jakobsen") {
+    const bool jacobi = params.is("method", "jacobi");
+    if ((!jacobi && !params.is("method", "gauss-seidel")) || !params.is("order", "mesh") ||
+        !hard(params, "inf", {"structural_stiffness", "shear_stiffness", "bend_stiffness"}))
+      return {};
+    return relaxation(scene, links, w, params.real("omega"), jacobi, params.integer("iterations"),
+                      params.integer("substeps"));
+  }
+  if (choice.entry->name == "xpbd" && hard(params, "0", {"structural", "shear", "bend"}))
+    return relaxation(scene, links, w, 1, false, params.integer("iterations"),
+                      params.integer("substeps"));
+  if (choice.entry->name == "bullet" && scene.damping == 0)
+    return relaxation(scene, links, w, params.real("stiffness"), false,
+                      params.integer("iterations"), params.integer("substeps"));
+  return {};
+}
+
+}  // namespace taut

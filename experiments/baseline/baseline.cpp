@@ -1,0 +1,215 @@
+#include "experiments/baseline/baseline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <set>
+#include <tuple>
+
+namespace taut {
+
+namespace {
+
+std::string status_text(const Status& status) {
+  const std::string name(to_string(status.kind));
+  return status.reason.empty() || status.kind == Status::Kind::unsupported
+             ? name
+             : name + " (" + status.reason + ")";
+}
+
+std::string digits(double value, int count) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", count, value);
+  return text;
+}
+
+std::string readable(double value) { return std::isnan(value) ? "none" : digits(value, 7); }
+
+/// "stretch.max 0.0123 -> 0.0145 (+18 %; allowed 1e-06)".
+std::string moved_text(const std::string& name, double before, double now, const Tolerance& t) {
+  std::string text = name + " " + readable(before) + " -> " + readable(now);
+  if (readable(before) == readable(now))  // the difference is beyond the seventh digit
+    text = name + " " + digits(before, 17) + " -> " + digits(now, 17);
+  if (std::isnan(before) || std::isnan(now)) return text;
+  const double allowed = t.absolute + t.relative * std::abs(before);
+  return text + " (by " + digits(now - before, 3) + ", allowed " + digits(allowed, 3) + ")";
+}
+
+/// The same number with no more digits than the tolerance asks for.
+double rounded(double value, const Tolerance& t) {
+  if (!std::isfinite(value)) return value;
+  const double slack = (t.absolute + t.relative * std::abs(value)) / 100;
+  for (int count = 1; count < 17; ++count) {
+    const double shorter = std::strtod(digits(value, count).c_str(), nullptr);
+    if (std::abs(shorter - value) <= slack) return shorter;
+  }
+  return value;
+}
+
+/// Compares the answers of two rows that ask the same question.
+class RowComparison {
+ public:
+  RowComparison(const BaselineRow& before, const BaselineRow& now, const Tolerances& tolerances,
+                Comparison& result)
+      : now_(now), result_(result) {
+    ++result_.cases;
+    if (before.status != now.status)
+      add(Change::Kind::status_changed, "status " + before.status + " -> " + now.status);
+    if (before.flaky || now.flaky) {
+      if (!before.flaky) add(Change::Kind::value_new, "does not repeat bit for bit: now flaky");
+      return;
+    }
+    if (before.projections != now.projections)
+      add(Change::Kind::value_moved, "projections per step " + std::to_string(before.projections) +
+                                         " -> " + std::to_string(now.projections));
+    for (const auto& [name, value] : before.values) compare(name, value, tolerances.of(name));
+    for (const auto& [name, value] : now.values)
+      if (!before.values.count(name) && !tolerances.of(name).ignored && !std::isnan(value))
+        add(Change::Kind::value_new, name + " has no baseline; now " + readable(value));
+  }
+
+ private:
+  void add(Change::Kind kind, const std::string& text) {
+    result_.findings.push_back({kind, now_.id, now_.solver(), text});
+  }
+  void compare(const std::string& name, double before, const Tolerance& tolerance) {
+    if (tolerance.ignored) return;
+    const auto now = now_.values.find(name);
+    if (now == now_.values.end()) {
+      add(Change::Kind::value_missing, name + " " + readable(before) + " -> no such value");
+      return;
+    }
+    ++result_.values;
+    if (!tolerance.holds(now->second, before))
+      add(Change::Kind::value_moved, moved_text(name, before, now->second, tolerance));
+  }
+
+  const BaselineRow& now_;
+  Comparison& result_;
+};
+
+bool same_question(const BaselineRow& a, const BaselineRow& b) {
+  return a.scene == b.scene && a.spec.solver == b.spec.solver && a.frontier == b.frontier;
+}
+
+const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
+  for (const BaselineRow& row : rows)
+    if (row.id == id) return &row;
+  return nullptr;
+}
+
+std::set<std::string> solvers_of(const Baseline& rows) {
+  std::set<std::string> names;
+  for (const BaselineRow& row : rows) names.insert(row.solver());
+  return names;
+}
+
+/// Rows of `of` that `in` has under another id.
+const BaselineRow* renamed(const BaselineRow& row, const Baseline& in, const Baseline& own) {
+  for (const BaselineRow& other : in)
+    if (same_question(row, other) && !find_row(own, other.id)) return &other;
+  return nullptr;
+}
+
+void compare_case(const BaselineRow& row, const Baseline& before, const Baseline& now,
+                  const Tolerances& tolerances, Comparison& result) {
+  const auto add = [&](Change::Kind kind, const std::string& text) {
+    result.findings.push_back({kind, row.id, row.solver(), text});
+  };
+  const BaselineRow* old = find_row(before, row.id);
+  if (!old) {
+    const BaselineRow* other = renamed(row, before, now);
+    if (other)
+      add(Change::Kind::case_renamed, "renamed: the baseline calls it '" + other->id + "'");
+    else
+      add(Change::Kind::case_new, "new: the baseline does not have this case");
+  } else if (old->scene != row.scene) {
+    add(Change::Kind::scene_changed, "the scene changed: content " + old->scene.substr(0, 12) +
+                                         " -> " + row.scene.substr(0, 12));
+  } else {
+    RowComparison(*old, row, tolerances, result);
+  }
+}
+
+}  // namespace
+
+BaselineRow baseline_row(const Record& record, const std::string& scene) {
+  BaselineRow row{record.id,          record.spec,  scene, status_text(record.status),
+                  record.projections, record.values};
+  row.spec.solver = parse_solver(record.spec.solver).brief();
+  return row;
+}
+
+bool Tolerance::holds(double value, double baseline) const {
+  if (std::isnan(value) || std::isnan(baseline)) return std::isnan(value) == std::isnan(baseline);
+  if (value == baseline) return true;  // infinities too
+  return std::abs(value - baseline) <= absolute + relative * std::abs(baseline);
+}
+
+const Tolerance& Tolerances::of(const std::string& value) const {
+  static const Tolerance kBuiltIn{1e-12, 1e-6, false, "deterministic"};
+  std::string name = value;
+  while (true) {
+    if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
+    const auto dot = name.rfind('.');
+    if (dot == name.npos) break;
+    name.resize(dot);
+  }
+  const auto other = by_name_.find("default");
+  return other != by_name_.end() ? other->second : kBuiltIn;
+}
+
+bool Comparison::regressed() const {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Change& f) { return f.is_regression(); });
+}
+bool Comparison::mismatched() const {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Change& f) { return f.is_mismatch(); });
+}
+
+Comparison compare(const Baseline& before, const Baseline& now, const Tolerances& tolerances) {
+  Comparison result;
+  const auto old_solvers = solvers_of(before), new_solvers = solvers_of(now);
+  for (const std::string& solver : old_solvers)
+    if (!new_solvers.count(solver))
+      result.findings.push_back({Change::Kind::solver_missing, "", solver,
+                                 "the baseline has this solver, the study does not run it"});
+  for (const std::string& solver : new_solvers)
+    if (!old_solvers.count(solver))
+      result.findings.push_back({Change::Kind::solver_new, "", solver,
+                                 "the study runs this solver, which has no baseline"});
+  for (const BaselineRow& row : now)
+    if (old_solvers.count(row.solver())) compare_case(row, before, now, tolerances, result);
+  for (const BaselineRow& row : before)
+    if (new_solvers.count(row.solver()) && !find_row(now, row.id) && !renamed(row, now, before))
+      result.findings.push_back({Change::Kind::case_missing, row.id, row.solver(),
+                                 "missing: the study does not have this case of the baseline"});
+  std::stable_sort(result.findings.begin(), result.findings.end(),
+                   [](const Change& a, const Change& b) {
+                     return std::tie(a.solver, a.id) < std::tie(b.solver, b.id);
+                   });
+  return result;
+}
+
+Baseline updated(const Baseline& before, const Baseline& now, const Tolerances& tolerances) {
+  Baseline rows;
+  for (BaselineRow row : now) {
+    const BaselineRow* old = find_row(before, row.id);
+    if (old && !same_question(*old, row)) old = nullptr;
+    std::erase_if(row.values, [&](const auto& v) { return tolerances.of(v.first).ignored; });
+    for (auto& [name, value] : row.values) {
+      const Tolerance& tolerance = tolerances.of(name);
+      const auto was = old ? old->values.find(name) : row.values.end();
+      const bool kept = old && was != old->values.end() && tolerance.holds(value, was->second);
+      value = kept ? was->second : rounded(value, tolerance);
+    }
+    rows.push_back(std::move(row));
+  }
+  std::sort(rows.begin(), rows.end(),
+            [](const BaselineRow& a, const BaselineRow& b) { return a.id < b.id; });
+  return rows;
+}
+
+}  // namespace taut

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/case/record.hpp"
+
+namespace taut {
+
+/// One case of a baseline: what was run and what came out of it.
+struct BaselineRow {
+  std::string id;  ///< of the case in its study
+  CaseSpec spec;
+  std::string scene;            ///< digest of the scene's content: another one is another question
+  std::string status;           ///< "ok", "exploded (energy)": see status_text
+  std::size_t projections = 0;  ///< constraint projections per step
+  std::map<std::string, double> values;  ///< by metric value; NaN: no meaning for this case
+  std::string frontier;  ///< options of `taut frontier` if the row is a frontier, else empty
+  bool flaky = false;    ///< two runs differed in a bit: only its status is compared
+
+  std::string solver() const { return spec.solver.substr(0, spec.solver.find(':')); }
+};
+/// Sorted by id.
+using Baseline = std::vector<BaselineRow>;
+
+/// `scene` is digest(Scene) of the scene that the record's spec names. The solver is kept with only
+/// those parameters that differ from their defaults, so that a new parameter changes no row.
+BaselineRow baseline_row(const Record&, const std::string& scene);
+
+/// How far a value may move: |a - b| <= absolute + relative * |b|, b the baseline's.
+struct Tolerance {
+  double absolute = 0;  ///< in the metric's unit
+  double relative = 0;
+  bool ignored = false;  ///< never compared
+  std::string reason;    ///< why so much and no more; never empty
+
+  bool holds(double value, double baseline) const;
+};
+
+/// Tolerances by metric value ("stretch.max"), by metric ("stretch") or for all others ("default").
+class Tolerances {
+ public:
+  Tolerances() = default;
+  explicit Tolerances(std::map<std::string, Tolerance> by_name) : by_name_(std::move(by_name)) {}
+  /// The most special one; the built-in default (relative 1e-6, absolute 1e-12) if none is given.
+  const Tolerance& of(const std::string& value) const;
+
+ private:
+  std::map<std::string, Tolerance> by_name_;
+};
+
+/// One difference between a baseline and what was run.
+struct Change {
+  enum class Kind {
+    // the same question, another answer
+    value_moved,
+    status_changed,
+    // not the same question: the baseline does not match the study
+    case_missing,    ///< in the baseline, not in the study
+    case_new,        ///< in the study, not in the baseline
+    case_renamed,    ///< the same scene and solver under another id
+    scene_changed,   ///< same id, other content
+    solver_missing,  ///< the baseline has a solver that the study does not run
+    solver_new,      ///< the study runs a solver that has no baseline
+    value_missing,   ///< the baseline has a metric value that no longer exists
+    // for information: no failure
+    value_new
+  };
+  Kind kind = Kind::value_moved;
+  std::string id;      ///< of the case; empty for a solver
+  std::string solver;  ///< name
+  std::string text;    ///< one line: what it was -> what it is
+  bool is_regression() const { return kind <= Kind::status_changed; }
+  bool is_mismatch() const { return !is_regression() && kind != Kind::value_new; }
+};
+
+struct Comparison {
+  std::vector<Change> findings;  ///< sorted by solver and id
+  std::size_t cases = 0;         ///< compared
+  std::size_t values = 0;        ///< compared, statuses apart
+
+  bool regressed() const;
+  bool mismatched() const;
+};
+
+/// The command that runs a case in the foreground: "taut case hang jakobsen:iterations=8 --set
+/// ...".
+std::string reproduce(const CaseSpec&);
+/// The same for a row: a case, or "taut frontier ...".
+std::string reproduce(const BaselineRow&);
+
+/// A comparison as a JUnit <testsuite>, a test case for every row and for every finding that has
+/// none.
+std::string junit(const std::string& study, const Baseline& now, const Comparison&);
+
+/// What is different in `now`. Rows whose scene, solver or id do not match are not compared.
+Comparison compare(const Baseline& before, const Baseline& now, const Tolerances&);
+
+/// The baseline that `now` makes: rows that moved by no more than the tolerance stay as they are,
+/// to the digit; the others are taken from `now`, rounded to a hundredth of the tolerance.
+Baseline updated(const Baseline& before, const Baseline& now, const Tolerances&);
+
+/// Reads every <solver>.jsonl of a study's folder. Empty if there is none. Throws InputError with
+/// file and line.
+Baseline read_baseline(const std::filesystem::path& folder);
+
+/// Writes <solver>.jsonl, one row a line, sorted by id; leaves files alone that would not change
+/// and removes those of solvers that have no row. Each file is replaced in one step.
+void write_baseline(const std::filesystem::path& folder, const Baseline&);
+
+/// Reads tolerances.toml of a study's folder: tables with absolute, relative or ignored, and a
+/// reason, each named by a value, a metric or "default". No file: the built-in default. Throws
+/// InputError.
+Tolerances read_tolerances(const std::filesystem::path& folder);
+
+}  // namespace taut

@@ -1,0 +1,146 @@
+// Baselines on disk: JSON lines and tolerances.toml.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "core/io/section.hpp"
+#include "experiments/baseline/baseline.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string line_of(const BaselineRow& row) {
+  Json json{{"id", row.id},
+            {"scene", row.spec.scene},
+            {"overrides", row.spec.overrides},
+            {"solver", row.spec.solver},
+            {"content", row.scene},
+            {"status", row.status},
+            {"projections", row.projections}};
+  if (!row.frontier.empty()) json["frontier"] = row.frontier;
+  if (row.flaky) json["flaky"] = true;
+  Json values = Json::object();
+  for (const auto& [name, value] : row.values)
+    values[name] = std::isnan(value) ? Json() : Json(value);  // null: no meaning
+  json["values"] = std::move(values);
+  return to_text(json) + "\n";
+}
+
+BaselineRow row_of(const Json& json) {
+  BaselineRow row;
+  row.id = json.at("id");
+  row.spec = {json.at("scene"), json.at("overrides").get<std::vector<std::string>>(),
+              json.at("solver")};
+  row.scene = json.at("content");
+  row.status = json.at("status");
+  row.projections = json.at("projections");
+  row.frontier = json.value("frontier", "");
+  row.flaky = json.value("flaky", false);
+  for (const auto& [name, value] : json.at("values").items())
+    row.values[name] = value.is_null() ? std::nan("") : value.get<double>();
+  return row;
+}
+
+std::string slurp(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void replace_file(const fs::path& path, const std::string& text) {
+  const fs::path draft = path.string() + ".tmp";
+  std::ofstream out(draft, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw InputError(draft.string() + ": cannot be written");
+  fs::rename(draft, path);
+}
+
+std::vector<fs::path> solver_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".jsonl") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void sort_by_id(Baseline& rows) {
+  std::sort(rows.begin(), rows.end(),
+            [](const BaselineRow& a, const BaselineRow& b) { return a.id < b.id; });
+}
+
+}  // namespace
+
+Baseline read_baseline(const fs::path& folder) {
+  Baseline rows;
+  std::vector<Diagnostic> found;
+  for (const fs::path& file : solver_files(folder)) {
+    std::istringstream in(slurp(file));
+    int number = 0;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      try {
+        rows.push_back(row_of(parse_json(line)));
+        const BaselineRow& row = rows.back();
+        if (row.solver() != file.stem())
+          found.push_back({file.string(), number, 1, "this row belongs to " + row.solver()});
+      } catch (const Json::exception& error) {
+        found.push_back(
+            {file.string(), number, 1, std::string("no baseline row: ") + error.what()});
+      }
+    }
+  }
+  sort_by_id(rows);
+  const auto twice = std::adjacent_find(rows.begin(), rows.end(),
+                                        [](const auto& a, const auto& b) { return a.id == b.id; });
+  if (twice != rows.end())
+    found.push_back({folder.string(), 0, 0, "two rows are called '" + twice->id + "'"});
+  if (!found.empty()) throw InputError(found);
+  return rows;
+}
+
+void write_baseline(const fs::path& folder, const Baseline& baseline) {
+  Baseline rows = baseline;
+  sort_by_id(rows);
+  std::map<std::string, std::string> texts;
+  for (const BaselineRow& row : rows) texts[row.solver()] += line_of(row);
+  fs::create_directories(folder);
+  for (const auto& [solver, text] : texts) {
+    const fs::path file = folder / (solver + ".jsonl");
+    if (slurp(file) != text) replace_file(file, text);
+  }
+  for (const fs::path& file : solver_files(folder))
+    if (!texts.count(file.stem().string())) fs::remove(file);
+}
+
+Tolerances read_tolerances(const fs::path& folder) {
+  const fs::path file = folder / "tolerances.toml";
+  if (!fs::exists(file)) return {};
+  const Document document = read_document(file, {});
+  Judge judge(document);
+  Section root(judge, document.root, "the tolerances");
+  std::map<std::string, Tolerance> by_name;
+  for (const Key& key : document.root.keys) {
+    const Value* table = root.table(key.text);
+    if (!table) continue;
+    Section section(judge, *table, "[" + key.text + "]");
+    Tolerance tolerance;
+    tolerance.absolute = section.number("absolute", Range::non_negative(1e30), 0);
+    tolerance.relative = section.number("relative", Range::non_negative(1), 0);
+    tolerance.ignored = section.boolean("ignored", false);
+    tolerance.reason = section.string("reason").value_or("");
+    if (tolerance.reason.empty()) section.missing("reason");
+    section.finish();
+    by_name[key.text] = tolerance;
+  }
+  judge.verdict();
+  return Tolerances(by_name);
+}
+
+}  // namespace taut

@@ -1,0 +1,84 @@
+#include "experiments/baseline/frontier_baseline.hpp"
+
+#include "core/io/section.hpp"
+#include "core/model/shortest.hpp"
+#include "experiments/case/digest.hpp"
+
+namespace taut {
+
+namespace {
+
+std::vector<std::string> texts(Section& section, const char* key) {
+  std::vector<std::string> all;
+  const Value* list = section.find(key);
+  if (!list) return all;
+  for (const Value& item : list->items)
+    if (item.is_string())
+      all.push_back(item.string);
+    else
+      section.report(key, "holds texts, not " + describe(item));
+  return all;
+}
+
+FrontierQuestion question_of(Section& section) {
+  for (const char* key : {"scene", "solver", "of", "from", "to"})
+    if (!section.find(key)) section.missing(key);
+  FrontierQuestion question;
+  question.base = {section.string("scene").value_or(""), texts(section, "set"),
+                   section.string("solver").value_or("")};
+  question.of = section.string("of").value_or("dt");
+  const double from = section.number("from", {-1e9, 1e9}, 0);
+  const double to = section.number("to", {-1e9, 1e9}, 0);
+  const double tolerance = section.number("tolerance", {1e-9, 0.5}, SearchRange{}.tolerance);
+  section.finish();
+  section.judge().verdict();
+  question.range = range_of(question.base, question.of, from, to);
+  question.range.tolerance = tolerance;
+  return question;
+}
+
+std::string options_of(const FrontierQuestion& question) {
+  return "--of " + question.of + " --from " + shortest(question.range.from) + " --to " +
+         shortest(question.range.to) + " --tolerance " + shortest(question.range.tolerance);
+}
+
+}  // namespace
+
+std::vector<FrontierQuestion> read_frontiers(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "frontiers.toml";
+  std::vector<FrontierQuestion> questions;
+  if (!std::filesystem::exists(file)) return questions;
+  const Document document = read_document(file, {});
+  Judge judge(document);
+  Section root(judge, document.root, "the frontiers");
+  for (const Value* table : root.tables("frontier")) {
+    Section section(judge, *table, "[[frontier]]");
+    questions.push_back(question_of(section));
+  }
+  root.finish();
+  judge.verdict();
+  return questions;
+}
+
+std::string frontier_id(const FrontierQuestion& question) {
+  return make_case(question.base).id + ", frontier of " + question.of;
+}
+
+BaselineRow frontier_row(const FrontierQuestion& question, const CaseFrontier& found) {
+  const Case base = make_case(question.base);
+  BaselineRow row;
+  row.id = frontier_id(question);
+  row.spec = base.spec;
+  row.spec.solver = base.choice.brief();
+  row.scene = digest(*base.scene);
+  row.frontier = options_of(question);
+  row.status = to_string(found.frontier.kind);
+  row.values["frontier.islands"] = static_cast<double>(found.frontier.islands.size());
+  if (found.frontier.kind == Frontier::Kind::bracketed) {
+    row.values["frontier.stable"] = found.frontier.stable;
+    row.values["frontier.unstable"] = found.frontier.unstable;
+  }
+  return row;
+}
+
+}  // namespace taut

@@ -1,0 +1,67 @@
+#include "experiments/case/case.hpp"
+
+#include <algorithm>
+
+#include "core/io/scene_io.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/case/key.hpp"
+#include "experiments/system/data.hpp"
+
+namespace taut {
+
+namespace {
+
+/// "time.dt=\"1/64\"" -> "dt=1/64": the two keys that everybody knows need no table.
+std::string brief(std::string text) {
+  std::erase_if(text, [](char c) { return c == '"' || c == ' '; });
+  for (const std::string key : {"time.dt=", "time.duration="})
+    if (text.starts_with(key)) return text.substr(5);
+  return text;
+}
+
+void name_it(Record& record, const Case& one) {
+  record.spec = one.spec;
+  record.key = one.key;
+  record.id = one.id;
+}
+
+}  // namespace
+
+const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
+  std::string address = spec.scene;
+  for (const std::string& text : spec.overrides) address += '\n' + text;
+  Loaded& loaded = scenes_[address];
+  if (!loaded.scene) {
+    loaded.scene =
+        std::make_shared<const Scene>(load_scene(find_scene(spec.scene), spec.overrides));
+    loaded.digest = digest(*loaded.scene);
+  }
+  return loaded;
+}
+
+Case CaseMaker::make(const CaseSpec& spec) {
+  Case one{spec, nullptr, parse_solver(spec.solver), {}, {}};
+  const Loaded& loaded = scene(spec);
+  one.scene = loaded.scene;
+  one.spec.solver = one.choice.canonical();
+  one.key = case_key(*loaded.scene, loaded.digest, one.choice);
+  one.id = loaded.scene->name;
+  for (const std::string& text : spec.overrides) one.id += ' ' + brief(text);
+  one.id += ' ' + one.choice.brief();
+  return one;
+}
+
+CaseRun run_case(const Case& one, const RunOptions& options) {
+  CaseRun run = run_case(*one.scene, one.choice, options);
+  name_it(run.record, one);
+  return run;
+}
+
+Record unfinished(const Case& one, const Status& status) {
+  Record record = describe(*one.scene, one.choice);
+  name_it(record, one);
+  record.status = status;
+  return record;
+}
+
+}  // namespace taut

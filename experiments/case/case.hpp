@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "core/model/scene.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/case/record.hpp"
+#include "experiments/case/run_case.hpp"
+
+namespace taut {
+
+/// A CaseSpec with all that it names: ready to run, with its address.
+struct Case {
+  CaseSpec spec;
+  std::shared_ptr<const Scene> scene;
+  SolverChoice choice;
+  std::string key;  ///< case_key
+  std::string id;   ///< for people: "hang dt=1/64 jakobsen:iterations=8"
+};
+
+/// Makes cases; a scene that many of them share is read once.
+class CaseMaker {
+ public:
+  /// Throws InputError: unknown or malformed scene, unknown solver, bad parameter or override.
+  Case make(const CaseSpec&);
+
+ private:
+  struct Loaded {
+    std::shared_ptr<const Scene> scene;
+    std::string digest;
+  };
+  const Loaded& scene(const CaseSpec&);
+  std::map<std::string, Loaded> scenes_;
+};
+
+/// One case on its own.
+inline Case make_case(const CaseSpec& spec) { return CaseMaker().make(spec); }
+
+/// run_case of its scene and solver; the record carries the case's spec, key and id.
+CaseRun run_case(const Case&, const RunOptions& = {});
+
+/// The record of a case that did not get to write its own.
+Record unfinished(const Case&, const Status&);
+
+}  // namespace taut

@@ -1,0 +1,225 @@
+#include "experiments/case/divergence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/model/index.hpp"
+
+namespace taut {
+
+namespace {
+
+/// The cloth as seen from its pins: breadth first along the links.
+struct Hanging {
+  std::vector<int> hops;    ///< [n] links to the nearest pin; -1: no way to any
+  std::vector<double> way;  ///< [n] m along that way at rest
+  int depth() const { return std::max(0, *std::max_element(hops.begin(), hops.end())); }
+  double longest() const { return *std::max_element(way.begin(), way.end()); }
+};
+
+Hanging hang(const Scene& scene) {
+  const std::size_t n = scene.mesh.rest.size();
+  std::vector<std::vector<const Link*>> links_of(n);
+  for (const Link& link : scene.links) {
+    links_of[at(link.a)].push_back(&link);
+    links_of[at(link.b)].push_back(&link);
+  }
+  Hanging result{std::vector<int>(n, -1), std::vector<double>(n, 0)};
+  std::vector<int> queue = scene.pins;
+  for (const int pin : scene.pins) result.hops[at(pin)] = 0;
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const int i = queue[next];
+    for (const Link* link : links_of[at(i)]) {
+      const int j = link->a == i ? link->b : link->a;
+      if (result.hops[at(j)] >= 0) continue;
+      result.hops[at(j)] = result.hops[at(i)] + 1;
+      result.way[at(j)] = result.way[at(i)] + link->rest;
+      queue.push_back(j);
+    }
+  }
+  return result;
+}
+
+/// Extension [m] of the softest relaxation, one sweep a step, where every cut between neighbouring
+/// hop counts carries all that hangs below it.
+double soft_extension(const Scene& scene, const Hanging& hanging) {
+  const std::size_t cuts = at(hanging.depth()) + 1;
+  std::vector<double> mass(cuts, 0), yielding(cuts, 0), links(cuts, 0);
+  const std::vector<double> w = inverse_masses(scene);
+  for (std::size_t i = 0; i < w.size(); ++i)
+    if (hanging.hops[i] > 0) mass[at(hanging.hops[i])] += scene.mesh.mass[i];
+  for (const auto& [a, b, rest, family] : scene.links) {
+    const int from = hanging.hops[at(a)], to = hanging.hops[at(b)];
+    if (from == to || from < 0) continue;
+    links[at(std::max(from, to))] += 1;
+    yielding[at(std::max(from, to))] += w[at(a)] + w[at(b)];
+  }
+  double extension = 0, below = 0;
+  for (std::size_t cut = cuts - 1; cut > 0; --cut) {
+    below += mass[cut];
+    if (links[cut] > 0) extension += below * yielding[cut] / (links[cut] * links[cut]);
+  }
+  return extension * scene.gravity.norm() * scene.dt * scene.dt;
+}
+
+/// Speeds [m/s] that a motion can impart: every change of its velocity counts.
+double imparted(const Motion& motion, double reach) {
+  double speed = motion.velocity.norm() + motion.spin.norm() * reach;
+  Vec3 before = Vec3::Zero();
+  for (std::size_t k = 0; k < motion.path.size(); ++k) {
+    Vec3 after = Vec3::Zero();
+    if (k + 1 < motion.path.size())
+      after = (motion.path[k + 1].displacement - motion.path[k].displacement) /
+              (motion.path[k + 1].t - motion.path[k].t);
+    speed += (after - before).norm();
+    before = after;
+  }
+  return speed;
+}
+
+double diameter(const std::vector<Vec3>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : points) box.extend(x);
+  return box.diagonal().norm();
+}
+
+double motion_speed(const Scene& scene) {
+  const double size = extent(scene) + diameter(scene.start.x);
+  double speed = 0;
+  const auto add = [&](const Motion& motion) {
+    double reach = size;
+    for (const Vec3& x : scene.start.x) reach = std::max(reach, (x - motion.pivot).norm() + size);
+    speed += imparted(motion, reach);
+  };
+  for (const auto& [vertices, motion] : scene.pin_motions) add(motion);
+  for (const Collider& collider : scene.colliders) add(collider.motion);
+  return speed;
+}
+
+/// How far relaxation may move a vertex in one step because the start breaks constraints [m].
+double repair(const Scene& scene) {
+  const auto& x = scene.start.x;
+  double excess = 0, depth = 0;
+  for (const Link& link : scene.links)
+    excess += std::abs((x[at(link.b)] - x[at(link.a)]).norm() - link.rest);
+  for (const Collider& collider : scene.colliders)
+    for (const Vec3& p : x)
+      depth = std::max(depth, scene.thickness - surface(collider.shape, p).distance);
+  return std::min(excess, extent(scene) + diameter(x)) + depth +
+         (scene.self_collision ? 2 * scene.self_collision->radius : 0);
+}
+
+double area(const Scene& scene) {
+  double sum = 0;
+  for (const auto& [a, b, c] : scene.mesh.triangles) {
+    const Vec3& p = scene.mesh.rest[at(a)];
+    sum += (scene.mesh.rest[at(b)] - p).cross(scene.mesh.rest[at(c)] - p).norm() / 2;
+  }
+  return sum;
+}
+
+double square(double value) { return value * value; }
+
+}  // namespace
+
+EnergyBudget::EnergyBudget(const Scene& scene) : gravity_(scene.gravity.norm()), dt_(scene.dt) {
+  const Hanging hanging = hang(scene);
+  const std::vector<double> w = inverse_masses(scene);
+  double mass = 0, lightest = 0, farthest = 0;
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    farthest = std::max(farthest, scene.start.x[i].norm());
+    if (w[i] == 0) continue;
+    const double m = scene.mesh.mass[i];
+    mass += m;
+    lightest = lightest == 0 ? m : std::min(lightest, m);
+    (hanging.hops[i] < 0 ? free_mass_ : hung_mass_) += m;
+    constant_ += m * scene.start.v[i].squaredNorm() / 2;
+  }
+  reach_ = 2 * (hanging.longest() + soft_extension(scene, hanging));
+  const double rounding = 1e-6 * (farthest + extent(scene));
+  constant_ += mass / 2 *
+               (square(2 * motion_speed(scene)) +
+                (square(repair(scene)) + square(rounding)) / square(scene.dt));
+  if (!scene.wind) return;
+  const double speed = scene.wind->velocity.norm();
+  if (scene.wind->law == Wind::Law::relative) {
+    wind_power_ = scene.wind->strength * area(scene) * square(speed) / 4;
+  } else {
+    // A vertex takes a third of each face around it; the whole area is more than any can take.
+    wind_mass_ = mass;
+    wind_acceleration_ = scene.wind->strength * area(scene) * speed / lightest;
+  }
+}
+
+double EnergyBudget::available(double t) const {
+  const double fall = gravity_ * t * (t + dt_) / 2;
+  return constant_ + gravity_ * (free_mass_ * fall + hung_mass_ * std::min(fall, reach_)) +
+         wind_power_ * t + wind_mass_ / 2 * square(wind_acceleration_ * t);
+}
+
+std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& plan) {
+  const bool moved = std::any_of(scene.pin_motions.begin(), scene.pin_motions.end(),
+                                 [](const PinMotion& pins) { return !pins.motion.at_rest(); });
+  std::size_t sweeps = 0;
+  for (const PassCost& cost : plan)
+    if (cost.projections) sweeps = std::max(sweeps, cost.repeats);
+  const Hanging hanging = hang(scene);
+  const bool pinned =
+      std::none_of(hanging.hops.begin(), hanging.hops.end(), [](int hops) { return hops < 0; });
+  const double gravity = scene.gravity.norm();
+  if (moved || scene.wind || scene.self_collision || !scene.colliders.empty() || gravity == 0 ||
+      !pinned || sweeps == 0 || hanging.depth() == 0)
+    return {};
+  const double links = hanging.depth(), pi = std::numbers::pi;
+  const double relaxing = 8 * links * links * scene.dt / (pi * pi * static_cast<double>(sweeps));
+  const double w = 1.2024 * std::sqrt(gravity / hanging.longest());
+  const double swinging =
+      1 / (std::log1p(square(w * scene.dt)) / (2 * scene.dt) + scene.damping / 2);
+  return relaxing + swinging;
+}
+
+Verdict::Verdict(const Scene& scene, const std::vector<PassCost>& plan)
+    : budget_(scene),
+      free_mass_(scene.mesh.mass),
+      settling_(settling_time(scene, plan)),
+      duration_(scene.duration()),
+      slow_(1e-3 * std::sqrt(scene.gravity.norm() * extent(scene))) {
+  for (const int pin : scene.pins) free_mass_[at(pin)] = 0;
+}
+
+void Verdict::explode(const char* reason, int step, std::size_t vertex) {
+  status_ = {Status::Kind::exploded, reason, step, static_cast<int>(vertex)};
+}
+
+bool Verdict::sees(int step, double t, const State& state) {
+  double energy = 0, fastest = 0;
+  std::size_t fastest_vertex = 0;
+  for (std::size_t i = 0; i < free_mass_.size(); ++i) {
+    if (!state.x[i].allFinite() || !state.v[i].allFinite())
+      return explode("nonfinite", step, i), false;
+    if (state.x[i].lpNorm<Eigen::Infinity>() > 1e6) return explode("box", step, i), false;
+    if (free_mass_[i] == 0) continue;
+    const double v2 = state.v[i].squaredNorm();
+    energy += free_mass_[i] * v2 / 2;
+    if (v2 > fastest) fastest = v2, fastest_vertex = i;
+  }
+  if (energy > 10 * budget_.available(t)) return explode("energy", step, fastest_vertex), false;
+  fastest = std::sqrt(fastest);
+  peak_ = std::max(peak_, fastest);
+  if (settling_ && t > duration_ - *settling_ && fastest > late_) {
+    late_ = fastest;
+    late_vertex_ = static_cast<int>(fastest_vertex);
+  }
+  return true;
+}
+
+void Verdict::finish() {
+  if (!settling_ || duration_ < 5 * *settling_) return;
+  const double decayed = peak_ * std::exp(-(duration_ - *settling_) / *settling_);
+  if (late_ > std::max(slow_, decayed))
+    status_ = {Status::Kind::unsettled, "moves after five settling times", -1, late_vertex_};
+}
+
+}  // namespace taut

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/scene.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/case/record.hpp"
+
+namespace taut {
+
+/// An upper bound on the kinetic energy [J] that the scene itself can put into the cloth until time
+/// t: the "available potential drop", wind, prescribed motion and a strained start included. It
+/// knows the scene only, so that it is the same for every solver, and it is generous wherever a
+/// soft solver may legitimately stretch. The sum of
+///
+///   start    m v^2/2 of every free vertex
+///   gravity  m |g| h: h is the discrete free fall |g| t (t + dt)/2, but for a piece of cloth that
+///            is pinned at most its reach: twice the longest way along links from a pin, plus the
+///            extension of the softest relaxation, one sweep a step, doubled for overshoot: a cut
+///            across c links with the mass M below it opens by M |g| dt^2 w/c (truth "hanging chain
+///            under k sweeps": e_j = (N - j) |g| dt^2)
+///   wind     law "relative": power c A (n.(u - v)) (n.v) <= c A |u|^2/4, times t;
+///            law "literal": the speed c |u| t A/m of a vertex that is pushed all the time
+///   motion   (2 V)^2 M/2, V the sum of the speeds that moving pins and colliders can impart: every
+///            change of a prescribed velocity counts
+///   repair   (D/dt)^2 M/2, D the way that relaxation may move a vertex in one step because the
+///            start breaks constraints: the summed excess of the links (at most the extent of the
+///            cloth, at start and at rest), the deepest penetration, twice the self-collision
+///            radius
+///   rounding (1e-6 |x|/dt)^2 M/2: positions in binary32
+class EnergyBudget {
+ public:
+  explicit EnergyBudget(const Scene&);
+  double available(double t) const;  ///< J at time t [s]
+
+ private:
+  double constant_ = 0;           ///< start, motion, repair, rounding [J]
+  double gravity_ = 0;            ///< |g| [m/s^2]
+  double dt_ = 0;                 ///< s
+  double free_mass_ = 0;          ///< kg, of pieces without a pin
+  double hung_mass_ = 0;          ///< kg, of pinned pieces, without their pins
+  double reach_ = 0;              ///< m, of pinned pieces
+  double wind_power_ = 0;         ///< W
+  double wind_mass_ = 0;          ///< kg pushed by the literal law
+  double wind_acceleration_ = 0;  ///< m/s^2, literal law
+};
+
+/// Theoretical settling time [s]: in it the slowest mode of a hanging cloth decays by 1/e. Relaxing
+/// strain takes 8 N^2 dt/(pi^2 k) (Gauss-Seidel, N links from a pin to the farthest vertex, k
+/// sweeps per step); swinging takes the inverse of ln(1 + w^2 dt^2)/(2 dt) + damping/2 with w
+/// = 1.2024 sqrt(g/L) (backward projection of the slowest transverse mode). Their sum. Empty where
+/// no such time is known: wind, motion, contact, no gravity, unpinned pieces, no sweeps.
+std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& plan);
+
+/// Judges a run, boundary by boundary (design: never by raw strain, which a soft solver may rightly
+/// bring to 500 %).
+///   exploded{nonfinite}  a position or velocity is not finite
+///   exploded{energy}     kinetic energy above ten times EnergyBudget::available
+///   exploded{box}        a coordinate beyond 1e6 m
+///   unsettled            the run lasted at least five settling times and yet, in its last settling
+///                        time, a vertex is faster than 1e-3 sqrt(|g| L) (L: extent) and than the
+///                        fastest ever seen times exp(-t/T)
+class Verdict {
+ public:
+  Verdict(const Scene&, const std::vector<PassCost>& plan);
+  /// False if the run has exploded at this boundary; status() says how.
+  bool sees(int step, double t, const State&);
+  /// At the end of a run that was seen to the end.
+  void finish();
+  const Status& status() const { return status_; }
+
+ private:
+  void explode(const char* reason, int step, std::size_t vertex);
+  EnergyBudget budget_;
+  std::vector<double> free_mass_;  ///< [n] kg, 0 for pins
+  std::optional<double> settling_;
+  double duration_ = 0;
+  double slow_ = 0;  ///< 1e-3 sqrt(|g| L) [m/s]
+  double peak_ = 0;  ///< fastest vertex so far [m/s]
+  double late_ = 0;  ///< fastest vertex in the last settling time [m/s]
+  int late_vertex_ = -1;
+  Status status_;
+};
+
+}  // namespace taut

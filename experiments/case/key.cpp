@@ -1,0 +1,20 @@
+#include "experiments/case/key.hpp"
+
+#include "experiments/case/digest.hpp"
+#include "experiments/case/fingerprint.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut {
+
+std::string case_key(const Scene& scene, const std::string& scene_digest,
+                     const SolverChoice& choice) {
+  const Json parts{
+      {"schema", kRecordSchema},      {"scene", scene_digest},
+      {"solver", choice.canonical()}, {"implementation", implementation(choice.entry->name)},
+      {"measurement", measurement()}, {"dt", scene.dt},
+      {"steps", scene.steps}};
+  return sha256(to_text(parts));
+}
+
+}  // namespace taut

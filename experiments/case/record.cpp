@@ -1,0 +1,23 @@
+#include "experiments/case/record.hpp"
+
+#include <array>
+
+#include "core/model/input_error.hpp"
+
+namespace taut {
+
+namespace {
+constexpr std::array<std::string_view, 9> kNames{"ok",          "exploded", "unsettled",
+                                                 "unsupported", "timeout",  "oom",
+                                                 "crash",       "error",    "interrupted"};
+}
+
+std::string_view to_string(Status::Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+
+Status::Kind status_kind(std::string_view name) {
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    if (kNames[i] == name) return static_cast<Status::Kind>(i);
+  throw InputError("unknown status '" + std::string(name) + "'");
+}
+
+}  // namespace taut

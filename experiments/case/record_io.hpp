@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "experiments/case/record.hpp"
+#include "experiments/case/run_case.hpp"
+
+namespace taut {
+
+/// Version of every JSON text below; readers refuse others.
+inline constexpr int kRecordSchema = 1;
+
+/// One JSON object; doubles in shortest exact form, NaN as null. indent < 0: one line.
+std::string to_json(const Record&, int indent = -1);
+/// Throws InputError that names `where` (a file) if the text is not a record of this schema.
+Record record_from_json(std::string_view text, const std::string& where);
+
+/// SHA-256 of what was computed: status, values, plan, effective settings and final state. Not of
+/// how the case was called (spec, id, scene name): the same key must always give the same.
+std::string result_digest(const Record&);
+
+/// CSV with a header line; doubles in shortest exact form, NaN as an empty field.
+std::string to_csv(const Series&);
+Series series_from_csv(std::string_view text);
+
+/// "vertex,x,y,z,vx,vy,vz" and a line per vertex [m, m/s]; shortest exact form.
+std::string to_csv(const State&);
+
+}  // namespace taut

@@ -1,0 +1,120 @@
+#include "experiments/case/run_case.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "experiments/case/digest.hpp"
+#include "experiments/case/divergence.hpp"
+
+namespace taut {
+
+namespace {
+
+/// All metrics that this scene has something for.
+class Instruments {
+ public:
+  Instruments(const Scene& scene, bool measure) {
+    if (!measure) return;
+    for (const MetricEntry* entry : metrics())
+      if (auto metric = entry->make(scene)) watching_.push_back({entry, std::move(metric)});
+  }
+
+  void observe(const Moment& moment) {
+    for (auto& [entry, metric] : watching_) metric->observe(moment);
+  }
+
+  std::vector<std::string> series_columns() const {
+    std::vector<std::string> columns{"step", "t"};
+    for (const auto& [entry, metric] : watching_)
+      for (const ValueSpec& value : entry->values)
+        if (value.in_series) columns.emplace_back(value.name);
+    return columns;
+  }
+
+  std::vector<double> series_row(const Moment& moment) const {
+    std::vector<double> row{static_cast<double>(moment.step), moment.t};
+    for (const auto& [entry, metric] : watching_) {
+      const std::vector<double> now = metric->now(moment);
+      for (std::size_t i = 0; i < entry->values.size(); ++i)
+        if (entry->values[i].in_series) row.push_back(now[i]);
+    }
+    return row;
+  }
+
+  /// Of a run that was seen to its end; without one, every value is NaN.
+  std::map<std::string, double> values(bool complete) {
+    std::map<std::string, double> all;
+    for (auto& [entry, metric] : watching_) {
+      const std::vector<double> final_values = complete ? metric->finish() : std::vector<double>{};
+      for (std::size_t i = 0; i < entry->values.size(); ++i)
+        all[std::string(entry->values[i].name)] =
+            complete ? final_values[i] : std::numeric_limits<double>::quiet_NaN();
+    }
+    return all;
+  }
+
+ private:
+  struct Watching {
+    const MetricEntry* entry;
+    std::unique_ptr<Metric> metric;
+  };
+  std::vector<Watching> watching_;
+};
+
+}  // namespace
+
+Record describe(const Scene& scene, const SolverChoice& choice) {
+  Record record;
+  record.spec = {scene.name, {}, choice.canonical()};
+  record.scene = scene.name;
+  record.solver = choice.entry->name;
+  for (const ParamSpec& param : choice.entry->params)
+    record.params[std::string(param.name)] = choice.params.value(param.name);
+  record.dt = scene.dt;
+  record.steps = scene.steps;
+  record.vertices = scene.mesh.size();
+  record.links = static_cast<int>(scene.links.size());
+  return record;
+}
+
+CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOptions& options) {
+  CaseRun run{describe(scene, choice), {}, scene.start};
+  Record& record = run.record;
+  for (const std::string& reason : choice.entry->cannot(scene, choice.params))
+    record.status.reason += (record.status.reason.empty() ? "" : "; ") + reason;
+  if (!record.status.reason.empty()) {
+    record.status.kind = Status::Kind::unsupported;
+    return run;
+  }
+  const std::unique_ptr<Solver> solver = choice.entry->make(scene, choice.params);
+  solver->load(scene.start);
+  record.plan = solver->plan();
+  record.projections = projections_per_step(*solver);
+  record.effective = choice.entry->effective(scene, choice.params);
+
+  Verdict verdict(scene, record.plan);
+  Instruments instruments(scene, options.measure);
+  if (options.series_rows > 0) run.series.columns = instruments.series_columns();
+  const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));
+  State state;
+  bool sound = true;
+  for (int step = 0; step <= scene.steps; ++step) {
+    if (step > 0) solver->step((step - 1) * scene.dt, scene.dt);
+    solver->store(state);
+    const Moment moment{step, step * scene.dt, state};
+    sound = verdict.sees(step, moment.t, state);
+    if (!sound) break;
+    instruments.observe(moment);
+    if (options.series_rows > 0 && (step % stride == 0 || step == scene.steps))
+      run.series.rows.push_back(instruments.series_row(moment));
+    if (options.watch) options.watch(moment);
+    run.last = state;
+  }
+  if (sound) verdict.finish();
+  record.status = verdict.status();
+  record.values = instruments.values(sound);
+  record.digest = digest(run.last);
+  return run;
+}
+
+}  // namespace taut

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/model/scene.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/case/record.hpp"
+#include "experiments/metrics/metric.hpp"
+
+namespace taut {
+
+/// Values over time: columns "step", "t" and every metric value that is meaningful at a moment.
+struct Series {
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;
+};
+
+struct RunOptions {
+  int series_rows = 0;  ///< about this many rows, evenly spaced, first and last included; 0: none
+  bool measure = true;  ///< let all metrics() observe; without them `values` stays empty
+  std::function<void(const Moment&)> watch;  ///< also sees every sound boundary, the start included
+};
+
+/// What became of a case: the record and what is too big for it.
+struct CaseRun {
+  Record record;  ///< key and id are empty; run_case of a Case (lab/case.hpp) sets them
+  Series series;
+  State last;  ///< the last sound boundary: the final state, or the last before an explosion
+};
+
+/// Runs one case in this process, step by step: load, then for every step `step` and `store`, with
+/// the verdict and every metric at every boundary. A run that explodes ends there with values NaN.
+/// A scene that the solver cannot represent gives `unsupported` and no run. Numerical failure never
+/// throws; what make() throws (InputError, bad_alloc) passes through.
+CaseRun run_case(const Scene&, const SolverChoice&, const RunOptions& = {});
+
+/// What is known of a case before it runs.
+Record describe(const Scene&, const SolverChoice&);
+
+}  // namespace taut

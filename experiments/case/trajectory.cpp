@@ -1,0 +1,206 @@
+#include "experiments/case/trajectory.hpp"
+
+#include <bit>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+
+#include "core/model/input_error.hpp"
+
+namespace taut {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the format is written as memory has it");
+
+constexpr char kMagic[8] = {'T', 'A', 'U', 'T', 'T', 'R', 'A', 'J'};
+constexpr std::uint32_t kVersion = 1;
+
+/// The first 48 bytes, as documented.
+struct Fixed {
+  char magic[8];
+  std::uint32_t version, first, vertices, triangles, real, channels, name_bytes, solver_bytes;
+  double frame_dt;
+};
+static_assert(sizeof(Fixed) == 48);
+
+constexpr std::uint64_t round_up_to_8(std::uint64_t bytes) { return (bytes + 7) / 8 * 8; }
+
+template <class T>
+void put(std::string& out, const T& value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <class Real>
+void put_vectors(std::string& out, const std::vector<Vec3>& vectors) {
+  for (const Vec3& p : vectors)
+    for (int axis = 0; axis < 3; ++axis) put(out, static_cast<Real>(p[axis]));
+}
+
+template <class Real>
+void get_vectors(const char* from, std::vector<Vec3>& vectors) {
+  for (Vec3& p : vectors) {
+    Real xyz[3];
+    std::memcpy(xyz, from, sizeof xyz);
+    p = Vec3(static_cast<double>(xyz[0]), static_cast<double>(xyz[1]), static_cast<double>(xyz[2]));
+    from += sizeof xyz;
+  }
+}
+
+std::uint64_t bytes_of_real(const TrajectoryHeader& header) {
+  return static_cast<std::uint64_t>(header.real);
+}
+
+std::uint64_t bytes_of_channel(const TrajectoryHeader& header) {
+  return 3 * static_cast<std::uint64_t>(header.vertices) * bytes_of_real(header);
+}
+
+std::string header_bytes(const TrajectoryHeader& header) {
+  const auto u32 = [](auto value) { return static_cast<std::uint32_t>(value); };
+  const std::uint64_t before_triangles =
+      round_up_to_8(sizeof(Fixed) + header.scene.size() + header.solver.size());
+  Fixed fixed{.version = kVersion,
+              .first = u32(before_triangles + 12 * header.triangles.size()),
+              .vertices = u32(header.vertices),
+              .triangles = u32(header.triangles.size()),
+              .real = u32(header.real),
+              .channels = header.velocities ? 2u : 1u,
+              .name_bytes = u32(header.scene.size()),
+              .solver_bytes = u32(header.solver.size()),
+              .frame_dt = header.frame_dt};
+  std::memcpy(fixed.magic, kMagic, sizeof kMagic);
+  std::string out;
+  put(out, fixed);
+  out += header.scene + header.solver;
+  out.resize(before_triangles, '\0');
+  for (const Triangle& triangle : header.triangles)
+    for (int vertex : triangle) put(out, u32(vertex));
+  return out;
+}
+
+}  // namespace
+
+TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, TrajectoryHeader header)
+    : path_(path), header_(std::move(header)), out_(path, std::ios::binary | std::ios::trunc) {
+  assert(header_.vertices > 0);
+  write_bytes(header_bytes(header_));
+}
+
+void TrajectoryWriter::append(double t, const State& state) {
+  const auto n = static_cast<std::size_t>(header_.vertices);
+  assert(state.x.size() == n && (!header_.velocities || state.v.size() == n));
+  const bool f32 = header_.real == TrajectoryHeader::Real::f32;
+  buffer_.clear();
+  put(buffer_, t);
+  f32 ? put_vectors<float>(buffer_, state.x) : put_vectors<double>(buffer_, state.x);
+  if (header_.velocities)
+    f32 ? put_vectors<float>(buffer_, state.v) : put_vectors<double>(buffer_, state.v);
+  write_bytes(buffer_);
+  ++frames_;
+}
+
+void TrajectoryWriter::write_bytes(const std::string& bytes) {
+  errno = 0;
+  out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out_.flush();
+  if (out_) return;
+  const std::string why = errno != 0 ? std::strerror(errno) : "write error";
+  throw InputError({{path_.string(), 0, 0, "cannot write the trajectory: " + why}});
+}
+
+TrajectoryReader::TrajectoryReader(const std::filesystem::path& path)
+    : path_(path), in_(path, std::ios::binary) {
+  std::error_code error;
+  const std::uint64_t bytes = std::filesystem::file_size(path, error);
+  if (error || !in_) fail("cannot read: " + (error ? error.message() : "not a readable file"));
+  read_header(bytes);
+  frame_size_ = sizeof(double) + bytes_of_channel(header_) * (header_.velocities ? 2 : 1);
+  frames_ = static_cast<int>((bytes - first_) / frame_size_);
+  dropped_ = (bytes - first_) % frame_size_;
+}
+
+void TrajectoryReader::fail(const std::string& why) const {
+  throw InputError({{path_.string(), 0, 0, why}});
+}
+
+void TrajectoryReader::read_header(std::uint64_t file_bytes) {
+  if (file_bytes == 0) fail("empty file, not a trajectory");
+  Fixed fixed{};
+  const auto known = static_cast<std::streamsize>(std::min<std::uint64_t>(8, file_bytes));
+  in_.read(reinterpret_cast<char*>(&fixed), sizeof fixed);
+  if (std::memcmp(fixed.magic, kMagic, static_cast<std::size_t>(known)) != 0)
+    fail("not a trajectory: it does not begin with TAUTTRAJ");
+  if (!in_)
+    fail("truncated within its header: it ends at byte " + std::to_string(file_bytes) + " of " +
+         std::to_string(sizeof fixed));
+  if (fixed.version != kVersion)
+    fail("version " + std::to_string(fixed.version) + "; this program reads version 1");
+  const std::uint64_t before_triangles = round_up_to_8(
+      sizeof fixed + std::uint64_t{fixed.name_bytes} + std::uint64_t{fixed.solver_bytes});
+  const bool consistent = fixed.vertices > 0 && fixed.vertices <= 0x7fffffff &&
+                          (fixed.real == 4 || fixed.real == 8) &&
+                          (fixed.channels == 1 || fixed.channels == 2) &&
+                          fixed.first == before_triangles + 12 * std::uint64_t{fixed.triangles};
+  if (!consistent) fail("inconsistent header");
+  if (file_bytes < fixed.first)
+    fail("truncated within its header: it ends at byte " + std::to_string(file_bytes) + " of " +
+         std::to_string(fixed.first));
+  first_ = fixed.first;
+  header_.vertices = static_cast<int>(fixed.vertices);
+  header_.real = static_cast<TrajectoryHeader::Real>(fixed.real);
+  header_.velocities = fixed.channels == 2;
+  header_.frame_dt = fixed.frame_dt;
+  header_.scene.resize(fixed.name_bytes);
+  in_.read(header_.scene.data(), fixed.name_bytes);
+  header_.solver.resize(fixed.solver_bytes);
+  in_.read(header_.solver.data(), fixed.solver_bytes);
+  header_.triangles.resize(fixed.triangles);
+  in_.seekg(static_cast<std::streamoff>(before_triangles));
+  for (Triangle& triangle : header_.triangles) {
+    in_.read(reinterpret_cast<char*>(triangle.data()), 12);
+    for (int vertex : triangle)
+      if (vertex < 0 || vertex >= header_.vertices)
+        fail("a triangle names a vertex that is absent");
+  }
+  if (!in_) fail("cannot read its header");
+}
+
+TrajectoryReader::Frame TrajectoryReader::read(int k) {
+  assert(k >= 0 && k < frames_);
+  std::string bytes(frame_size_, '\0');
+  in_.clear();
+  in_.seekg(static_cast<std::streamoff>(first_ + static_cast<std::uint64_t>(k) * frame_size_));
+  in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!in_) fail("cannot read frame " + std::to_string(k));
+  Frame frame;
+  std::memcpy(&frame.t, bytes.data(), sizeof frame.t);
+  const auto get = [&](std::uint64_t offset, std::vector<Vec3>& vectors) {
+    vectors.resize(static_cast<std::size_t>(header_.vertices));
+    const char* from = bytes.data() + sizeof(double) + offset;
+    header_.real == TrajectoryHeader::Real::f32 ? get_vectors<float>(from, vectors)
+                                                : get_vectors<double>(from, vectors);
+  };
+  get(0, frame.state.x);
+  if (header_.velocities) get(bytes_of_channel(header_), frame.state.v);
+  return frame;
+}
+
+Trajectory read_trajectory(const std::filesystem::path& path) {
+  TrajectoryReader reader(path);
+  if (reader.frames() == 0)
+    throw InputError(
+        {{path.string(), 0, 0,
+          "a trajectory without a whole frame: it ends at byte " + std::to_string(reader.end()) +
+              ", the first frame would end at byte " + std::to_string(reader.frame_end(1))}});
+  if (reader.dropped_bytes() > 0)
+    std::cerr << path.string() << ": the writer was interrupted; dropped the last "
+              << reader.dropped_bytes() << " bytes, an unfinished frame from byte "
+              << reader.frame_end(reader.frames()) << " on, after " << reader.frames()
+              << " whole ones\n";
+  Trajectory trajectory{reader.header(), {}};
+  for (int k = 0; k < reader.frames(); ++k) trajectory.frames.push_back(reader.read(k));
+  return trajectory;
+}
+
+}  // namespace taut

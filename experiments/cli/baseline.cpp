@@ -1,0 +1,94 @@
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/fingerprint.hpp"
+#include "experiments/command_line/baseline_study.hpp"
+#include "experiments/command_line/verb.hpp"
+
+namespace taut::verb::baseline {
+
+namespace {
+
+struct Options : BaselineOptions {
+  std::string study, why;
+};
+
+/// A baseline is made of results of all its cases.
+bool complete(const BaselineStudy& study) {
+  for (const std::string& id : study.not_run)
+    std::cout << study.name << ": " << id << ": was not run\n";
+  return study.not_run.empty();
+}
+
+int early_exit(const BaselineStudy& study) {
+  if (study.interrupted) return kInterrupted;
+  if (study.conflict) return kConflict;
+  return complete(study) ? kPass : kIncomplete;
+}
+
+int diff(const Options& options) {
+  const BaselineStudy study = baseline_study(options.study, options, false);
+  if (const int code = early_exit(study); code != kPass) return code;
+  const Comparison comparison = study.compare();
+  print_findings(study, comparison);
+  return comparison.findings.empty() ? kPass : kRegression;
+}
+
+/// Appends the reason; the file says in the order of time why the baseline is what it is.
+void note_reason(const BaselineStudy& study, const std::string& why, const Comparison& changes) {
+  const std::filesystem::path file = study.folder / "why.md";
+  const bool fresh = !std::filesystem::exists(file);
+  std::ofstream out(file, std::ios::app);
+  if (fresh) out << "# Why the baseline of " << study.name << " is what it is, oldest first\n\n";
+  std::set<std::string> rows;
+  for (const Change& finding : changes.findings) rows.insert(finding.id);
+  out << "- " << why << " (" << (study.before.empty() ? study.now.size() : rows.size())
+      << " cases)\n";
+  std::ofstream(study.folder / kToolchainFile) << toolchain() << '\n';
+  if (!out.flush()) throw InputError(file.string() + ": cannot be written");
+}
+
+int update(Options options) {
+  if (options.why.find_first_not_of(" \t\n") == std::string::npos)
+    throw InputError("--why must say in a sentence why the baseline moves");
+  options.repeat = true;
+  const BaselineStudy study = baseline_study(options.study, options, false);
+  if (const int code = early_exit(study); code != kPass) return code;
+  const Comparison changes = study.compare();
+  if (changes.findings.empty()) {
+    std::cout << study.name << ": " << changes.cases << " cases are as the baseline says; nothing "
+              << "was written\n";
+    return kPass;
+  }
+  if (!study.before.empty()) print_findings(study, changes);
+  write_baseline(study.folder, updated(study.before, study.now, study.tolerances));
+  note_reason(study, options.why, changes);
+  std::cout << study.name << ": " << study.now.size() << " cases in " << study.folder.string()
+            << '\n';
+  return kPass;
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto options = std::make_shared<Options>();
+  Arguments updating = arguments.subverb("update", "Takes what is different as the new baseline");
+  updating.option("--why", options->why, "The reason, kept beside the baseline").required();
+  Arguments differing =
+      arguments.subverb("diff", "Shows what an update would change (exit 1: something)");
+  for (Arguments* sub : {&updating, &differing}) {
+    sub->option("STUDY", options->study, "Name or path").required();
+    options->bind(*sub);
+  }
+  return [options, updating] { return updating.named() ? update(*options) : diff(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::baseline
+
+TAUT_VERB(baseline) = {.name = "baseline",
+                       .summary = "Updates a committed baseline, or shows how it differs",
+                       .example =
+                           "taut baseline update regression --why \"contacts are swept\"\n"
+                           "  taut baseline diff regression",
+                       .bind = taut::verb::baseline::bind};

@@ -1,0 +1,128 @@
+#include <cstdio>
+#include <memory>
+
+#include "experiments/bench/contact.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/report/figures.hpp"
+
+namespace taut::verb::contact {
+
+namespace {
+
+struct Options {
+  std::vector<int> sizes{128};
+  int rounds = 11;
+  double seconds = 0.01;
+  std::string plot;
+};
+
+using Rows = std::vector<ContactRow>;
+
+double seconds(const ContactRow& row, double ns_per_particle) {
+  return 1e-9 * static_cast<double>(row.particles) * ns_per_particle;
+}
+/// Contact of a step with one sweep [s].
+double seconds_per_step(const ContactRow& row) {
+  return seconds(row, median(row.each_step) + median(row.each_sweep));
+}
+
+std::string in_sweeps(const Interval& ratio) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.2f [%.2f %.2f]", ratio.mid, ratio.low, ratio.high);
+  return text;
+}
+
+void print(const std::vector<ContactRow>& rows, int side) {
+  std::printf(
+      "\n%d x %d, %zu particles; CPU ns per particle; contact of a step in structural sweeps "
+      "[95 %%]\n",
+      side, side, rows.front().particles);
+  std::printf("%-16s %-30s %5s %8s %8s %11s %10s  %-20s %-20s\n", "", "", "steps", "touching",
+              "a sweep", "contact in", "and in", "step of 1 sweep", "step of 10 sweeps");
+  std::printf("%-16s %-30s %5s %8s %8s %11s %10s\n", "", "", "", "", "of links", "each sweep",
+              "each step");
+  for (const ContactRow& row : rows)
+    std::printf("%-16s %-30s %5d %7.0f%% %8.2f %11.2f %10.2f  %-20s %-20s\n", row.scene.c_str(),
+                row.setting.c_str(), row.steps, 100 * row.touching, median(row.sweep),
+                median(row.each_sweep), median(row.each_step), in_sweeps(row.ratio(1)).c_str(),
+                in_sweeps(row.ratio(10)).c_str());
+  std::fflush(stdout);
+}
+
+/// Contact's cost of a step over the number of particles, as a power law, setting by setting.
+void print_exponents(const std::vector<Rows>& sizes) {
+  std::printf("\nexponent of contact's cost over particles, 95 %%\n");
+  for (std::size_t i = 0; i < sizes.front().size(); ++i) {
+    std::vector<double> n, cost;
+    for (const Rows& rows : sizes)
+      if (const double seconds = seconds_per_step(rows[i]); seconds > 0)
+        n.push_back(static_cast<double>(rows[i].particles)), cost.push_back(seconds);
+    if (n.size() < 3) continue;
+    const PowerLaw law = fit_power_law(n, cost);
+    const ContactRow& row = sizes.front()[i];
+    std::printf("%-16s %-30s %5d   %.2f +- %.2f\n", row.scene.c_str(), row.setting.c_str(),
+                row.steps, law.slope, 2 * law.slope_error);
+  }
+}
+
+Record plotted(const ContactRow& row, const std::string& self, double seconds_per_step) {
+  Record record;
+  record.scene = "crumple", record.solver = "jakobsen";
+  record.params = {{"self", self}};
+  record.vertices = static_cast<int>(row.particles);
+  record.values = {{"cpu.per_step", seconds_per_step}};
+  return record;
+}
+
+/// A whole step over the number of particles: without self-collision, by octree and by grid.
+void plot(const std::vector<Rows>& sizes, const std::string& folder) {
+  std::vector<Record> records;
+  for (const Rows& rows : sizes)
+    for (const ContactRow& row : rows) {
+      if (row.scene != "crumple, 0.3 s" || row.steps != 1 ||
+          row.setting.find("order=mesh") == std::string::npos)
+        continue;
+      const std::string self = row.setting.substr(5, row.setting.find(',') - 5);
+      const double bare = seconds(row, median(row.bare));
+      records.push_back(plotted(row, self, bare + seconds_per_step(row)));
+      if (self == "grid") records.push_back(plotted(row, "off", bare));
+    }
+  const report::Figure figure =
+      report::make_figure({.kind = "scaling",
+                           .title = "A step of one sweep, by what keeps the cloth from itself",
+                           .file = "self-collision-scaling",
+                           .slope = 1},
+                          {records, {}}, folder);
+  std::printf("%s\n%s\n", figure.svg.c_str(), figure.pdf.c_str());
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto o = std::make_shared<Options>();
+  arguments.option("--sizes", o->sizes, "Vertices along a side (default: 128)")
+      .separated_by(',')
+      .range(8, 1024);
+  arguments.option("--rounds", o->rounds, "Interleaved rounds forth and back (default: 11)")
+      .range(1, 1000);
+  arguments.option("--seconds", o->seconds, "Of one sample (default: 0.01)").positive();
+  arguments.option("--plot", o->plot,
+                   "Folder for a figure of a step over particles: off, octree and grid");
+  return [o] {
+    std::vector<Rows> sizes;
+    for (const int side : o->sizes) {
+      sizes.push_back(bench_contact({.side = side, .rounds = o->rounds, .seconds = o->seconds}));
+      print(sizes.back(), side);
+    }
+    if (sizes.size() > 2) print_exponents(sizes);
+    if (!o->plot.empty()) plot(sizes, o->plot);
+    return kPass;
+  };
+}
+
+}  // namespace
+}  // namespace taut::verb::contact
+
+TAUT_VERB(bench_contact) = {
+    .name = "bench-contact",
+    .summary = "Measures contact and self-collision against structural sweeps of the same cloth",
+    .example = "taut bench contact\n  taut bench contact --sizes 16,32,64,128,317 --plot figures",
+    .bind = taut::verb::contact::bind};

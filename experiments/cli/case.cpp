@@ -1,0 +1,110 @@
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/case/trajectory.hpp"
+#include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/study/isolate.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::verb::one_case {
+
+namespace {
+
+struct Options {
+  CaseOptions which;
+  bool json = false, verbose = false;
+  std::string final_state, trajectory, series, into;
+};
+
+std::string_view unit_of(const std::string& value) {
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& spec : metric->values)
+      if (spec.name == value) return spec.unit == "1" ? "" : spec.unit;
+  return "";
+}
+
+void print_text(const Record& record) {
+  std::cout << record.id << "\n  status       " << to_string(record.status.kind);
+  if (!record.status.reason.empty()) std::cout << " (" << record.status.reason << ")";
+  if (record.status.step >= 0) std::cout << ", step " << record.status.step;
+  if (record.status.vertex >= 0) std::cout << ", vertex " << record.status.vertex;
+  std::cout << "\n  steps        " << record.steps << " of " << record.dt << " s\n  cloth        "
+            << record.vertices << " vertices, " << record.links << " links\n  work         "
+            << record.projections << " projections per step\n  state        " << record.digest
+            << '\n';
+  for (const auto& [name, value] : record.values)
+    if (!std::isnan(value))
+      std::cout << "  " << std::left << std::setw(26) << name << std::setprecision(6) << value
+                << ' ' << unit_of(name) << '\n';
+}
+
+std::unique_ptr<TrajectoryWriter> start_trajectory(const std::string& file, const Case& one) {
+  if (file.empty()) return nullptr;
+  return std::make_unique<TrajectoryWriter>(
+      file, TrajectoryHeader{.scene = one.scene->name,
+                             .solver = one.choice.canonical(),
+                             .frame_dt = one.scene->dt,
+                             .vertices = one.scene->mesh.size(),
+                             .triangles = one.scene->mesh.triangles});
+}
+
+void tell(const Moment& m, int steps) {
+  if (m.step % std::max(1, steps / 20) != 0) return;
+  double fastest = 0;
+  for (const Vec3& v : m.state.v) fastest = std::max(fastest, v.norm());
+  std::cerr << "step " << m.step << "/" << steps << "  t " << m.t << " s  fastest vertex "
+            << fastest << " m/s\n";
+}
+
+int run(const Options& options) {
+  const Case one = options.which.make();
+  continue_in_right_program(one.choice);
+  if (!options.into.empty()) return run_into(one, options.into);
+
+  const auto trajectory = start_trajectory(options.trajectory, one);
+  const CaseRun result = run_case(
+      one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Moment& m) {
+              if (trajectory) trajectory->append(m.t, m.state);
+              if (options.verbose) tell(m, one.scene->steps);
+            }});
+  if (!options.final_state.empty()) write_durably(options.final_state, to_csv(result.last));
+  if (!options.series.empty()) write_durably(options.series, to_csv(result.series));
+  if (options.json)
+    std::cout << to_json(result.record, 2) << '\n';
+  else
+    print_text(result.record);
+  if (options.verbose)
+    for (const auto& [name, value] : result.record.effective)
+      std::cerr << name << ": " << value << '\n';
+  return kPass;
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto options = std::make_shared<Options>();
+  options->which.bind(arguments);
+  arguments.flag("--json", options->json, "Print the record as JSON");
+  arguments.option("--final-state", options->final_state,
+                   "Write vertex,x,y,z,vx,vy,vz of the last sound state, full precision (CSV)");
+  arguments.option("--trajectory", options->trajectory, "Write every step's positions");
+  arguments.option("--series", options->series, "Write values over time (CSV)");
+  arguments.flag("--verbose", options->verbose,
+                 "Say on stderr how far it is and what is effective");
+  arguments.option("--into", options->into, "Used by taut run").hidden();
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::one_case
+
+TAUT_VERB(case) = {
+    .name = "case",
+    .summary = "Runs one case in this process; a numerical failure is a result (exit 0)",
+    .example = "taut case hang jakobsen:iterations=1,substeps=15 --dt 1/120 --final-state hang.csv",
+    .bind = taut::verb::one_case ::bind};

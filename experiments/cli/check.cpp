@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/fingerprint.hpp"
+#include "experiments/command_line/baseline_study.hpp"
+#include "experiments/command_line/program.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/report/gnuplot.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut::verb::check {
+
+namespace {
+
+struct Options : BaselineOptions {
+  std::vector<std::string> studies;
+  std::string junit;
+  bool strict = false, record = false;
+};
+
+/// Names of the studies that have a baseline, sorted.
+std::vector<std::string> studies_with_baseline(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    if (entry.is_directory()) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The worse of two: an alarm before a regression, that before a baseline that does not match, that
+/// before what was not run.
+int worse(int a, int b) {
+  for (const int code : {kInterrupted, kConflict, kEnvironment, kRegression, kNothing, kIncomplete})
+    if (a == code || b == code) return code;
+  return kPass;
+}
+
+bool same_toolchain(const BaselineStudy& study) {
+  if (study.toolchain == toolchain()) return true;
+  std::cerr << study.name << ": the baseline was made with\n    " << study.toolchain
+            << "\n  this program is made with\n    " << toolchain() << '\n';
+  return false;
+}
+
+int verdict(const BaselineStudy& study, const Comparison& comparison) {
+  int code = kPass;
+  if (study.interrupted) code = worse(code, kInterrupted);
+  if (study.conflict) code = worse(code, kConflict);
+  if (!study.not_run.empty()) code = worse(code, kIncomplete);
+  if (comparison.mismatched() || comparison.cases == 0) code = worse(code, kNothing);
+  if (comparison.regressed()) code = worse(code, kRegression);
+  return code;
+}
+
+void summarise(const BaselineStudy& study, const Comparison& comparison) {
+  const auto count = [&](auto test) {
+    return std::count_if(comparison.findings.begin(), comparison.findings.end(), test);
+  };
+  const auto moved = count([](const Change& f) { return f.is_regression(); });
+  const auto mismatched = count([](const Change& f) { return f.is_mismatch(); });
+  std::cout << study.name << ": " << comparison.cases << " cases and " << comparison.values
+            << " values compared, " << moved << " moved";
+  if (mismatched) std::cout << ", " << mismatched << " do not match the study";
+  if (!study.not_run.empty()) std::cout << ", " << study.not_run.size() << " not run";
+  std::cout << '\n';
+  if (moved || mismatched)
+    std::cout << "  if this was meant to change: taut baseline update " << study.name
+              << " --why \"...\"\n";
+}
+
+/// What the report reads: how much was compared, and what differs.
+struct Notes {
+  std::size_t cases = 0, values = 0;
+  Json findings = Json::array();
+
+  void add(const std::string& study, const Comparison& comparison) {
+    cases += comparison.cases, values += comparison.values;
+    for (const Change& f : comparison.findings)
+      if (f.is_regression() || f.is_mismatch())
+        findings.push_back(
+            {{"study", study}, {"case", f.id.empty() ? f.solver : f.id}, {"change", f.text}});
+  }
+  void write(const std::string& results) const {
+    report::write_file(std::filesystem::path(results) / "check.json",
+                       to_text(Json{{"schema", "taut-check-1"},
+                                    {"program", program_digest()},
+                                    {"cases", cases},
+                                    {"values", values},
+                                    {"findings", findings}},
+                               1) +
+                           "\n");
+  }
+};
+
+int check_study(const std::string& name, const Options& options, std::string& xml, Notes& notes) {
+  const BaselineStudy study = baseline_study(name, options, true);
+  if (study.before.empty()) {
+    const std::string folder = study.folder.parent_path().string();
+    std::cout << study.name << ": nothing to compare with: ";
+    if (std::filesystem::is_directory(folder))
+      std::cout << "no baseline in " << study.folder.string() << "; taut baseline update "
+                << study.name << " --why \"...\" makes one\n";
+    else
+      std::cout << "no folder '" << folder << "' here; --baselines names another\n";
+    return kNothing;
+  }
+  const bool same = same_toolchain(study);
+  if (!same && options.strict) return kEnvironment;
+  const Comparison comparison = study.compare();
+  notes.add(study.name, comparison);
+  print_findings(study, comparison);
+  for (const std::string& id : study.not_run)
+    std::cout << study.name << ": " << id << ": was not run\n";
+  summarise(study, comparison);
+  xml += junit(study.name, study.now, comparison);
+  return verdict(study, comparison);
+}
+
+int check(Options options) {
+  if (options.studies.empty()) options.studies = studies_with_baseline(options.baselines);
+  if (options.studies.empty()) {
+    std::cout << "nothing to compare with: no baseline in " << options.baselines << '\n';
+    return kNothing;
+  }
+  int code = kPass;
+  std::string suites;
+  Notes notes;
+  for (const std::string& study : options.studies)
+    code = worse(code, check_study(study, options, suites, notes));
+  if (!options.junit.empty()) {
+    std::ofstream out(options.junit);
+    out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
+        << suites << "</testsuites>\n";
+    if (!out.flush()) throw InputError(options.junit + ": cannot be written");
+  }
+  if (options.record && notes.cases > 0) notes.write(options.out);
+  return code;
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto options = std::make_shared<Options>();
+  arguments.option("STUDY", options->studies, "Names or paths; none: all that have a baseline");
+  options->bind(arguments);
+  arguments.option("--junit", options->junit, "Also write a JUnit file for continuous integration");
+  arguments.flag("--record", options->record, "Also keep the findings for the report");
+  arguments.flag("--strict-env", options->strict,
+                 "Fail with 5 if the baseline was made with another toolchain");
+  return [options] { return check(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::check
+
+TAUT_VERB(check) = {.name = "check",
+                    .summary =
+                        "Compares studies with their committed baselines; runs what is "
+                        "missing",
+                    .example =
+                        "taut check\n  taut check regression --junit check.xml\n"
+                        "Exit: 0 nothing moved; 1 a value or status moved; 3 cases were not "
+                        "run;\n      4 nothing compared, or the baseline does not match the "
+                        "study;\n      5 another toolchain under --strict-env",
+                    .bind = taut::verb::check::bind};

@@ -1,0 +1,211 @@
+#include "experiments/study/frontier.hpp"
+
+#include <cstdio>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "core/io/section.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
+#include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut::verb::frontier {
+
+namespace {
+
+struct Options {
+  CaseOptions which;
+  std::string of = "dt", out = default_results();
+  std::optional<double> from, to;
+  std::vector<double> expected;  ///< low and high, or empty
+  double tolerance = SearchRange{}.tolerance;
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  bool json = false;
+};
+
+std::string unit_of(const Options& options, const SolverChoice& choice) {
+  if (options.of == "dt") return " s";
+  for (const ParamSpec& spec : choice.entry->params)
+    if (spec.name == options.of && !spec.unit.empty()) return " " + std::string(spec.unit);
+  return "";
+}
+
+std::string five_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.5g", value);
+  return text;
+}
+
+std::string percent(double ratio) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%+.2g %%", 100 * ratio);
+  return text;
+}
+
+/// How theory and the bracket agree.
+std::string agreement(const Prediction& theory, const Frontier& found) {
+  if (theory.kind != found.kind)
+    return std::string("theory says ") + std::string(to_string(theory.kind)) + " here";
+  if (theory.kind != Frontier::Kind::bracketed) return "agrees";
+  if (theory.value >= found.stable && theory.value <= found.unstable) return "inside the bracket";
+  const double nearest = theory.value < found.stable ? found.stable : found.unstable;
+  return "measured " + percent(nearest / theory.value - 1) + " from it";
+}
+
+void print_line(std::string_view label, const std::string& text) {
+  std::cout << "  " << std::left << std::setw(16) << label << text << '\n';
+}
+
+void print_theory(const Prediction& theory, const Frontier& found, const std::string& unit) {
+  std::string text = theory.kind == Frontier::Kind::bracketed ? five_digits(theory.value) + unit
+                                                              : std::string(to_string(theory.kind));
+  print_line("theory", text + ", " + agreement(theory, found) + ": " + theory.law);
+  if (theory.growth > 1 + 1e-6 && theory.kind == Frontier::Kind::none_stable)
+    print_line("", "growth per step " + five_digits(theory.growth));
+}
+
+void print_text(const CaseFrontier& result, const std::optional<Prediction>& theory,
+                const std::string& unit) {
+  const Frontier& found = result.frontier;
+  const auto outcome = [&](double value) {
+    const Probed* probe = found.at(value);
+    return shortest(value) + unit + "  " + (probe ? describe(probe->status) : "");
+  };
+  if (found.kind == Frontier::Kind::all_stable)
+    print_line("stable", "as far as was looked (--to): " + outcome(found.stable) +
+                             "; stable is not accurate");
+  else if (found.kind != Frontier::Kind::none_stable)
+    print_line("stable up to", outcome(found.stable));
+  if (found.kind != Frontier::Kind::all_stable)
+    print_line("unstable from", outcome(found.unstable));
+  if (theory)
+    print_theory(*theory, found, unit);
+  else
+    print_line("theory",
+               "none for these settings; there is one for few links, with jakobsen in order=mesh");
+  std::string above = std::to_string(found.above) + " values above the bracket, ";
+  if (found.islands.empty()) {
+    above += "none stable";
+  } else {
+    above += "NOT MONOTONE: stable again at";
+    for (const double value : found.islands) above += " " + shortest(value);
+  }
+  if (found.kind != Frontier::Kind::all_stable) print_line("looked at", above);
+  print_line("cases", std::to_string(found.probes.size()) + ", of which " +
+                          std::to_string(result.ran) + " were run now");
+}
+
+Json to_json(const Options& options, const CaseFrontier& result,
+             const std::optional<Prediction>& theory) {
+  const Frontier& found = result.frontier;
+  Json probes = Json::array();
+  for (std::size_t i = 0; i < found.probes.size(); ++i)
+    probes.push_back({{"value", found.probes[i].value},
+                      {"status", to_string(found.probes[i].status.kind)},
+                      {"reason", found.probes[i].status.reason},
+                      {"step", found.probes[i].status.step},
+                      {"id", result.records[i].id},
+                      {"key", result.records[i].key}});
+  Json all{{"of", options.of}, {"kind", to_string(found.kind)}, {"probes", probes}};
+  if (found.kind != Frontier::Kind::none_stable) all["stable"] = found.stable;
+  if (found.kind != Frontier::Kind::all_stable) all["unstable"] = found.unstable;
+  all["islands"] = found.islands;
+  if (theory) {
+    all["theory"] = {{"kind", to_string(theory->kind)}, {"law", theory->law}};
+    if (theory->kind == Frontier::Kind::bracketed) all["theory"]["value"] = theory->value;
+    if (theory->growth > 0) all["theory"]["growth"] = theory->growth;
+  }
+  return all;
+}
+
+int not_answered(const CaseFrontier& result) {
+  if (result.interrupted) return kInterrupted;
+  for (const Record& record : result.records)
+    if (record.status.kind != Status::Kind::ok) {
+      std::cerr << record.id << ": " << describe(record.status) << '\n';
+      break;
+    }
+  return kNothing;
+}
+
+/// Whether the bracket meets what was expected; a range without a frontier meets nothing.
+int judge(const Options& options, const Frontier& found) {
+  if (options.expected.empty()) return kPass;
+  const bool meets = found.kind == Frontier::Kind::bracketed &&
+                     found.unstable >= options.expected[0] && found.stable <= options.expected[1];
+  if (meets) return kPass;
+  std::cerr << "the frontier moved: expected between " << shortest(options.expected[0]) << " and "
+            << shortest(options.expected[1]) << ", found " << to_string(found.kind);
+  if (found.kind == Frontier::Kind::bracketed)
+    std::cerr << " between " << shortest(found.stable) << " and " << shortest(found.unstable);
+  std::cerr << '\n';
+  return kRegression;
+}
+
+int run(const Options& options) {
+  FrontierQuestion question{options.which.spec(), options.of, {}};
+  question.range = range_of(question.base, options.of, options.from, options.to);
+  question.range.tolerance = options.tolerance;
+  const Case first = make_case(question.at(question.range.from));
+  const Store store(options.out);
+  store.prepare();
+  const Session session(store, "taut frontier " + first.id, {}, {});
+  Progress progress;
+  const CaseFrontier result = find_frontier(question, store, session,
+                                            {.jobs = options.jobs,
+                                             .limits = {},
+                                             .shard = {},
+                                             .only_failed = false,
+                                             .progress = [&](const Tally& t, const Record* record) {
+                                               if (record) progress.show(t, record);
+                                             }});
+  if (result.frontier.kind == Frontier::Kind::not_answered) return not_answered(result);
+  const std::optional<Prediction> theory = predicted_frontier(question);
+  if (options.json) {
+    std::cout << to_text(to_json(options, result, theory), 2) << '\n';
+    return judge(options, result.frontier);
+  }
+  const CaseSpec spec = question.base;
+  std::cout << first.scene->name << ' ' << spec.solver << ": largest stable " << options.of << '\n';
+  print_text(result, theory, unit_of(options, first.choice));
+  return judge(options, result.frontier);
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto options = std::make_shared<Options>();
+  options->which.bind(arguments);
+  arguments.option("--of", options->of,
+                   "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
+                   "(default: dt)");
+  arguments.option("--from", options->from, "Where to start (dt: 1e-3 s)");
+  arguments.option("--to", options->to, "Where to stop (dt: 0.5 s)");
+  arguments
+      .option("--tolerance", options->tolerance, "Relative width of the bracket (default: 0.01)")
+      .range(1e-9, 0.5);
+  arguments
+      .option("--expect", options->expected,
+              "Two values; exit 1 if the bracket does not meet the range between them")
+      .values(2);
+  arguments.option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
+      .range(1, 1024);
+  arguments.option("--out", options->out, "Results folder (default: " + options->out + ")");
+  arguments.flag("--json", options->json, "Print JSON");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::frontier
+
+TAUT_VERB(frontier) = {
+    .name = "frontier",
+    .summary = "Finds how far a setting can go before a solver fails, beside what theory says",
+    .example =
+        "taut frontier chain mass-spring:substeps=1 --tolerance 0.001\n"
+        "  taut frontier chain jakobsen:iterations=1,substeps=1,order=mesh --of omega --from 1\n"
+        "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000",
+    .bind = taut::verb::frontier::bind};

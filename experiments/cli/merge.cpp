@@ -1,0 +1,86 @@
+#include <iostream>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/study/session.hpp"
+#include "experiments/study/store.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::verb::merge {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Copies the entries and sessions of `from`; gives the number of conflicts.
+std::size_t copy_into(const Store& store, const fs::path& from) {
+  const Store source(from);
+  std::size_t conflicts = 0;
+  for (const std::string& key : source.keys()) {
+    const std::optional<Record> record = source.find(key);
+    if (!record) continue;
+    const fs::path staged = store.stage(key);
+    fs::copy(source.folder(key), staged, fs::copy_options::overwrite_existing);
+    if (store.commit(staged, *record) == Store::Commit::conflict) {
+      std::cerr << record->id << ": " << from.string() << " has another result\n";
+      ++conflicts;
+    }
+  }
+  std::error_code none;
+  for (const auto& session : fs::directory_iterator(from / "sessions", none)) {
+    make_folder(store.root() / "sessions");
+    fs::copy(session.path(), store.root() / "sessions" / session.path().filename(),
+             fs::copy_options::recursive | fs::copy_options::skip_existing);
+  }
+  return conflicts;
+}
+
+int run(const std::vector<std::string>& folders, const std::string& out) {
+  for (const std::string& folder : folders)
+    if (!fs::is_directory(fs::path(folder) / "store"))
+      throw InputError(folder + ": no results (no folder 'store' in it)");
+  const Store store(out);
+  store.prepare();
+  std::size_t conflicts = 0;
+  for (const std::string& folder : folders)
+    if (fs::weakly_canonical(folder) != fs::weakly_canonical(out))
+      conflicts += copy_into(store, folder);
+
+  const std::vector<Planned> plan = planned(store.root());
+  std::set<std::string> missing_shards;
+  std::size_t there = 0;
+  for (const Planned& one : plan) {
+    if (store.find(one.key))
+      ++there;
+    else
+      missing_shards.insert(std::to_string(one.shard) + "/" + std::to_string(one.shards));
+  }
+  std::cout << there << "/" << plan.size() << " cases";
+  if (!missing_shards.empty()) {
+    std::cout << "; missing from shards";
+    for (const std::string& shard : missing_shards) std::cout << ' ' << shard;
+  }
+  std::cout << "\nstore " << store.digest() << '\n';
+  if (conflicts > 0) return kConflict;
+  return there == plan.size() ? kPass : kIncomplete;
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto folders = std::make_shared<std::vector<std::string>>();
+  const auto out = std::make_shared<std::string>(default_results());
+  arguments.option("DIR", *folders, "Results folders of shards").required();
+  arguments.option("--out", *out, "Where to (default: " + *out + ")");
+  return [folders, out] { return run(*folders, *out); };
+}
+
+}  // namespace
+}  // namespace taut::verb::merge
+
+TAUT_VERB(merge) = {
+    .name = "merge",
+    .summary = "Unites the results of shards and checks that no planned case is missing (exit 3)",
+    .example = "taut merge results/shard1 results/shard2 --out results/runs",
+    .bind = taut::verb::merge::bind};

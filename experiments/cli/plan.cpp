@@ -1,0 +1,73 @@
+#include <iomanip>
+#include <iostream>
+#include <memory>
+
+#include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut::verb::planning {
+
+namespace {
+
+Json to_json(const Case& one, const std::vector<PassCost>& plan) {
+  Json passes = Json::array();
+  for (const PassCost& cost : plan)
+    passes.push_back({{"pass", cost.pass},
+                      {"items", cost.items},
+                      {"repeats", cost.repeats},
+                      {"bytes", cost.bytes},
+                      {"projections", cost.projections}});
+  return {{"id", one.id}, {"key", one.key}, {"passes", passes}};
+}
+
+void print_text(const Case& one, const std::vector<PassCost>& plan) {
+  std::cout << one.id << "\nkey " << one.key << "\n\n"
+            << std::left << std::setw(24) << "pass" << std::right << std::setw(10) << "items"
+            << std::setw(10) << "repeats" << std::setw(12) << "bytes" << std::setw(16)
+            << "projections" << '\n';
+  std::size_t bytes = 0, projections = 0;
+  for (const PassCost& cost : plan) {
+    const std::size_t work = cost.projections ? cost.items * cost.repeats : 0;
+    bytes += cost.bytes, projections += work;
+    std::cout << std::left << std::setw(24) << cost.pass << std::right << std::setw(10)
+              << cost.items << std::setw(10) << cost.repeats << std::setw(12) << cost.bytes
+              << std::setw(16) << work << '\n';
+  }
+  std::cout << std::left << std::setw(44) << "in one step" << std::right << std::setw(12) << bytes
+            << std::setw(16) << projections << '\n';
+}
+
+int run(const Case& one, bool json) {
+  continue_in_right_program(one.choice);
+  if (const auto reasons = one.choice.entry->cannot(*one.scene, one.choice.params);
+      !reasons.empty()) {
+    std::cerr << one.id << " is unsupported:\n";
+    for (const std::string& reason : reasons) std::cerr << "  " << reason << '\n';
+    return kNothing;
+  }
+  const std::unique_ptr<Solver> solver = one.choice.entry->make(*one.scene, one.choice.params);
+  solver->load(one.scene->start);
+  if (json)
+    std::cout << to_text(to_json(one, solver->plan()), 2) << '\n';
+  else
+    print_text(one, solver->plan());
+  return kPass;
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto which = std::make_shared<CaseOptions>();
+  const auto json = std::make_shared<bool>(false);
+  which->bind(arguments);
+  arguments.flag("--json", *json, "Print JSON");
+  return [which, json] { return run(which->make(), *json); };
+}
+
+}  // namespace
+}  // namespace taut::verb::planning
+
+TAUT_VERB(plan) = {
+    .name = "plan",
+    .summary = "Shows the passes of one step, what they visit and what they hold in memory",
+    .example = "taut plan ball jakobsen:iterations=1,substeps=15",
+    .bind = taut::verb::planning::bind};

@@ -1,0 +1,155 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/report/axis.hpp"
+#include "experiments/report/curves.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/study/map.hpp"
+
+namespace taut::verb::plot {
+
+namespace {
+
+using report::FigureSpec;
+
+struct Options {
+  std::string study, preset, kind, x, y, title, results = default_results(), out;
+};
+
+/// What the command line asks for; without --kind, --x and --y the pictures that the study asks
+/// for.
+std::vector<FigureSpec> wanted(const Options& options, const Study& study) {
+  if (!options.kind.empty() || !options.x.empty() || !options.y.empty())
+    return {{.kind = options.kind.empty() ? "work-precision" : options.kind,
+             .x = options.x,
+             .y = options.y,
+             .title = options.title}};
+  std::vector<FigureSpec> specs;
+  for (const Plot& plot : study.plots) {
+    const auto option = [&](const char* name) {
+      const auto at = plot.options.find(name);
+      return at == plot.options.end() ? std::string() : at->second;
+    };
+    specs.push_back({.kind = plot.kind,
+                     .x = option("x"),
+                     .y = option("y"),
+                     .along = option("along"),
+                     .title = option("title"),
+                     .file = option("file")});
+  }
+  if (specs.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
+  return specs;
+}
+
+/// Keeps the cases at the commonest value of what is not on x, and says so: in the title and, if
+/// that leaves out cases, on standard error.
+std::string hold(const FigureSpec& spec, std::vector<Record>& records, const std::string& scene) {
+  const std::string held = spec.x == "dt" ? "iterations" : "dt";
+  report::Slice slice = report::most_common(records, held, held == "dt" ? 1.0 / 64 : 8);
+  const std::size_t left_out = records.size() - slice.records.size();
+  records = std::move(slice.records);
+  if (left_out == 0) return "";
+  const std::string at = report::quantity(held).text(slice.value, 3);
+  const std::string setting = held == "dt" ? "dt = " + at : at + " sweeps";
+  std::cerr << scene << ", " << spec.y << " over " << spec.x << ": " << setting << "; " << left_out
+            << " cases at other values are not drawn\n";
+  return ", " + setting;
+}
+
+/// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
+int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Record>& inferred,
+         const std::string& scene, const Store& store, const std::filesystem::path& out) {
+  const report::FigureEntry& entry = report::find_figure(spec.kind);
+  if (spec.x.empty()) spec.x = entry.x;
+  if (spec.y.empty()) spec.y = entry.y;
+  const auto here = [&](const std::vector<Record>& all) {
+    std::vector<Record> chosen;
+    for (const Record& r : all)
+      if (r.scene == scene) chosen.push_back(r);
+    return chosen;
+  };
+  std::vector<Record> records = here(study.records);
+  const std::vector<Record> guessed =
+      spec.kind == "stability" ? here(inferred) : std::vector<Record>{};
+  if (spec.kind == "scaling") spec.slope = 1;
+  const std::string held = spec.kind == "stability" ? "" : hold(spec, records, scene);
+  std::vector<report::TimeSeries> series;
+  if (spec.kind == "series") series = report::stored_series(records, spec.y, store);
+  if (const auto slope = study.slopes.find(scene); slope != study.slopes.end() &&
+                                                   spec.kind == "error-iterations" &&
+                                                   spec.y.starts_with("stretch."))
+    spec.slope = slope->second;
+  spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
+  spec.file = report::slug(
+      scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
+  const report::Figure figure = report::make_figure(spec, {records, series, guessed}, out);
+  std::cout << figure.svg.string() << '\n' << figure.pdf.string() << '\n';
+  return 1;
+}
+
+int run(const Options& options) {
+  if (!options.kind.empty()) report::find_figure(options.kind);
+  const Study study = load_study(options.study, options.preset);
+  const Store store(options.results);
+  const report::ReportInput input = report::stored_results({study}, store);
+  const report::StudyResult& result = input.studies.front();
+  if (result.records.empty())
+    throw InputError("none of the " + std::to_string(result.planned) + " cases of study '" +
+                     study.name + "' is in " + options.results +
+                     " as this build would run them; taut run makes them");
+  const std::vector<Record> inferred = inferred_records(study, store);
+  const std::filesystem::path out =
+      options.out.empty() ? std::filesystem::path(options.results) / "figures" /
+                                (study.name + (study.preset.empty() ? "" : "-" + study.preset))
+                          : std::filesystem::path(options.out);
+  int drawn = 0;
+  try {
+    for (const FigureSpec& spec : wanted(options, study))
+      for (const report::SceneInfo& scene : input.scenes) try {
+          drawn += draw(spec, result, inferred, scene.name, store, out);
+        } catch (const InputError& error) {
+          std::cerr << scene.name << ": " << error.what() << '\n';
+        }
+  } catch (const report::PlotError& error) {
+    std::cerr << error.what() << '\n';
+    return kEnvironment;
+  }
+  return drawn > 0 ? kPass : kNothing;
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto options = std::make_shared<Options>();
+  std::string kinds;
+  for (const report::FigureEntry* entry : report::figures())
+    kinds += (kinds.empty() ? "" : ", ") + std::string(entry->name);
+  arguments.option("STUDY", options->study, "Name or path of a study that was run").required();
+  arguments.option("--preset", options->preset, "The preset under which it was run");
+  arguments.option("--kind", options->kind,
+                   "One of: " + kinds + " (default: what the study asks for)");
+  arguments.option("--x", options->x,
+                   "Value on x: dt, iterations, projections or a metric's value");
+  arguments.option("--y", options->y, "Value on y, such as stretch.rms");
+  arguments.option("--title", options->title, "Title above the figure");
+  arguments.option("--results", options->results,
+                   "Results folder (default: " + options->results + ")");
+  arguments.option(
+      "--out", options->out,
+      "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::plot
+
+TAUT_VERB(plot) = {.name = "plot",
+                   .summary = "Draws the figures of a study: SVG, PDF, gnuplot script and CSV",
+                   .example =
+                       "taut plot iterations --preset quick\n  taut plot time-steps --kind "
+                       "stability --out figures\n  taut plot iterations --x projections "
+                       "--y stretch.max",
+                   .bind = taut::verb::plot::bind};

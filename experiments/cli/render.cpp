@@ -1,0 +1,250 @@
+#include <unistd.h>
+
+#include <chrono>
+#include <iostream>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/film/takes.hpp"
+#include "experiments/render/figure.hpp"
+#include "experiments/render/obj_export.hpp"
+#include "experiments/render/video.hpp"
+
+namespace taut::verb::render {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  TakeRequest what;
+  std::vector<std::string> at;
+  std::string duration, dt, view = "three-quarter", colour = "strain", exported, out;
+  std::string size, quality;
+  double range = 0;
+  bool sheet = false, video = false, dark = false;
+};
+
+/// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere. The end
+/// says what one took: "frame 80/80  0.15 s each".
+class Countdown {
+ public:
+  explicit Countdown(std::string what) : what_(std::move(what)) {}
+  void operator()(int done, int total) const {
+    if (!terminal_ && done != total && done % std::max(1, total / 10) != 0) return;
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+    const int left = static_cast<int>(spent.count() * (total - done) / done + 0.5);
+    char text[80];
+    if (done < total)
+      std::snprintf(text, sizeof text, " %d/%d  left %d:%02d", done, total, left / 60, left % 60);
+    else
+      std::snprintf(text, sizeof text, " %d/%d  %.2g s each", done, total, spent.count() / total);
+    std::cerr << (terminal_ ? "\r\033[K" : "") << what_ << text;
+    if (!terminal_ || done == total) std::cerr << '\n';
+    std::cerr << std::flush;
+  }
+
+ private:
+  std::string what_;
+  bool terminal_ = isatty(2) == 1;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::pair<int, int> parse_size(const std::string& text) {
+  int width = 0, height = 0;
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &end) != 2 || width < 320 ||
+      height < 240 || width > 7680 || height > 4320 || width % 2 != 0 || height % 2 != 0)
+    throw InputError("--size '" + text + "': WIDTHxHEIGHT, even, 320x240 to 7680x4320");
+  return {width, height};
+}
+
+RenderQuality parse_quality(const std::string& name) {
+  if (name == "draft") return RenderQuality::draft();
+  if (name == "video") return RenderQuality::video();
+  return RenderQuality::still();
+}
+
+StudioOptions look_of(const Options& options, const std::string& quality, int width, int height) {
+  StudioOptions look;
+  look.width = width, look.height = height;
+  look.theme = options.dark ? StageTheme::dark() : StageTheme::paper();
+  look.quality = parse_quality(options.quality.empty() ? quality : options.quality);
+  look.view = parse_view(options.view);
+  look.quantity = parse_quantity(options.colour);
+  look.range = options.range / (look.quantity == Quantity::strain        ? 100
+                                : look.quantity == Quantity::penetration ? 1000
+                                                                         : 1);
+  return look;
+}
+
+void tell_written(const fs::path& file) { std::cout << file.string() << '\n'; }
+
+/// Files of several moments get the time into their names: ball-t0.50.png.
+void draw_stills(const Options& options, const TakeSet& set, const std::vector<double>& times,
+                 const fs::path& out) {
+  const auto [width, height] = parse_size(options.size.empty() ? "1920x1080" : options.size);
+  const PageLayout layout(width, height, static_cast<int>(set.takes.size()));
+  StudioOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
+  look.frame = Frame::beside_inset();
+  look.from = times.front(), look.to = times.back();
+  const Studio studio(set.scene, set.takes, look);
+  const Countdown countdown("still");
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    fs::path file = out;
+    char suffix[32];
+    std::snprintf(suffix, sizeof suffix, "-t%.2f", times[k]);
+    if (times.size() > 1)
+      file.replace_filename(out.stem().string() + suffix + out.extension().string());
+    write_png(file, compose(studio, layout, times[k]));
+    countdown(static_cast<int>(k) + 1, static_cast<int>(times.size()));
+    tell_written(file);
+  }
+}
+
+void draw_sheet(const Options& options, const TakeSet& set, const std::vector<double>& times,
+                const fs::path& out) {
+  const auto [width, height] = parse_size(options.size.empty() ? "480x400" : options.size);
+  StudioOptions look = look_of(options, "video", width, height);
+  look.from = times.front(), look.to = times.back();
+  const Studio studio(set.scene, set.takes, look);
+  write_png(out, compose_sheet(studio, times));
+  tell_written(out);
+}
+
+/// Without ffmpeg: the last frame as a poster and five moments as a strip.
+void draw_video(const Options& options, const TakeSet& set, const fs::path& out) {
+  const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
+  const PageLayout layout(width, height, static_cast<int>(set.takes.size()));
+  StudioOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
+  look.frame = Frame::beside_inset();
+  const Studio studio(set.scene, set.takes, look);
+  const double dt = set.scene.dt;
+  const int stride = std::max(1, static_cast<int>(1 / (30 * dt) + 0.5));
+  const int frames = set.scene.steps / stride + 1;
+  VideoWriter video(out, {width, height, frame_rate(stride * dt), 22});
+  const Countdown countdown("frame");
+  for (int k = 0; k < frames && video.write(compose(studio, layout, k * stride * dt)); ++k)
+    countdown(k + 1, frames);
+  const std::string why = video.finish();
+  if (why.empty()) return tell_written(out);
+  std::cerr << out.string() << ": " << why << "; a poster and a strip of five frames instead\n";
+  fs::path poster = out, strip = out;
+  poster.replace_extension(".png");
+  strip.replace_filename(out.stem().string() + "-strip.png");
+  write_png(poster, compose(studio, layout, set.scene.duration()));
+  Image five(width, 5 * height);
+  for (int k = 0; k < 5; ++k)
+    five.paste(compose(studio, layout, set.scene.duration() * k / 4), 0, k * height);
+  write_png(strip, five);
+  tell_written(poster);
+  tell_written(strip);
+}
+
+void export_frames(const TakeSet& set, const fs::path& folder) {
+  const int stride = std::max(1, static_cast<int>(1 / (30 * set.scene.dt) + 0.5));
+  for (std::size_t k = 0; k < set.takes.size(); ++k) {
+    const std::string& solver = set.takes[k].trajectory.header.solver;
+    const std::string prefix =
+        set.scene.name + "_" + std::to_string(k + 1) + "_" + solver.substr(0, solver.find(':'));
+    export_obj(set.scene, set.takes[k], folder, prefix, stride, Countdown("file"));
+  }
+  tell_written(folder);
+}
+
+fs::path output(const Options& options, const std::string& scene) {
+  if (!options.out.empty()) return options.out;
+  if (!options.exported.empty()) return scene + "-obj";
+  return scene + (options.video ? ".mp4" : options.sheet ? "-sheet.png" : ".png");
+}
+
+/// What is wrong with the name of the output is said before anything is simulated.
+void check_output(const Options& options) {
+  if (options.video + options.sheet + !options.exported.empty() > 1)
+    throw InputError("only one of --video (or -o NAME.mp4), --sheet and --export");
+  if (options.out.empty() || !options.exported.empty()) return;
+  if (fs::is_directory(options.out))
+    throw InputError("-o " + options.out + " is a folder; name the file");
+  const std::string suffix = options.video ? ".mp4" : ".png";
+  if (!options.out.ends_with(suffix))
+    throw InputError("-o " + options.out + ": what is drawn here ends in " + suffix);
+}
+
+int run(Options options) {
+  if (options.out.ends_with(".mp4")) options.video = true;
+  check_output(options);
+  const std::size_t panels = options.what.solvers.size() + options.what.files.size();
+  if (panels == 0 || panels > 4)
+    throw InputError(
+        "one to four --solver or --trajectory, for example --solver jakobsen --solver bullet");
+  if (!options.dt.empty()) options.what.overrides.push_back("time.dt=\"" + options.dt + "\"");
+  if (!options.duration.empty())
+    options.what.overrides.push_back("time.duration=\"" + options.duration + "\"");
+  std::vector<double> times;
+  for (const std::string& at : options.at) times.push_back(parse_number(at));
+  std::ranges::sort(times);
+  if (!times.empty() && times.front() < 0) throw InputError("--at: times are not negative");
+  const bool moving = options.video || !options.exported.empty();
+  if (!times.empty() && !moving && options.duration.empty())  // nothing later will be seen
+    options.what.overrides.push_back("time.duration=" + std::to_string(times.back() + 1e-4));
+  parse_view(options.view), parse_quantity(options.colour);
+  if (!options.size.empty()) parse_size(options.size);
+  const TakeSet set =
+      make_takes(options.what, [](const std::string& text) { std::cerr << text << '\n'; });
+  if (!times.empty() && times.back() > set.scene.duration() + set.scene.dt)
+    throw InputError("--at " + options.at.back() + " is after the end: see --duration");
+  const fs::path out = output(options, set.scene.name);
+  if (!options.exported.empty()) return export_frames(set, out), kPass;
+  if (options.video) return draw_video(options, set, out), kPass;
+  const double end = set.scene.duration();
+  if (times.empty() && options.sheet)
+    times = {0, end / 8, end / 4, end / 2, end};
+  else if (times.empty())
+    times = {end};
+  options.sheet ? draw_sheet(options, set, times, out) : draw_stills(options, set, times, out);
+  return kPass;
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto o = std::make_shared<Options>();
+  arguments.option("SCENE", o->what.scene, "Name of a shipped scene, or a path").required();
+  arguments.option("--solver", o->what.solvers, "NAME or NAME:key=value,...; one to four of them")
+      .repeated();
+  arguments
+      .option("--trajectory", o->what.files,
+              "A motion of this scene kept by `taut case --trajectory`, in a panel of its own")
+      .repeated();
+  arguments.option("--at", o->at, "Moments to draw [s]; default: the end").repeated();
+  arguments.flag("--sheet", o->sheet, "One picture, a row for each moment");
+  arguments.flag("--video", o->video, "H.264 video in real time (so does -o NAME.mp4)");
+  arguments.option("--view", o->view,
+                   "three-quarter, front, back, left, right, top, or AZIMUTH,ELEVATION in degrees");
+  arguments.option("--colour", o->colour, "strain, penetration or speed");
+  arguments.option("--range", o->range, "End of the colour bar, in its unit (%, mm, m/s)")
+      .positive();
+  arguments.option("--export", o->exported, "obj: a Wavefront file per frame into the folder -o")
+      .one_of({"obj"});
+  arguments.option("--duration", o->duration, "Simulated time [s]");
+  arguments.option("--dt", o->dt, "Time step [s], a number or a fraction such as 1/120");
+  arguments.option("--set", o->what.overrides, "Replace a key of the scene: 'cloth.grid=[65, 65]'")
+      .repeated();
+  arguments.option("--size", o->size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
+  arguments.option("--quality", o->quality, "draft, video or still")
+      .one_of({"draft", "video", "still"});
+  arguments.flag("--dark", o->dark, "The dark stage of the report");
+  arguments.option("-o,--out", o->out, "File (.png, .mp4) or, for --export, folder");
+  return [o] { return run(*o); };
+}
+
+}  // namespace
+}  // namespace taut::verb::render
+
+TAUT_VERB(render) = {
+    .name = "render",
+    .summary = "Pictures and videos of solvers side by side",
+    .example =
+        "taut render ball --solver jakobsen --solver bullet:substeps=5 --at 0.6\n"
+        "  taut render flag --solver jakobsen --solver bullet:substeps=5 --video --duration 4\n"
+        "  taut render ball --trajectory run.traj --solver bullet:substeps=5 --sheet",
+    .bind = taut::verb::render::bind};

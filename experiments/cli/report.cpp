@@ -1,0 +1,130 @@
+#include "experiments/report/report.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/case/fingerprint.hpp"
+#include "experiments/command_line/program.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/film/film.hpp"
+#include "experiments/report/findings.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/study/map.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::verb::reporting {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> studies, films;
+  std::string preset, results = default_results(), out = "report.html";
+  bool no_media = false;
+};
+
+std::string command_line(const Options& options) {
+  std::string run = "./taut run";
+  if (options.studies.empty())
+    return run + (options.preset.empty() ? "" : " --preset " + options.preset);
+  for (const std::string& study : options.studies) run += " " + study;
+  if (!options.preset.empty()) run += " --preset " + options.preset;
+  std::string report = "./taut report";
+  for (const std::string& study : options.studies) report += " " + study;
+  if (!options.preset.empty()) report += " --preset " + options.preset;
+  for (const std::string& scene : options.films) report += " --film " + scene;
+  return run + " && " + report;
+}
+
+/// Every solver with what it cannot do on the shipped scenes at its default settings.
+std::vector<report::SolverInfo> introductions() {
+  std::vector<report::SolverInfo> all;
+  for (const SolverEntry* entry : solvers())
+    all.push_back(
+        {std::string(entry->name), std::string(entry->summary), std::string(entry->source), {}});
+  for (const std::string& name : shipped("scenes")) {
+    const Scene scene = load_scene(find_scene(name));
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (const std::string& reason :
+           solvers()[i]->cannot(scene, parse_solver(all[i].name).params)) {
+        auto& reasons = all[i].cannot;
+        auto at = std::ranges::find(reasons, reason, [](const auto& r) { return r.first; });
+        if (at == reasons.end()) at = reasons.insert(reasons.end(), {reason, {}});
+        at->second.push_back(name);
+      }
+  }
+  return all;
+}
+
+/// "20261121T205040Z" as people write it: "2026-11-21 20:50 UTC".
+std::string readable(const std::string& stamp) {
+  return stamp.substr(0, 4) + "-" + stamp.substr(4, 2) + "-" + stamp.substr(6, 2) + " " +
+         stamp.substr(9, 2) + ":" + stamp.substr(11, 2) + " UTC";
+}
+
+int run(Options options) {
+  const std::string command = command_line(options);
+  if (options.studies.empty()) {
+    options.studies = {"iterations", "time-steps", "penetration"};
+    if (options.films.empty()) options.films = shipped("scenes");
+    if (options.preset.empty()) options.preset = "quick";
+  }
+  const std::filesystem::path page = options.out;
+  if (std::filesystem::is_directory(page))
+    throw InputError(options.out + " is a folder; name the page: -o " +
+                     (page / "report.html").string());
+  if (page.has_parent_path()) std::filesystem::create_directories(page.parent_path());
+  std::vector<Study> studies;
+  for (const std::string& name : options.studies)
+    studies.push_back(load_study(name, options.preset));
+  const Store store(options.results);
+  report::ReportInput input = report::stored_results(studies, store);
+  std::vector<Study> maps;
+  for (const std::string& name : shipped_maps())
+    maps.push_back(load_study(name, options.preset.empty() ? "quick" : options.preset));
+  input.maps = report::stored_maps(maps, store);
+  input.command = command;
+  input.solvers = introductions();
+  const std::string program = program_digest();
+  input.provenance = {{"version", "program " + program.substr(0, 10)},
+                      {"made", readable(utc_stamp())},
+                      {"built with", std::string(toolchain())},
+                      {"preset", options.preset}};
+  if (options.preset.empty()) input.provenance.pop_back();
+  input.truths = report::stored_truths(options.results, program);
+  input.regressions = report::stored_regressions(options.results, program);
+  if (!options.no_media)
+    film_scenes(input, options.films, [](const std::string& news) { std::cerr << news << '\n'; });
+  std::cout << report::write_report(input, options.out).string() << '\n';
+  return kPass;
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto options = std::make_shared<Options>();
+  arguments.option("STUDY", options->studies,
+                   "Names or paths of studies; none: the main job, preset quick");
+  arguments.option("--preset", options->preset, "The preset under which the studies were run");
+  arguments.option("--results", options->results,
+                   "Results folder (default: " + options->results + ")");
+  arguments
+      .option("--film", options->films,
+              "Also films this scene (name or path), which no study ran; none and no STUDY: all "
+              "shipped scenes")
+      .repeated();
+  arguments.flag("--no-media", options->no_media, "Without pictures and videos");
+  arguments.option("-o,--out", options->out, "The page (default: report.html)");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::reporting
+
+TAUT_VERB(report) = {.name = "report",
+                     .summary = "Writes the comparison of stored results as one HTML page",
+                     .example = "taut report\n  taut report iterations --preset quick -o hang.html",
+                     .bind = taut::verb::reporting::bind};

@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/command_line/program.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/truths/truth.hpp"
+
+namespace taut::verb::verify {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> names, solvers;
+  int section = 0, jobs = 2;
+  bool json = false, verbose = false, quiet = false;
+  std::string out;
+};
+
+struct Outcome {
+  const TruthEntry* truth = nullptr;
+  std::vector<Finding> findings;
+  double seconds = 0;
+};
+
+std::vector<const TruthEntry*> choose(const Options& options) {
+  std::vector<std::string> known;
+  for (const TruthEntry* truth : truths()) known.emplace_back(truth->name);
+  for (const std::string& name : options.names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw InputError("unknown truth '" + name + "'" + suggestion(name, known) +
+                       " (`taut verify --list` names all)");
+  for (const std::string& solver : options.solvers)
+    if (solver != "reference") find_solver(solver);
+  std::vector<const TruthEntry*> chosen;
+  for (const TruthEntry* truth : truths()) {
+    const bool named =
+        options.names.empty() ||
+        std::find(options.names.begin(), options.names.end(), truth->name) != options.names.end();
+    if (named && (options.section == 0 || truth->section == options.section))
+      chosen.push_back(truth);
+  }
+  std::sort(chosen.begin(), chosen.end(), [](const TruthEntry* a, const TruthEntry* b) {
+    return std::pair(a->section, a->row) < std::pair(b->section, b->row);
+  });
+  return chosen;
+}
+
+/// Checks the truths on `jobs` threads; outcomes stay in the catalogue's order.
+std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const Options& options) {
+  std::vector<Outcome> outcomes(chosen.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < chosen.size(); i = next++) {
+      const auto start = std::chrono::steady_clock::now();
+      Ledger ledger(options.solvers);
+      chosen[i]->check(ledger);
+      outcomes[i] = {
+          chosen[i], ledger.findings(),
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int j = 1; j < options.jobs; ++j) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  return outcomes;
+}
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const std::vector<Outcome>& outcomes) {
+  Json list = Json::array();
+  for (const auto& [truth, findings, seconds] : outcomes) {
+    Json rows = Json::array();
+    for (const Finding& f : findings)
+      rows.push_back({{"subject", f.subject},
+                      {"quantity", f.quantity},
+                      {"unit", f.unit},
+                      {"measured", number(f.measured)},
+                      {"expected", number(f.expected)},
+                      {"tolerance", number(f.tolerance)},
+                      {"uncertainty", number(f.uncertainty)},
+                      {"verdict", to_string(f.verdict)},
+                      {"why", f.why}});
+    list.push_back({{"name", truth->name},
+                    {"section", truth->section},
+                    {"section_title", section_title(truth->section)},
+                    {"row", truth->row},
+                    {"statement", truth->statement},
+                    {"source", truth->source},
+                    {"findings", rows}});
+  }
+  return {{"schema", "taut-truths-1"}, {"program", program_digest()}, {"truths", list}};
+}
+
+std::string value(double v) {
+  std::ostringstream text;
+  text.precision(std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3);
+  text << v;
+  return text.str();
+}
+
+std::string line(const Finding& f) {
+  std::string text = std::string(to_string(f.verdict)) + "  " + f.subject;
+  if (f.verdict == TruthVerdict::not_claimed) return text + ": " + f.why;
+  text += ": " + f.quantity + " " + value(f.measured);
+  if (f.uncertainty > 0) text += " +- " + value(f.uncertainty);
+  if (f.unit != "1") text += " " + f.unit;
+  if (f.expected == 0)
+    text += " (at most " + value(f.tolerance) + ")";
+  else
+    text += " (" + value(f.expected) + " +- " + value(f.tolerance) + ")";
+  return f.why.empty() ? text : text + ": " + f.why;
+}
+
+/// For each subject its worst finding only, unless `all`.
+std::vector<Finding> worst_by_subject(const std::vector<Finding>& findings) {
+  const auto badness = [](const Finding& f) {
+    const double off = std::abs(f.measured - f.expected);
+    const double share = f.tolerance > 0 ? off / f.tolerance : off;
+    return std::pair(f.verdict, std::isnan(share) ? 1e300 : share);
+  };
+  std::vector<Finding> worst;
+  for (const Finding& f : findings) {
+    const auto same = std::find_if(worst.begin(), worst.end(),
+                                   [&](const Finding& w) { return w.subject == f.subject; });
+    if (same == worst.end())
+      worst.push_back(f);
+    else if (badness(f) > badness(*same))
+      *same = f;
+  }
+  return worst;
+}
+
+void print_table(const std::vector<Outcome>& outcomes, bool verbose) {
+  int section = 0;
+  for (const auto& [truth, findings, seconds] : outcomes) {
+    if (truth->section != section) {
+      section = truth->section;
+      std::cout << '\n' << section << "  " << section_title(section) << '\n';
+    }
+    std::cout << "  " << truth->section << '.' << truth->row << ' ' << truth->name << ": "
+              << truth->statement;
+    if (verbose) std::cout << " [" << truth->source << "; " << value(seconds) << " s]";
+    std::cout << '\n';
+    for (const Finding& f : verbose ? findings : worst_by_subject(findings))
+      std::cout << "      " << line(f) << '\n';
+  }
+}
+
+int summary(const std::vector<Outcome>& outcomes) {
+  std::size_t counts[4] = {}, broken_truths = 0, findings = 0;
+  for (const Outcome& outcome : outcomes) {
+    bool broken = false;
+    for (const Finding& f : outcome.findings) {
+      ++counts[static_cast<std::size_t>(f.verdict)], ++findings;
+      broken = broken || f.verdict == TruthVerdict::broken;
+    }
+    broken_truths += broken;
+  }
+  std::cerr << outcomes.size() << " truths, " << findings << " numbers: " << counts[0]
+            << " passed, " << counts[1] << " deviate as explained, " << counts[2]
+            << " not claimed, " << counts[3] << " broken";
+  if (broken_truths > 0) std::cerr << " in " << broken_truths << " truths";
+  std::cerr << '\n';
+  if (counts[3] > 0) return kRegression;
+  return counts[0] + counts[1] > 0 ? kPass : kNothing;
+}
+
+int run(const Options& options) {
+  const std::vector<Outcome> outcomes = check(choose(options), options);
+  const std::string json = to_text(to_json(outcomes), 1);
+  if (!options.out.empty()) {
+    std::ofstream file(options.out);
+    file << json << '\n';
+    if (!file.flush()) throw InputError("cannot write '" + options.out + "'");
+  }
+  if (options.json)
+    std::cout << json << '\n';
+  else if (!options.quiet)
+    print_table(outcomes, options.verbose);
+  return summary(outcomes);
+}
+
+int list() {
+  for (const TruthEntry* truth : choose({}))
+    std::cout << truth->section << '.' << truth->row << '\t' << truth->name << '\t'
+              << truth->statement << '\n';
+  return kPass;
+}
+
+std::function<int()> bind(Arguments& arguments) {
+  const auto options = std::make_shared<Options>();
+  const auto only_list = std::make_shared<bool>(false);
+  arguments.option("TRUTH", options->names, "Truths to check by name; all if none is given");
+  arguments.option("--solver", options->solvers,
+                   "Only what binds these solvers (\"reference\": the references)");
+  arguments.option("--section", options->section, "Only one section of the catalogue").range(1, 10);
+  arguments
+      .option("-j,--jobs", options->jobs,
+              "Threads (default: " + std::to_string(options->jobs) + ")")
+      .range(1, 64);
+  arguments.option("-o,--out", options->out, "Also write the findings as JSON to this file");
+  arguments.flag("--json", options->json, "Findings as JSON instead of a table");
+  arguments.flag("--quiet", options->quiet, "Only the line that sums it up");
+  arguments.flag("--verbose", options->verbose, "Every number, with sources and times");
+  arguments.flag("--list", *only_list, "Only name the truths");
+  return [options, only_list] { return *only_list ? list() : run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::verify
+
+TAUT_VERB(verify) = {.name = "verify",
+                     .summary =
+                         "Holds solvers, references and metrics to closed forms and "
+                         "published numbers; exit 1 when a truth breaks",
+                     .example =
+                         "taut verify --section 4 --solver jakobsen\n"
+                         "  taut verify hanging-chain-sweeps --verbose",
+                     .bind = taut::verb::verify::bind};

@@ -1,0 +1,134 @@
+#include "experiments/command_line/baseline_study.hpp"
+
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <thread>
+
+#include "experiments/baseline/frontier_baseline.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/study/store.hpp"
+
+namespace taut {
+
+namespace {
+
+/// Runs what the store lacks; true if all went its way.
+void run_missing(const std::vector<Case>& cases, const Store& store, const BaselineOptions& options,
+                 BaselineStudy& result) {
+  store.prepare();
+  const Session session(store, "taut check " + result.name, cases, {});
+  Progress progress;
+  const Tally tally = run_cases(
+      cases, store, session,
+      {.jobs = options.jobs,
+       .limits = {},
+       .shard = {},
+       .only_failed = false,
+       .progress = [&](const Tally& t, const Record* record) { progress.show(t, record); }});
+  progress.finish(tally);
+  result.conflict = tally.conflicts > 0;
+  result.interrupted = tally.interrupted;
+}
+
+/// Runs all cases again, beside the store, and marks those whose result is not the same to the bit.
+void mark_flaky(const std::vector<Case>& cases, const Store& store, const BaselineOptions& options,
+                BaselineStudy& result) {
+  const std::filesystem::path folder = std::filesystem::path(options.out) / "again";
+  std::filesystem::remove_all(folder);
+  const Store second(folder.string());
+  run_missing(cases, second, options, result);
+  for (const Case& one : cases) {
+    const auto a = store.find(one), b = second.find(one);
+    if (!a || !b || (a->digest == b->digest && a->status.step == b->status.step)) continue;
+    for (BaselineRow& row : result.now) row.flaky = row.flaky || row.id == one.id;
+    std::cout << result.name << ": " << one.id << ": does not repeat bit for bit: flaky\n";
+  }
+  std::filesystem::remove_all(folder);
+}
+
+void add_frontiers(const Store& store, const BaselineOptions& options, BaselineStudy& result) {
+  const std::vector<FrontierQuestion> questions = read_frontiers(result.folder);
+  if (questions.empty()) return;
+  const Session session(store, "taut check " + result.name, {}, {});
+  for (const FrontierQuestion& question : questions) {
+    const CaseFrontier found = find_frontier(
+        question, store, session,
+        {.jobs = options.jobs, .limits = {}, .shard = {}, .only_failed = false, .progress = {}});
+    result.interrupted = result.interrupted || found.interrupted;
+    if (found.frontier.kind == Frontier::Kind::not_answered)
+      result.not_run.push_back(frontier_id(question));
+    else
+      result.now.push_back(frontier_row(question, found));
+  }
+}
+
+const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
+  for (const BaselineRow& row : rows)
+    if (row.id == id) return &row;
+  return nullptr;
+}
+
+}  // namespace
+
+void BaselineOptions::bind(Arguments& arguments) {
+  out = default_results();
+  jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  arguments.option("--baselines", baselines,
+                   "Folder of the baselines (default: " + baselines + ")");
+  arguments.option("--out", out, "Results folder (default: " + out + ")");
+  arguments.option("-j,--jobs", jobs, "Cases at a time (default: one per core)").range(1, 1024);
+}
+
+Comparison BaselineStudy::compare() const {
+  const std::set<std::string> left_out(not_run.begin(), not_run.end());
+  Baseline known = before;
+  std::erase_if(known, [&](const BaselineRow& row) { return left_out.count(row.id) > 0; });
+  return taut::compare(known, now, tolerances);
+}
+
+BaselineStudy baseline_study(const std::string& name, const BaselineOptions& options,
+                             bool needs_baseline) {
+  const Study study = load_study(name);
+  BaselineStudy result;
+  result.name = study.name;
+  result.folder = std::filesystem::path(options.baselines) / study.name;
+  result.tolerances = read_tolerances(result.folder);
+  result.before = read_baseline(result.folder);
+  std::ifstream made_with(result.folder / kToolchainFile);
+  std::getline(made_with, result.toolchain);
+  if (result.before.empty() && needs_baseline) return result;
+
+  const Store store(options.out);
+  const std::vector<Case> cases = plan(study);
+  run_missing(cases, store, options, result);
+  std::map<const Scene*, std::string> digests;
+  for (const Case& one : cases) {
+    const auto record = store.find(one);
+    if (!record) {
+      result.not_run.push_back(one.id);
+      continue;
+    }
+    std::string& scene = digests[one.scene.get()];
+    if (scene.empty()) scene = digest(*one.scene);
+    result.now.push_back(baseline_row(*record, scene));
+  }
+  if (options.repeat) mark_flaky(cases, store, options, result);
+  add_frontiers(store, options, result);
+  return result;
+}
+
+void print_findings(const BaselineStudy& study, const Comparison& comparison) {
+  for (std::size_t i = 0; i < comparison.findings.size(); ++i) {
+    const Change& finding = comparison.findings[i];
+    const std::string what = finding.id.empty() ? "solver " + finding.solver : finding.id;
+    std::cout << study.name << ": " << what << ": " << finding.text << '\n';
+    const bool last =
+        i + 1 == comparison.findings.size() || comparison.findings[i + 1].id != finding.id;
+    const BaselineRow* row = find_row(study.now, finding.id);
+    if (last && row) std::cout << "    " << reproduce(*row) << '\n';
+  }
+}
+
+}  // namespace taut

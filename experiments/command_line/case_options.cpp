@@ -1,0 +1,44 @@
+#include "experiments/command_line/case_options.hpp"
+
+#include <unistd.h>
+
+#include <fstream>
+
+#include "core/model/input_error.hpp"
+#include "experiments/system/data.hpp"
+
+namespace taut {
+
+void CaseOptions::bind(Arguments& arguments) {
+  arguments.option("SCENE", scene_, "Name of a shipped scene, or a path").required();
+  arguments.option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)").required();
+  arguments.option("--dt", dt_, "Time step [s], a number or a fraction such as 1/120");
+  arguments.option("--duration", duration_, "Simulated time [s]");
+  arguments.option("--set", settings_, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
+      .repeated();
+}
+
+CaseSpec CaseOptions::spec() const {
+  CaseSpec spec{scene_, settings_, solver_};
+  if (!dt_.empty()) spec.overrides.push_back("time.dt=\"" + dt_ + "\"");
+  if (!duration_.empty()) spec.overrides.push_back("time.duration=\"" + duration_ + "\"");
+  return spec;
+}
+
+Case CaseOptions::make() const { return make_case(spec()); }
+
+void continue_in_right_program(const SolverChoice& choice) {
+  const std::string needed(choice.entry->program ? choice.entry->program(choice.params) : "");
+  if (needed.empty() || needed == this_program().filename()) return;
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(in, word, '\0');) words.push_back(word);
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const std::string program = sibling_program(needed);
+  execv(program.c_str(), argv.data());
+  throw InputError(choice.brief() + " needs the program " + program + ", which cannot be run");
+}
+
+}  // namespace taut

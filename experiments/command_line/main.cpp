@@ -1,0 +1,4 @@
+// The program: `taut VERB ...`. Each verb is a file in experiments/cli.
+#include "experiments/command_line/invoke.hpp"
+
+int main(int argc, char** argv) { return taut::command_line(argc, argv); }

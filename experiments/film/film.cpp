@@ -1,0 +1,230 @@
+#include "experiments/film/film.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/film/takes.hpp"
+#include "experiments/render/media.hpp"
+#include "experiments/report/comparison.hpp"
+#include "experiments/system/data.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr int kScenesAtATime = 2;
+constexpr double kSeconds = 3;  ///< of a film
+constexpr std::size_t kMostPanels = 4;
+
+/// One scene to be filmed: who runs it and who does not.
+struct Film {
+  std::string scene, summary;
+  TakeRequest request;
+  std::vector<std::string> labels;  ///< of the contenders, in the order of the request's solvers
+  std::vector<std::pair<std::string, std::string>> refused;  ///< solver, why
+  double speed = 1;
+  bool studied = true;
+};
+
+/// The case of this contender that pictures show: the quoted sweeps, dt nearest to 1/64 s.
+const Record* shown_case(const report::Contender& contender, const std::string& scene, int sweeps) {
+  const Record* best = nullptr;
+  const auto distance = [](const Record& r) { return std::abs(std::log(r.dt * 64)); };
+  for (const Record& r : contender.records) {
+    if (r.scene != scene || !report::quoted_at(r, sweeps)) continue;
+    if (!best || distance(r) < distance(*best)) best = &r;
+  }
+  return best;
+}
+
+Film studied_film(const report::Comparison& facts, const std::string& scene) {
+  Film film{.scene = scene};
+  for (const report::Contender& contender : facts.contenders) {
+    const Record* one = shown_case(contender, scene, facts.sweeps);
+    if (!one || film.request.solvers.size() == kMostPanels) continue;
+    if (one->status.kind == Status::Kind::unsupported) {
+      film.refused.emplace_back(contender.solver, one->status.reason);
+      continue;
+    }
+    film.request.scene = one->spec.scene, film.request.overrides = one->spec.overrides;
+    film.request.solvers.push_back(one->spec.solver);
+  }
+  return film;
+}
+
+/// A thrown sheet is gone before anybody has seen it: it takes half a second to cross its own size,
+/// at no less than an eighth of real time.
+double watchable_speed(const Scene& scene) {
+  double fastest = 0;
+  for (const Vec3& v : scene.start.v) fastest = std::max(fastest, v.norm());
+  for (const double speed : {1.0, 0.5, 0.25})
+    if (fastest * 0.5 * speed <= extent(scene)) return speed;
+  return 0.125;
+}
+
+Film other_film(const report::Comparison& facts, const std::string& name) {
+  const Scene scene = load_scene(find_scene(name));
+  Film film{.scene = scene.name, .summary = scene.summary, .studied = false};
+  film.speed = watchable_speed(scene);
+  film.request.scene = name;
+  if (scene.duration() > kSeconds)
+    film.request.overrides.push_back("time.duration=" + std::to_string(kSeconds));
+  for (const report::Contender& contender : facts.contenders) {
+    const auto quoted = std::ranges::find_if(
+        contender.records, [&](const Record& r) { return report::quoted_at(r, facts.sweeps); });
+    if (quoted == contender.records.end() || film.request.solvers.size() == kMostPanels) continue;
+    const SolverChoice choice = parse_solver(quoted->spec.solver);
+    std::string why;
+    for (const std::string& reason : choice.entry->cannot(scene, choice.params))
+      why += (why.empty() ? "" : "; ") + reason;
+    if (!why.empty()) {
+      film.refused.emplace_back(contender.solver, why);
+      continue;
+    }
+    film.request.solvers.push_back(quoted->spec.solver);
+    film.labels.push_back(contender.label);
+  }
+  return film;
+}
+
+std::vector<Film> all_films(const report::ReportInput& input,
+                            const std::vector<std::string>& others) {
+  const report::Comparison facts = report::compare(input);
+  std::vector<Film> films;
+  for (const report::SceneInfo& scene : input.scenes)
+    films.push_back(studied_film(facts, scene.name));
+  for (const std::string& name : others) {
+    Film film = other_film(facts, name);
+    if (std::ranges::find(films, film.scene, &Film::scene) == films.end())
+      films.push_back(std::move(film));
+  }
+  std::erase_if(films, [](const Film& film) { return film.request.solvers.empty(); });
+  return films;
+}
+
+MediaOptions options_of(const Film& film, std::size_t takes) {
+  MediaOptions options;
+  options.speed = film.speed;
+  options.duration = kSeconds * film.speed;
+  const std::size_t panels = std::max<std::size_t>(2, takes + film.refused.size());
+  options.width = 960, options.height = 400;
+  if (!film.studied) {
+    options.width = 704, options.height = 320;
+    options.fps = 16;
+    options.quality.light = {16, 192, 96};
+    options.crf = 27;
+  }
+  options.width = options.width / static_cast<int>(panels) * static_cast<int>(takes) / 2 * 2;
+  return options;
+}
+
+report::ColourBar bar_of(const ColourScale& scale) {
+  constexpr int kStops = 17;
+  report::ColourBar bar{scale.title(), {}, {}};
+  for (int k = 0; k < kStops; ++k) {
+    const Rgb8 c = scale.map().at(static_cast<double>(k) / (kStops - 1));
+    char text[8];
+    std::snprintf(text, sizeof text, "#%02X%02X%02X", c.r, c.g, c.b);
+    bar.stops.emplace_back(text);
+  }
+  for (const double value : scale.ticks())
+    bar.ticks.emplace_back(scale.position(value), scale.text(value));
+  return bar;
+}
+
+std::string solver_name(const Take& take) {
+  const std::string& solver = take.trajectory.header.solver;
+  return solver.substr(0, solver.find(':'));
+}
+
+report::Clip clip_of(const TakeSet& set, const Media& media) {
+  report::Clip clip;
+  std::string who;
+  for (std::size_t k = 0; k < set.takes.size(); ++k) {
+    const Take& take = set.takes[k];
+    clip.panels.emplace_back(solver_name(take), take.settings);
+    who += (k > 0 ? " and " : "") + take.title + " (" + take.settings + ")";
+  }
+  clip.alt = set.scene.name + ": " + who + (set.takes.size() > 1 ? " side by side" : "") +
+             " from the left, coloured by " + media.scale.title() + ", full red at " +
+             media.scale.text(media.scale.high) +
+             "; cloth inside a collider is hatched, a run that ended early is framed in red";
+  clip.type = media.mp4.empty() ? "image/png" : "video/mp4";
+  clip.bytes = media.mp4.empty() ? media.strip_png : media.mp4;
+  clip.poster = media.poster, clip.poster_type = media.poster_type;
+  return clip;
+}
+
+/// What a film gives a report.
+struct Shot {
+  report::SceneMedia media;
+  std::vector<report::TimeSeries> series;  ///< of a scene that no study ran
+};
+
+Shot shoot(const Film& film) {
+  const TakeSet set = make_takes(film.request, [](const std::string&) {});
+  const Media media = render_media(set.scene, set.takes, options_of(film, set.takes.size()));
+  Shot shot{{.scene = film.scene,
+             .clips = {clip_of(set, media)},
+             .duration = media.t.back(),
+             .speed = film.speed,
+             .bar = bar_of(media.scale),
+             .aspect = media.aspect,
+             .summary = film.summary,
+             .frame = media.t[1] - media.t[0],
+             .poster = media.poster_t,
+             .refused = film.refused},
+            {}};
+  for (std::size_t k = 0; k < media.material.size(); ++k) {
+    report::MaterialRow& row = shot.media.material.emplace_back();
+    row.solver = solver_name(set.takes[k]);
+    for (const Media::Flat& flat : media.material[k])
+      row.moments.push_back({flat.t, flat.rms, flat.png});
+  }
+  for (std::size_t k = 0; !film.studied && k < set.takes.size(); ++k)
+    shot.series.push_back({film.scene, solver_name(set.takes[k]), film.labels[k], "stretch.rms",
+                           media.t, media.rms_strain[k]});
+  return shot;
+}
+
+}  // namespace
+
+void film_scenes(report::ReportInput& input, const std::vector<std::string>& others,
+                 const std::function<void(const std::string&)>& say) {
+  std::signal(SIGPIPE, SIG_IGN);
+  const std::vector<Film> films = all_films(input, others);
+  std::vector<std::optional<Shot>> shots(films.size());
+  std::atomic<std::size_t> next{0};
+  std::mutex telling;
+  const auto work = [&] {
+    for (std::size_t k = next++; k < films.size(); k = next++) {
+      std::string news = films[k].scene + " filmed";
+      try {
+        shots[k] = shoot(films[k]);
+      } catch (const InputError& error) {
+        news = films[k].scene + " not filmed: " + error.what();
+      }
+      const std::lock_guard lock(telling);
+      say(news);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int j = 1; j < kScenesAtATime; ++j) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  for (auto& shot : shots) {
+    if (!shot) continue;
+    input.media.push_back(std::move(shot->media));
+    std::ranges::move(shot->series, std::back_inserter(input.series));
+  }
+}
+
+}  // namespace taut

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "experiments/case/record.hpp"
+
+namespace taut {
+
+/// Where to look for the largest stable value of one setting.
+struct SearchRange {
+  double from = 0, to = 0;
+  bool whole = false;       ///< whole numbers only
+  double tolerance = 0.01;  ///< width of the bracket, relative to its upper end
+  int rungs = 9;            ///< values tried first, ends included, evenly spaced (geometrically if
+                            ///< from > 0): between two of them the frontier is taken to be one
+};
+
+struct Probed {
+  double value = 0;
+  Status status;
+  bool stable() const { return status.kind == Status::Kind::ok; }
+  /// A crash is an answer; want of time or memory is none.
+  bool known() const { return status.is_result() || status.kind == Status::Kind::crash; }
+};
+
+/// The largest stable value below which nothing was found that is not stable, and what lies above.
+struct Frontier {
+  enum class Kind {
+    bracketed,     ///< between `stable` and `unstable`
+    all_stable,    ///< up to the end of the range
+    none_stable,   ///< from its start on
+    not_answered,  ///< the solver cannot do the scene, it never had the time or memory, or the
+                   ///< search was interrupted
+  };
+  Kind kind = Kind::not_answered;
+  double stable = 0, unstable = 0;  ///< the bracket; meaningless where `kind` says so
+  std::vector<double> islands;      ///< stable values above `unstable`: not monotone
+  std::size_t above = 0;            ///< values tried above the bracket
+  std::vector<Probed> probes;       ///< all, ascending
+  const Probed* at(double value) const;
+};
+
+/// "bracketed", "all stable", "none stable", "not answered".
+std::string_view to_string(Frontier::Kind);
+
+/// Gives the outcome for each value; fewer if it was interrupted.
+using Trial = std::function<std::vector<Status>(const std::vector<double>&)>;
+
+/// Tries the rungs, halves the first interval whose ends differ until it is narrow, then looks
+/// between `unstable` and the next rung for stable values that monotony would rule out. Values
+/// without an answer are passed over.
+Frontier find_frontier(const SearchRange&, const Trial&);
+
+}  // namespace taut

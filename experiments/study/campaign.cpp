@@ -1,0 +1,177 @@
+#include "experiments/study/campaign.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <csignal>
+#include <list>
+#include <thread>
+
+#include "core/model/input_error.hpp"
+
+namespace taut {
+
+namespace {
+
+volatile std::sig_atomic_t g_stop = 0;
+
+/// Turns SIGINT and SIGTERM into a flag for as long as it lives.
+class StopSignals {
+ public:
+  StopSignals() {
+    g_stop = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int) { g_stop = 1; };
+    sigaction(SIGINT, &action, &old_int_);
+    sigaction(SIGTERM, &action, &old_term_);
+  }
+  ~StopSignals() {
+    sigaction(SIGINT, &old_int_, nullptr);
+    sigaction(SIGTERM, &old_term_, nullptr);
+  }
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+ private:
+  struct sigaction old_int_ {
+  }, old_term_{};
+};
+
+/// Work of a case, to order cases and to foresee the end: particles and links that it visits, if
+/// parameters of these names mean what they usually mean. Never part of a result.
+double estimated_work(const Case& one) {
+  double sweeps = 1;
+  for (const ParamSpec& spec : one.choice.entry->params)
+    if (spec.name == "iterations" || spec.name == "substeps")
+      sweeps *= std::max(1, one.choice.params.integer(spec.name));
+  return one.scene->steps *
+         (20.0 * one.scene->mesh.size() + static_cast<double>(one.scene->links.size()) * sweeps);
+}
+
+class Campaign {
+ public:
+  Campaign(const Store& store, const Session& session, const CampaignOptions& options)
+      : store_(store), session_(session), options_(options) {}
+
+  Tally run(const std::vector<Case>& cases) {
+    sort_out(cases);
+    const StopSignals signals;
+    while (!waiting_.empty() || !running_.empty()) {
+      if (g_stop) break;
+      while (!waiting_.empty() && running_.size() < static_cast<std::size_t>(options_.jobs)) {
+        const Case& next = *waiting_.front();
+        waiting_.pop_front();
+        running_.emplace_back(next, store_.stage(next.key), options_.limits);
+      }
+      wait();
+      reap();
+      report(nullptr);
+    }
+    tally_.interrupted = g_stop != 0;
+    while (!running_.empty()) {
+      const std::filesystem::path folder = running_.front().folder();
+      running_.pop_front();
+      std::filesystem::remove_all(folder);
+    }
+    return tally_;
+  }
+
+ private:
+  void sort_out(const std::vector<Case>& cases) {
+    for (const Case& one : cases) {
+      if (!options_.shard.has(one.key)) continue;
+      const std::optional<Record> stored = store_.find(one);
+      const bool failed = stored && !stored->status.is_result();
+      if (options_.only_failed && !failed) continue;
+      ++tally_.cases;
+      if (stored && !(options_.only_failed && failed)) {
+        ++tally_.reused;
+        ++tally_.by_status[stored->status.kind];
+        session_.done(*stored);
+      } else {
+        tally_.work += estimated_work(one);
+        waiting_.push_back(&one);
+      }
+    }
+    waiting_.sort([](const Case* a, const Case* b) {
+      const double wa = estimated_work(*a), wb = estimated_work(*b);
+      return wa != wb ? wa > wb : a->key < b->key;
+    });
+    report(nullptr);
+  }
+
+  /// Until a case has ended, one runs out of time, or half a second has passed.
+  void wait() {
+    std::vector<pollfd> ends;
+    for (const IsolatedCase& one : running_) ends.push_back({one.descriptor(), POLLIN, 0});
+    ::poll(ends.data(), ends.size(), 500);
+  }
+
+  void reap() {
+    for (auto one = running_.begin(); one != running_.end();) {
+      const std::optional<Record> record = one->poll();
+      if (!record) {
+        ++one;
+        continue;
+      }
+      const Store::Commit commit = store_.commit(one->folder(), *record);
+      session_.done(*record);
+      ++tally_.ran;
+      ++tally_.by_status[record->status.kind];
+      if (commit == Store::Commit::conflict) ++tally_.conflicts;
+      tally_.work_done += estimated_work(one->of());
+      one = running_.erase(one);
+      report(&*record);
+    }
+  }
+
+  void report(const Record* record) const {
+    if (options_.progress) options_.progress(tally_, record);
+  }
+
+  const Store& store_;
+  const Session& session_;
+  const CampaignOptions& options_;
+  std::list<const Case*> waiting_;
+  std::list<IsolatedCase> running_;
+  Tally tally_;
+};
+
+Record wait_for(IsolatedCase& running) {
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
+    if (const auto record = running.poll()) return *record;
+}
+
+}  // namespace
+
+Record run_stored(const Case& one, const Store& store, const Limits& limits) {
+  if (const auto record = store.find(one)) return *record;
+  IsolatedCase running(one, store.stage(one.key), limits);
+  const Record record = wait_for(running);
+  if (store.commit(running.folder(), record) == Store::Commit::conflict)
+    throw InputError(one.id + ": another result than the one stored; see " +
+                     (store.root() / "conflicts").string());
+  return record;
+}
+
+Record run_again(const Case& one, const Store& store, const Limits& limits) {
+  const std::filesystem::path folder = store.stage(one.key);
+  IsolatedCase running(one, folder, limits);
+  const Record record = wait_for(running);
+  std::filesystem::remove_all(folder);
+  return record;
+}
+
+Tally run_cases(const std::vector<Case>& cases, const Store& store, const Session& session,
+                const CampaignOptions& options) {
+  return Campaign(store, session, options).run(cases);
+}
+
+StudyRecords collect(const Study& study, const Store& store) {
+  StudyRecords result{study, plan(study), {}};
+  for (const Case& one : result.cases)
+    if (std::optional<Record> record = store.find(one)) result.records.push_back(*record);
+  return result;
+}
+
+}  // namespace taut

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "experiments/case/case.hpp"
+#include "experiments/study/isolate.hpp"
+#include "experiments/study/session.hpp"
+#include "experiments/study/store.hpp"
+#include "experiments/study/study.hpp"
+
+namespace taut {
+
+/// How far a campaign is.
+struct Tally {
+  std::size_t cases = 0;      ///< of this shard
+  std::size_t reused = 0;     ///< were stored already
+  std::size_t ran = 0;        ///< have been run now
+  std::size_t conflicts = 0;  ///< gave another result than the one stored
+  std::map<Status::Kind, std::size_t> by_status;
+  double work = 0, work_done = 0;  ///< estimated, of what is to be run; any unit
+  bool interrupted = false;
+
+  std::size_t done() const { return reused + ran; }
+};
+
+struct CampaignOptions {
+  int jobs = 1;
+  Limits limits;
+  Shard shard;
+  bool only_failed = false;  ///< run again what is stored as a failure, and nothing else
+  /// After every case that was run, and about twice a second (record: nullptr).
+  std::function<void(const Tally&, const Record*)> progress;
+};
+
+/// Runs those cases that the store does not have, each in a process of its own, the longest first,
+/// and commits each as it ends. SIGINT and SIGTERM end it after the running cases are killed; what
+/// was finished is stored. Throws InputError if results cannot be written: nothing finished is
+/// lost.
+Tally run_cases(const std::vector<Case>&, const Store&, const Session&, const CampaignOptions&);
+
+/// The stored record of a case, or the one that a process of its own gives and that is stored now.
+/// Throws InputError if the result differs from one that is stored.
+Record run_stored(const Case&, const Store&, const Limits& = {});
+
+/// The same without looking into the store and without leaving anything there.
+Record run_again(const Case&, const Store&, const Limits& = {});
+
+/// What the store knows of a study.
+struct StudyRecords {
+  Study study;
+  std::vector<Case> cases;      ///< the plan
+  std::vector<Record> records;  ///< in the plan's order; cases that were not run are missing
+};
+StudyRecords collect(const Study&, const Store&);
+
+}  // namespace taut

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+
+#include "experiments/case/case.hpp"
+#include "experiments/case/record.hpp"
+
+namespace taut {
+
+/// What one case may use.
+struct Limits {
+  double seconds = 120;  ///< CPU time; wall time may be five times as much (a busy machine)
+  std::size_t bytes = std::size_t{2} << 30;  ///< address space
+};
+
+/// Exit code by which a case says that it ran out of memory.
+inline constexpr int kOutOfMemory = 77;
+/// Exit code by which a case says that its folder cannot be written: the campaign ends, for a full
+/// disk is no property of the case that meets it.
+inline constexpr int kCannotWrite = 74;
+
+/// The step that a case has reached, in a file that outlives it: 4 bytes, mapped, so that reporting
+/// costs a store to memory.
+class Heartbeat {
+ public:
+  explicit Heartbeat(const std::filesystem::path&);  ///< throws InputError if it cannot be made
+  ~Heartbeat();
+  Heartbeat(const Heartbeat&) = delete;
+  Heartbeat& operator=(const Heartbeat&) = delete;
+  void beat(int step) { *step_ = step; }
+  /// What the file says; -1: nothing yet.
+  static int last(const std::filesystem::path&);
+
+ private:
+  volatile int* step_;
+};
+
+/// One case in a process of its own: `taut case SCENE SOLVER --into FOLDER`, or the sibling program
+/// that its solver needs. Whatever it does (crash, hang, allocate without end) costs that process.
+/// It dies with this process, however this one ends.
+class IsolatedCase {
+ public:
+  /// Starts it; its files and what it says go into `folder`. Throws InputError if it cannot start.
+  IsolatedCase(const Case&, std::filesystem::path folder, const Limits&);
+  ~IsolatedCase();  ///< kills it if it still runs
+  IsolatedCase(const IsolatedCase&) = delete;
+  IsolatedCase& operator=(const IsolatedCase&) = delete;
+
+  /// Ready for reading when the process has ended.
+  int descriptor() const { return fd_; }
+  std::chrono::steady_clock::time_point deadline() const { return deadline_; }
+  /// Its record once it has ended or its time is up (it is killed then); until then nothing.
+  /// Throws InputError if it could not write what it found.
+  std::optional<Record> poll();
+  const std::filesystem::path& folder() const { return folder_; }
+  const Case& of() const { return case_; }
+
+ private:
+  Record record_of(int wait_status, bool timed_out) const;
+  Case case_;
+  std::filesystem::path folder_, program_;
+  std::chrono::steady_clock::time_point deadline_;
+  int pid_ = -1;
+  int fd_ = -1;
+};
+
+/// The child's side: runs the case in this process and leaves case.json, series.csv and its
+/// heartbeat in `folder`. Gives the exit code.
+int run_into(const Case&, const std::filesystem::path& folder);
+
+}  // namespace taut

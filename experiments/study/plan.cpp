@@ -1,0 +1,125 @@
+// From a study to its cases.
+#include <algorithm>
+#include <functional>
+#include <set>
+
+#include "core/model/input_error.hpp"
+#include "experiments/study/study.hpp"
+
+namespace taut {
+
+namespace {
+
+using Settings = std::map<std::string, std::string>;  ///< what one case has, by sweep name
+
+/// Calls `visit` for every combination of one value per sweep, the first sweep outermost.
+void combinations(const std::vector<Sweep>& sweeps,
+                  const std::function<void(const Settings&)>& visit, Settings settings = {}) {
+  const std::size_t next = settings.size();
+  if (next == sweeps.size()) return visit(settings);
+  for (const std::string& value : sweeps[next].values) {
+    settings[sweeps[next].name] = value;
+    combinations(sweeps, visit, settings);
+  }
+}
+
+std::vector<Sweep> scene_sweeps(const Study& study) {
+  std::vector<Sweep> chosen;
+  for (const Sweep& sweep : study.sweeps)
+    if (sweep.of_scene()) chosen.push_back(sweep);
+  return chosen;
+}
+
+/// The parameters to vary of one solver: those that it has and that its text does not fix.
+std::vector<Sweep> solver_sweeps(const Study& study, const std::string& text) {
+  const SolverChoice choice = parse_solver(text);
+  std::vector<Sweep> chosen;
+  for (const Sweep& sweep : study.sweeps) {
+    const auto specs = choice.entry->params;
+    const bool has = std::any_of(specs.begin(), specs.end(),
+                                 [&](const ParamSpec& spec) { return spec.name == sweep.name; });
+    const bool fixed = text.find(':' + sweep.name + '=') != std::string::npos ||
+                       text.find(',' + sweep.name + '=') != std::string::npos;
+    if (has && !fixed) chosen.push_back(sweep);
+  }
+  return chosen;
+}
+
+/// More than anybody waits for; a sweep of a thousand values too many is a slip.
+constexpr int kMostCases = 100'000;
+
+double count(const std::vector<Sweep>& sweeps) {
+  double product = 1;
+  for (const Sweep& sweep : sweeps) product *= static_cast<double>(sweep.values.size());
+  return product;
+}
+
+/// Before any of them is made; exclusions and repetitions do not count.
+void require_few(const Study& study) {
+  double of_solvers = 0;
+  for (const std::string& solver : study.solvers) of_solvers += count(solver_sweeps(study, solver));
+  const double all =
+      static_cast<double>(study.scenes.size()) * count(scene_sweeps(study)) * of_solvers;
+  if (all > kMostCases)
+    throw InputError(study.file.string() + ": " +
+                     std::to_string(static_cast<long long>(std::min(all, 1e18))) +
+                     " cases; at most " + std::to_string(kMostCases) + " in a study");
+}
+
+bool excluded(const Study& study, const Settings& settings) {
+  const auto matches = [&](const Exclusion& exclusion) {
+    for (const auto& [name, values] : exclusion.when) {
+      const auto setting = settings.find(name);
+      if (setting == settings.end() ||
+          std::find(values.begin(), values.end(), setting->second) == values.end())
+        return false;
+    }
+    return true;
+  };
+  return std::any_of(study.exclusions.begin(), study.exclusions.end(), matches);
+}
+
+CaseSpec spec_of(const Study& study, const std::string& scene, const std::string& solver,
+                 const Settings& of_scene, const Settings& of_solver) {
+  CaseSpec spec{scene, study.settings, solver};
+  for (const Sweep& sweep : study.sweeps)
+    if (of_scene.contains(sweep.name))
+      spec.overrides.push_back(sweep.name + "=" + of_scene.at(sweep.name));
+  for (const auto& [name, value] : of_solver)
+    spec.solver += (spec.solver.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
+  return spec;
+}
+
+}  // namespace
+
+std::vector<Case> plan(const Study& study) {
+  require_few(study);
+  CaseMaker maker;
+  std::vector<Case> cases;
+  std::set<std::string> keys, said;
+  std::vector<Diagnostic> wrong;
+  const auto add = [&](const CaseSpec& spec) {
+    try {
+      Case one = maker.make(spec);
+      if (keys.insert(one.key).second) cases.push_back(std::move(one));
+    } catch (const InputError& error) {
+      for (const Diagnostic& d : error.diagnostics())
+        if (said.insert(d.text()).second) wrong.push_back(d);
+    }
+  };
+  for (const std::string& scene : study.scenes)
+    combinations(scene_sweeps(study), [&](const Settings& of_scene) {
+      for (const std::string& solver : study.solvers)
+        combinations(solver_sweeps(study, solver), [&](const Settings& of_solver) {
+          Settings all = of_scene;
+          all.insert(of_solver.begin(), of_solver.end());
+          all["scene"] = scene;
+          all["solver"] = solver.substr(0, solver.find(':'));
+          if (!excluded(study, all)) add(spec_of(study, scene, solver, of_scene, of_solver));
+        });
+    });
+  if (!wrong.empty()) throw InputError(wrong);
+  return cases;
+}
+
+}  // namespace taut

@@ -1,0 +1,93 @@
+#include "experiments/study/reference_store.hpp"
+
+#include <fstream>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr const char* kSchema = "taut-reference-1";
+
+std::string file_name(const Reference& reference) {
+  if (reference.kind == "static") return "static.json";
+  std::string t = to_text(Json(reference.t));
+  return "motion-" + t + "s.json";
+}
+
+}  // namespace
+
+void write_reference(const Reference& reference, const std::filesystem::path& folder) {
+  Json json{{"schema", kSchema},          {"scene", reference.scene},
+            {"digest", reference.digest}, {"kind", reference.kind},
+            {"t", reference.t},           {"derivation", reference.derivation},
+            {"floor_m", reference.floor}, {"vertices", reference.x.size()}};
+  std::string text = to_text(json, 1);
+  text.resize(text.size() - 2);  // "\n}": the coordinates follow, one vertex a line
+  text += ",\n \"x\": [";
+  for (std::size_t i = 0; i < reference.x.size(); ++i) {
+    const Vec3& x = reference.x[i];
+    text += (i == 0 ? "\n  " : ",\n  ") + to_text(Json{x.x(), x.y(), x.z()});
+  }
+  text += "\n ]\n}\n";
+  std::filesystem::create_directories(folder);
+  const std::filesystem::path path = folder / file_name(reference);
+  std::ofstream file(path);
+  file << text;
+  if (!file.flush()) throw InputError("cannot write '" + path.string() + "'");
+}
+
+Reference read_reference(const std::filesystem::path& path) {
+  try {
+    const Json json = parse_json(read_text(path));
+    if (json.at("schema") != kSchema) throw InputError(path.string() + ": unknown schema");
+    Reference reference{json.at("scene"),
+                        json.at("digest"),
+                        json.at("kind"),
+                        json.at("t"),
+                        json.at("derivation"),
+                        json.at("floor_m"),
+                        {}};
+    for (const Json& x : json.at("x"))
+      reference.x.emplace_back(x.at(0).get<double>(), x.at(1).get<double>(), x.at(2).get<double>());
+    return reference;
+  } catch (const Json::exception& error) {
+    throw InputError(path.string() + ": not a reference: " + error.what());
+  }
+}
+
+std::string reference_digest(const Scene& scene, const std::string& kind) {
+  Scene same = scene;
+  same.dt = 1, same.steps = 1;
+  if (kind == "static") {
+    same.damping = 0;
+    for (Vec3& v : same.start.v) v.setZero();
+  }
+  return digest(same);
+}
+
+References find_references(const Scene& scene, const std::filesystem::path& root) {
+  References known;
+  if (scene.name.empty()) return known;
+  std::error_code none;
+  for (const auto& file : std::filesystem::directory_iterator(root / scene.name, none)) {
+    if (!file.is_regular_file() || file.path().extension() != ".json") continue;
+    Reference reference = read_reference(file.path());
+    if (reference.x.size() != scene.start.x.size() ||
+        reference.digest != reference_digest(scene, reference.kind))
+      continue;
+    (reference.kind == "static" ? known.rest : known.motion) = std::move(reference);
+  }
+  return known;
+}
+
+References known_references(const Scene& scene) {
+  return find_references(scene, references_folder());
+}
+
+}  // namespace taut

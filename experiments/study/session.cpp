@@ -1,0 +1,101 @@
+#include "experiments/study/session.hpp"
+
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/fingerprint.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+int shard_of(const std::string& key, int count) {
+  unsigned long number = 0;
+  std::from_chars(key.data(), key.data() + 8, number, 16);
+  return static_cast<int>(number % static_cast<unsigned long>(count)) + 1;
+}
+
+int from_environment(const char* name, int fallback) {
+  const char* text = std::getenv(name);
+  return text ? std::atoi(text) : fallback;
+}
+
+}  // namespace
+
+bool Shard::has(const std::string& key) const { return shard_of(key, count) == index; }
+
+Shard Shard::parse(const std::string& text) {
+  Shard shard;
+  if (text.empty()) {
+    shard.count = from_environment("SLURM_ARRAY_TASK_COUNT", 1);
+    shard.index = from_environment("SLURM_ARRAY_TASK_ID", 1) -
+                  from_environment("SLURM_ARRAY_TASK_MIN", 1) + 1;
+  } else {
+    char slash = 0, rest = 0;
+    std::istringstream in(text);
+    if (!(in >> shard.index >> slash >> shard.count) || slash != '/' || in >> rest)
+      throw InputError("--shard " + text + ": expected i/n, such as 1/4");
+  }
+  if (shard.count < 1 || shard.index < 1 || shard.index > shard.count)
+    throw InputError("shard " + std::to_string(shard.index) + "/" + std::to_string(shard.count) +
+                     " does not exist: the first is 1/n, the last n/n");
+  return shard;
+}
+
+Session::Session(const Store& store, const std::string& command, const std::vector<Case>& cases,
+                 const Shard& shard)
+    : folder_(store.root() / "sessions" / (utc_stamp() + "-" + unique_suffix())) {
+  make_folder(folder_);
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  const Json manifest{{"schema", kRecordSchema},  {"command", command},
+                      {"started", utc_stamp()},   {"host", host},
+                      {"toolchain", toolchain()}, {"shard", shard.index},
+                      {"shards", shard.count},    {"cases", cases.size()}};
+  write_durably(folder_ / "manifest.json", to_text(manifest, 1) + "\n");
+  std::string plan;
+  for (const Case& one : cases)
+    plan += to_text(Json{{"key", one.key},
+                         {"id", one.id},
+                         {"shard", shard_of(one.key, shard.count)},
+                         {"shards", shard.count}}) +
+            "\n";
+  write_durably(folder_ / "plan.jsonl", plan);
+}
+
+void Session::done(const Record& record) const {
+  append_line(folder_ / "journal.jsonl", to_text(Json{{"key", record.key},
+                                                      {"id", record.id},
+                                                      {"status", to_string(record.status.kind)}}));
+}
+
+std::vector<Planned> planned(const fs::path& root) {
+  std::map<std::string, Planned> all;
+  std::error_code none;
+  for (const auto& session : fs::directory_iterator(root / "sessions", none)) {
+    if (!fs::exists(session.path() / "plan.jsonl")) continue;
+    std::istringstream lines(read_text(session.path() / "plan.jsonl"));
+    for (std::string line; std::getline(lines, line);) try {
+        const Json j = parse_json(line);
+        Planned one{j.at("key"), j.at("id"), j.at("shard"), j.at("shards")};
+        all.emplace(one.key, std::move(one));
+      } catch (const Json::exception& error) {
+        throw InputError((session.path() / "plan.jsonl").string() + ": " + error.what());
+      }
+  }
+  std::vector<Planned> list;
+  for (auto& [key, one] : all) list.push_back(std::move(one));
+  return list;
+}
+
+}  // namespace taut

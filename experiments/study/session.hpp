@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "experiments/case/case.hpp"
+#include "experiments/study/store.hpp"
+
+namespace taut {
+
+/// Part i of n of a plan, by key, so that adding cases does not reshuffle the others.
+struct Shard {
+  int index = 1;  ///< 1 to count
+  int count = 1;
+  bool has(const std::string& key) const;
+  /// "i/n"; empty: what a Slurm array says ($SLURM_ARRAY_TASK_ID, _MIN, _COUNT), else the whole.
+  /// Throws InputError.
+  static Shard parse(const std::string&);
+};
+
+/// Who ran what and how far it came: a folder of the store that only this process writes.
+///     manifest.json   command, time, host, versions, shard
+///     plan.jsonl      every case of the plan, all shards: {"key", "id", "shard"}
+///     journal.jsonl   a line per case that is done: {"key", "id", "status"}
+class Session {
+ public:
+  /// Throws InputError if the folder cannot be written.
+  Session(const Store&, const std::string& command, const std::vector<Case>&, const Shard&);
+  void done(const Record&) const;
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// A line of a plan.
+struct Planned {
+  std::string key, id;
+  int shard = 1, shards = 1;
+};
+
+/// What the sessions of a results folder planned, each key once.
+std::vector<Planned> planned(const std::filesystem::path& root);
+
+}  // namespace taut

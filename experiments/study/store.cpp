@@ -1,0 +1,163 @@
+#include "experiments/study/store.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <iostream>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array kParts{"case.json", "series.csv", "stderr.txt"};
+
+Json seal_of(const fs::path& folder, const Record& record) {
+  Json seal{{"schema", kRecordSchema},
+            {"key", record.key},
+            {"status", to_string(record.status.kind)},
+            {"result", result_digest(record)}};
+  for (const char* part : kParts)
+    if (fs::exists(folder / part)) seal["files"][part] = sha256(read_text(folder / part));
+  return seal;
+}
+
+/// The record of an entry; throws if a part is not what its seal says.
+Record open_entry(const fs::path& folder, const std::string& key) {
+  const Json seal = parse_json(read_text(folder / "status.json"));
+  for (const auto& [part, digest] : seal.at("files").items())
+    if (sha256(read_text(folder / part)) != digest)
+      throw InputError(part + " does not match its digest");
+  Record record = record_from_json(read_text(folder / "case.json"), "case.json");
+  if (record.key != key || seal.at("key") != key) throw InputError("it belongs to another key");
+  return record;
+}
+
+/// A leftover of a process of this host that no longer exists: "<key>.<host>.<pid>.<rand>".
+bool abandoned(const std::string& name) {
+  const std::string mine = unique_suffix();
+  const std::string host = mine.substr(0, mine.rfind('.', mine.rfind('.') - 1) + 1);
+  const auto at = name.find("." + host);
+  if (at == std::string::npos) return false;
+  const int pid = std::atoi(name.c_str() + at + 1 + host.size());
+  return pid > 0 && kill(pid, 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
+
+fs::path default_results() { return fs::path("results") / "runs"; }
+
+Store::Store(fs::path root, Notice notice) : root_(std::move(root)), notice_(std::move(notice)) {
+  if (!notice_) notice_ = [](const std::string& text) { std::cerr << text << '\n'; };
+}
+
+fs::path Store::folder(const std::string& key) const {
+  return root_ / "store" / key.substr(0, 2) / key;
+}
+
+std::optional<Record> Store::find(const std::string& key) const {
+  if (!fs::exists(folder(key))) return {};
+  try {
+    return open_entry(folder(key), key);
+  } catch (const std::exception& error) {
+    set_aside(key, error.what());
+    return {};
+  }
+}
+
+std::optional<Record> Store::find(const Case& one) const {
+  std::optional<Record> record = find(one.key);
+  if (record) record->spec = one.spec, record->id = one.id, record->scene = one.scene->name;
+  return record;
+}
+
+void Store::set_aside(const std::string& key, const std::string& why) const {
+  const fs::path place = root_ / "corrupt" / (key + "." + unique_suffix());
+  std::error_code error;
+  fs::create_directories(place.parent_path(), error);
+  if (!error) fs::rename(folder(key), place, error);
+  notice_(folder(key).string() + ": corrupt entry (" + why + "), " +
+          (error ? "ignored: " + error.message() : "set aside as " + place.string()));
+}
+
+Series Store::series(const std::string& key) const {
+  const fs::path file = folder(key) / "series.csv";
+  return fs::exists(file) ? series_from_csv(read_text(file)) : Series{};
+}
+
+void Store::prepare() const {
+  make_folder(root_ / "store");
+  make_folder(root_ / "tmp");
+  const fs::path probe = root_ / "tmp" / ("probe." + unique_suffix());
+  write_durably(probe, "can this folder be written?\n");
+  fs::remove(probe);
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(root_ / "tmp"))
+    if (abandoned(entry.path().filename())) fs::remove_all(entry.path(), ignored);
+}
+
+fs::path Store::stage(const std::string& key) const {
+  const fs::path staged = root_ / "tmp" / (key + "." + unique_suffix());
+  make_folder(staged);
+  return staged;
+}
+
+Store::Commit Store::commit(const fs::path& staged, const Record& record) const {
+  write_durably(staged / "case.json", to_json(record, 1) + "\n");
+  write_durably(staged / "status.json", to_text(seal_of(staged, record), 1) + "\n");
+  sync_folder(staged);
+  const fs::path target = folder(record.key);
+  make_folder(target.parent_path());
+  std::error_code error;
+  if (const std::optional<Record> old = find(record.key)) {
+    const bool same = result_digest(*old) == result_digest(record);
+    if (same || (old->status.is_result() && !record.status.is_result())) {
+      fs::remove_all(staged, error);
+      return Commit::same;
+    }
+    if (old->status.is_result()) {
+      const fs::path place = root_ / "conflicts" / (record.key + "." + unique_suffix());
+      make_folder(place.parent_path());
+      fs::rename(staged, place, error);
+      if (error) throw InputError(place.string() + ": cannot create: " + error.message());
+      return Commit::conflict;
+    }
+    fs::rename(target, staged.string() + ".replaced", error);
+  }
+  fs::rename(staged, target, error);
+  if (error) throw InputError(target.string() + ": cannot create: " + error.message());
+  sync_folder(target.parent_path());
+  std::error_code ignored;
+  fs::remove_all(staged.string() + ".replaced", ignored);
+  return Commit::stored;
+}
+
+std::vector<std::string> Store::keys() const {
+  std::vector<std::string> keys;
+  std::error_code none;
+  for (const auto& shelf : fs::directory_iterator(root_ / "store", none))
+    for (const auto& entry : fs::directory_iterator(shelf.path(), none))
+      keys.push_back(entry.path().filename());
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+std::string Store::digest() const {
+  std::string all;
+  for (const std::string& key : keys())
+    if (const std::optional<Record> record = find(key); record && record->status.is_result())
+      all += key + ' ' + result_digest(*record) + '\n';
+  return sha256(all);
+}
+
+}  // namespace taut

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/case/case.hpp"
+#include "experiments/case/record.hpp"
+
+namespace taut {
+
+/// Results by content address. No locks and no shared appends: any number of processes may write,
+/// and one that is killed leaves at most a folder in tmp/, which is swept up later.
+///
+///     <root>/store/7f/7f3a.../  case.json    the record
+///                               series.csv   values over time, if there are any
+///                               stderr.txt   what the case said, if it said anything
+///                               status.json  digests of the others; written last
+///     <root>/tmp/<key>.<host>.<pid>.<rand>/   an entry that is being written
+///     <root>/corrupt/<key>.<rand>/            entries that did not match their digests
+///     <root>/conflicts/<key>.<rand>/          another result under a key that has one
+///     <root>/sessions/<utc>-<host>.<pid>.<rand>/   who ran what: lab/session.hpp
+class Store {
+ public:
+  /// Says what it had to do ("corrupt entry ... set aside"); default: stderr.
+  using Notice = std::function<void(const std::string&)>;
+  /// Nothing is created before something is written.
+  explicit Store(std::filesystem::path root, Notice notice = {});
+
+  const std::filesystem::path& root() const { return root_; }
+  std::filesystem::path folder(const std::string& key) const;
+
+  /// The stored record; nothing if there is none. An entry that is damaged is set aside, said so,
+  /// and counts as none.
+  std::optional<Record> find(const std::string& key) const;
+  /// The same, under the names by which this case is called.
+  std::optional<Record> find(const Case&) const;
+  /// Values over time of a stored case; empty if it has none.
+  Series series(const std::string& key) const;
+
+  /// Makes sure that results can be written, and sweeps up after killed processes of this host.
+  /// Throws InputError with the reason.
+  void prepare() const;
+  /// An empty folder in tmp/ for a case to write into.
+  std::filesystem::path stage(const std::string& key) const;
+
+  enum class Commit {
+    stored,    ///< new, or in place of a failure
+    same,      ///< the same result was there
+    conflict,  ///< another result was there: a determinism alarm; ours is in conflicts/
+  };
+  /// Turns a staged folder into the entry of its record, whole or not at all; it survives the loss
+  /// of power. A result is never replaced; a failure is. Throws InputError if the disk refuses.
+  Commit commit(const std::filesystem::path& staged, const Record&) const;
+
+  /// Keys of all entries, sorted.
+  std::vector<std::string> keys() const;
+  /// SHA-256 over the keys and results of all sound entries that are results: two stores that know
+  /// the same have the same.
+  std::string digest() const;
+
+ private:
+  void set_aside(const std::string& key, const std::string& why) const;
+  std::filesystem::path root_;
+  Notice notice_;
+};
+
+/// Where results go unless the user says otherwise: results/runs below the current folder.
+std::filesystem::path default_results();
+
+}  // namespace taut

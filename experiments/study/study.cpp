@@ -1,0 +1,274 @@
+#include "experiments/study/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "core/io/section.hpp"
+#include "core/model/shortest.hpp"
+#include "experiments/system/data.hpp"
+
+namespace taut {
+
+namespace {
+
+/// A value as a command line would have it: for a solver's parameter bare, for a scene key as TOML.
+std::string text_of(const Value& value, bool toml) {
+  switch (value.kind) {
+    case Value::Kind::boolean:
+      return value.boolean ? "true" : "false";
+    case Value::Kind::string: {
+      if (!toml) return value.string;
+      std::string quoted = "\"";
+      for (const char c : value.string) {
+        if (c == '"' || c == '\\') quoted += '\\';
+        quoted += c;
+      }
+      return quoted + '"';
+    }
+    case Value::Kind::array: {
+      std::string items;
+      for (const Value& item : value.items)
+        items += (items.empty() ? "" : ", ") + text_of(item, toml);
+      return "[" + items + "]";
+    }
+    default:
+      return shortest(value.number);
+  }
+}
+
+/// Every solver of the study that has the parameter; with `whole`, only if it is a whole number.
+bool has_param(const std::vector<SolverChoice>& solvers, const std::string& name, bool whole) {
+  for (const SolverChoice& choice : solvers)
+    for (const ParamSpec& spec : choice.entry->params)
+      if (spec.name == name && (!whole || spec.kind == ParamSpec::Kind::integer)) return true;
+  return false;
+}
+
+/// Reads one document into a Study; what is wrong goes to the judge.
+class StudyReader {
+ public:
+  StudyReader(Judge& judge, Study& study) : judge_(judge), study_(study) {}
+
+  void read(const Value& root, const std::string& preset) {
+    Section section(judge_, root, "the study");
+    study_.question = section.string("question").value_or("");
+    if (study_.question.empty()) section.missing("question");
+    read_lists(section);
+    for (const std::string required : {"scenes", "solvers"})
+      if (!section.find(required)) section.missing(required);
+    read_presets(section, preset);
+    for (const Value* plot : section.tables("plot")) read_plot(*plot);
+    section.finish();
+  }
+
+ private:
+  /// What a study and a preset have in common; a list that is present replaces the one before.
+  void read_lists(Section& section) {
+    strings(section, "scenes", study_.scenes, find_scene);
+    if (strings(section, "solvers", study_.solvers, parse_solver)) remember_solvers();
+    strings(section, "set", study_.settings, [](const std::string&) {});
+    if (const Value* sweeps = section.table("sweep")) read_sweeps(*sweeps);
+    if (const Value* list = section.find("exclude")) read_exclusions(section, *list);
+  }
+
+  bool strings(Section& section, const std::string& key, std::vector<std::string>& into,
+               const std::function<void(const std::string&)>& check) {
+    const Value* list = section.find(key);
+    if (!list) return false;
+    if (!list->is_array() || list->items.empty()) {
+      section.report(key, "'" + key + "' must be a list of texts, not " + describe(*list));
+      return false;
+    }
+    into.clear();
+    for (const Value& item : list->items) {
+      if (!item.is_string()) {
+        judge_.report(item.place, "'" + key + "' holds texts, not " + describe(item));
+        continue;
+      }
+      guarded(item.place, [&] { check(item.string); });
+      into.push_back(item.string);
+    }
+    return true;
+  }
+
+  /// InputErrors of `action` stand at `place`.
+  bool guarded(const Place& place, const std::function<void()>& action) try {
+    action();
+    return true;
+  } catch (const InputError& error) {
+    for (const Diagnostic& d : error.diagnostics()) judge_.report(place, d.text());
+    return false;
+  }
+
+  void remember_solvers() {
+    choices_.clear();
+    for (const std::string& text : study_.solvers) try {
+        choices_.push_back(parse_solver(text));
+      } catch (const InputError&) {  // reported where it was read
+      }
+  }
+
+  void read_sweeps(const Value& table) {
+    for (std::size_t i = 0; i < table.items.size(); ++i) {
+      Sweep sweep{table.keys[i].text, {}};
+      const Value& value = table.items[i];
+      if (!sweep.of_scene() && value.is_table() && !value.find("from")) {
+        for (std::size_t k = 0; k < value.items.size(); ++k)  // time.dt without quotes: a table
+          read_sweep({sweep.name + "." + value.keys[k].text, {}}, value.keys[k], value.items[k]);
+        continue;
+      }
+      read_sweep(std::move(sweep), table.keys[i], value);
+    }
+  }
+
+  void read_sweep(Sweep sweep, const Key& key, const Value& value) {
+    if (!sweep.of_scene() && !choices_.empty() && !has_param(choices_, sweep.name, false)) {
+      judge_.report(key.place, "no solver of this study has a parameter '" + sweep.name + "'" +
+                                   suggestion(sweep.name, param_names()) +
+                                   " (a scene key has a dot, as \"time.dt\")");
+      return;
+    }
+    if (value.is_table())
+      sweep.values = range(value, has_param(choices_, sweep.name, true));
+    else if (value.is_array())
+      for (const Value& item : value.items) sweep.values.push_back(text_of(item, sweep.of_scene()));
+    if (sweep.values.empty()) {
+      if (!value.is_table())
+        judge_.report(value.place, "'" + sweep.name + "' must be a list of values or a range " +
+                                       "{ from, to, steps, scale }");
+      return;
+    }
+    if (!sweep.of_scene()) check_values(sweep, value);
+    const auto same = [&](const Sweep& s) { return s.name == sweep.name; };
+    std::erase_if(study_.sweeps, same);
+    study_.sweeps.push_back(std::move(sweep));
+  }
+
+  std::vector<std::string> range(const Value& table, bool whole) {
+    Section section(judge_, table, "the range");
+    const std::optional<double> from = section.number("from", {}), to = section.number("to", {});
+    const std::optional<double> steps = section.number("steps", {2, 1000});
+    const bool log = section.choice("scale", {"linear", "log"}, "linear") == "log";
+    for (const char* required : {"from", "to", "steps"})
+      if (!section.find(required)) section.missing(required);
+    section.finish();
+    if (!from || !to || !steps) return {};
+    if (log && !(*from > 0 && *to > 0)) {
+      judge_.report(table.place, "a logarithmic range needs ends greater than 0");
+      return {};
+    }
+    std::vector<std::string> values;
+    const int count = static_cast<int>(*steps);
+    for (int i = 0; i < count; ++i) {
+      const double s = static_cast<double>(i) / (count - 1);
+      double value = log ? *from * std::pow(*to / *from, s) : *from + s * (*to - *from);
+      if (i == count - 1) value = *to;
+      std::string text = shortest(whole ? std::round(value) : value);
+      if (values.empty() || values.back() != text) values.push_back(std::move(text));
+    }
+    return values;
+  }
+
+  void check_values(const Sweep& sweep, const Value& value) {
+    for (const SolverChoice& choice : choices_)
+      if (has_param({choice}, sweep.name, false))
+        for (std::size_t i = 0; i < sweep.values.size(); ++i)
+          if (!guarded(value.is_array() ? value.items[i].place : value.place, [&] {
+                Params(choice.entry->name, choice.entry->params,
+                       sweep.name + "=" + sweep.values[i]);
+              }))
+            return;
+  }
+
+  std::vector<std::string> param_names() const {
+    std::vector<std::string> names;
+    for (const SolverChoice& choice : choices_)
+      for (const ParamSpec& spec : choice.entry->params) names.emplace_back(spec.name);
+    return names;
+  }
+
+  void read_exclusions(Section& section, const Value& list) {
+    study_.exclusions.clear();
+    if (!list.is_array()) section.report("exclude", "'exclude' must be a list of tables");
+    for (const Value& item : list.items) {
+      Exclusion exclusion;
+      for (std::size_t i = 0; i < item.items.size() && item.is_table(); ++i) {
+        const std::string& key = item.keys[i].text;
+        const bool toml = key.find('.') != std::string::npos;
+        if (std::ranges::count(settings(), key) == 0)
+          judge_.report(item.keys[i].place, "nothing that this study varies is called '" + key +
+                                                "'" + suggestion(key, settings()) +
+                                                " (scene, solver, or a sweep's name)");
+        std::vector<std::string>& values = exclusion.when[key];
+        if (item.items[i].is_array() && !toml)
+          for (const Value& v : item.items[i].items) values.push_back(text_of(v, toml));
+        else
+          values.push_back(text_of(item.items[i], toml));
+      }
+      if (exclusion.when.empty())
+        judge_.report(item.place, "an exclusion is a table such as { scene = \"ball\" }");
+      else
+        study_.exclusions.push_back(std::move(exclusion));
+    }
+  }
+
+  /// What an exclusion may name.
+  std::vector<std::string> settings() const {
+    std::vector<std::string> names{"scene", "solver"};
+    for (const Sweep& sweep : study_.sweeps) names.push_back(sweep.name);
+    return names;
+  }
+
+  void read_presets(Section& section, const std::string& wanted) {
+    const Value* presets = section.table("preset");
+    if (!presets) return;
+    for (std::size_t i = 0; i < presets->items.size(); ++i) {
+      const std::string& name = presets->keys[i].text;
+      study_.presets.push_back(name);
+      Study other = study_;  // a preset that was not asked for is judged all the same
+      StudyReader reader(judge_, name == wanted ? study_ : other);
+      reader.choices_ = choices_;
+      Section preset(judge_, presets->items[i], "[preset." + name + "]");
+      reader.read_lists(preset);
+      preset.finish();
+      if (name == wanted) study_.preset = name;
+    }
+  }
+
+  void read_plot(const Value& table) {
+    Plot plot;
+    const std::vector<std::string> known{"kind", "x", "y", "along", "title", "file", "slope"};
+    for (std::size_t i = 0; i < table.items.size(); ++i)
+      if (std::ranges::count(known, table.keys[i].text) == 0)
+        judge_.report(table.keys[i].place, "unknown key '" + table.keys[i].text + "' in [[plot]]" +
+                                               suggestion(table.keys[i].text, known));
+    for (std::size_t i = 0; i < table.items.size(); ++i)
+      (table.keys[i].text == "kind" ? plot.kind : plot.options[table.keys[i].text]) =
+          text_of(table.items[i], false);
+    if (plot.kind.empty())
+      judge_.report(table.place, "missing key 'kind' in [[plot]]");
+    else
+      study_.plots.push_back(std::move(plot));
+  }
+
+  Judge& judge_;
+  Study& study_;
+  std::vector<SolverChoice> choices_;
+};
+
+}  // namespace
+
+Study load_study(const std::string& name_or_path, const std::string& preset) {
+  Study study;
+  study.file = find_study(name_or_path);
+  study.name = study.file.stem();
+  const Document document = read_document(study.file, {});
+  Judge judge(document);
+  StudyReader(judge, study).read(document.root, preset);
+  judge.verdict();
+  return study;
+}
+
+}  // namespace taut

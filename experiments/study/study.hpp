@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/case/case.hpp"
+
+namespace taut {
+
+/// A setting that a study varies: a scene key ("time.dt") if its name has a dot, else a parameter
+/// of those solvers that have it.
+struct Sweep {
+  std::string name;
+  std::vector<std::string> values;  ///< as typed: TOML for scene keys ("\"1/64\"", "[16, 16]")
+  bool of_scene() const { return name.find('.') != std::string::npos; }
+};
+
+/// Cases that a study leaves out: those that match every setting that is named.
+struct Exclusion {
+  /// By "scene" (name), "solver" (entry's name) or a sweep's name: any of these values.
+  std::map<std::string, std::vector<std::string>> when;
+};
+
+/// A picture that a study asks for; experiments/report knows the kinds.
+struct Plot {
+  std::string kind;
+  std::map<std::string, std::string> options;  ///< "x", "y", "title", ...: numbers in shortest form
+};
+
+/// A question and the cases that answer it: scenes x solvers x sweeps. A file of
+/// experiments/studies or of the user; experiments/studies/README.md describes every key.
+struct Study {
+  std::string name;      ///< file stem
+  std::string question;  ///< one sentence
+  std::filesystem::path file;
+  std::string preset;                 ///< which was applied; "": none
+  std::vector<std::string> presets;   ///< names of those it has
+  std::vector<std::string> scenes;    ///< names or paths
+  std::vector<std::string> solvers;   ///< "name:key=value,..."
+  std::vector<std::string> settings;  ///< scene overrides of every case
+  std::vector<Sweep> sweeps;
+  std::vector<Exclusion> exclusions;
+  std::vector<Plot> plots;
+};
+
+/// Reads a study by name or path; `preset` replaces what it names, and "" or a preset that this
+/// study lacks replaces nothing. Throws InputError with every diagnostic at once.
+Study load_study(const std::string& name_or_path, const std::string& preset = "");
+
+/// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
+/// wrong with any of the scenes, or if it would be more than 100 000.
+std::vector<Case> plan(const Study&);
+
+}  // namespace taut

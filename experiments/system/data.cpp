@@ -1,0 +1,65 @@
+#include "experiments/system/data.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/model/input_error.hpp"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+fs::path this_program() { return fs::read_symlink("/proc/self/exe"); }
+
+fs::path sibling_program(const std::string& name) {
+  return name.empty() ? this_program() : this_program().parent_path() / name;
+}
+
+fs::path data_folder() {
+  if (const char* given = std::getenv("TAUT_DATA"); given && *given) {
+    if (!fs::is_directory(given))
+      throw InputError("TAUT_DATA is '" + std::string(given) + "', which is no folder");
+    return given;
+  }
+  const fs::path installed = this_program().parent_path().parent_path() / TAUT_INSTALLED_DATA;
+  return fs::is_directory(installed) ? installed : fs::path(TAUT_SOURCE_DATA);
+}
+
+fs::path references_folder() {
+  const fs::path installed = data_folder() / "references";
+  return fs::is_directory(installed) ? installed
+                                     : data_folder().parent_path() / "results" / "references";
+}
+
+std::vector<std::string> shipped(const std::string& kind) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& file : fs::directory_iterator(data_folder() / kind, none))
+    if (file.path().extension() == ".toml") names.push_back(file.path().stem());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+namespace {
+
+fs::path find_file(const std::string& kind, const std::string& one, const std::string& text) {
+  if (text.find('/') != std::string::npos && text.find("..") == std::string::npos &&
+      fs::is_regular_file(data_folder() / kind / (text + ".toml")))
+    return data_folder() / kind / (text + ".toml");  // "torture/wind": a folder of shipped files
+  if (text.find('/') != std::string::npos || text.ends_with(".toml")) {
+    if (!fs::is_regular_file(text)) throw InputError(text + ": no such " + one + " file");
+    return text;
+  }
+  const std::vector<std::string> names = shipped(kind);
+  if (std::find(names.begin(), names.end(), text) == names.end())
+    throw InputError("unknown " + one + " '" + text + "'" + suggestion(text, names) +
+                     " (`taut list " + kind + "` names all; a path has a '/' or ends in .toml)");
+  return data_folder() / kind / (text + ".toml");
+}
+
+}  // namespace
+
+fs::path find_scene(const std::string& text) { return find_file("scenes", "scene", text); }
+fs::path find_study(const std::string& text) { return find_file("studies", "study", text); }
+
+}  // namespace taut

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/case/record.hpp"
+#include "experiments/timing/timing.hpp"
+#include "experiments/timing/trade.hpp"
+
+namespace taut {
+
+/// A case whose physics and whose cost were both measured.
+struct BenchedCase {
+  Record record;
+  Timing timing;
+
+  /// CPU seconds per simulated second, with its 95 % interval over the samples.
+  Interval cost() const;
+  /// Whether cost and errors count: no failure, no explosion, at least one sample.
+  bool sound() const;
+};
+
+/// All settings of all solvers on one scene, timed in one interleaved session.
+struct SceneBench {
+  std::string scene;
+  Interval control;  ///< the first case against itself: how far apart the same code strays here
+  std::vector<BenchedCase> cases;
+
+  /// What the cases offer for the metric value `metric`; same order. An explosion or a failure is
+  /// no offer.
+  std::vector<Offer> offers(const std::string& metric) const;
+  /// Cost of case i over case j per simulated second, from their interleaved samples; nothing if
+  /// either failed.
+  std::optional<Interval> ratio(std::size_t i, std::size_t j) const;
+};
+
+/// What `taut bench STUDY` leaves for reports and plots: every sample is kept.
+struct BenchSession {
+  std::string study;
+  std::string machine;  ///< processor and number of cores
+  std::vector<SceneBench> scenes;
+
+  /// The records, each with its cost as further values: "cpu.per_second", "cpu.per_step",
+  /// "wall.per_step" [s], "memory.peak" [bytes].
+  std::vector<Record> records() const;
+};
+
+/// Cost of reaching a level of error with the cheapest setting, per solver (a row of the
+/// equal-error table).
+struct Reached {
+  std::string solver;
+  double level = 0;
+  std::optional<std::size_t> at;  ///< index of the case; nothing: never reached
+  std::optional<Interval> times;  ///< cost over that of the cheapest solver at this level
+};
+std::vector<Reached> equal_error(const SceneBench&, const std::string& metric, double level);
+
+/// Names of the solvers in a bench, in order of appearance.
+std::vector<std::string> solvers_of(const SceneBench&);
+
+std::string to_json(const BenchSession&);
+/// Throws InputError that names `where` if the text is not a bench of this schema.
+BenchSession bench_from_json(std::string_view text, const std::string& where);
+
+/// Where the bench of a study lies in a results folder.
+std::filesystem::path bench_file(const std::filesystem::path& results, const std::string& study);
+
+}  // namespace taut

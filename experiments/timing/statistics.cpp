@@ -1,0 +1,81 @@
+#include "experiments/timing/statistics.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace taut {
+
+namespace {
+
+double median_of(std::vector<double>& values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*std::max_element(values.begin(), middle) + *middle) / 2;
+}
+
+}  // namespace
+
+double median(std::span<const double> samples) {
+  std::vector<double> values(samples.begin(), samples.end());
+  return median_of(values);
+}
+
+Interval bootstrap_median(std::span<const double> samples, double confidence, std::uint64_t seed) {
+  constexpr std::size_t kResamples = 2000;
+  if (samples.empty()) return {median(samples), median(samples), median(samples)};
+  std::mt19937_64 random(seed);
+  std::vector<double> medians(kResamples), resample(samples.size());
+  for (double& m : medians) {
+    // The high bits times the count: the same index everywhere, unlike
+    // std::uniform_int_distribution.
+    for (double& value : resample) value = samples[((random() >> 32) * samples.size()) >> 32];
+    m = median_of(resample);
+  }
+  std::sort(medians.begin(), medians.end());
+  const auto at = [&](double q) {
+    return medians[static_cast<std::size_t>(std::lround(q * static_cast<double>(kResamples - 1)))];
+  };
+  return {at((1 - confidence) / 2), median(samples), at((1 + confidence) / 2)};
+}
+
+Interval interleaved_ratio(std::span<const double> a, std::span<const double> b, double confidence,
+                           std::uint64_t seed) {
+  assert(a.size() == b.size() && a.size() % 2 == 0);
+  std::vector<double> logs;
+  for (std::size_t i = 0; i < a.size(); i += 2)
+    logs.push_back(std::log((a[i] + a[i + 1]) / (b[i] + b[i + 1])));
+  const Interval log = bootstrap_median(logs, confidence, seed);
+  return {std::exp(log.low), std::exp(log.mid), std::exp(log.high)};
+}
+
+Judgement judge(const Interval& ratio, const Interval& control, double tolerance) {
+  const double floor = std::max(std::abs(std::log(control.low)), std::abs(std::log(control.high)));
+  if (!(floor <= std::log1p(tolerance))) return Judgement::too_noisy;
+  const double change = std::log(ratio.mid);
+  if (ratio.contains(1) || std::abs(change) <= std::log1p(tolerance) || std::abs(change) <= floor)
+    return Judgement::same;
+  return change < 0 ? Judgement::faster : Judgement::slower;
+}
+
+PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
+  assert(x.size() == y.size() && x.size() >= 2);
+  const auto n = static_cast<double>(x.size());
+  double mx = 0, my = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) mx += std::log(x[i]) / n, my += std::log(y[i]) / n;
+  double sxx = 0, sxy = 0, syy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double dx = std::log(x[i]) - mx, dy = std::log(y[i]) - my;
+    sxx += dx * dx, sxy += dx * dy, syy += dy * dy;
+  }
+  const double slope = sxy / sxx;
+  const double residual = std::max(0.0, syy - slope * sxy);
+  const double error = n > 2 ? std::sqrt(residual / (n - 2) / sxx) : 0;
+  return {std::exp(my - slope * mx), slope, error};
+}
+
+}  // namespace taut

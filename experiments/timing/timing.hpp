@@ -1,0 +1,114 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/model/solver.hpp"
+#include "experiments/case/record.hpp"
+#include "experiments/timing/statistics.hpp"
+
+namespace taut {
+
+/// What one sample says of a step.
+struct StepTime {
+  double cpu = 0;   ///< s, of all threads together
+  double wall = 0;  ///< s; longer than cpu / threads on a busy machine, so only for display
+};
+
+/// CPU seconds per step that `solver` needs for the first `steps` steps of the scene, as this
+/// process's CPU clock counts them: only Solver::step is inside the clock. One untimed step comes
+/// first (caches, first touch). With several threads it is the CPU time of all of them.
+double time_steps(const Scene&, Solver&, int steps);
+
+/// A run that was seen once, so that samples can begin anywhere in it: the first steps alone would
+/// miss the contacts, which come later. Up to four states, evenly spaced, at least eight steps
+/// apart.
+class Rehearsal {
+ public:
+  /// Runs the first `steps` steps.
+  Rehearsal(const Scene&, Solver&, int steps);
+  const StepTime& whole() const { return whole_; }
+  /// Time of a step over `steps` steps (at least one from each state); before each state's
+  /// share one untimed step warms the caches.
+  StepTime sample(Solver&, int steps) const;
+
+ private:
+  struct Start {
+    int step;
+    State state;
+  };
+  double dt_;
+  int length_;  ///< steps between two starts: a share never runs into the next
+  std::vector<Start> starts_;
+  StepTime whole_;
+};
+
+/// Samples of one case, taken in a process of its own that stays alive between them.
+class TimingWorker {
+ public:
+  /// Starts `program --worker` for the case; throws InputError if the case cannot be built.
+  TimingWorker(const std::filesystem::path& program, const CaseSpec&);
+  ~TimingWorker();
+  TimingWorker(const TimingWorker&) = delete;
+  TimingWorker& operator=(const TimingWorker&) = delete;
+
+  /// Runs the first `steps` steps once and gives their mean; required before sample(). Both throw
+  /// std::runtime_error if the worker died.
+  StepTime rehearse(int steps);
+  StepTime sample(int steps);  ///< see Rehearsal::sample
+  std::size_t peak_bytes();    ///< resident set of the worker so far
+
+ private:
+  std::string ask(const std::string& line);
+  StepTime ask_time(const std::string& line);
+  int pid_ = -1;
+  int to_ = -1;
+  int from_ = -1;
+};
+
+/// The worker's side: reads requests from stdin and answers on stdout until the input ends.
+int serve_timing(const Scene&, const SolverChoice&);
+
+/// Which program can time the case: this one, or its sibling with the other build of Bullet.
+std::filesystem::path program_of(const CaseSpec&);
+
+/// Steps that say something about cost: all, or those before an explosion.
+int steps_done(const Record&);
+
+/// "Intel ... 2.80GHz, 2 cores".
+std::string machine_name();
+
+/// What was measured of one case.
+struct Timing {
+  CaseSpec spec;
+  std::vector<double> samples;    ///< CPU seconds per step, in the order taken: two per round
+  std::vector<double> wall = {};  ///< the same in wall time
+  std::size_t peak_bytes = 0;
+  std::string failure;  ///< why it could not be timed; empty: it was
+};
+
+/// One session: every case sampled in rounds that run forth and back (A B C C B A), so that a drift
+/// of the machine's speed cancels between any two of them; the first case runs twice as its own A/A
+/// control.
+struct Bench {
+  std::vector<Timing> timings;
+  Interval control;  ///< ratio of the first case to itself
+
+  /// Cost of case i over case j, from their interleaved samples.
+  Interval ratio(std::size_t i, std::size_t j) const;
+};
+
+struct BenchOptions {
+  int rounds = 5;         ///< each gives two samples of every case
+  double seconds = 0.05;  ///< CPU time of one sample: as many steps as fit, all the steps at most;
+                          ///< they are spread over the whole run
+  std::function<std::filesystem::path(const CaseSpec&)>
+      program;                                ///< which executable times the case
+  std::function<int(const CaseSpec&)> steps;  ///< how many steps the case has (or survived)
+  std::function<void(std::size_t done, std::size_t all)> progress;
+};
+Bench run_bench(const std::vector<CaseSpec>&, const BenchOptions&);
+
+}  // namespace taut

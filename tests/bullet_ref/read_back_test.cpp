@@ -1,0 +1,122 @@
+// Bullet is given the scene that we are given: whatever it holds, read from its own objects after
+// the scene was built, is what was asked for.
+#include "bullet_ref/read_back.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace taut {
+namespace {
+
+Scene sheet(int nu, int nv) {
+  Scene scene;
+  scene.mesh = make_sheet({.nu = nu, .nv = nv, .width = 1, .height = 1, .mass = 0.2});
+  scene.links = grid_links(scene.mesh, {.structural = true, .shear = true, .bend = true});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
+  scene.pins = {0, nu - 1};
+  scene.dt = 1.0 / 64;
+  scene.steps = 64;
+  return scene;
+}
+
+/// Everything that a scene can have and btSoftBody can do, all values unlike Bullet's defaults.
+Scene everything() {
+  Scene scene = sheet(9, 7);
+  for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
+    scene.mesh.mass[i] *= 1 + 0.1 * static_cast<double>(i);
+    scene.start.x[i] = 1.1 * scene.start.x[i] + Vec3(0, 2, 0);  // a stretched start
+    scene.start.v[i] = {0.1, -0.2, 0.01 * static_cast<double>(i)};
+  }
+  for (Link& link : scene.links) link.rest *= 0.9;  // tighter than the rest shape
+  scene.pin_motions = {{{0}, {.velocity = {0, 0, 1}}}};
+  const Vec3 tilted = Vec3(1, 2, 3).normalized();
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.7, tilted));
+  scene.colliders = {
+      {.shape = Plane{tilted, -0.5}},
+      {.shape = Plane{-Vec3::UnitY(), -9}, .motion = {.velocity = {0, -0.1, 0}}},
+      {.shape = Ball{{0.1, 0.2, 0.3}, 0.4},
+       .motion = {.spin = {0, 1, 0}, .pivot = {1, 0, 0}, .path = {{0.5, {1, 2, 3}}}}},
+      {.shape = Box{{-3, 0, 0.3}, {0.1, 0.2, 0.3}, turned}, .motion = {.spin = {0, 0, 2}}}};
+  scene.wind = Wind{.velocity = {3, 0, 1}, .strength = 0.2, .law = Wind::Law::literal};
+  scene.gravity = {0.5, -3.7, 0.1};
+  scene.damping = 0.3;
+  scene.thickness = 0.01;
+  scene.dt = static_cast<double>(1 / 60.0F);
+  return scene;
+}
+
+std::unique_ptr<Solver> bullet(const Scene& scene, const std::string& text = "bullet") {
+  const SolverChoice choice = parse_solver(text);
+  EXPECT_EQ(choice.entry->cannot(scene, choice.params), std::vector<std::string>{});
+  auto solver = choice.entry->make(scene, choice.params);
+  solver->load(scene.start);
+  return solver;
+}
+
+TEST(BulletReadBack, HoldsEverythingThatTheSceneSays) {
+  const Scene scene = everything();
+  EXPECT_EQ(differences(scene, read_back(*bullet(scene)), 1e-13), std::vector<std::string>{});
+}
+
+TEST(BulletReadBack, SoDoesTheDeformableBody) {
+  const Scene scene = everything();
+  EXPECT_EQ(differences(scene, read_back(*bullet(scene, "bullet-deformable")), 1e-13),
+            std::vector<std::string>{});
+}
+
+TEST(BulletReadBack, SubstepsChangeTheTimeStepByRoundingToBinary32) {
+  const Scene scene = everything();
+  const auto solver = bullet(scene, "bullet:substeps=7");
+  EXPECT_NE(differences(scene, read_back(*solver), 1e-13), std::vector<std::string>{});
+  EXPECT_EQ(differences(scene, read_back(*solver), 6e-8), std::vector<std::string>{});
+}
+
+TEST(BulletReadBack, StillHoldsTheMaterialAfterAHundredSteps) {
+  Scene scene = everything();
+  const auto solver = bullet(scene);
+  for (int n = 0; n < 100; ++n) solver->step(n * scene.dt, scene.dt);
+  solver->load(scene.start);
+  solver->step(0, scene.dt);
+  Scene held = read_back(*solver);
+  held.start = scene.start;          // has moved on
+  held.colliders = scene.colliders;  // so have these
+  EXPECT_EQ(differences(scene, held, 1e-13), std::vector<std::string>{});
+}
+
+TEST(BulletReadBack, ComparisonSeesEveryMember) {
+  const Scene scene = everything();
+  const auto changed = [&](auto change) {
+    Scene other = scene;
+    change(other);
+    return differences(scene, other, 1e-9).size();
+  };
+  EXPECT_EQ(changed([](Scene&) {}), 0u);
+  EXPECT_EQ(changed([](Scene& s) { s.mesh.rest[3].x() += 1e-6; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { std::swap(s.mesh.triangles[0][0], s.mesh.triangles[0][1]); }),
+            1u);
+  EXPECT_EQ(changed([](Scene& s) { s.mesh.mass[3] *= 1.001; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.start.x[3].y() += 1e-6; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.start.v[3].z() += 1e-3; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.pins.pop_back(); }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.pin_motions.clear(); }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { std::swap(s.links[0].a, s.links[0].b); }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.links[5].rest *= 1.001; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.links[5].family = Family::bend; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { std::get<Plane>(s.colliders[0].shape).offset += 1e-6; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { std::get<Ball>(s.colliders[2].shape).radius += 1e-6; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { std::get<Box>(s.colliders[3].shape).rotation.setIdentity(); }),
+            1u);
+  EXPECT_EQ(changed([](Scene& s) { s.colliders[2].motion.path.clear(); }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.colliders[1].friction = 1; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.wind->law = Wind::Law::relative; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.self_collision = SelfCollision{0.01}; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.gravity.x() = 0; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.damping = 0; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.thickness = 0; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.dt = 1 / 61.0; }), 1u);
+  EXPECT_EQ(changed([](Scene& s) { s.steps = 1; }), 1u);
+}
+
+}  // namespace
+}  // namespace taut

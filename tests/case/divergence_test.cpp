@@ -1,0 +1,110 @@
+// Verdicts at their borders: a hair below is legitimate, a hair above is not.
+#include "experiments/case/divergence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+Scene chain() { return hanging_sheet(1, 9, {true, false, false}, Lumping::equal); }
+
+std::vector<PassCost> sweeps(std::size_t k) {
+  return {{.pass = "structural", .repeats = k, .projections = true}};
+}
+
+/// Vertex 5 moves at `speed` [m/s]; the kinetic energy is m speed^2/2.
+State moving(const Scene& scene, double speed) {
+  State state = scene.start;
+  state.v[5] = {speed, 0, 0};
+  return state;
+}
+
+TEST(VerdictBorders, TenTimesTheAvailableEnergy) {
+  const Scene scene = chain();
+  for (const int step : {1, 10, 64}) {
+    const double t = step * scene.dt;
+    const double limit = std::sqrt(20 * EnergyBudget(scene).available(t) / scene.mesh.mass[5]);
+    Verdict below(scene, {}), above(scene, {});
+    EXPECT_TRUE(below.sees(step, t, moving(scene, 0.9999 * limit))) << step;
+    EXPECT_FALSE(above.sees(step, t, moving(scene, 1.0001 * limit))) << step;
+    EXPECT_EQ(above.status().reason, "energy");
+    EXPECT_EQ(above.status().step, step);
+    EXPECT_EQ(above.status().vertex, 5);
+  }
+}
+
+TEST(VerdictBorders, PinsHaveNoEnergyButMustBeFinite) {
+  const Scene scene = chain();
+  State state = scene.start;
+  state.v[0] = {1e9, 0, 0};
+  EXPECT_TRUE(Verdict(scene, {}).sees(1, scene.dt, state));
+  state.v[0].y() = -std::numeric_limits<double>::infinity();
+  Verdict verdict(scene, {});
+  EXPECT_FALSE(verdict.sees(1, scene.dt, state));
+  EXPECT_EQ(verdict.status().reason, "nonfinite");
+  EXPECT_EQ(verdict.status().vertex, 0);
+}
+
+TEST(VerdictBorders, TheEndOfTheWorld) {
+  const Scene scene = chain();
+  for (const double side : {-1e6, 1e6}) {
+    State state = scene.start;
+    state.x[3].z() = side;
+    EXPECT_TRUE(Verdict(scene, {}).sees(1, scene.dt, state));
+    state.x[3].z() = std::nextafter(side, 2 * side);
+    Verdict verdict(scene, {});
+    EXPECT_FALSE(verdict.sees(1, scene.dt, state));
+    EXPECT_EQ(verdict.status().reason, "box");
+    EXPECT_EQ(verdict.status().vertex, 3);
+  }
+}
+
+/// The verdict on a run of `times` settling times in which a vertex never slows down.
+Status restless(double speed, double times) {
+  Scene scene = chain();
+  const std::vector<PassCost> plan = sweeps(64);
+  scene.steps = static_cast<int>(std::ceil(times * *settling_time(scene, plan) / scene.dt));
+  Verdict verdict(scene, plan);
+  for (int n = 1; n <= scene.steps; ++n)  // at the very start there is no energy to be had
+    EXPECT_TRUE(verdict.sees(n, n * scene.dt, moving(scene, speed)));
+  verdict.finish();
+  return verdict.status();
+}
+
+TEST(VerdictBorders, RestIsAThousandthOfTheFreeFallSpeed) {
+  const Scene scene = chain();
+  const double slow = 1e-3 * std::sqrt(scene.gravity.norm() * extent(scene));
+  EXPECT_EQ(restless(0.999 * slow, 6).kind, Status::Kind::ok);
+  const Status status = restless(1.001 * slow, 6);
+  EXPECT_EQ(status.kind, Status::Kind::unsettled);
+  EXPECT_EQ(status.vertex, 5);
+}
+
+TEST(VerdictBorders, NobodyIsUnsettledBeforeFiveSettlingTimes) {
+  EXPECT_EQ(restless(0.1, 4.9).kind, Status::Kind::ok);
+  EXPECT_EQ(restless(0.1, 5.1).kind, Status::Kind::unsettled);
+}
+
+// e^-4 of the fastest ever seen is what five settling times leave of a decaying swing.
+TEST(VerdictBorders, ASwingThatDecaysAsTheorySaysIsSettled) {
+  Scene scene = chain();
+  const std::vector<PassCost> plan = sweeps(64);
+  const double settling = *settling_time(scene, plan);
+  scene.steps = static_cast<int>(std::ceil(5.5 * settling / scene.dt));
+  for (const double rate : {1.001, 0.8}) {
+    Verdict verdict(scene, plan);
+    for (int n = 1; n <= scene.steps; ++n)
+      ASSERT_TRUE(
+          verdict.sees(n, n * scene.dt, moving(scene, std::exp(-rate * n * scene.dt / settling))));
+    verdict.finish();
+    EXPECT_EQ(verdict.status().kind, rate > 1 ? Status::Kind::ok : Status::Kind::unsettled) << rate;
+  }
+}
+
+}  // namespace
+}  // namespace taut

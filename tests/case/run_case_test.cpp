@@ -1,0 +1,219 @@
+// One case in one process: what is a blow-up and what is legitimate, what a record says.
+#include "experiments/case/run_case.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "experiments/case/digest.hpp"
+#include "experiments/case/divergence.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+Scene at_rest(const SheetShape& shape) {
+  Scene scene;
+  scene.name = "test";
+  scene.mesh = make_sheet(shape);
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
+  scene.links = grid_links(scene.mesh, {});
+  scene.dt = 1.0 / 64;
+  scene.steps = 640;
+  return scene;
+}
+
+/// A chain that hangs from its first vertex.
+Scene chain(int links, double dt) {
+  Scene scene =
+      at_rest({.nu = 1, .nv = links + 1, .height = 1, .mass = 0.1, .lumping = Lumping::equal});
+  scene.pins = {0};
+  scene.dt = dt;
+  scene.steps = static_cast<int>(10 / dt);
+  return scene;
+}
+
+Status verdict_on(const Scene& scene, const std::string& solver) {
+  return run_case(scene, parse_solver(solver)).record.status;
+}
+
+/// A solver that is told what the state is after each step.
+struct Scripted final : Solver {
+  explicit Scripted(const Scene& scene) : state(scene.start) {}
+  void load(const State& s) override { state = s; }
+  void step(double, double) override { script(++steps, state); }
+  void store(State& s) const override { s = state; }
+  std::vector<PassCost> plan() const override { return {}; }
+  static inline std::function<void(int, State&)> script;
+  State state;
+  int steps = 0;
+};
+
+CaseRun run_scripted(const Scene& scene, std::function<void(int, State&)> script,
+                     const RunOptions& options = {}) {
+  static const SolverEntry entry{
+      .name = "scripted",
+      .make = [](const Scene& s, const Params&) -> std::unique_ptr<Solver> {
+        return std::make_unique<Scripted>(s);
+      },
+      .cannot = [](const Scene&, const Params&) { return std::vector<std::string>{}; },
+      .effective = [](const Scene&, const Params&) { return Effective{}; }};
+  Scripted::script = std::move(script);
+  return run_case(scene, {&entry, Params("scripted", {}, "")}, options);
+}
+
+TEST(Verdict, NotANumberIsAnExplosionAtItsStepAndVertex) {
+  const Scene scene = at_rest({.nu = 3, .nv = 3, .width = 1, .height = 1, .mass = 0.2});
+  const CaseRun run = run_scripted(scene, [](int step, State& s) {
+    s.x[1].y() -= 0.001;
+    if (step == 7) s.x[5].y() = std::numeric_limits<double>::quiet_NaN();
+  });
+  EXPECT_EQ(run.record.status.kind, Status::Kind::exploded);
+  EXPECT_EQ(run.record.status.reason, "nonfinite");
+  EXPECT_EQ(run.record.status.step, 7);
+  EXPECT_EQ(run.record.status.vertex, 5);
+  EXPECT_NEAR(run.last.x[1].y(), -0.006, 1e-12) << "the last sound state is that after step 6";
+  for (const auto& [name, value] : run.record.values) EXPECT_TRUE(std::isnan(value)) << name;
+}
+
+TEST(Verdict, EnergyOutOfNothingIsAnExplosion) {
+  const Scene scene = chain(16, 1.0 / 64);
+  const CaseRun run = run_scripted(scene, [](int, State& s) {
+    s.v[9] = 1.1 * s.v[9] + Vec3(0.01, 0, 0);  // grows by 10 % a step
+  });
+  EXPECT_EQ(run.record.status.kind, Status::Kind::exploded);
+  EXPECT_EQ(run.record.status.reason, "energy");
+  EXPECT_EQ(run.record.status.vertex, 9);
+}
+
+TEST(Verdict, LeavingTheWorldIsAnExplosion) {
+  const Scene scene = chain(4, 1.0 / 64);
+  const CaseRun run = run_scripted(scene, [](int step, State& s) {
+    if (step == 3) s.x[2].z() = -2e6;
+  });
+  EXPECT_EQ(run.record.status.reason, "box");
+  EXPECT_EQ(run.record.status.step, 3);
+}
+
+TEST(Verdict, FreeFallIsNoExplosionHoweverLong) {
+  Scene scene = at_rest({.nu = 3, .nv = 3, .width = 1, .height = 1, .mass = 0.2});
+  scene.steps = 64 * 60;
+  EXPECT_EQ(verdict_on(scene, listing("precision=double")).kind, Status::Kind::ok);
+}
+
+// One sweep at dt = 1/10 s stretches the top link to dozens of its rest length: soft, not unstable.
+TEST(Verdict, LegitimateStrainIsNoExplosion) {
+  for (const int links : {16, 64, 128})
+    for (const double dt : {1.0 / 10, 1.0 / 30, 1.0 / 60, 1.0 / 480})
+      for (const char* projection : {"exact", "sqrt-free"}) {
+        const Status status = verdict_on(
+            chain(links, dt), listing("iterations=1,projection=") + std::string(projection));
+        EXPECT_NE(status.kind, Status::Kind::exploded)
+            << links << " links, dt " << dt << ", " << projection << ": " << status.reason
+            << " at step " << status.step;
+      }
+}
+
+TEST(Verdict, DrivenScenesAreNoExplosion) {
+  Scene flag = at_rest({.nu = 12, .nv = 8, .width = 1, .height = 0.7, .mass = 0.05});
+  for (int j = 0; j < 8; ++j) flag.pins.push_back(flag.mesh.grid->index(0, j));
+  flag.wind = Wind{.velocity = {12, 0, 3}, .strength = 1};
+  EXPECT_EQ(verdict_on(flag, listing("iterations=8")).kind, Status::Kind::ok);
+
+  Scene dragged = chain(20, 1.0 / 64);
+  dragged.gravity.setZero();
+  dragged.pin_motions = {{{0}, {.velocity = {5, 0, 0}}}};
+  EXPECT_EQ(verdict_on(dragged, listing("iterations=8")).kind, Status::Kind::ok);
+
+  Scene whirled = chain(20, 1.0 / 64);
+  whirled.pin_motions = {{{0}, {.spin = {0, 0, 9}, .pivot = {0.5, 0, 0}}}};
+  EXPECT_EQ(verdict_on(whirled, listing("iterations=8")).kind, Status::Kind::ok);
+}
+
+TEST(Verdict, AStartFarFromRestMaySnapBack) {
+  Scene scene = chain(10, 1.0 / 64);
+  scene.gravity.setZero();
+  for (Vec3& x : scene.start.x) x *= 4;
+  EXPECT_EQ(verdict_on(scene, listing("iterations=16,projection=exact")).kind, Status::Kind::ok);
+}
+
+TEST(Verdict, SettlingTimeIsKnownForHangingClothOnly) {
+  const std::vector<PassCost> plan{{.pass = "structural", .repeats = 4, .projections = true}};
+  Scene scene = chain(16, 1.0 / 64);
+  const double pi = std::acos(-1.0);
+  ASSERT_TRUE(settling_time(scene, plan));
+  EXPECT_GT(*settling_time(scene, plan), 8 * 256 / (pi * pi * 4 * 64));
+  EXPECT_FALSE(settling_time(scene, {})) << "no sweeps";
+  scene.wind = Wind{};
+  EXPECT_FALSE(settling_time(scene, plan)) << "wind";
+  scene = chain(16, 1.0 / 64);
+  scene.pins.clear();
+  EXPECT_FALSE(settling_time(scene, plan)) << "nothing holds it";
+}
+
+TEST(Verdict, WhatNeverRestsIsUnsettled) {
+  Scene scene = chain(4, 1.0 / 16);
+  scene.steps = 320;  // 20 s; the slowest swing decays in 2.3 s
+  const auto restless = [](int step, State& s) { s.v[3].x() = step % 2 ? 0.5 : -0.5; };
+  EXPECT_EQ(run_scripted(scene, restless).record.status.kind, Status::Kind::ok)
+      << "without sweeps there is no theory to judge by";
+  Verdict verdict(scene, {{.pass = "structural", .repeats = 16, .projections = true}});
+  State state = scene.start;
+  for (int n = 0; n <= scene.steps; ++n) {
+    if (n > 0) restless(n, state);
+    ASSERT_TRUE(verdict.sees(n, n * scene.dt, state));
+  }
+  verdict.finish();
+  EXPECT_EQ(verdict.status().kind, Status::Kind::unsettled);
+  EXPECT_EQ(verdict.status().vertex, 3);
+  EXPECT_EQ(verdict_on(scene, listing("iterations=16")).kind, Status::Kind::ok)
+      << "the same chain comes to rest under relaxation";
+}
+
+TEST(RunCase, UnsupportedScenesAreSaidSoAndNotRun) {
+  Scene scene = chain(4, 1.0 / 64);
+  static const SolverEntry entry{
+      .name = "picky",
+      .make = [](const Scene&, const Params&) -> std::unique_ptr<Solver> { std::abort(); },
+      .cannot =
+          [](const Scene&, const Params&) {
+            return std::vector<std::string>{"dislikes chains", "dislikes Mondays"};
+          },
+      .effective = [](const Scene&, const Params&) { return Effective{}; }};
+  const CaseRun run = run_case(scene, {&entry, Params("picky", {}, "")});
+  EXPECT_EQ(run.record.status.kind, Status::Kind::unsupported);
+  EXPECT_EQ(run.record.status.reason, "dislikes chains; dislikes Mondays");
+}
+
+TEST(RunCase, TheRecordNamesWhatWasRun) {
+  const Scene scene = chain(16, 1.0 / 64);
+  const CaseRun run = run_case(scene, parse_solver(listing("iterations=8")), {.series_rows = 120});
+  EXPECT_EQ(run.record.solver, "jakobsen");
+  EXPECT_EQ(run.record.params.at("iterations"), "8");
+  EXPECT_EQ(run.record.params.at("substeps"), "1");
+  EXPECT_EQ(run.record.steps, 640);
+  EXPECT_EQ(run.record.vertices, 17);
+  EXPECT_EQ(run.record.links, 16);
+  EXPECT_EQ(run.record.projections, 16u * 8u);
+  EXPECT_EQ(run.record.digest, digest(run.last));
+  EXPECT_TRUE(run.record.values.contains("drift.max"));
+  ASSERT_GE(run.series.rows.size(), 120u);
+  EXPECT_LE(run.series.rows.size(), 130u);
+  EXPECT_EQ(run.series.rows.front()[0], 0);
+  EXPECT_EQ(run.series.rows.back()[0], 640);
+  for (const auto& row : run.series.rows) EXPECT_EQ(row.size(), run.series.columns.size());
+}
+
+TEST(RunCase, RunsRepeatToTheBit) {
+  const Scene scene = chain(16, 1.0 / 64);
+  const SolverChoice choice = parse_solver(listing("iterations=8"));
+  EXPECT_EQ(run_case(scene, choice).record.digest, run_case(scene, choice).record.digest);
+}
+
+TEST(Digest, MatchesTheStandardsTestVector) {
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,143 @@
+#include "experiments/case/trajectory.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <limits>
+#include <sstream>
+
+#include "core/model/input_error.hpp"
+
+namespace taut {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TrajectoryTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = fs::temp_directory_path() / ("taut_trajectory_" + std::to_string(getpid()) + ".traj");
+  }
+  void TearDown() override { fs::remove(path_); }
+
+  static TrajectoryHeader header(TrajectoryHeader::Real real, bool velocities) {
+    return {"hang", "jakobsen:iterations=3", 1.0 / 64, 3, {{0, 1, 2}}, real, velocities};
+  }
+  static State state(double scale) {
+    const auto at = [&](double a) { return Vec3(a * scale, -a / 3, 1e-9 * a); };
+    return {{at(1), at(2), at(3)}, {at(4), at(5), at(6)}};
+  }
+  void write(const TrajectoryHeader& h, int frames) {
+    TrajectoryWriter writer(path_, h);
+    for (int k = 0; k < frames; ++k) writer.append(k * h.frame_dt, state(k + 1));
+    EXPECT_EQ(writer.frames(), frames);
+  }
+  std::string message_of_reading() const {
+    try {
+      read_trajectory(path_);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  void overwrite(const std::string& bytes) const {
+    std::ofstream(path_, std::ios::binary) << bytes;
+  }
+  fs::path path_;
+};
+
+TEST_F(TrajectoryTest, DoublesComeBackBitForBit) {
+  write(header(TrajectoryHeader::Real::f64, true), 4);
+  const Trajectory read = read_trajectory(path_);
+  EXPECT_EQ(read.header.scene, "hang");
+  EXPECT_EQ(read.header.solver, "jakobsen:iterations=3");
+  EXPECT_EQ(read.header.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(read.header.frame_dt, 1.0 / 64);
+  ASSERT_EQ(read.frames.size(), 4u);
+  for (int k = 0; k < 4; ++k) {
+    const auto& frame = read.frames[static_cast<std::size_t>(k)];
+    EXPECT_EQ(frame.t, k / 64.0);
+    EXPECT_EQ(frame.state.x, state(k + 1).x);
+    EXPECT_EQ(frame.state.v, state(k + 1).v);
+  }
+}
+
+TEST_F(TrajectoryTest, FloatsAreTheNearestFloats) {
+  write(header(TrajectoryHeader::Real::f32, false), 1);
+  const Trajectory read = read_trajectory(path_);
+  EXPECT_TRUE(read.frames[0].state.v.empty());
+  const State exact = state(1);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_EQ(read.frames[0].state.x[i][axis],
+                static_cast<double>(static_cast<float>(exact.x[i][axis])));
+}
+
+TEST_F(TrajectoryTest, NonFiniteStatesAreData) {
+  State bad = state(1);
+  bad.x[1][2] = std::numeric_limits<double>::quiet_NaN();
+  TrajectoryWriter(path_, header(TrajectoryHeader::Real::f32, false)).append(0, bad);
+  EXPECT_TRUE(std::isnan(read_trajectory(path_).frames[0].state.x[1][2]));
+}
+
+// A writer that is killed leaves any prefix of the file: whole frames survive, the rest is dropped.
+TEST_F(TrajectoryTest, EveryPrefixReadsItsWholeFramesOrSaysWhy) {
+  write(header(TrajectoryHeader::Real::f32, true), 3);
+  const auto whole = fs::file_size(path_);
+  const std::uint64_t frame = 8 + 3 * 3 * 4 * 2, first = whole - 3 * frame;
+  for (std::uint64_t size = whole; size-- > 0;) {
+    fs::resize_file(path_, size);
+    if (size < first) {
+      EXPECT_THROW(TrajectoryReader{path_}, InputError) << size;
+      continue;
+    }
+    TrajectoryReader reader(path_);
+    EXPECT_EQ(static_cast<std::uint64_t>(reader.frames()), (size - first) / frame) << size;
+    EXPECT_EQ(reader.dropped_bytes(), (size - first) % frame) << size;
+  }
+}
+
+TEST_F(TrajectoryTest, BadFilesSayWhatIsWrong) {
+  EXPECT_NE(message_of_reading().find("cannot read"), std::string::npos);
+  overwrite("");
+  EXPECT_NE(message_of_reading().find("empty file"), std::string::npos);
+  overwrite("solid cube\n");
+  EXPECT_NE(message_of_reading().find("not a trajectory"), std::string::npos);
+  overwrite("TAUTTR");
+  EXPECT_NE(message_of_reading().find("truncated within its header"), std::string::npos);
+  write(header(TrajectoryHeader::Real::f32, false), 0);
+  EXPECT_NE(message_of_reading().find("without a whole frame"), std::string::npos);
+  std::fstream(path_, std::ios::in | std::ios::out | std::ios::binary).seekp(8).put(2);
+  EXPECT_NE(message_of_reading().find("version 2"), std::string::npos);
+  EXPECT_THROW(TrajectoryWriter("/nowhere/x.traj", header(TrajectoryHeader::Real::f32, false)),
+               InputError);
+}
+
+// The reader that the header file prints, run as printed.
+TEST_F(TrajectoryTest, TheDocumentedPythonReadsIt) {
+  if (std::system("python3 -c pass >/dev/null 2>&1") != 0) GTEST_SKIP() << "no python3";
+  write(header(TrajectoryHeader::Real::f64, true), 2);
+  std::ifstream documentation(TAUT_SOURCE_DIR "/experiments/case/trajectory.hpp");
+  std::string script, line;
+  const std::string prefix = "///     ";
+  for (bool inside = false; std::getline(documentation, line);) {
+    if (line == prefix + "import struct") inside = true;
+    if (inside && line.compare(0, prefix.size(), prefix) != 0) break;
+    if (inside) script += line.substr(prefix.size()) + '\n';
+  }
+  script.replace(script.find("run.traj"), 8, path_.string());
+  script += "print(version, n, triangles, k + 1, t, x[2][0])\n";
+  const fs::path file = path_.string() + ".py";
+  std::ofstream(file) << script;
+  std::string output(256, '\0');
+  FILE* python = popen(("python3 " + file.string()).c_str(), "r");
+  ASSERT_NE(python, nullptr);
+  output.resize(std::fread(output.data(), 1, output.size(), python));
+  EXPECT_EQ(pclose(python), 0);
+  fs::remove(file);
+  EXPECT_EQ(output, "1 3 [(0, 1, 2)] 2 0.015625 6.0\n");
+}
+
+}  // namespace
+}  // namespace taut

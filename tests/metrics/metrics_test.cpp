@@ -1,0 +1,495 @@
+// Metrics on states whose answers are known in closed form, and the symmetries that all obey.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/metrics/metric.hpp"
+#include "experiments/metrics/reference.hpp"
+
+namespace taut {
+namespace {
+
+using Values = std::map<std::string, double>;
+
+/// A sheet of n x n vertices, 1 m x 1 m in the plane y = 0, all links, 3 s in steps of 1/64 s.
+Scene sheet(int n = 11) {
+  Scene scene;
+  scene.mesh =
+      make_sheet({.nu = n, .nv = n, .width = 1, .height = 1, .v = Vec3::UnitZ(), .mass = 0.5});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
+  scene.links = grid_links(scene.mesh, {.structural = true, .shear = true, .bend = true});
+  scene.dt = 1.0 / 64;
+  scene.steps = 192;
+  return scene;
+}
+
+/// Every value of every metric that applies, for the motion x(step).
+template <class Motion>
+Values measure(const Scene& scene, const Motion& motion) {
+  Values values;
+  for (const MetricEntry* entry : metrics()) {
+    const auto metric = entry->make(scene);
+    if (!metric) continue;
+    for (int step = 0; step <= scene.steps; ++step) {
+      const State state = step == 0 ? scene.start : motion(step);
+      metric->observe({step, step * scene.dt, state});
+    }
+    const auto numbers = metric->finish();
+    EXPECT_EQ(numbers.size(), entry->values.size()) << entry->name;
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      values[std::string(entry->values[k].name)] = numbers[k];
+  }
+  return values;
+}
+
+Values measure_at_rest(const Scene& scene, const State& state) {
+  return measure(scene, [&](int) { return state; });
+}
+
+std::size_t middle(const Scene& s) { return s.mesh.rest.size() / 2; }
+
+TEST(Metrics, HaveUniqueNamesUnitsAndAsManyNumbersNowAsAtTheEnd) {
+  std::map<std::string_view, int> seen;
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Ball{.center = {0.5, -9, 0.5}, .radius = 0.1}}};
+  scene.self_collision = SelfCollision{.radius = 0.01};
+  for (const MetricEntry* entry : metrics()) {
+    const auto metric = entry->make(scene);
+    if (!metric) continue;
+    metric->observe({0, 0, scene.start});
+    EXPECT_EQ(metric->now({0, 0, scene.start}).size(), entry->values.size()) << entry->name;
+    for (const ValueSpec& value : entry->values) {
+      EXPECT_EQ(++seen[value.name], 1) << value.name;
+      EXPECT_FALSE(value.unit.empty() || value.help.empty()) << value.name;
+    }
+  }
+}
+
+TEST(Metrics, AreAbsentWhereTheSceneLacksWhatTheyMeasure) {
+  Scene scene = sheet(3);
+  const Values plain = measure_at_rest(scene, scene.start);
+  for (const char* name : {"penetration.max", "face.max", "tunnelling.count", "self.crossings"})
+    EXPECT_FALSE(plain.contains(name)) << name;
+  scene.colliders = {{.shape = Plane{.offset = -1}}};
+  const Values plane = measure_at_rest(scene, scene.start);
+  EXPECT_TRUE(plane.contains("penetration.max"));
+  EXPECT_TRUE(std::isnan(plane.at("penetration.ball.max")));
+  EXPECT_FALSE(plane.contains("face.max"));
+  scene.gravity = Vec3::Zero();
+  EXPECT_FALSE(measure_at_rest(scene, scene.start).contains("energy.mean"));
+}
+
+TEST(Metrics, OfARunThatDiesEarlySayNothingAboutItsEnd) {
+  const Scene scene = sheet(3);
+  for (const MetricEntry* entry : metrics()) {
+    if (entry->name != "stretch") continue;
+    const auto metric = entry->make(scene);
+    metric->observe({0, 0, scene.start});
+    metric->observe({1, scene.dt, scene.start});
+    const auto values = metric->finish();
+    EXPECT_TRUE(std::isnan(values[0]));  // stretch.rms
+    EXPECT_NEAR(values[3], 0, 1e-12);    // stretch.peak
+  }
+}
+
+TEST(Stretch, OfAUniformlyStretchedSheetIsOnePercentByEveryMeasure) {
+  const Scene scene = sheet();
+  State state = scene.start;
+  for (Vec3& x : state.x) x *= 1.01;
+  const Values v = measure_at_rest(scene, state);
+  for (const char* group : {"stretch", "structural", "shear", "bend"})
+    for (const char* what : {".rms", ".max", ".p95"})
+      EXPECT_NEAR(v.at(std::string(group) + what), 0.01, 1e-12) << group << what;
+  EXPECT_NEAR(v.at("compression.max"), 0, 1e-12);
+  EXPECT_NEAR(v.at("area.rms"), 1.01 * 1.01 - 1, 1e-12);
+  EXPECT_NEAR(v.at("area.total"), 1.01 * 1.01 - 1, 1e-12);
+}
+
+TEST(Stretch, KeepsFamiliesAndSignsApart) {
+  const Scene scene = sheet(3);  // 12 structural, 8 shear and 6 bend links
+  State state = scene.start;
+  for (Vec3& x : state.x) x.z() *= 1.5, x.x() *= 0.5;
+  const Values v = measure_at_rest(scene, state);
+  EXPECT_NEAR(v.at("structural.max"), 0.5, 1e-12);
+  EXPECT_NEAR(v.at("structural.compression"), 0.5, 1e-12);
+  EXPECT_NEAR(v.at("structural.rms"), 0.5, 1e-12);
+  const double shear = std::sqrt((0.25 + 2.25) / 2) - 1;
+  EXPECT_NEAR(v.at("shear.rms"), shear, 1e-12);
+  EXPECT_NEAR(v.at("stretch.rms"), std::sqrt((12 * 0.25 + 8 * shear * shear) / 20), 1e-12);
+  EXPECT_NEAR(v.at("area.total"), 0.75 - 1, 1e-12);
+}
+
+TEST(Stretch, ShearCollapseStrainsNoStructuralLinkButLosesArea) {
+  const Scene scene = sheet();
+  const double angle = std::numbers::pi / 6;  // between the sides, was 90 degrees
+  State state = scene.start;
+  for (Vec3& x : state.x) x = {x.x() + x.z() * std::cos(angle), 0, x.z() * std::sin(angle)};
+  const Values v = measure_at_rest(scene, state);
+  EXPECT_NEAR(v.at("structural.rms"), 0, 1e-12);
+  EXPECT_NEAR(v.at("area.loss"), 0.5, 1e-12);
+}
+
+TEST(Stretch, MeansAreOverTheLastSecondAndPeaksOverTheRun) {
+  const Scene scene = sheet(3);
+  const auto v = measure(scene, [&](int step) {  // 20 % at 1 s, then 1 % and 3 % in turn
+    State state = scene.start;
+    for (Vec3& x : state.x) x *= step == 64 ? 1.2 : step % 2 ? 1.01 : 1.03;
+    return state;
+  });
+  EXPECT_NEAR(v.at("stretch.peak"), 0.2, 1e-12);
+  EXPECT_NEAR(v.at("stretch.max"), 0.03, 1e-12);
+  EXPECT_NEAR(v.at("stretch.rms"), std::sqrt((0.0001 + 0.0009) / 2), 1e-12);
+}
+
+TEST(Energy, OfAFallingBodyIsConserved) {
+  const Scene scene = sheet(3);
+  const auto v = measure(scene, [&](int step) {
+    State state = scene.start;
+    const double t = step * scene.dt;
+    for (Vec3& x : state.x) x += scene.gravity * t * t / 2;
+    for (Vec3& u : state.v) u = scene.gravity * t;
+    return state;
+  });
+  EXPECT_NEAR(v.at("energy.mean"), 0, 1e-12);
+  EXPECT_NEAR(v.at("energy.peak"), 0, 1e-12);
+  EXPECT_GT(v.at("energy.kinetic"), 1);
+  EXPECT_NEAR(v.at("popping.peak"), 0, 1e-9);
+  EXPECT_NEAR(v.at("drift.max"), 9.81 * 9 / 2, 1e-9);
+}
+
+TEST(Energy, OfALiftedBodyIsItsHeight) {
+  const Scene scene = sheet(3);
+  State state = scene.start;
+  for (Vec3& x : state.x) x.y() += 0.3;
+  EXPECT_NEAR(measure_at_rest(scene, state).at("energy.mean"), 0.3 / std::sqrt(2), 1e-12);
+}
+
+TEST(Jitter, IsTheSpeedOfFreeVerticesAndSettlingItsEnd) {
+  Scene scene = sheet(3);
+  scene.pins = {0};
+  const double unit = std::sqrt(9.81 * std::sqrt(2.0));
+  const auto v = measure(scene, [&](int step) {
+    State state = scene.start;
+    for (Vec3& u : state.v) u.x() = step <= 96 ? 0.01 * unit : 0.0005 * unit;
+    state.v[0].x() = 1000;  // a pin that a solver reports as moving is not jitter
+    return state;
+  });
+  EXPECT_NEAR(v.at("jitter.rms"), 0.0005 * unit, 1e-12);
+  EXPECT_NEAR(v.at("jitter.max"), 0.0005 * unit, 1e-12);
+  EXPECT_DOUBLE_EQ(v.at("settle.time"), 1.5);
+}
+
+TEST(Popping, IsTheJumpOfOneVertex) {
+  const Scene scene = sheet(3);
+  const auto v = measure(scene, [&](int step) {
+    State state = scene.start;
+    if (step >= 180) state.x[4].y() += 0.01;
+    return state;
+  });
+  EXPECT_NEAR(v.at("popping.max"), 0.01 * 64 * 64 - 9.81, 1e-9);
+  EXPECT_EQ(v.at("popping.max"), v.at("popping.peak"));
+}
+
+TEST(Penetration, OfOneVertexAMillimetreInsideTheBall) {
+  Scene scene = sheet();
+  scene.colliders = {{.shape = Ball{.center = {0.5, -0.3, 0.5}, .radius = 0.3}}};
+  State state = scene.start;
+  state.x[middle(scene)].y() = -0.001;
+  const Values v = measure_at_rest(scene, state);
+  for (const char* name : {"penetration.max", "penetration.peak", "penetration.mean",
+                           "penetration.ball.max", "penetration.ball.mean"})
+    EXPECT_NEAR(v.at(name), 0.001, 1e-12) << name;
+  EXPECT_NEAR(v.at("penetration.share"), 1.0 / 121, 1e-12);
+  EXPECT_NEAR(v.at("penetration.gap"), -0.001, 1e-12);
+  EXPECT_TRUE(std::isnan(v.at("penetration.plane.max")));
+}
+
+TEST(Penetration, IsBelowTheSurfaceWhileTheGapCountsTheThickness) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Plane{}}};
+  scene.thickness = 0.01;
+  State state = scene.start;
+  for (Vec3& x : state.x) x.y() = 0.012;
+  Values v = measure_at_rest(scene, state);
+  EXPECT_EQ(v.at("penetration.max"), 0);
+  EXPECT_NEAR(v.at("penetration.gap"), 0.002, 1e-12);
+  for (Vec3& x : state.x) x.y() = 0.004;
+  v = measure_at_rest(scene, state);
+  EXPECT_EQ(v.at("penetration.max"), 0);
+  EXPECT_NEAR(v.at("penetration.gap"), -0.006, 1e-12);
+}
+
+TEST(Penetration, FollowsTheColliderAndForgivesPins) {
+  Scene scene = sheet(3);
+  scene.pins = {0};
+  scene.colliders = {
+      {.shape = Plane{.offset = -0.5}, .motion = {.velocity = {0, 0.2, 0}}}};  // at y = 0.1 at 3 s
+  State state = scene.start;
+  state.x[0].y() = -7;
+  EXPECT_NEAR(measure_at_rest(scene, state).at("penetration.max"), 0.1, 1e-12);
+}
+
+TEST(Faces, ThatRestOnABallSagByGeometryAlone) {
+  Scene scene = sheet(21);  // l = 0.05 m
+  const double radius = 0.5, l = 0.05;
+  const Vec3 center(0.5, -1, 0.5);
+  scene.colliders = {{.shape = Ball{.center = center, .radius = radius}}};
+  State state = scene.start;  // one cell with corners on the ball, the rest above it
+  const Grid g = *scene.mesh.grid;
+  for (const auto& [i, j] : {std::pair{10, 10}, {11, 10}, {10, 11}, {11, 11}}) {
+    Vec3& x = state.x[static_cast<std::size_t>(g.index(i, j))];
+    const double u = (i - 10.5) * l, w = (j - 10.5) * l;
+    x = center + Vec3(u, std::sqrt(radius * radius - u * u - w * w), w);
+  }
+  const Values v = measure_at_rest(scene, state);
+  EXPECT_NEAR(v.at("face.max"), 1.2516e-3, 1e-7);  // design value for l = 0.05, R = 0.5
+  EXPECT_NEAR(v.at("face.geometry"), v.at("face.max"), 1e-12);
+  EXPECT_NEAR(v.at("face.excess"), 0, 1e-12);
+  EXPECT_NEAR(v.at("face.max"), l * l / (4 * radius), 2e-6);
+  EXPECT_NEAR(v.at("penetration.max"), 0, 1e-12);
+}
+
+/// A block that slides down a slope of 30 degrees with friction mu, as steps of dt see it.
+State sliding(const Scene& scene, double mu, int step) {
+  const Vec3 down = Vec3(1, -std::sqrt(1.0 / 3), 0).normalized();
+  const double a = 9.81 * std::max(0.0, 0.5 - mu * std::sqrt(0.75));
+  State state = scene.start;
+  for (Vec3& x : state.x) x += a * scene.dt * scene.dt * step * (step + 1) / 2 * down;
+  for (Vec3& v : state.v) v = a * scene.dt * step * down;
+  return state;
+}
+
+TEST(Slip, IsZeroForCoulombsLawAndElseTheAccelerationThatIsWrong) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Plane{.normal = {0.5, std::sqrt(0.75), 0}}, .friction = 0.3}};
+  const auto at = [&](double mu) {
+    return measure(scene, [&](int step) { return sliding(scene, mu, step); });
+  };
+  Values v = at(0.3);
+  EXPECT_NEAR(v.at("slip.error.peak"), 0, 1e-9);
+  EXPECT_NEAR(v.at("slip.distance"), 0, 1e-9);
+  v = at(0.2);  // a solver whose friction is too small by 0.1
+  const double wrong = 9.81 * 0.1 * std::sqrt(0.75);
+  EXPECT_NEAR(v.at("slip.error"), wrong, 1e-9);
+  EXPECT_NEAR(v.at("slip.distance"), wrong / 2 * 3 * (3 + scene.dt), 1e-9);
+  scene.colliders[0].friction = 0.6;  // more than tan(30 degrees): it has to stick, and creeps
+  v = at(0.57);
+  EXPECT_GT(v.at("slip.error"), 0.05);
+  v = at(1);
+  EXPECT_NEAR(v.at("slip.error.peak"), 0, 1e-9);
+}
+
+TEST(Slip, SeesThePlaneMoveAndDampingAndNeedsAPlaneAlone) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Plane{}, .motion = {.velocity = {0.3, 0, 0}}, .friction = 0.5}};
+  const auto carried = [&](int step) {
+    State state = scene.start;
+    for (Vec3& x : state.x) x.x() += 0.3 * scene.dt * step;
+    return state;
+  };
+  for (Vec3& v : scene.start.v) v = {0.3, 0, 0};
+  EXPECT_NEAR(measure(scene, carried).at("slip.error.peak"), 0, 1e-9);
+  scene.colliders[0].motion = {};
+  EXPECT_NEAR(measure(scene, carried).at("slip.error"), 0.5 * 9.81, 1e-9);  // nothing brakes it
+  scene.colliders.clear();
+  scene.damping = 2;
+  scene.gravity = {0, -1e-9, 0};
+  scene.colliders = {{.shape = Plane{.offset = -5}, .friction = 0.5}};
+  const double keep = std::exp(-2 * scene.dt);
+  const auto damped = [&](int step) {
+    State state = scene.start;
+    for (Vec3& x : state.x)
+      x.x() += 0.3 * scene.dt * keep * (1 - std::pow(keep, step)) / (1 - keep);
+    return state;
+  };
+  EXPECT_NEAR(measure(scene, damped).at("slip.error.peak"), 0, 1e-6);
+  scene.pins = {0};
+  EXPECT_FALSE(measure(scene, damped).contains("slip.error"));
+}
+
+TEST(Tunnelling, CountsPassagesWithinOneStepAndForgetsReturns) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Box{.center = {0.5, -1, 0.5}, .half_extents = {2, 0.01, 2}}}};
+  const auto v = measure(scene, [&](int step) {
+    State state = scene.start;
+    if (step >= 10) state.x[0].y() = -2;                        // through in one step
+    if (step >= 10) state.x[1].y() = -1 + 0.001 * (15 - step);  // slowly through
+    if (step >= 10 && step < 50) state.x[2].y() = -2;           // and back
+    if (step >= 10) state.x[3].y() = -0.995;                    // stays inside
+    if (step >= 10) state.x[4] = {9, -2, 9};                    // past the edge
+    if (step >= 12) state.x[4] = {0.5, -2, 0.5};
+    return state;
+  });
+  EXPECT_EQ(v.at("tunnelling.count"), 2);
+  EXPECT_EQ(v.at("tunnelling.events"), 4);
+  EXPECT_NEAR(v.at("tunnelling.share"), 2.0 / 9, 1e-12);
+}
+
+TEST(Tunnelling, SeesTheColliderMoveAndGrazesPardoned) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Ball{.center = {0.5, -1, 0.5}, .radius = 0.1},
+                      .motion = {.velocity = {0, 64, 0}}}};  // 1 m a step, straight through
+  EXPECT_EQ(measure_at_rest(scene, scene.start).at("tunnelling.count"), 1);
+  std::get<Ball>(scene.colliders[0].shape).center.x() += 0.08;  // beyond R/sqrt(2) off the axis
+  EXPECT_EQ(measure_at_rest(scene, scene.start).at("tunnelling.count"), 0);
+}
+
+TEST(SelfIntersection, OfAFlapThatFoldsThroughTheSheet) {
+  Scene scene = sheet(5);
+  scene.self_collision = SelfCollision{.radius = 0.05};
+  Values v = measure_at_rest(scene, scene.start);
+  EXPECT_EQ(v.at("self.crossings"), 0);
+  EXPECT_EQ(v.at("self.gap"), 0);
+  State state = scene.start;  // the last row is bent back, below the first
+  for (int i = 0; i < 5; ++i) {
+    state.x[static_cast<std::size_t>(15 + i)] += Vec3(0.01, 0.2, -0.3);
+    state.x[static_cast<std::size_t>(20 + i)] += Vec3(0.01, -0.2, -0.9);
+  }
+  v = measure_at_rest(scene, state);
+  EXPECT_GT(v.at("self.crossings"), 0);
+  EXPECT_EQ(v.at("self.crossings"), v.at("self.crossings.peak"));
+  state = scene.start;
+  state.x[0] = state.x[24] + Vec3(0, 0.03, 0);
+  EXPECT_NEAR(measure_at_rest(scene, state).at("self.gap"), 0.03 - 0.1, 1e-12);
+}
+
+/// The scene as seen after a rigid motion of the whole world.
+struct Rigid {
+  Eigen::Quaterniond turn{Eigen::AngleAxisd(0.8, Vec3(1, 2, -0.5).normalized())};
+  Vec3 shift{0.3, -0.7, 1.1};
+  Vec3 point(const Vec3& p) const { return turn * p + shift; }
+  State operator()(State s) const {
+    for (Vec3& x : s.x) x = point(x);
+    for (Vec3& v : s.v) v = turn * v;
+    return s;
+  }
+  Scene operator()(Scene s) const {
+    s.start = (*this)(s.start);
+    s.gravity = turn * s.gravity;
+    for (Collider& c : s.colliders) {
+      c.motion.velocity = turn * c.motion.velocity;
+      if (auto* plane = std::get_if<Plane>(&c.shape)) {
+        const Vec3 on = point(plane->offset * plane->normal);
+        plane->normal = turn * plane->normal, plane->offset = plane->normal.dot(on);
+      }
+      if (auto* ball = std::get_if<Ball>(&c.shape)) ball->center = point(ball->center);
+      if (auto* box = std::get_if<Box>(&c.shape))
+        box->center = point(box->center), box->rotation = turn * box->rotation;
+    }
+    return s;
+  }
+};
+
+/// A scene with everything, and states that violate everything. The rest shape is left alone by
+/// Rigid: metrics use its distances, and its bounding box as a unit.
+/// Nothing in it is symmetric, so that no vertex is equally near to two sides.
+Scene busy_scene() {
+  Scene scene = sheet(6);
+  scene.pins = {0, 5};
+  scene.colliders = {
+      {.shape = Plane{.normal = Vec3(0.1, 1, 0).normalized(), .offset = 0.02}},
+      {.shape = Ball{.center = {0.52, -0.1, 0.47}, .radius = 0.2},
+       .motion = {.velocity = {0, 1, 0}}},
+      {.shape = Box{.center = {0.22, 0.013, 0.77}, .half_extents = {0.1, 0.2, 0.3}}}};
+  scene.self_collision = SelfCollision{.radius = 0.05};
+  scene.thickness = 0.003;
+  scene.steps = 12;
+  return scene;
+}
+
+std::vector<State> noisy_states(const Scene& scene) {
+  std::mt19937 random(7);
+  std::normal_distribution<> noise(0, 0.08);
+  const auto draw = [&] {  // braces: from left to right, whatever the compiler
+    return Vec3{std::array{noise(random), noise(random), noise(random)}.data()};
+  };
+  std::vector<State> states;
+  for (int step = 0; step <= scene.steps; ++step) {
+    states.push_back(scene.start);
+    for (Vec3& x : states.back().x) x += draw();
+    for (Vec3& v : states.back().v) v = draw();
+  }
+  return states;
+}
+
+void expect_same(const Values& a, const Values& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (const auto& [name, value] : a)
+    EXPECT_NEAR(value, b.at(name), 1e-9 * std::max(1.0, std::abs(value))) << name;
+}
+
+TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
+  Scene scene =
+      load_scene(std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/drape.toml");
+  const References known = known_references(scene);
+  ASSERT_TRUE(known.rest && known.motion);
+  scene.dt = 0.1, scene.steps = 10;  // neither matters
+  const auto pins = [&](std::size_t i) {
+    return std::ranges::count(scene.pins, static_cast<int>(i));
+  };
+  const auto motion = [&](int step) {
+    State state{step == 5 ? known.motion->x : known.rest->x, scene.start.v};
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      if (pins(i)) state.x[i] += Vec3(0, 0, 5);  // which the scene moves, not the solver
+      if (step != 5) state.x[i] += Vec3(0, 0.03, -0.04);
+    }
+    return state;
+  };
+  const Values v = measure(scene, motion);
+  EXPECT_EQ(v.at("reference.motion"), 0);
+  EXPECT_GT(v.at("reference.max"), 0.05);  // at step 5, where it should not rest yet
+  EXPECT_EQ(v.at("reference.floor"), known.rest->floor);
+  EXPECT_EQ(v.at("reference.motion_floor"), known.motion->floor);
+  scene.steps = 4, scene.dt = 0.25;
+  const Values end = measure(scene, [&](int) { return motion(1); });
+  EXPECT_NEAR(end.at("reference.rms"), 0.05, 1e-15);
+  EXPECT_NEAR(end.at("reference.max"), 0.05, 1e-15);
+  scene.mesh.mass[3] *= 2;  // another cloth: nothing is known of it
+  EXPECT_FALSE(measure(scene, motion).contains("reference.rms"));
+}
+
+TEST(Metrics, DoNotCareWhereTheWorldIs) {
+  const Scene scene = busy_scene();
+  const auto states = noisy_states(scene);
+  const Rigid move;
+  const auto at = [&](int step) { return states[static_cast<std::size_t>(step)]; };
+  const Values before = measure(scene, at);
+  EXPECT_GT(before.at("self.crossings"), 0);
+  EXPECT_GT(before.at("face.box"), before.at("penetration.box.max"));
+  expect_same(before, measure(move(scene), [&](int step) { return move(at(step)); }));
+}
+
+TEST(Metrics, DoNotCareHowVerticesAreNumbered) {
+  const Scene scene = busy_scene();
+  const auto states = noisy_states(scene);
+  const int n = scene.mesh.size();
+  const auto to = [n](int i) { return (i * 7 + 3) % n; };  // 7 and 36 have no common factor
+  const auto permuted = [&](const auto& values) {
+    auto result = values;
+    for (int i = 0; i < n; ++i)
+      result[static_cast<std::size_t>(to(i))] = values[static_cast<std::size_t>(i)];
+    return result;
+  };
+  const auto permuted_state = [&](const State& s) { return State{permuted(s.x), permuted(s.v)}; };
+  Scene other = scene;
+  other.mesh.grid.reset();
+  other.mesh.rest = permuted(scene.mesh.rest), other.mesh.mass = permuted(scene.mesh.mass);
+  other.start = permuted_state(scene.start);
+  for (Triangle& t : other.mesh.triangles) t = {to(t[1]), to(t[2]), to(t[0])};
+  for (Link& l : other.links) l = {to(l.b), to(l.a), l.rest, l.family};
+  for (int& pin : other.pins) pin = to(pin);
+  std::sort(other.pins.begin(), other.pins.end());
+  const auto at = [&](int step) { return states[static_cast<std::size_t>(step)]; };
+  expect_same(measure(scene, at),
+              measure(other, [&](int step) { return permuted_state(at(step)); }));
+}
+
+}  // namespace
+}  // namespace taut

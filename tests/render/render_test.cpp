@@ -1,0 +1,291 @@
+// Pictures: colours that can be trusted, the same bytes again, golden images.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "core/model/input_error.hpp"
+#include "tests/render/render_scenes.hpp"
+
+namespace taut {
+namespace {
+
+using test::difference;
+namespace fs = std::filesystem;
+
+TEST(ColourMap, IsNeutralAtZeroAndEquallyDarkAtBothEnds) {
+  const ColourMap& map = ColourMap::diverging();
+  const auto luminance = [](Rgb8 c) {
+    return 0.2126 * linear_of(c.r) + 0.7152 * linear_of(c.g) + 0.0722 * linear_of(c.b);
+  };
+  const Rgb8 zero = map.at(0.5);
+  EXPECT_LE(std::max({zero.r, zero.g, zero.b}) - std::min({zero.r, zero.g, zero.b}), 3);
+  for (const double s : {0.0, 0.1, 0.25, 0.4})
+    EXPECT_NEAR(std::cbrt(luminance(map.at(s))), std::cbrt(luminance(map.at(1 - s))), 0.06) << s;
+  for (int i = 1; i < ColourMap::kSize / 2; ++i)  // lighter towards the middle, never back
+    EXPECT_GE(luminance(map.table()[static_cast<std::size_t>(i)]) + 2e-3,
+              luminance(map.table()[static_cast<std::size_t>(i - 1)]));
+}
+
+TEST(ColourScale, TicksHoldBothEndsAndZero) {
+  for (const double high : {0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.5, 5.0}) {
+    const ColourScale scale{Quantity::strain, high};
+    const std::vector<double> ticks = scale.ticks();
+    EXPECT_DOUBLE_EQ(ticks.front(), -high);
+    EXPECT_DOUBLE_EQ(ticks.back(), high);
+    EXPECT_EQ(std::ranges::count(ticks, 0.0), 1) << high;
+    EXPECT_LE(ticks.size(), 7u);
+  }
+  EXPECT_EQ((ColourScale{Quantity::strain, 0.05}).text(-0.025), "\u22122.5 %");
+  EXPECT_EQ((ColourScale{Quantity::penetration, 0.01}).text(0.0015), "1.5 mm");
+}
+
+TEST(ColourScale, RoundsUpToRoundNumbers) {
+  EXPECT_DOUBLE_EQ(round_up(0.0117, 1e-3), 0.015);
+  EXPECT_DOUBLE_EQ(round_up(0.015, 1e-3), 0.015);
+  EXPECT_DOUBLE_EQ(round_up(9.1, 1e-3), 10);
+  EXPECT_DOUBLE_EQ(round_up(0, 1e-3), 1e-3);
+}
+
+TEST(ColourBar, EndsAreTheEndsOfTheMap) {
+  Image image(400, 80, rgb(0xFFFFFF));
+  Canvas canvas(image);
+  const ColourScale scale{Quantity::strain, 0.05};
+  draw_colour_bar(canvas, scale, {50, 10, 300, 20}, 1);
+  EXPECT_EQ(image.at(50, 20), scale.colour(-0.05));
+  EXPECT_EQ(image.at(349, 20), scale.colour(0.05));
+  EXPECT_EQ(image.at(349, 20), scale.colour(7.0));  // beyond the end: the end's colour
+}
+
+/// Share of the panel's pixels that have this colour, to within two levels.
+double share_of(const Image& panel, Rgb8 colour) {
+  std::size_t same = 0;
+  for (const Rgb8 p : panel.pixels())
+    same += std::abs(p.r - colour.r) <= 2 && std::abs(p.g - colour.g) <= 2 &&
+            std::abs(p.b - colour.b) <= 2;
+  return static_cast<double>(same) / static_cast<double>(panel.pixels().size());
+}
+
+StudioOptions small(Quantity quantity = Quantity::strain) {
+  StudioOptions options;
+  options.width = 240, options.height = 180;
+  options.quality = RenderQuality::draft();
+  options.quantity = quantity;
+  return options;
+}
+
+// Open cloth that faces the sky has the colour that the bar promises, whatever light and shader do.
+TEST(Studio, OpenClothHasTheBarsColour) {
+  const Scene scene = test::level_sheet(9);
+  for (const double strain : {-0.05, 0.0, 0.05, 0.4}) {
+    const std::vector<Take> takes{test::stretched(scene, strain)};
+    StudioOptions options = small();
+    options.view = parse_view("top");
+    options.range = 0.05;
+    const Studio studio(scene, takes, options);
+    EXPECT_GT(share_of(studio.panel(0, 0.5), studio.scale().colour(strain)), 0.15) << strain;
+  }
+}
+
+TEST(Studio, MaterialSpaceIsExact) {
+  const Scene scene = test::level_sheet(5);
+  const std::vector<Take> takes{test::stretched(scene, 0.02)};
+  StudioOptions options = small();
+  options.range = 0.05;
+  const Studio studio(scene, takes, options);
+  const Image flat = studio.material_space(0, 0.5, 40);
+  for (const Rgb8 pixel : flat.pixels()) EXPECT_EQ(pixel, studio.scale().colour(0.02));
+}
+
+TEST(Studio, SameInputSameBytesFromEitherThread) {
+  const Scene scene = test::sheet_over_ball(17);
+  const std::vector<Take> takes{test::draped(scene, 7)};
+  const auto draw = [&] { return Studio(scene, takes, small()).panel(0, 1); };
+  const Image first = draw();
+  Image other;
+  std::thread([&] { other = draw(); }).join();
+  EXPECT_EQ(first.pixels(), other.pixels());
+}
+
+TEST(Studio, MovingTheClothMovesThePicture) {
+  const Scene scene = test::sheet_over_ball(17);
+  const std::vector<Take> takes{test::draped(scene, 7)};
+  const Studio studio(scene, takes, small());
+  EXPECT_GT(difference(studio.panel(0, 0), studio.panel(0, 1)).mean, 2);
+}
+
+// What fell through a thin plate must not look as if it had never been there.
+TEST(Studio, ClothThatLeavesThePictureIsMissedAndSaidSo) {
+  Scene scene = test::sheet_over_ball(9);
+  Take gone = test::draped(scene, 7);
+  for (auto& frame : gone.trajectory.frames)
+    if (frame.t > 0.5)
+      for (Vec3& x : frame.state.x) x.y() -= 20;
+  const std::vector<Take> takes{test::draped(scene, 7), gone};
+  const PageLayout layout(640, 360, 2);
+  StudioOptions options = small();
+  options.width = layout.panel_width, options.height = layout.panel_height;
+  const Studio studio(scene, takes, options);
+  EXPECT_TRUE(studio.in_sight(0, 1));
+  EXPECT_TRUE(studio.in_sight(1, 0.25));
+  EXPECT_FALSE(studio.in_sight(1, 1));
+  // Without the sheet both halves show the same ball; the plate with the text stands in one.
+  Image empty = studio.panel(1, 1), marked = empty;
+  mark_gone(marked, layout.unit);
+  EXPECT_GT(difference(empty, marked).largest, 100);
+  const Image page = compose(studio, layout, 1);
+  const int x = layout.panel_width + static_cast<int>(24 * layout.unit),
+            y = layout.header + layout.panel_height - static_cast<int>(40 * layout.unit);
+  EXPECT_EQ(page.at(x + 8, y), marked.at(x + 8 - layout.panel_width, y - layout.header));
+}
+
+TEST(Studio, VerticesAreProjectedToWhereTheyAreDrawn) {
+  const Scene scene = test::level_sheet(9);
+  const std::vector<Take> takes{test::stretched(scene, 0)};
+  StudioOptions options = small();
+  options.view = parse_view("top");
+  options.range = 0.05;
+  const Studio studio(scene, takes, options);
+  const Image panel = studio.panel(0, 0.5);
+  const auto points = studio.projected(0, 0.5);
+  ASSERT_EQ(points.size(), scene.mesh.rest.size());
+  const auto middle = points[points.size() / 2];
+  const Rgb8 there = panel.at(static_cast<int>((middle.x() + 1) / 2 * 240),
+                              static_cast<int>((1 - middle.y()) / 2 * 180) + 3);
+  EXPECT_GT(there.g, 120) << "cloth, not the floor around it";
+  for (const auto& p : points) EXPECT_LT(std::max(std::abs(p.x()), std::abs(p.y())), 1);
+}
+
+// Cloth that sinks into a ball is lifted to its surface, and only hatched there.
+TEST(Studio, SunkenClothStaysVisible) {
+  const Scene scene = test::sheet_over_ball(17);
+  Take sunken = test::draped(scene, 7);
+  for (auto& frame : sunken.trajectory.frames)
+    for (Vec3& x : frame.state.x)
+      if (x.y() > -0.31 && (x - Vec3(0, -0.31, 0)).norm() < 0.32)
+        x = Vec3(0, -0.31, 0) + (x - Vec3(0, -0.31, 0)) * (0.29 / 0.305);
+  const std::vector<Take> takes{test::draped(scene, 7), sunken};
+  StudioOptions options = small();
+  options.range = 100;  // no colour of its own
+  const Studio studio(scene, takes, options);
+  const Image sound = studio.panel(0, 1), sank = studio.panel(1, 1);
+  EXPECT_LT(difference(sound, sank).mean, 4);
+  EXPECT_GT(difference(sound, sank).largest, 20);  // the hatch
+}
+
+TEST(GlContext, SaysWhatItTriedIfThereIsNone) {
+  try {
+    GlContext({.osmesa = "libNoOSMesa.so", .egl = "libNoEGL.so"});
+    FAIL() << "a context out of nothing";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("libosmesa6"), std::string::npos) << text;
+    EXPECT_NE(text.find("libNoOSMesa.so"), std::string::npos) << text;
+    EXPECT_NE(text.find("libNoEGL.so"), std::string::npos) << text;
+  }
+}
+
+TEST(View, NamesAndAngles) {
+  EXPECT_DOUBLE_EQ(parse_view("top").elevation, 89);
+  EXPECT_DOUBLE_EQ(parse_view("-30,45").azimuth, -30);
+  EXPECT_THROW(parse_view("frnt"), InputError);
+  EXPECT_THROW(parse_view("0,90"), InputError);
+  EXPECT_THROW(parse_quantity("stress"), InputError);
+}
+
+TEST(Camera, TheInsetHidesNoneOfThePoints) {
+  const Frame frame = Frame::beside_inset();
+  for (const double aspect : {0.6, 1.15, 2.0})
+    for (const Vec3& half : {Vec3(1, 0.3, 1), Vec3(0.3, 1, 0.3), Vec3(1, 1, 0.1)}) {
+      std::vector<Vec3> corners;
+      for (const double x : {-1.0, 1.0})
+        for (const double y : {-1.0, 1.0})
+          for (const double z : {-1.0, 1.0}) corners.push_back(half.cwiseProduct(Vec3(x, y, z)));
+      const Camera camera = fit_camera(corners, Vec3::UnitY(), View{}, aspect, frame);
+      const Eigen::Matrix4f clip = camera.world_to_clip(static_cast<float>(aspect));
+      for (const Vec3& p : corners) {
+        const Eigen::Vector4d seen = (clip * p.cast<float>().homogeneous()).cast<double>();
+        const double x = seen.x() / seen.w(), y = seen.y() / seen.w();
+        EXPECT_LT(std::max(std::abs(x), std::abs(y)), 0.9) << aspect << ": " << half.transpose();
+        EXPECT_FALSE(x > frame.inset_left + 1e-5 && y > frame.inset_bottom + 1e-5)
+            << aspect << ": " << half.transpose();
+      }
+    }
+}
+
+TEST(Take, EndsBeforeTheFirstUnsoundFrameAndSaysSo) {
+  const Scene scene = test::level_sheet(5);
+  Trajectory trajectory = test::stretched(scene, 0).trajectory;
+  trajectory.frames[20].state.x[3][1] = std::nan("");
+  const Take take = take_of(scene, trajectory);
+  EXPECT_EQ(take.trajectory.frames.size(), 20u);
+  ASSERT_TRUE(take.stop.has_value());
+  EXPECT_EQ(take.stop->why, "exploded");
+  EXPECT_DOUBLE_EQ(take.at(0.9).t, 19 * scene.dt);
+  trajectory.frames[0].state.x[0] = Vec3::Constant(1e30);
+  EXPECT_THROW(take_of(scene, trajectory), InputError);
+}
+
+TEST(Take, OneIterationIsNotTwo) {
+  EXPECT_EQ(readable_settings("bullet:iterations=1,substeps=2,order=mesh"),
+            "1 iteration · 2 substeps · order mesh");
+}
+
+TEST(Studio, ATakeThatBlewUpLeavesTheOthersTheirColours) {
+  const Scene scene = test::level_sheet(5);
+  std::vector<Take> takes{test::stretched(scene, 0.06), test::stretched(scene, 40)};
+  takes[1].stop = Take::Stop{0.5, "exploded"};
+  EXPECT_DOUBLE_EQ(Studio(scene, takes, small()).scale().high, 0.06);
+  takes.erase(takes.begin());
+  EXPECT_DOUBLE_EQ(Studio(scene, takes, small()).scale().high, 1) << "none is sound: 100 % at most";
+}
+
+TEST(Take, AnExplodedPanelIsMarked) {
+  const Scene scene = test::level_sheet(5);
+  Take take = test::stretched(scene, 0);
+  take.trajectory.frames.resize(30);
+  take = take_of(scene, take.trajectory);
+  take.title = "Analytic", take.stop->why = "exploded";
+  const std::vector<Take> takes{take};
+  const PageLayout layout(480, 360, 1);
+  StudioOptions options = small();
+  options.width = layout.panel_width, options.height = layout.panel_height;
+  const Studio studio(scene, takes, options);
+  const Image before = compose(studio, layout, 0.2), after = compose(studio, layout, 0.9);
+  const Rgb8 alarm = rgb(0xB3261E);
+  EXPECT_EQ(share_of(before, alarm), 0);
+  EXPECT_GT(share_of(after, alarm), 0.01);
+}
+
+/// Compares with tests/render/golden/NAME.png. TAUT_UPDATE_GOLDEN=1 writes it anew. Another Mesa,
+/// font hinting or CPU may move single pixels: the mean over the picture is what must stay.
+void expect_golden(const std::string& name, const Image& picture) {
+  const fs::path golden = fs::path(TAUT_SOURCE_DIR) / "tests/render/golden" / (name + ".png");
+  if (std::getenv("TAUT_UPDATE_GOLDEN")) write_png(golden, picture);
+  const test::Difference d = difference(picture, read_png(golden));
+  EXPECT_LT(d.mean, 0.8) << name << ": largest " << d.largest;
+  if (d.mean >= 0.8) write_png(fs::path(TAUT_BINARY_DIR) / (name + "-now.png"), picture);
+}
+
+TEST(Golden, FigureOfTwoTakes) {
+  const Scene scene = test::sheet_over_ball(17);
+  const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
+  const PageLayout layout(640, 360, 2);
+  StudioOptions options = small();
+  options.width = layout.panel_width, options.height = layout.panel_height;
+  const Studio studio(scene, takes, options);
+  expect_golden("figure", compose(studio, layout, 1));
+}
+
+TEST(Golden, SheetOfSpeedsOnTheDarkStage) {
+  const Scene scene = test::sheet_over_ball(17);
+  const std::vector<Take> takes{test::draped(scene, 5)};
+  StudioOptions options = small(Quantity::speed);
+  options.theme = StageTheme::dark();
+  const Studio studio(scene, takes, options);
+  expect_golden("sheet", compose_sheet(studio, {0, 0.5, 1}));
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,133 @@
+// Video, media for the report, and export to other tools.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "experiments/render/media.hpp"
+#include "experiments/render/obj_export.hpp"
+#include "tests/render/render_scenes.hpp"
+
+namespace taut {
+namespace {
+
+namespace fs = std::filesystem;
+
+class VideoTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("taut_video_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string output_of(const std::string& command) {
+    std::string out;
+    FILE* pipe = popen(command.c_str(), "r");
+    std::array<char, 512> piece{};
+    while (const std::size_t got = std::fread(piece.data(), 1, piece.size(), pipe))
+      out.append(piece.data(), got);
+    pclose(pipe);
+    return out;
+  }
+  fs::path folder_;
+};
+
+MediaOptions quick() {
+  MediaOptions options;
+  options.width = 480, options.height = 200, options.duration = 0.25;
+  options.quality = RenderQuality::draft();
+  return options;
+}
+
+TEST(FrameRateTest, IsExactForFractionsOfASecond) {
+  EXPECT_EQ(frame_rate(2.0 / 64).numerator, 32);
+  EXPECT_EQ(frame_rate(3.0 / 64).numerator, 64);
+  EXPECT_EQ(frame_rate(3.0 / 64).denominator, 3);
+  EXPECT_EQ(frame_rate(1001.0 / 30000).denominator, 1001);
+}
+
+TEST_F(VideoTest, ADecodedFrameMatchesItsStill) {
+  if (!have_ffmpeg()) GTEST_SKIP() << "no ffmpeg";
+  const Scene scene = test::sheet_over_ball(17);
+  const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
+  const PageLayout layout(640, 360, 2);
+  StudioOptions look;
+  look.width = layout.panel_width, look.height = layout.panel_height;
+  look.quality = RenderQuality::draft();
+  const Studio studio(scene, takes, look);
+  const Image still = compose(studio, layout, 1);
+  VideoWriter video(folder_ / "v.mp4", {640, 360, {32, 1}, 22});
+  for (int k = 0; k < 8; ++k) ASSERT_TRUE(video.write(still));
+  ASSERT_EQ(video.finish(), "");
+  const std::string mp4 = (folder_ / "v.mp4").string();
+  const std::string raw =
+      output_of("ffmpeg -v error -ss 0.15 -i " + mp4 +
+                " -frames:v 1 -vf scale=in_color_matrix=bt709:flags=accurate_rnd+full_chroma_int"
+                " -pix_fmt rgb24 -f rawvideo -");
+  Image decoded(640, 360);
+  ASSERT_EQ(raw.size(), decoded.pixels().size() * sizeof(Rgb8));
+  std::memcpy(&decoded.at(0, 0), raw.data(), raw.size());
+  const test::Difference d = test::difference(still, decoded);
+  EXPECT_LT(d.mean, 1.7);  // 4:2:0 chroma and crf 22; a wrong colour matrix gives more
+  const std::string tags = output_of(
+      "ffprobe -v error -select_streams v -show_entries "
+      "stream=codec_name,pix_fmt,color_space,color_transfer,color_primaries,color_range -of csv " +
+      mp4);
+  EXPECT_EQ(tags, "stream,h264,yuv420p,tv,bt709,bt709,bt709\n");
+}
+
+TEST_F(VideoTest, MediaHasAVideoForEveryMomentTheSameBytesAgain) {
+  if (!have_ffmpeg()) GTEST_SKIP() << "no ffmpeg";
+  const Scene scene = test::sheet_over_ball(17);
+  const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
+  int told = 0;
+  const Media media = render_media(scene, takes, quick(), [&](int done, int) { told = done; });
+  EXPECT_EQ(media.mp4.substr(4, 4), "ftyp");
+  EXPECT_EQ(media.poster.substr(0, 2), "\xFF\xD8");
+  EXPECT_EQ(media.rms_strain.size(), 2u);
+  EXPECT_EQ(media.rms_strain[0].size(), media.t.size());
+  EXPECT_EQ(told, static_cast<int>(media.t.size()));
+  EXPECT_NEAR(media.rate.value(), 1 / media.t[1], 1e-9);
+  ASSERT_EQ(media.material.size(), media.rms_strain.size());
+  EXPECT_EQ(media.material[0].size(), 4u);
+  EXPECT_EQ(media.mp4, render_media(scene, takes, quick()).mp4);
+}
+
+TEST_F(VideoTest, WithoutFfmpegThereIsAPosterAndAStrip) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", "/nowhere", 1);
+  VideoWriter video(folder_ / "v.mp4", {64, 64, {32, 1}, 22});
+  for (int k = 0; k < 200 && video.write(Image(64, 64)); ++k) usleep(1000);
+  EXPECT_EQ(video.finish(), "ffmpeg is not installed");
+  EXPECT_FALSE(fs::exists(folder_ / "v.mp4"));
+  const Scene scene = test::level_sheet(5);
+  const std::vector<Take> takes{test::stretched(scene, 0.01)};
+  const Media media = render_media(scene, takes, quick());
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(media.mp4, "");
+  EXPECT_EQ(media.poster_type, "image/png");
+  EXPECT_EQ(media.poster.substr(1, 3), "PNG");
+  EXPECT_EQ(media.strip_png.substr(1, 3), "PNG");
+}
+
+TEST_F(VideoTest, ObjFilesHoldEveryParticleAndFace) {
+  const Scene scene = test::level_sheet(3);
+  EXPECT_EQ(export_obj(scene, test::stretched(scene, 0.5), folder_, "s", 32), 3);
+  std::ifstream in(folder_ / "s_00002.obj");
+  std::stringstream text;
+  text << in.rdbuf();
+  const std::string obj = text.str();
+  EXPECT_NE(obj.find("# t = 1 s"), std::string::npos);
+  EXPECT_NE(obj.find("\nv -0.75 0 0.75\n"), std::string::npos) << obj;
+  std::size_t faces = 0;
+  for (std::size_t at = 0; (at = obj.find("\nf ", at)) != std::string::npos; ++at) ++faces;
+  EXPECT_EQ(faces, scene.mesh.triangles.size());
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,166 @@
+// Tethers, the hierarchy, and where float ends.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/solver/hierarchy.hpp"
+#include "core/solver/passes/tethers.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+/// Root mean square strain of the structural links.
+double strain(const Scene& scene, const State& state) {
+  double sum = 0, count = 0;
+  for (const Link& link : scene.links) {
+    if (link.family != Family::structural) continue;
+    const double length =
+        (state.x[static_cast<std::size_t>(link.a)] - state.x[static_cast<std::size_t>(link.b)])
+            .norm();
+    sum += (length / link.rest - 1) * (length / link.rest - 1);
+    ++count;
+  }
+  return std::sqrt(sum / count);
+}
+
+TEST(Tethers, GoFromEveryFreeVertexToEachGroupOfPins) {
+  Scene scene = hanging_sheet(5, 4);
+  EXPECT_EQ(make_tethers(scene).size(), 2u * (20 - 2));  // two corners
+  for (const Tether& t : make_tethers(scene))
+    EXPECT_NEAR(t.length,
+                (scene.mesh.rest[static_cast<std::size_t>(t.vertex)] -
+                 scene.mesh.rest[static_cast<std::size_t>(t.pin)])
+                    .norm(),
+                1e-15);
+  scene.pins = {0, 1, 2, 3, 4};
+  EXPECT_EQ(make_tethers(scene).size(), 15u);  // one edge
+  scene.pins.clear();
+  EXPECT_TRUE(make_tethers(scene).empty());
+}
+
+TEST(Tethers, FollowTheClothWhereTheMeshIsNoGrid) {
+  Scene chain = hanging_sheet(1, 5, {true, false, false});
+  chain.mesh.grid.reset();
+  chain.mesh.rest[4] = chain.mesh.rest[2];  // folded back: the way along the links stays
+  const auto tethers = make_tethers(chain);
+  ASSERT_EQ(tethers.size(), 4u);
+  EXPECT_NEAR(tethers.back().length, 1, 1e-12);
+}
+
+TEST(Tethers, HoldAHangingSheetAndLeaveASlackOneAlone) {
+  Scene scene = hanging_sheet(12, 12);
+  scene.damping = 2;
+  const auto settled = [&](const char* more) {
+    return strain(scene, simulate(scene, listing("precision=double,iterations=4") + more, 600));
+  };
+  EXPECT_LT(10 * settled(",tethers=on"), settled(""));
+  scene.gravity.setZero();
+  for (Vec3& x : scene.start.x) x *= 0.9;
+  EXPECT_EQ(simulate(scene, listing("tethers=on"), 1).x, simulate(scene, listing(), 1).x);
+}
+
+/// A net that is held by corners closer than it is wide shears: its vertices are farther from the
+/// pins than in the flat sheet, and no link is too long.
+TEST(Accelerators, LeaveANetAloneThatShears) {
+  Scene net = hanging_sheet(17, 17, {true, false, false});
+  net.gravity.setZero();
+  for (int j = 0; j < 17; ++j)
+    for (int i = 0; i < 17; ++i) {  // a V: the columns hang straight down from it
+      const double u = i / 16.0, fall = 0.5 * std::min(u, 1 - u);
+      net.start.x[static_cast<std::size_t>(17 * j + i)] +=
+          Vec3((std::sqrt(0.75) - 1) * u, -fall, 0);
+    }
+  for (const Link& link : net.links)
+    ASSERT_NEAR((net.start.x[static_cast<std::size_t>(link.a)] -
+                 net.start.x[static_cast<std::size_t>(link.b)])
+                    .norm(),
+                link.rest, 1e-12);
+  for (const char* more : {",tethers=on", ",levels=4"}) {
+    const State moved = simulate(net, listing("precision=double") + more, 1);
+    EXPECT_LT(largest_distance(moved.x, net.start.x), 1e-9) << more;
+  }
+}
+
+TEST(Hierarchy, HalvesTheVerticesAndEveryChildHasParents) {
+  const Scene scene = hanging_sheet(16, 16);
+  const auto levels = make_hierarchy(scene, inverse_masses(scene), 4);
+  ASSERT_EQ(levels.size(), 4u);
+  std::size_t finer = 256;
+  for (auto level = levels.rbegin(); level != levels.rend(); ++level) {
+    EXPECT_LT(level->vertices.size(), 0.6 * static_cast<double>(finer));
+    EXPECT_EQ(level->children.size() + level->vertices.size(), finer);
+    for (const Level::Child& child : level->children) {
+      double sum = 0;
+      for (int p = child.first; p < child.end; ++p)
+        sum += level->parents[static_cast<std::size_t>(p)].weight;
+      EXPECT_NEAR(sum, 1, 1e-12);
+    }
+    finer = level->vertices.size();
+  }
+}
+
+TEST(Hierarchy, StiffensAHangingSheetAtFewSweeps) {
+  Scene scene = hanging_sheet(17, 17);
+  scene.damping = 2;
+  const auto settled = [&](const char* more) {
+    return strain(scene, simulate(scene, listing("precision=double,iterations=4") + more, 600));
+  };
+  EXPECT_LT(2 * settled(",levels=6"), settled(""));
+}
+
+TEST(Accelerators, WorkInStripsAsWellAsPacked) {
+  const Scene scene = crumpled(hanging_sheet(20, 20), 0.01);
+  for (const char* more : {",tethers=on", ",levels=3", ",levels=3,tethers=on"}) {
+    const std::string method = listing("precision=double,order=coloured,iterations=2") + more;
+    const State strips = simulate(scene, method + ",layout=strips", 30);
+    const State packed = simulate(scene, method + ",layout=packed", 30);
+    EXPECT_LT(largest_distance(strips.x, packed.x), 0.05) << more;  // other orders, same cloth
+  }
+}
+
+TEST(Accelerators, AbsentAreFree) {
+  const Scene scene = hanging_sheet(20, 20);
+  const SolverChoice choice = parse_solver("jakobsen");
+  for (const PassCost& line : choice.entry->make(scene, choice.params)->plan())
+    EXPECT_TRUE(line.pass == "verlet" || line.pass == "pins" || line.pass == "structural" ||
+                line.pass == "shear" || line.pass == "bend")
+        << line.pass;
+}
+
+TEST(Memory, OfASheetIsAtMostAHundredBytesAVertexAndOfAMeshTwoHundred) {
+  const auto per_vertex = [](const Scene& scene, const char* solver) {
+    const SolverChoice choice = parse_solver(solver);
+    double bytes = 0;
+    for (const PassCost& line : choice.entry->make(scene, choice.params)->plan())
+      bytes += static_cast<double>(line.bytes);
+    return bytes / scene.mesh.size();
+  };
+  for (const int n : {32, 64, 128}) {
+    const Scene scene = hanging_sheet(n, n);
+    EXPECT_LE(per_vertex(scene, "jakobsen:layout=strips"), 100) << n;
+    EXPECT_LE(per_vertex(scene, "jakobsen:layout=packed"), 200) << n;
+    EXPECT_LE(per_vertex(scene, "jakobsen:order=mesh"), 200) << n;
+  }
+}
+
+TEST(Float, RefusesSubstepsThatGravityCannotMove) {
+  Scene scene = hanging_sheet(3, 3);
+  scene.dt = 1.0 / 64;
+  const auto refuses = [&](const char* solver) {
+    const SolverChoice choice = parse_solver(solver);
+    return !choice.entry->cannot(scene, choice.params).empty();
+  };
+  EXPECT_FALSE(refuses("jakobsen:substeps=200"));
+  EXPECT_TRUE(refuses("jakobsen:substeps=400"));
+  EXPECT_FALSE(refuses("jakobsen:substeps=400,precision=double"));
+  // and rightly: a cloth at rest at coordinate 1 does not begin to fall
+  for (Vec3& x : scene.start.x) x.y() += 1.5;
+  scene.pins.clear();
+  const State state = simulate(scene, "jakobsen:iterations=0,substeps=600", 4);
+  EXPECT_EQ(state.x[0].y(), scene.start.x[0].y());
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,372 @@
+// Truths of contact: closed forms for particles on planes, and what each response of the report
+// does. Most scenes have no links: each vertex is then a point mass.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "core/model/solver.hpp"
+#include "core/model/triangle.hpp"
+#include "core/solver/contact/place.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+constexpr double kDt = 1.0 / 64;
+constexpr double kG = 9.81;
+
+/// n x n vertices, 1 m x 1 m, level, the middle at `middle`; no links.
+Scene points(const Vec3& middle, int n = 4) {
+  Scene scene;
+  scene.mesh = make_sheet({.nu = n,
+                           .nv = n,
+                           .width = 1,
+                           .height = 1,
+                           .origin = middle - Vec3(0.5, 0, 0.5),
+                           .v = Vec3::UnitZ(),
+                           .mass = 0.2});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
+  scene.dt = kDt;
+  scene.steps = 128;
+  return scene;
+}
+
+class Runner {
+ public:
+  Runner(const Scene& scene, const std::string& params)
+      : scene_(scene),
+        choice_(parse_solver(listing("precision=double" + params))),
+        solver_(choice_.entry->make(scene, choice_.params)) {
+    solver_->load(scene.start);
+  }
+  const State& step(int count = 1) {
+    for (; count > 0; --count, ++n_) solver_->step(n_ * scene_.dt, scene_.dt);
+    solver_->store(state_);
+    return state_;
+  }
+  const Solver& solver() const { return *solver_; }
+
+ private:
+  Scene scene_;
+  SolverChoice choice_;
+  std::unique_ptr<Solver> solver_;
+  int n_ = 0;
+  State state_;
+};
+
+double depth(const Collider& collider, const State& state, double t) {
+  double depth = -1e9;
+  for (const Vec3& x : state.x)
+    depth = std::max(depth, -surface(shape_at(collider, t), x).distance);
+  return depth;
+}
+
+TEST(Contact, OnAPlaneRestComesWithinTwoStepsOfTheImpact) {
+  Scene scene = points({0, 0.01, 0});
+  scene.colliders = {{.shape = Plane{}}};
+  for (const char* response : {",contact=swept", ",contact=sweep", ",contact=after"}) {
+    Runner run(scene, response);
+    run.step(3);  // falls 6 g dt^2 = 14 mm: has met the plane
+    const State& state = run.step(2);
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      EXPECT_EQ(state.x[i].y(), 0) << response;
+      EXPECT_EQ(state.v[i].y(), 0) << response;
+    }
+  }
+}
+
+TEST(Contact, AtRestAStepSinksByGDt2BeforeTheProjection) {
+  Scene scene = points({0, 0, 0});
+  scene.colliders = {{.shape = Plane{}}};
+  Runner held(scene, ",contact=after,iterations=0");
+  EXPECT_EQ(held.step(20).x[0].y(), 0);
+  scene.colliders.clear();
+  EXPECT_NEAR(Runner(scene, "").step().x[0].y(), -kG * kDt * kDt, 1e-15);
+}
+
+TEST(Contact, ThicknessIsKept) {
+  Scene scene = points({0, 0.2, 0}, 9);
+  scene.thickness = 0.01;
+  for (const Shape& shape : {Shape(Plane{}), Shape(Ball{{0, -0.2, 0}, 0.3}),
+                             Shape(Box{{0, -0.2, 0}, {0.3, 0.3, 0.3}})}) {
+    scene.colliders = {{.shape = shape}};
+    Runner run(scene, "");
+    double least = 0;
+    for (int n = 0; n < 40; ++n)
+      least = std::min(least, -depth(scene.colliders[0], run.step(), 0) - 0.01);
+    EXPECT_NEAR(least, 0, 1e-12) << type_name(shape);
+  }
+}
+
+/// Slides down (or up) a slope; mu >= 0.
+struct Incline {
+  double slope = std::numbers::pi / 6, friction = 0;
+  Vec3 down{std::cos(slope), -std::sin(slope), 0}, normal{std::sin(slope), std::cos(slope), 0};
+  Scene scene() const {
+    Scene s = points({0, 0, 0});
+    s.colliders = {{.shape = Plane{normal, 0}, .friction = friction}};
+    for (Vec3& x : s.start.x) x -= normal.dot(x) * normal;
+    return s;
+  }
+};
+
+TEST(Contact, OnAnInclineItSlidesAsCoulombSays) {
+  for (const double mu : {0.0, 0.2, 0.5}) {
+    Incline incline{.friction = mu};
+    const Scene scene = incline.scene();
+    for (const char* response : {",contact=swept", ",contact=sweep", ",contact=after"}) {
+      const int n = 100;
+      const State state = Runner(scene, response).step(n);
+      const double accelerates = kG * (std::sin(incline.slope) - mu * std::cos(incline.slope));
+      const double expected = accelerates * kDt * kDt * n * (n + 1) / 2;
+      for (std::size_t i = 0; i < state.x.size(); ++i)
+        EXPECT_NEAR((state.x[i] - scene.start.x[i] - expected * incline.down).norm(), 0, 1e-10)
+            << response << mu;
+    }
+  }
+}
+
+TEST(Contact, OnAnInclineItSticksIffMuIsAtLeastTheTangent) {
+  const double critical = std::tan(Incline().slope);
+  const Incline held{.friction = critical * 1.0001}, slips{.friction = critical * 0.999};
+  EXPECT_NEAR((Runner(held.scene(), "").step(100).x[0] - held.scene().start.x[0]).norm(), 0, 1e-12);
+  EXPECT_GT((Runner(slips.scene(), "").step(100).x[0] - slips.scene().start.x[0]).norm(), 1e-3);
+}
+
+TEST(Contact, AThrownPointStopsAfterV2Over2MuG) {
+  Scene scene = points({0, 0, 0});
+  const double mu = 0.4, v = 2;
+  scene.colliders = {{.shape = Plane{}, .friction = mu}};
+  for (Vec3& u : scene.start.v) u.x() = v;
+  const double slid = Runner(scene, "").step(128).x[0].x() - scene.start.x[0].x();
+  EXPECT_NEAR(slid, v * v / (2 * mu * kG), v * kDt);  // of first order in dt: v dt/2
+  scene.dt = kDt / 64;
+  const double finer = Runner(scene, "").step(128 * 64).x[0].x() - scene.start.x[0].x();
+  EXPECT_NEAR(finer, v * v / (2 * mu * kG), v * kDt / 64);
+}
+
+TEST(Contact, FrictionSeesTheMotionOfTheCollider) {
+  Scene scene = points({0, 0, 0});
+  scene.colliders = {{.shape = Plane{}, .motion = {.velocity = {0.3, 0, 0}}, .friction = 1}};
+  const State carried = Runner(scene, "").step(128);
+  for (const Vec3& v : carried.v) EXPECT_NEAR((v - Vec3(0.3, 0, 0)).norm(), 0, 1e-12);
+  scene.colliders[0].motion = {.spin = {0, 0.5, 0}};  // a turntable
+  const State turned = Runner(scene, "").step(128);
+  const Eigen::Quaterniond turn = scene.colliders[0].motion.rotation(128 * kDt);
+  for (std::size_t i = 0; i < turned.x.size(); ++i)
+    EXPECT_NEAR((turned.x[i] - turn * scene.start.x[i]).norm(), 0, 0.01);
+}
+
+TEST(Contact, ARisingPlaneLiftsWithoutPenetration) {
+  Scene scene = points({0, 0, 0});
+  scene.colliders = {{.shape = Plane{}, .motion = {.velocity = {0, 0.5, 0}}}};
+  Runner run(scene, "");
+  for (int n = 1; n <= 64; ++n)
+    EXPECT_NEAR(depth(scene.colliders[0], run.step(), n * kDt), 0, 1e-12);
+}
+
+/// Points thrown down at a plate of thickness D at 20 m/s, starting at heights that fill one
+/// step's way uniformly: how many pass.
+double missed_fraction(const char* response, double plate) {
+  Scene scene = points({0, 0, 0}, 20);
+  const double way = 20 * kDt;
+  for (std::size_t i = 0; i < scene.start.x.size(); ++i)
+    scene.start.x[i].y() = 1 + way * static_cast<double>(i) / 400;
+  for (Vec3& v : scene.start.v) v.y() = -20;
+  scene.gravity.setZero();
+  scene.colliders = {{.shape = Box{{0, 0, 0}, {2, plate / 2, 2}}}};
+  const State state = Runner(scene, response).step(12);
+  int below = 0;
+  for (const Vec3& x : state.x) below += x.y() < -plate / 2 - 1e-9;
+  return below / 400.0;
+}
+
+TEST(Contact, APlateIsMissedByOneMinusThicknessOverWayUnlessSwept) {
+  const double way = 20 * kDt;
+  for (const double share : {0.25, 0.5, 0.75}) {
+    EXPECT_NEAR(missed_fraction(",contact=freeze", share * way), 1 - share, 0.005);
+    // One that is caught keeps what is left of its speed, goes past the middle in the next step and
+    // is thrown out below: the report's cloth that simply passes through the box.
+    EXPECT_EQ(missed_fraction(",contact=sweep", share * way), 1);
+    EXPECT_EQ(missed_fraction(",contact=swept", share * way), 0);
+  }
+  EXPECT_EQ(missed_fraction(",contact=swept", 0.001 * way), 0);
+}
+
+TEST(Contact, ABallThatPassesWithinAStepIsCaughtWhenSwept) {
+  Scene scene = points({0, 0, 0});
+  scene.gravity.setZero();
+  scene.colliders = {{.shape = Ball{{scene.start.x[5].x(), -1, scene.start.x[5].z()}, 0.1},
+                      .motion = {.velocity = {0, 40, 0}}}};
+  EXPECT_EQ(Runner(scene, ",contact=sweep").step(8).x[5].y(), 0);
+  EXPECT_GT(Runner(scene, ",contact=swept").step(8).x[5].y(), 4);  // carried along
+}
+
+TEST(Contact, FreezeHoldsForEverWhatShouldSlide) {
+  Incline incline;
+  Scene scene = incline.scene();
+  for (Vec3& x : scene.start.x) x += 0.01 * incline.normal;
+  Runner run(scene, ",contact=freeze");
+  const Vec3 stuck = run.step(10).x[0];
+  EXPECT_EQ((run.step(50).x[0] - stuck).norm(), 0);
+  EXPECT_NEAR(stuck.dot(incline.normal), 0, 1e-12);
+}
+
+TEST(Contact, HaltSlowsWhatShouldSlide) {
+  const Incline incline;
+  const Scene scene = incline.scene();
+  const auto slid = [&](const char* response) {
+    return (Runner(scene, response).step(100).x[0] - scene.start.x[0]).dot(incline.down);
+  };
+  // Every other step is left out: time runs at half speed, and a quarter of the way is made.
+  EXPECT_NEAR(slid(",contact=halt") / slid(",contact=sweep"), 0.25, 0.005);
+}
+
+TEST(Contact, RestartForgetsWhatWasFrozen) {
+  Scene scene = points({0, 0.05, 0});
+  scene.colliders = {{.shape = Plane{}}};
+  for (const char* response : {"freeze", "halt"}) {
+    const SolverChoice choice = parse_solver(listing(std::string("contact=") + response));
+    const auto solver = choice.entry->make(scene, choice.params);
+    State first, second;
+    for (State* state : {&first, &second}) {
+      solver->load(scene.start);
+      for (int n = 0; n < 30; ++n) solver->step(n * kDt, kDt);
+      solver->store(*state);
+    }
+    EXPECT_EQ(first.x, second.x) << response;
+  }
+}
+
+TEST(Contact, APinInsideAColliderStays) {
+  Scene scene = points({0, 0, 0});
+  scene.pins = {5};
+  scene.colliders = {{.shape = Ball{scene.start.x[5] + Vec3(0, 0.01, 0), 0.1}}};
+  for (const char* response : {"swept", "sweep", "before", "after", "freeze", "halt"})
+    EXPECT_EQ(Runner(scene, std::string(",contact=") + response).step(3).x[5], scene.start.x[5])
+        << response;
+}
+
+TEST(Contact, WithoutCollidersThereIsNoPass) {
+  for (const PassCost& cost : Runner(points({0, 0, 0}), "").solver().plan())
+    EXPECT_TRUE(cost.pass == "verlet" || cost.pass == "pins") << cost.pass;
+}
+
+/// One free triangle of 1 m sides about the origin, level, with corner masses 1, 2 and 3 kg.
+Scene one_face(const Collider& collider) {
+  Scene scene;
+  scene.mesh.rest = {{0.5, 0, -0.3}, {-0.5, 0, -0.3}, {0, 0, 0.6}};
+  scene.mesh.triangles = {{0, 1, 2}};
+  scene.mesh.mass = {1, 2, 3};
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(3, Vec3::Zero())};
+  scene.gravity.setZero();
+  scene.dt = kDt;
+  scene.steps = 1;
+  scene.colliders = {collider};
+  return scene;
+}
+
+TEST(FaceContact, LiftsTheFaceToTheBallAndNoFurther) {
+  const Ball ball{{0.05, -0.19, 0.02}, 0.2};
+  Scene scene = one_face({.shape = ball});
+  EXPECT_EQ(Runner(scene, "").step().x[0].y(), 0);  // no vertex is inside
+  scene.thickness = 0.005;
+  const State state = Runner(scene, ",faces=on,iterations=1").step();
+  const Corners t{state.x[0], state.x[1], state.x[2]};
+  EXPECT_NEAR(deepest_in(ball, t).depth, -0.005, 1e-4);  // the face has turned a little
+  Vec3 momentum = Vec3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) momentum += scene.mesh.mass[i] * state.v[i];
+  EXPECT_GT(momentum.y(), 0);
+  EXPECT_NEAR(std::hypot(momentum.x(), momentum.z()), 0, 1e-12);
+  const State settled = Runner(scene, ",faces=on,iterations=10").step();
+  EXPECT_NEAR(deepest_in(ball, {settled.x[0], settled.x[1], settled.x[2]}).depth, -0.005, 1e-9);
+}
+
+TEST(FaceContact, ABoxCornerLeavesTheFaceOverTheCorner) {
+  Box box{{0, -0.5, 0}, {0.3, 0.3, 0.3}};  // stands on one corner, the other 0.02 m above y = 0
+  box.rotation.setFromTwoVectors(Vec3(1, 1, 1), Vec3::UnitY());
+  box.center.y() = 0.02 - 0.3 * std::sqrt(3.0);
+  const Scene scene = one_face({.shape = box});
+  const State state = Runner(scene, ",faces=on,iterations=1").step();
+  EXPECT_LE(deepest_in(box, {state.x[0], state.x[1], state.x[2]}).depth, 1e-12);
+  for (const Vec3& x : state.x) EXPECT_LT(x.y(), 0.06);
+  EXPECT_GT(deepest_in(box, {scene.start.x[0], scene.start.x[1], scene.start.x[2]}).depth, 0.01);
+}
+
+TEST(FaceContact, LeavesPinsAlone) {
+  Scene scene = one_face({.shape = Ball{{0, -0.19, 0}, 0.2}});
+  scene.pins = {0, 1, 2};
+  EXPECT_EQ(Runner(scene, ",faces=on").step().x, scene.start.x);
+}
+
+/// Nearest points in the solver's closed forms against the model's surface().
+template <template <class> class SurfaceOf, class Shape_>
+void expect_model_surface(const Shape_& shape) {
+  const SurfaceOf<double> fast = surface_of(shape);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<> number(-1, 1);
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 x(number(random), number(random), number(random));
+    const Surface exact = surface(shape, x);
+    const Triple<double> here = triple<double>(x);
+    const Tangent<double> tangent = fast.nearest(here);
+    EXPECT_NEAR(dot(tangent.normal, here) - tangent.offset, exact.distance, 1e-12);
+    EXPECT_NEAR((point(tangent.normal) - exact.normal).norm(), 0, 1e-7);
+    for (const double t : {0.0, 0.05})
+      EXPECT_FALSE(fast.clear(here, t) && exact.distance < t - 1e-12);
+    const double e = 1e-6;  // the gradient by central differences
+    Vec3 gradient;
+    for (Eigen::Index a = 0; a < 3; ++a)
+      gradient[a] = (surface(shape, x + e * Vec3::Unit(a)).distance -
+                     surface(shape, x - e * Vec3::Unit(a)).distance) /
+                    (2 * e);
+    const bool smooth = std::abs(gradient.norm() - 1) < 1e-4;  // away from the medial axis
+    EXPECT_TRUE(!smooth || (gradient - exact.normal).norm() < 1e-3);
+  }
+}
+
+/// entry() against marching along the path.
+template <template <class> class SurfaceOf, class Shape_>
+void expect_first_hit(const Shape_& shape) {
+  const SurfaceOf<double> fast = surface_of(shape);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<> number(-1, 1);
+  int hits = 0, misses = 0;
+  for (int k = 0; k < 500; ++k) {
+    const Vec3 a(number(random), number(random), number(random)),
+        b(number(random), number(random), number(random));
+    if (surface(shape, a).distance <= 0) continue;
+    constexpr int kCuts = 4000;
+    int first = 0;
+    while (first <= kCuts && surface(shape, a + (b - a) * first / kCuts).distance > 0) ++first;
+    const Triple<double> from = triple<double>(a), to = triple<double>(b);
+    const Entry<double> entry = fast.entry(from, to);
+    EXPECT_FALSE(fast.misses(from, to) && entry.hits);
+    misses += fast.misses(from, to);
+    if (first > kCuts) continue;  // may still graze between two samples
+    ASSERT_TRUE(entry.hits);
+    ++hits;
+    const Vec3 hit = a + (b - a) * first / kCuts;
+    const Vec3 normal = point(entry.tangent.normal);
+    EXPECT_NEAR(normal.dot(hit), entry.tangent.offset, 2 * (b - a).norm() / kCuts);
+    EXPECT_LT(normal.dot(b - a), 0);
+  }
+  EXPECT_GT(hits, 30);
+  EXPECT_GT(misses, 100);
+}
+
+TEST(Contact, ClosedFormsAgreeWithTheModelAndWithMarching) {
+  const Ball ball{{0.1, -0.2, 0.05}, 0.4};
+  Box box{{0.1, 0.1, -0.1}, {0.3, 0.2, 0.5}};
+  box.rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized());
+  expect_model_surface<PlaneSurface>(Plane{Vec3(1, 2, 2) / 3, 0.2});
+  expect_model_surface<BallSurface>(ball);
+  expect_model_surface<BoxSurface>(box);
+  expect_first_hit<BallSurface>(ball);
+  expect_first_hit<BoxSurface>(box);
+}
+
+}  // namespace
+}  // namespace taut

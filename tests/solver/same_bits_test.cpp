@@ -1,0 +1,208 @@
+// One result: whatever computes it, on one thread or several, in whatever layout.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "core/solver/batch.hpp"
+#include "core/solver/strips.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+struct Case {
+  int nu, nv;
+  Lumping lumping;
+};
+
+/// Sheets of awkward sizes, and one mesh that is no grid.
+std::vector<Scene> scenes() {
+  std::vector<Scene> all;
+  for (const auto& [nu, nv, lumping] : {Case{2, 2, Lumping::area},
+                                        {3, 5, Lumping::equal},
+                                        {31, 33, Lumping::area},
+                                        {65, 7, Lumping::area},
+                                        {68, 5, Lumping::equal},
+                                        {17, 40, Lumping::equal},
+                                        {24, 9, Lumping::area}}) {
+    Scene scene = crumpled(hanging_sheet(nu, nv, {true, true, true}, lumping), 0.3 / nu);
+    scene.damping = 0.3;
+    all.push_back(std::move(scene));
+  }
+  Scene& irregular = all.emplace_back(crumpled(hanging_sheet(30, 30), 0.01));
+  irregular.mesh.grid.reset();
+  std::erase_if(irregular.links, [](const Link& l) { return (l.a * 7 + l.b) % 5 == 0; });
+  for (Link& link : irregular.links) link.rest *= 1 + 0.01 * (link.a % 7);
+  return all;
+}
+
+bool same_bits(const State& a, const State& b) {
+  const auto same = [](const std::vector<Vec3>& p, const std::vector<Vec3>& q) {
+    return p.size() == q.size() && std::memcmp(p.data(), q.data(), p.size() * sizeof p[0]) == 0;
+  };
+  return same(a.x, b.x) && same(a.v, b.v);
+}
+
+TEST(SameBits, ForEveryInstructionSetAndNumberOfThreads) {
+  for (const Scene& scene : scenes())
+    for (const char* precision : {"float", "double"})
+      for (const char* projection : {"exact", "sqrt-free"})
+        for (const char* layout : {"auto", "packed"}) {
+          const std::string method =
+              std::string("jakobsen:order=coloured,substeps=2,iterations=3,precision=") +
+              precision + ",projection=" + projection + ",layout=" + layout;
+          const State want = simulate(scene, method + ",simd=scalar", 5);
+          for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+            if (available(simd)) {
+              const std::string with = method + ",simd=" + std::string(to_string(simd));
+              EXPECT_TRUE(same_bits(simulate(scene, with, 5), want)) << with;
+            }
+          EXPECT_TRUE(same_bits(simulate(scene, method + ",threads=2", 5), want)) << method;
+          EXPECT_TRUE(same_bits(simulate(scene, method + ",threads=5", 5), want)) << method;
+        }
+}
+
+/// A plane, a ball and a turned box that rises and spins, where the sheet falls past them.
+std::vector<Collider> obstacles(const Scene& scene) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : scene.start.x) middle += x / static_cast<double>(scene.start.x.size());
+  Box box{middle + Vec3(0.3, -0.1, 0), {0.2, 0.1, 0.15}};
+  box.rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized());
+  Motion motion;
+  motion.velocity = {0, 2, 0}, motion.spin = {0, 3, 1}, motion.pivot = box.center;
+  return {Collider{Plane{Vec3(1, 2, 2) / 3, Vec3(1, 2, 2).dot(middle) / 3 - 0.3}, {}, 0.5},
+          Collider{Ball{middle + Vec3(-0.2, 0.1, 0), 0.2}, {}, 0.3}, Collider{box, motion, 0.8},
+          Collider{Ball{middle + Vec3(0, -0.3, 0), 0.15}, motion, 0}};
+}
+
+TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
+  for (Scene& scene : scenes()) {
+    scene.colliders = obstacles(scene);
+    scene.thickness = 0.002;
+    scene.self_collision = SelfCollision{.radius = 0.02};
+    for (const char* precision : {"float", "double"})
+      for (const char* contact : {"swept", "sweep", "after", "freeze", "halt"}) {
+        const std::string method = std::string("jakobsen:substeps=1,iterations=3,contact=") +
+                                   contact + ",precision=" + precision;
+        for (const char* order : {",order=mesh", ",order=coloured"}) {
+          const State want = simulate(scene, method + order + ",simd=scalar", 8);
+          for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+            if (available(simd)) {
+              const std::string with = method + order + ",simd=" + std::string(to_string(simd));
+              EXPECT_TRUE(same_bits(simulate(scene, with, 8), want)) << with;
+            }
+        }
+      }
+  }
+}
+
+/// Runs the scene's links in the given order through the generic path, one link at a time.
+State one_by_one(Scene scene, std::vector<Link> order, const std::string& more) {
+  scene.links = std::move(order);
+  return simulate(scene, listing("iterations=4,simd=scalar," + more), 20);
+}
+
+TEST(SameBits, StripsAreTheGenericPathInTheirOrder) {
+  for (const auto& [nu, nv] : {std::pair{31, 33}, {65, 7}, {17, 40}, {24, 9}, {64, 9}, {130, 21}})
+    for (const LinkChoice& families :
+         {LinkChoice{true, true, true}, LinkChoice{true, false, true}}) {
+      Scene scene = crumpled(hanging_sheet(nu, nv, families), 0.3 / nu);
+      const std::vector<double> w = inverse_masses(scene);
+      const auto links = regular_links(scene.mesh, scene.links);
+      ASSERT_TRUE(links);
+      const Firmness firm{.stiffness = {INFINITY, INFINITY, INFINITY}, .substep = 1 / 64.0};
+      const auto compare = [&](const std::vector<Link>& order, const std::string& more) {
+        EXPECT_EQ(order.size(), scene.links.size());
+        const State strips =
+            simulate(scene, listing("order=coloured,layout=strips,iterations=4,") + more, 20);
+        EXPECT_TRUE(same_bits(one_by_one(scene, order, more), strips))
+            << scene.mesh.grid->nu << more;
+      };
+      compare(StripPlan<float>(*links, w, firm).order(), "precision=float");
+      compare(StripPlan<double>(*links, w, firm).order(), "precision=double,projection=exact");
+    }
+}
+
+TEST(SameBits, BatchesAreTheGenericPathInTheirOrder) {
+  for (const Scene& scene : scenes()) {
+    const std::vector<double> w = inverse_masses(scene);
+    const Firmness firm{.stiffness = {INFINITY, INFINITY, INFINITY}, .substep = 1 / 64.0};
+    const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.links, scene.mesh));
+    const BatchPlan<double> plan(colour(scene.links, scene.mesh), w, firm, layout);
+    std::vector<Link> order;
+    for (const Stick<double>& s : plan.order(layout))
+      order.push_back({s.a, s.b, s.rest, Family::structural});
+    const State batches =
+        simulate(scene, listing("order=coloured,layout=packed,iterations=4,precision=double"), 20);
+    EXPECT_TRUE(same_bits(one_by_one(scene, order, "precision=double"), batches));
+  }
+}
+
+TEST(SameBits, ShortAndNarrowSheetsAreChosenForThePackedLayout) {
+  const Scene narrow = hanging_sheet(16, 40);
+  EXPECT_FALSE(regular_links(narrow.mesh, narrow.links));
+  Scene cut = hanging_sheet(20, 20);
+  EXPECT_TRUE(regular_links(cut.mesh, cut.links));
+  cut.links.pop_back();
+  EXPECT_FALSE(regular_links(cut.mesh, cut.links));
+  cut = hanging_sheet(20, 20);
+  cut.links.back() = cut.links[cut.links.size() - 2];
+  EXPECT_FALSE(regular_links(cut.mesh, cut.links)) << "a duplicate";
+  cut = hanging_sheet(20, 20);
+  cut.links.back().rest *= 1.001;
+  EXPECT_FALSE(regular_links(cut.mesh, cut.links));
+}
+
+/// FNV-1a of the positions' bits.
+std::uint64_t hash(const State& state) {
+  std::uint64_t value = 14695981039346656037u;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(state.x.data());
+  for (std::size_t i = 0; i < state.x.size() * sizeof state.x[0]; ++i)
+    value = (value ^ bytes[i]) * 1099511628211u;
+  return value;
+}
+
+// The same numbers from g++ and clang++, from every instruction set, today and next year.
+TEST(SameBits, AsRecorded) {
+  const Scene scene = crumpled(hanging_sheet(31, 33), 0.01);
+  const auto run = [&](const std::string& solver) { return hash(simulate(scene, solver, 32)); };
+  EXPECT_EQ(run(listing()), 17873402768262654844u);
+  EXPECT_EQ(run(listing("order=coloured")), 3464990680418230354u);
+  EXPECT_EQ(run(listing("order=coloured,projection=exact,precision=double")), 4745603385666999776u);
+  EXPECT_EQ(run(listing("order=coloured,layout=packed")), 9924528306655619327u);
+  EXPECT_EQ(run(listing("order=coloured,layout=packed,projection=exact,precision=double")),
+            7898678465999565491u);
+  EXPECT_EQ(run(listing("method=jacobi-averaged")), 1211506826981364154u);
+}
+
+/// The benchmark's measure of traffic: each end of a link is loaded, changed and stored once.
+template <class Real>
+void expect_both_ends_carried(Simd simd) {
+  Batch<Real> batch{};
+  std::vector<Real> x(4 * 2 * kLanes);
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    batch.a[l] = static_cast<std::uint32_t>(4 * ((5 * l) % kLanes));
+    batch.b[l] = static_cast<std::uint32_t>(4 * (kLanes + (3 * l) % kLanes));
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<Real>(i);
+  kernels<Real>(simd).carry({.batches = &batch, .count = 1, .half = 0, .shares = nullptr},
+                            x.data());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (i % 4 != 3) {
+      EXPECT_NEAR(x[i] - static_cast<Real>(i), i < x.size() / 2 ? 0.001 : -0.001, 1e-5) << i;
+    }
+}
+
+TEST(SameBits, CarryingMovesBothEndsOfEachLink) {
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
+    if (available(simd)) {
+      SCOPED_TRACE(to_string(simd));
+      expect_both_ends_carried<float>(simd);
+      expect_both_ends_carried<double>(simd);
+    }
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,272 @@
+// The cloth against itself: what the hash grid keeps apart, and the two failures that the report
+// publishes of its octree.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/solver.hpp"
+#include "core/solver/contact/neighbours.hpp"
+#include "experiments/case/run_case.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+/// Particles at the given places and velocities, no links, no gravity, 1 kg each, radius 5 cm.
+Scene particles(std::vector<Vec3> x, std::vector<Vec3> v) {
+  Scene scene;
+  scene.mesh.mass.assign(x.size(), 1.0);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    scene.mesh.rest.emplace_back(10.0 * static_cast<double>(i), 0, 0);  // far apart at rest
+  scene.start = {std::move(x), std::move(v)};
+  scene.gravity.setZero();
+  scene.self_collision = SelfCollision{.radius = 0.05};
+  scene.dt = 1.0 / 64;
+  return scene;
+}
+
+State run(const Scene& scene, const char* params, int steps) {
+  const SolverChoice choice = parse_solver(listing(std::string("precision=double,") + params));
+  const auto solver = choice.entry->make(scene, choice.params);
+  solver->load(scene.start);
+  for (int n = 0; n < steps; ++n) solver->step(n * scene.dt, scene.dt);
+  State state;
+  solver->store(state);
+  return state;
+}
+
+TEST(SelfCollision, TwoParticlesMeetAndKeepTheirMomentum) {
+  Scene scene = particles({{-0.2, 0, 0}, {0.2, 0.01, 0}}, {{1, 0, 0}, {-1, 0, 0}});
+  scene.mesh.mass[1] = 3;
+  const State state = run(scene, "self=grid", 64);
+  EXPECT_GE((state.x[1] - state.x[0]).norm(), 0.1 - 1e-12);
+  EXPECT_LT(state.x[0].x(), state.x[1].x());
+  EXPECT_NEAR((state.v[0] + 3 * state.v[1] - Vec3(-2, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_GT(run(scene, "self=off", 64).x[0].x(), 0.5);
+}
+
+TEST(SelfCollision, AFastParticleDoesNotPassWithinAStep) {
+  const Scene scene = particles({{-0.48, 0, 0}, {0, 0, 0}}, {{20, 0, 0}, {0, 0, 0}});
+  const State state = run(scene, "self=grid", 3);  // 0.31 m a step, 0.1 m wide
+  EXPECT_LE(state.x[0].x(), state.x[1].x() - 0.1 + 1e-12);
+  EXPECT_GT(run(scene, "self=octree", 3).x[0].x(), 0.4);
+}
+
+TEST(SelfCollision, NoneOfManyFastPairsPassesWhereverTheCellsLie) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<> number(-1, 1);
+  std::vector<Vec3> x, v, apart;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 at = Vec3(3 * (i % 6), 3 * (i / 6 % 6), 3 * (i / 36)) +
+                    0.5 * Vec3(number(random), number(random), number(random));
+    const Vec3 along = Vec3(number(random), number(random), number(random)).normalized();
+    const double gap = 0.11 + 0.1 * std::abs(number(random));
+    const double way = 0.2 + 0.19 * std::abs(number(random));  // of four diameters: of each, half
+    x.push_back(at), x.push_back(at + gap * along);
+    v.push_back(32 * way * along), v.push_back(-32 * way * along);
+    apart.push_back(along);
+  }
+  const State state = run(particles(x, v), "self=grid,iterations=1", 1);
+  for (std::size_t i = 0; i < apart.size(); ++i)
+    EXPECT_GE((state.x[2 * i + 1] - state.x[2 * i]).dot(apart[i]), 0.1 - 1e-12) << i;
+}
+
+TEST(SelfCollision, SlowParticlesNeverOverlapThoughTheyAreSearchedSeldom) {
+  for (double gap = 0.11; gap < 0.3; gap += 0.007) {
+    const Vec3 v(0.08, 0, 0);  // an 80th of the diameter in a step
+    const Scene scene = particles({{0, 0, 0}, {gap, 0, 0}}, {v, -v});
+    const SolverChoice choice = parse_solver(listing("precision=double,self=grid"));
+    const auto solver = choice.entry->make(scene, choice.params);
+    solver->load(scene.start);
+    State state;
+    for (int n = 0; n < 80; ++n) {
+      solver->step(n * scene.dt, scene.dt);
+      solver->store(state);
+      ASSERT_GE(state.x[1].x() - state.x[0].x(), 0.1 - 1e-12) << "gap " << gap << ", step " << n;
+    }
+  }
+}
+
+TEST(SelfCollision, TheOctreeDoesNotSeeAcrossASplitAndTheGridDoes) {
+  // Two slow particles meet at the middle of a box whose corners hold the others.
+  std::vector<Vec3> x{{-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}};
+  for (const double sx : {-1, 1})
+    for (const double sy : {-1, 1})
+      for (const double sz : {-1, 1}) x.emplace_back(sx, sy, sz);
+  std::vector<Vec3> v(x.size(), Vec3::Zero());
+  v[0] = {0.1, 0.1, 0.1}, v[1] = -v[0];
+  const Scene scene = particles(x, v);
+  const auto gap = [&](const char* params) {
+    const State s = run(scene, params, 40);
+    return (s.x[1] - s.x[0]).norm();
+  };
+  EXPECT_GE(gap("self=grid"), 0.1 - 1e-12);
+  EXPECT_LT(gap("self=octree"), 0.05);
+  EXPECT_EQ(gap("self=octree"), gap("self=off"));
+}
+
+/// A sheet at rest whose particles are larger than the spacing.
+Scene fat_sheet() {
+  Scene scene;
+  scene.mesh = make_sheet({.nu = 9, .nv = 9, .width = 0.8, .height = 0.8, .mass = 0.1});
+  scene.links = grid_links(scene.mesh, {.structural = true, .shear = true});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(81, Vec3::Zero())};
+  scene.gravity.setZero();
+  scene.self_collision = SelfCollision{.radius = 0.15};  // spacing 0.1 m
+  scene.dt = 1.0 / 64;
+  return scene;
+}
+
+double moved(const Scene& scene, const State& state) {
+  double most = 0;
+  for (std::size_t i = 0; i < state.x.size(); ++i)
+    most = std::max(most, (state.x[i] - scene.start.x[i]).norm());
+  return most;
+}
+
+TEST(SelfCollision, ALargeRadiusJamsTheOctreeInTheAirAndNotTheGrid) {
+  Scene scene = fat_sheet();
+  EXPECT_LT(moved(scene, run(scene, "self=grid", 20)), 1e-9);  // nothing fights at rest
+  scene.gravity = {0, -9.81, 0};
+  const double fall = 9.81 / 64 / 64 * 20 * 21 / 2;
+  EXPECT_NEAR(moved(scene, run(scene, "self=grid", 20)), fall, 1e-9);
+  EXPECT_LT(moved(scene, run(scene, "self=octree", 20)), 1e-3);
+}
+
+TEST(SelfCollision, PinsDoNotMove) {
+  Scene scene = particles({{-0.2, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {0, 0, 0}});
+  scene.pins = {1};
+  for (const char* params : {"self=grid", "self=octree"})
+    EXPECT_EQ(run(scene, params, 64).x[1], Vec3::Zero()) << params;
+}
+
+TEST(SelfCollision, IsNoPassUnlessTheSceneHasIt) {
+  for (const bool present : {false, true}) {
+    Scene scene = fat_sheet();
+    if (!present) scene.self_collision.reset();
+    const SolverChoice choice = parse_solver("jakobsen");
+    bool found = false;
+    for (const PassCost& cost : choice.entry->make(scene, choice.params)->plan())
+      found |= cost.pass.starts_with("self-collide");
+    EXPECT_EQ(found, present);
+  }
+}
+
+using Pairs = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
+
+template <class Real>
+Points<Real> points(const std::vector<Vec3>& x) {
+  Points<Real> p(std::make_shared<const Layout>(Layout::packed(x.size())));
+  for (std::size_t i = 0; i < x.size(); ++i) p.set(i, x[i].cast<Real>());
+  return p;
+}
+
+std::vector<Vec3> anywhere(std::size_t count, double far, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<> number(-far, far);
+  std::vector<Vec3> x(count);
+  for (Vec3& p : x) p = {number(random), number(random), number(random)};
+  return x;
+}
+
+template <class Real>
+Pairs all_within(const Points<Real>& x, std::size_t count, Real reach) {
+  Pairs pairs;
+  for (std::uint32_t a = 0; a < count; ++a) {
+    const typename Points<Real>::Point at = x[a];
+    for (std::uint32_t b = a + 1; b < count; ++b)
+      if ((x[b] - at).squaredNorm() < reach * reach) pairs.insert({a, b});
+  }
+  return pairs;
+}
+
+/// Everywhere, in a line along each axis, in planes and thick layers, in one cell.
+std::vector<std::vector<Vec3>> clouds() {
+  std::vector<std::vector<Vec3>> all;
+  const std::vector<Vec3> cube = anywhere(400, 2, 1);
+  for (const Vec3& size :
+       {Vec3(1, 1, 1), Vec3(20, 0, 0), Vec3(0, 20, 0), Vec3(0, 0, 20), Vec3(5, 5, 0), Vec3(0, 5, 5),
+        Vec3(0.2, 2, 2), Vec3(2, 0.2, 2), Vec3(2, 2, 0.2), Vec3(0.01, 0.01, 0.01)}) {
+    all.emplace_back();
+    for (const Vec3& x : cube) all.back().push_back(x.cwiseProduct(size));
+  }
+  for (Vec3& x : all.emplace_back(cube)) x.z() = x.x() + x.y();
+  all.emplace_back(cube)[0] = {1e9, -1e9, 1e9};  // beyond the last cell
+  return all;
+}
+
+TEST(Neighbours, AreThoseOfAllPairs) {
+  for (const std::vector<Vec3>& cloud : clouds()) {
+    const Points<double> x = points<double>(cloud);
+    for (const double reach : {0.02, 0.3, 1.0}) {
+      const Pairs brute = all_within(x, cloud.size(), reach);
+      for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+        if (!available(simd)) continue;
+        Pairs found;
+        Neighbours<double>(cloud.size(), simd)
+            .pairs(x, reach,
+                   [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
+        EXPECT_EQ(found, brute) << reach << ' ' << to_string(simd);
+      }
+    }
+  }
+}
+
+TEST(Neighbours, ThatMeetAreThoseWithinTheirOwnWay) {
+  const std::vector<Vec3> now = anywhere(400, 1, 4);
+  std::vector<Vec3> before = now, rest = now;
+  const std::vector<Vec3> way = anywhere(800, 0.2, 5);
+  for (std::size_t i = 0; i < 400; ++i) before[i] += way[i], rest[i] += 4 * way[400 + i];
+  const auto x = points<float>(now), previous = points<float>(before),
+             at_rest = points<float>(rest);
+  const float within = 0.1F, reach = within + 0.4F * std::sqrt(3.0F), ignored = 0.8F;
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+    if (!available(simd)) continue;
+    Neighbours<float> neighbours(400, simd);
+    neighbours.ignore(at_rest, ignored);
+    Pairs found, brute;
+    neighbours.meetings(x, previous, within, reach,
+                        [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
+    std::size_t left_out = 0;
+    for (std::uint32_t a = 0; a < 400; ++a)
+      for (std::uint32_t b = a + 1; b < 400; ++b) {
+        const Points<float>::Point gap = x[b] - x[a];
+        if (!(gap.norm() < within + (gap - (previous[b] - previous[a])).norm())) continue;
+        if ((at_rest[b] - at_rest[a]).norm() >= ignored)
+          brute.insert({a, b});
+        else
+          ++left_out;
+      }
+    EXPECT_EQ(found, brute) << to_string(simd);
+    EXPECT_GT(found.size(), 1000u);
+    EXPECT_GT(left_out, 300u);
+  }
+}
+
+TEST(Neighbours, ComeInOneOrderFromEveryInstructionSet) {
+  const Points<float> x = points<float>(anywhere(3000, 2, 6));
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> first;
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+    if (!available(simd)) continue;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+    Neighbours<float>(3000, simd).pairs(x, 0.4F, [&](std::uint32_t a, std::uint32_t b) {
+      found.emplace_back(a, b);
+    });
+    if (first.empty()) first = found;
+    EXPECT_EQ(found, first) << to_string(simd);
+  }
+}
+
+TEST(SelfCollision, CrumpleEndsWithoutSelfIntersectionsByDefault) {
+  const auto crossings = [](const char* solver, const char* duration) {
+    const Scene scene = load_scene(TAUT_SOURCE_DIR "/experiments/scenes/crumple.toml", {duration});
+    return run_case(scene, parse_solver(solver)).record.values.at("self.crossings.peak");
+  };
+  EXPECT_EQ(crossings("jakobsen", "time.duration=3"), 0);
+  EXPECT_GT(crossings("jakobsen:self=off", "time.duration=1"), 100);
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,109 @@
+#!/usr/bin/env bash
+# Fails when an #include runs against the architecture, a library leaks out of the files that may know it, or two types
+# of one namespace share a name: a linker takes the inline functions of one of them for both, and nobody warns.
+# Usage: layers.sh [ROOT]; `layers.sh --self-test` plants a violation of every rule in a copy and expects red.
+set -euo pipefail
+here=$(cd "$(dirname "$0")/../.." && pwd)
+
+# folder | regular expression of the quoted includes that it may have
+rules='
+core/model               | core/model/
+core/io                  | core/(model|io)/
+core/solver              | core/(model|solver)/
+core/reference           | core/(model|reference)/
+bullet_ref               | (core/model|bullet_ref)/
+experiments/system       | (core/model|experiments/system)/
+experiments/metrics      | (core/model|experiments/metrics)/
+experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
+experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
+experiments/timing       | (core/model|experiments/(system|case|timing))/
+experiments/baseline     | (core/(model|io)|experiments/(system|case|study|baseline))/
+experiments/truths       | (core/(model|reference)|experiments/(metrics|case|truths))/
+experiments/render       | (core/(model|io)|experiments/(case|render))/
+experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
+experiments/bench        | (core/(model|io|solver)|experiments/(system|timing|bench))/
+experiments/film         | (core/(model|io)|experiments/(system|case|render|report|film))/
+'
+# what is included | files that may include it
+owners='
+BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/.*\.cpp
+toml\+\+                | ^core/io/document\.cpp
+Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
+nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
+openssl/                | ^experiments/case/.*\.cpp
+'
+
+# awk: types at the margin of a file, outside unnamed namespaces
+twice='
+FNR == 1 { space = ""; own = 0 }
+/^namespace \{/ { own = 1 }
+/^}  \/\/ namespace$/ { own = 0 }
+/^namespace [a-z:]+ \{/ { space = $2 }
+!own && /^(struct|class|enum class) [A-Za-z]+( final)?( :| \{)/ {
+  name = space "::" ($1 == "enum" ? $3 : $2)
+  if (name in seen && seen[name] != FILENAME) printf "%s:%d: %s is also in %s\n", FILENAME, FNR, name, seen[name]
+  seen[name] = FILENAME
+}'
+
+check() {
+  local root=$1 bad=0 folder allowed what who file
+  cd "$root"
+  while IFS='|' read -r folder allowed; do
+    folder=${folder// /} allowed=${allowed// /}
+    [[ -n $folder && -d $folder ]] || continue
+    while IFS=: read -r file line text; do
+      [[ -n $file ]] || continue
+      printf '%s:%s: %s may not include %s\n' "$file" "$line" "$folder" "${text#*include }"
+      bad=1
+    done < <(grep -rnE --include='*.?pp' '^#include "' "$folder" | grep -vE "#include \"($allowed|[a-z_0-9]+\.inc)" || true)
+  done < <(sed 's/ | /|/' <<<"$rules" | sed 's/ *|/|/')
+  while IFS= read -r rule; do
+    [[ -n $rule ]] || continue
+    what=${rule%% | *} who=${rule##* | }
+    what=${what%"${what##*[! ]}"}
+    while IFS=: read -r file line text; do
+      [[ -n $file && ! $file =~ $who ]] || continue
+      printf '%s:%s: only %s may include %s\n' "$file" "$line" "$who" "${text#*include }"
+      bad=1
+    done < <(grep -rnE --include='*.?pp' "^#include [<\"]($what)" core bullet_ref experiments tests || true)
+  done <<<"$owners"
+  while IFS= read -r line; do
+    printf '%s\n' "$line"
+    bad=1
+  done < <(find core bullet_ref experiments tests -name '*.[ch]pp' -print0 | sort -z | xargs -0 awk "$twice")
+  return $bad
+}
+
+self_test() {
+  local failures=0
+  copy=$(mktemp -d)
+  trap 'rm -rf "$copy"' EXIT
+  cp -r "$here"/{core,bullet_ref,experiments,tests} "$copy"
+  while IFS='|' read -r file text; do
+    mkdir -p "$copy/${file%/*}"
+    [[ $text == namespace* ]] || text="#include $text"
+    printf '%s\n' "$text" | tr ';' '\n' >"$copy/$file"
+    if (check "$copy") >/dev/null; then
+      echo "not noticed: $file with $text"
+      failures=1
+    fi
+    rm "$copy/$file"
+  done <<'PLANTED'
+core/model/planted.cpp|"core/solver/pass.hpp"
+core/solver/planted.hpp|"experiments/case/record.hpp"
+bullet_ref/planted.cpp|"core/solver/pass.hpp"
+experiments/metrics/planted.cpp|"core/solver/pass.hpp"
+experiments/case/planted.cpp|"bullet_ref/read_back.hpp"
+experiments/report/planted.cpp|"core/solver/distance.hpp"
+core/solver/planted.cpp|<BulletSoftBody/btSoftBody.h>
+bullet_ref/planted.hpp|<BulletSoftBody/btSoftBody.h>
+core/model/planted.hpp|<toml++/toml.h>
+core/solver/planted.cpp|<Eigen/Sparse>
+core/model/planted.cpp|<nlohmann/json.hpp>
+experiments/case/planted.hpp|namespace taut {;struct Scene {
+experiments/report/planted.cpp|namespace taut {;enum class TruthVerdict {
+PLANTED
+  return $failures
+}
+
+if [[ ${1:-} == --self-test ]]; then self_test; else check "${1:-$here}"; fi

@@ -1,0 +1,182 @@
+// Where a setting stops being stable: the search on made-up outcomes, then springs and sweeps
+// beside their closed forms.
+#include "experiments/study/frontier.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/model/input_error.hpp"
+#include "core/reference/linear_stability.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+using Kind = Status::Kind;
+
+Trial outcome(std::function<Kind(double)> of, int* count = nullptr) {
+  return [of, count](const std::vector<double>& values) {
+    std::vector<Status> statuses;
+    for (const double value : values) {
+      statuses.push_back({of(value), "", -1, -1});
+      if (count) ++*count;
+    }
+    return statuses;
+  };
+}
+
+TEST(Frontier, BracketsTheEndOfStability) {
+  int tried = 0;
+  const Frontier found = find_frontier(
+      {.from = 1e-3, .to = 1, .tolerance = 1e-4},
+      outcome([](double dt) { return dt < 0.0371 ? Kind::ok : Kind::exploded; }, &tried));
+  EXPECT_EQ(found.kind, Frontier::Kind::bracketed);
+  EXPECT_LT(found.stable, 0.0371);
+  EXPECT_GE(found.unstable, 0.0371);
+  EXPECT_LE(found.unstable - found.stable, 1e-4 * found.unstable);
+  EXPECT_TRUE(found.islands.empty());
+  EXPECT_GE(found.above, 4u);
+  EXPECT_LT(tried, 32);
+  EXPECT_EQ(found.probes.size(), static_cast<std::size_t>(tried));
+}
+
+TEST(Frontier, SaysWhenARangeHasNone) {
+  const SearchRange range{.from = 0, .to = 2};
+  EXPECT_EQ(find_frontier(range, outcome([](double) { return Kind::ok; })).kind,
+            Frontier::Kind::all_stable);
+  const Frontier none = find_frontier(range, outcome([](double) { return Kind::unsettled; }));
+  EXPECT_EQ(none.kind, Frontier::Kind::none_stable);
+  EXPECT_EQ(none.unstable, 0);
+  EXPECT_EQ(find_frontier(range, outcome([](double) { return Kind::unsupported; })).kind,
+            Frontier::Kind::not_answered);
+  EXPECT_EQ(find_frontier(range, outcome([](double) { return Kind::timeout; })).kind,
+            Frontier::Kind::not_answered);
+  const Frontier cut =
+      find_frontier(range, [](const std::vector<double>&) { return std::vector<Status>{}; });
+  EXPECT_EQ(cut.kind, Frontier::Kind::not_answered) << "interrupted";
+}
+
+TEST(Frontier, StabilityAboveTheBracketIsReported) {
+  const Frontier found = find_frontier(
+      {.from = 1, .to = 100, .tolerance = 0.01},
+      outcome([](double x) { return x < 7 || (x > 50 && x < 70) ? Kind::ok : Kind::exploded; }));
+  EXPECT_NEAR(found.stable, 7, 0.1);
+  ASSERT_FALSE(found.islands.empty());
+  for (const double island : found.islands) EXPECT_TRUE(island > 50 && island < 70) << island;
+}
+
+TEST(Frontier, WholeNumbersEndWithNeighbours) {
+  const Frontier found =
+      find_frontier({.from = 1, .to = 1000, .whole = true, .tolerance = 1e-6},
+                    outcome([](double n) { return n <= 137 ? Kind::ok : Kind::crash; }));
+  EXPECT_EQ(found.stable, 137);
+  EXPECT_EQ(found.unstable, 138);
+}
+
+TEST(Frontier, WantOfTimeIsNoInstability) {
+  const Frontier found =
+      find_frontier({.from = 1e-4, .to = 1, .tolerance = 0.01}, outcome([](double dt) {
+                      return dt < 1e-3 ? Kind::timeout : dt < 0.2 ? Kind::ok : Kind::exploded;
+                    }));
+  EXPECT_EQ(found.kind, Frontier::Kind::bracketed);
+  EXPECT_NEAR(found.stable, 0.2, 0.004);
+}
+
+TEST(Frontier, QuestionsBecomeCases) {
+  const CaseSpec base{"chain", {}, "jakobsen:iterations=2"};
+  EXPECT_EQ((FrontierQuestion{base, "dt", {}}.at(0.01).overrides.back()), "time.dt=\"0.01\"");
+  EXPECT_EQ((FrontierQuestion{base, "omega", {}}.at(1.5).solver),
+            "jakobsen:iterations=2,omega=1.5");
+  EXPECT_EQ((FrontierQuestion{base, "wind.strength", {}}.at(3).overrides.back()),
+            "wind.strength=3");
+  EXPECT_EQ(range_of(base, "omega", 0.5, {}).from, 0.5);
+  EXPECT_EQ(range_of(base, "omega", {}, {}).to, 2);
+  EXPECT_TRUE(range_of(base, "substeps", 1, 9).whole);
+  EXPECT_THROW(range_of(base, "omeega", {}, {}), InputError);
+  EXPECT_THROW(range_of(base, "projection", {}, {}), InputError);
+  EXPECT_THROW(range_of(base, "wind.strength", {}, {}), InputError) << "no range of its own";
+  EXPECT_THROW(range_of(base, "dt", 0.5, 0.1), InputError);
+}
+
+Scene hung_chain(int links) {
+  Scene scene = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
+  scene.gravity.setZero();
+  return scene;
+}
+
+double margin(Scene scene, const std::string& solver, double dt) {
+  scene.dt = dt;
+  return linear_stability(scene, parse_solver(solver))->margin;
+}
+
+TEST(LinearStability, OneMassOnASpring) {
+  const Scene scene = hung_chain(1);
+  const double m = scene.mesh.mass[1], k = 40, w = std::sqrt(k / m), zeta = 0.5;
+  const std::string spring = "mass-spring:substeps=1,structural=40";
+  EXPECT_NEAR(margin(scene, spring, 2 / w), 1, 1e-9);
+  EXPECT_NEAR(margin(scene, "mass-spring:substeps=4,structural=40", 8 / w), 1, 1e-9);
+  const std::string drag = ",drag=" + std::to_string(2 * zeta * w * m);
+  EXPECT_NEAR(margin(scene, spring + drag, 2 / w * (std::sqrt(1 + zeta * zeta) - zeta)), 1, 1e-5);
+  EXPECT_NEAR(margin(scene, spring + drag + ",drag-at=central", 2 / w), 1, 1e-5);
+  EXPECT_GT(margin(scene, spring + ",integrator=explicit-euler", 1e-3), 1);
+}
+
+TEST(LinearStability, AChainOfSpringsHasItsClosedForm) {
+  const int n = 16;
+  const Scene scene = hung_chain(n);
+  const double fastest = 2 * std::sqrt(50 / scene.mesh.mass[1]) *
+                         std::sin((2 * n - 1) * std::acos(-1.0) / (2 * (2 * n + 1)));
+  EXPECT_NEAR(margin(scene, "mass-spring:substeps=1", 2 / fastest), 1, 1e-9);
+}
+
+TEST(LinearStability, SweepsOfRelaxation) {
+  EXPECT_NEAR(margin(hung_chain(1), listing("iterations=1,omega=1.33"), 0.01),
+              0.33 + std::sqrt(0.33 * 0.33 + 0.33), 1e-9);
+  EXPECT_TRUE(linear_stability(hung_chain(1), parse_solver(listing("iterations=1,omega=1.3333")))
+                  ->stable());
+  EXPECT_FALSE(linear_stability(hung_chain(1), parse_solver(listing("iterations=1,omega=1.3334")))
+                   ->stable());
+  const double odd = margin(hung_chain(32), listing("iterations=1,method=jacobi"), 0.01);
+  EXPECT_NEAR(odd, 2.402, 0.02);
+  EXPECT_LT(odd, 1 + std::sqrt(2));
+  EXPECT_LE(margin(hung_chain(32), listing("iterations=2,method=jacobi"), 0.01), 1 + 1e-6);
+  // |z| = rho^(k/2), rho = cos^2(pi/2N)
+  EXPECT_NEAR(margin(hung_chain(16), listing("iterations=4"), 0.01),
+              std::pow(std::cos(std::acos(-1.0) / 32), 4), 1e-6);
+  EXPECT_FALSE(linear_stability(hanging_sheet(20, 20), parse_solver(listing()))) << "too many";
+}
+
+/// Longest stable step of the scene by running it.
+Frontier measured(const Scene& scene, const std::string& solver, double from, double to) {
+  return find_frontier(
+      {.from = from, .to = to, .tolerance = 2e-3, .rungs = 5},
+      [&](const std::vector<double>& values) {
+        std::vector<Status> statuses;
+        for (const double dt : values) {
+          Scene tried = scene;
+          tried.dt = dt;
+          tried.steps = 3000;
+          statuses.push_back(
+              run_case(tried, parse_solver(solver), {.measure = false}).record.status);
+        }
+        return statuses;
+      });
+}
+
+TEST(LinearStability, ASheetOfSpringsBlowsUpWhereItSays) {
+  Scene sheet = crumpled(hanging_sheet(5, 6), 1e-6);
+  sheet.gravity.setZero();
+  for (const char* more :
+       {"", ",drag=0.01", ",drag=0.01,drag-at=central", ",integrator=symplectic-euler"}) {
+    const std::string solver = "mass-spring:substeps=1,precision=double" + std::string(more);
+    const Frontier found = measured(sheet, solver, 2e-3, 8e-2);
+    ASSERT_EQ(found.kind, Frontier::Kind::bracketed) << more;
+    EXPECT_TRUE(found.islands.empty()) << more;
+    EXPECT_LT(margin(sheet, solver, found.stable), 1.003) << more;
+    EXPECT_GT(margin(sheet, solver, found.unstable), 0.999) << more;
+  }
+}
+
+}  // namespace
+}  // namespace taut

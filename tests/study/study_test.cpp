@@ -1,0 +1,182 @@
+// Studies: what a file asks for becomes exactly these cases.
+#include "experiments/study/study.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/fingerprint.hpp"
+#include "experiments/case/key.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut {
+namespace {
+
+Study study_of(const std::string& text, const std::string& preset = "") {
+  const std::string file = testing::TempDir() + unique_suffix() + ".toml";
+  std::ofstream(file) << text;
+  const Study study = load_study(file, preset);
+  std::filesystem::remove(file);
+  return study;
+}
+
+std::vector<std::string> ids(const Study& study) {
+  std::vector<std::string> all;
+  for (const Case& one : plan(study)) all.push_back(one.id);
+  return all;
+}
+
+using Strings = std::vector<std::string>;
+
+TEST(Study, EveryCombinationIsACaseScenesOutermost) {
+  const Study study = study_of(R"(
+question = "?"
+scenes = ["chain", "fall"]
+solvers = ["jakobsen:precision=double"]
+[sweep]
+"time.dt" = ["1/32", 0.5]
+iterations = [1, 2]
+)");
+  EXPECT_EQ(ids(study), (Strings{"chain dt=1/32 jakobsen:iterations=1,precision=double",
+                                 "chain dt=1/32 jakobsen:iterations=2,precision=double",
+                                 "chain dt=0.5 jakobsen:iterations=1,precision=double",
+                                 "chain dt=0.5 jakobsen:iterations=2,precision=double",
+                                 "fall dt=1/32 jakobsen:iterations=1,precision=double",
+                                 "fall dt=1/32 jakobsen:iterations=2,precision=double",
+                                 "fall dt=0.5 jakobsen:iterations=1,precision=double",
+                                 "fall dt=0.5 jakobsen:iterations=2,precision=double"}));
+}
+
+TEST(Study, AParameterVariesForThoseWhoHaveItAndDoNotFixIt) {
+  const Study study = study_of(R"(
+question = "?"
+scenes = ["fall"]
+solvers = ["jakobsen", "jakobsen:iterations=9", "bullet:iterations=1"]
+sweep.projection = ["exact", "sqrt-free"]
+sweep.iterations = [4]
+)");
+  EXPECT_EQ(ids(study),
+            (Strings{"fall jakobsen:iterations=4,projection=exact", "fall jakobsen:iterations=4",
+                     "fall jakobsen:iterations=9,projection=exact", "fall jakobsen:iterations=9",
+                     "fall bullet:iterations=1"}));
+}
+
+TEST(Study, RangesAreLinearOrLogarithmicAndWholeWhereTheyMustBe) {
+  const Study study = study_of(R"(
+question = "?"
+scenes = ["fall"]
+solvers = ["jakobsen"]
+[sweep]
+iterations = { from = 1, to = 256, steps = 9, scale = "log" }
+substeps = { from = 1, to = 2, steps = 5 }
+"time.dt" = { from = "1/100", to = "1/10", steps = 2, scale = "log" }
+)");
+  EXPECT_EQ(study.sweeps[0].values, (Strings{"1", "2", "4", "8", "16", "32", "64", "128", "256"}));
+  EXPECT_EQ(study.sweeps[1].values, (Strings{"1", "2"})) << "rounded, repetitions dropped";
+  EXPECT_EQ(study.sweeps[2].values, (Strings{"0.01", "0.1"}));
+}
+
+TEST(Study, PresetsReplaceWhatTheyName) {
+  const std::string text = R"(
+question = "?"
+scenes = ["fall", "hang"]
+solvers = ["jakobsen", "bullet"]
+sweep.iterations = [1, 2, 4]
+sweep.substeps = [1, 2]
+[preset.quick]
+scenes = ["fall"]
+sweep.iterations = [8]
+)";
+  const Study whole = study_of(text), quick = study_of(text, "quick");
+  EXPECT_EQ(whole.presets, Strings{"quick"});
+  EXPECT_EQ(plan(whole).size(), 2u * 2 * 3 * 2);
+  EXPECT_EQ(quick.scenes, Strings{"fall"});
+  EXPECT_EQ(plan(quick).size(), 1u * 2 * 1 * 2);
+  EXPECT_EQ(quick.preset, "quick");
+}
+
+TEST(Study, ExclusionsMatchAllOfTheirSettings) {
+  const Study study = study_of(R"(
+question = "?"
+scenes = ["fall", "chain"]
+solvers = ["jakobsen", "bullet"]
+exclude = [{ scene = "fall", iterations = [2, 4] }, { solver = "bullet", iterations = 4 }]
+sweep.iterations = [1, 2, 4]
+)");
+  EXPECT_EQ(ids(study), (Strings{"fall jakobsen:iterations=1", "fall bullet:iterations=1",
+                                 "chain jakobsen:iterations=1", "chain jakobsen:iterations=2",
+                                 "chain jakobsen:iterations=4", "chain bullet:iterations=1",
+                                 "chain bullet:iterations=2"}));
+}
+
+TEST(Study, TheSameSimulationIsOneCase) {
+  const Study study = study_of(R"(
+question = "?"
+scenes = ["fall"]
+solvers = ["jakobsen", "jakobsen:iterations=3"]
+sweep."time.dt" = ["1/64", 0.015625]
+)");
+  EXPECT_EQ(plan(study).size(), 1u);
+}
+
+TEST(Study, MoreCasesThanAnybodyWaitsForAreRefusedBeforeTheyAreMade) {
+  const Study study = study_of(R"(
+question = "?"
+scenes = ["fall", "chain"]
+solvers = ["jakobsen"]
+[sweep]
+"time.dt" = { from = "1/1000", to = "1/10", steps = 1000 }
+"forces.damping" = { from = 0, to = 1, steps = 1000 }
+)");
+  try {
+    plan(study);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("2000000 cases; at most 100000"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Study, ShippedStudiesAndTheirPresetsArePlans) {
+  for (const std::string& name : shipped("studies")) {
+    Study study = load_study(name);
+    EXPECT_FALSE(plan(study).empty()) << name;
+    for (const std::string& preset : study.presets) {
+      const Study smaller = load_study(name, preset);
+      EXPECT_EQ(smaller.preset, preset);
+      EXPECT_FALSE(plan(smaller).empty()) << name << " " << preset;
+    }
+  }
+}
+
+TEST(Key, DiffersWithEverythingThatMatters) {
+  CaseMaker maker;
+  std::set<std::string> keys;
+  const std::vector<CaseSpec> specs{
+      {"chain", {}, "jakobsen"},
+      {"fall", {}, "jakobsen"},
+      {"chain", {"time.dt=\"1/128\""}, "jakobsen"},
+      {"chain", {"time.duration=1"}, "jakobsen"},
+      {"chain", {"forces.gravity=[0, 9.81, 0]"}, "jakobsen"},
+      {"chain", {}, "jakobsen:iterations=4"},
+      {"chain", {}, "bullet"},
+      {"chain", {}, "bullet:precision=float"},
+  };
+  for (const CaseSpec& spec : specs) keys.insert(maker.make(spec).key);
+  EXPECT_EQ(keys.size(), specs.size());
+  EXPECT_EQ(maker.make({"chain", {}, "jakobsen:iterations=3"}).key, maker.make(specs[0]).key)
+      << "a default that is spelt out is the same case";
+}
+
+TEST(Key, EverySolverHasAnImplementationDigest) {
+  for (const SolverEntry* entry : solvers())
+    EXPECT_EQ(implementation(entry->name).size(), 64u) << entry->name;
+  EXPECT_EQ(measurement().size(), 64u);
+  EXPECT_NE(implementation("jakobsen"), implementation("bullet"));
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,97 @@
+// A bench: what was timed and what it says about the cost of an error.
+#include "experiments/timing/bench.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/case.hpp"
+
+namespace taut {
+namespace {
+
+BenchedCase benched(const std::string& solver, double stretch, double cost_per_step,
+                    double dt = 0.5) {
+  BenchedCase c;
+  c.record.id = "sheet " + solver;
+  c.record.spec = {"sheet", {}, solver};
+  c.record.scene = "sheet";
+  c.record.solver = solver.substr(0, solver.find(':'));
+  c.record.dt = dt;
+  c.record.steps = 10;
+  c.record.values["stretch.rms"] = stretch;
+  const std::vector<double> samples(4, cost_per_step);
+  c.timing = {.spec = c.record.spec,
+              .samples = samples,
+              .wall = samples,
+              .peak_bytes = 1000,
+              .failure = ""};
+  return c;
+}
+
+SceneBench sheet() {
+  return {"sheet",
+          {0.99, 1, 1.01},
+          {benched("a:k=1", 0.2, 1e-3), benched("a:k=4", 0.009, 4e-3),
+           benched("b:k=1", 0.008, 12e-3), benched("c:k=1", 0.0001, 1e-6)}};
+}
+
+TEST(Bench, CostIsPerSimulatedSecond) {
+  EXPECT_DOUBLE_EQ(benched("a", 0.1, 1e-3, 0.25).cost().mid, 4e-3);
+}
+
+TEST(Bench, ARatioAccountsForDifferentTimeSteps) {
+  SceneBench bench{
+      "sheet", {1, 1, 1}, {benched("a", 0.1, 1e-3, 0.5), benched("b", 0.1, 1e-3, 0.25)}};
+  EXPECT_NEAR(bench.ratio(1, 0)->mid, 2, 1e-12);
+}
+
+TEST(Bench, EqualErrorNamesTheCheapestOfEachSolverAndItsFactor) {
+  SceneBench bench = sheet();
+  bench.cases[3].record.status.kind = Status::Kind::exploded;  // a fast failure never ranks
+  const auto row = equal_error(bench, "stretch.rms", 0.01);
+  ASSERT_EQ(row.size(), 3u);
+  EXPECT_EQ(row[0].at, 1u);
+  EXPECT_EQ(row[1].at, 2u);
+  EXPECT_NEAR(row[1].times->mid, 3, 1e-12);
+  EXPECT_EQ(row[2].at, std::nullopt);
+  EXPECT_EQ(equal_error(bench, "stretch.rms", 1e-3)[0].at, std::nullopt);
+}
+
+TEST(Bench, AFileGivesBackEverySample) {
+  const BenchSession session{"trade", "a machine", {sheet()}};
+  const BenchSession again = bench_from_json(to_json(session), "bench.json");
+  EXPECT_EQ(to_json(again), to_json(session));
+  EXPECT_EQ(again.scenes[0].cases[1].timing.samples, session.scenes[0].cases[1].timing.samples);
+  EXPECT_THROW(bench_from_json("{\"schema\": 2}", "bench.json"), InputError);
+  EXPECT_THROW(bench_from_json("{", "bench.json"), InputError);
+}
+
+TEST(Bench, RecordsCarryTheirCost) {
+  const auto records = BenchSession{"trade", "", {sheet()}}.records();
+  EXPECT_DOUBLE_EQ(records[1].values.at("cpu.per_step"), 4e-3);
+  EXPECT_DOUBLE_EQ(records[1].values.at("cpu.per_second"), 8e-3);
+}
+
+TEST(Bench, OnlyStepIsInsideTheClock) {
+  /// Burns CPU outside of step() as much as inside.
+  class Burner final : public Solver {
+   public:
+    void load(const State&) override { burn(0.02); }
+    void step(double, double) override { burn(0.002); }
+    void store(State&) const override { burn(0.02); }
+    std::vector<PassCost> plan() const override { return {}; }
+
+   private:
+    static void burn(double seconds) {
+      const auto end = clock() + static_cast<clock_t>(seconds * CLOCKS_PER_SEC);
+      while (clock() < end) {
+      }
+    }
+  } solver;
+  Scene scene;
+  scene.dt = 0.1;
+  EXPECT_NEAR(time_steps(scene, solver, 10), 0.002, 0.0005);
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,99 @@
+// The search behind `taut advise`, against solvers whose error and cost are formulas.
+#include "experiments/timing/search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/model/solver.hpp"
+
+namespace taut {
+namespace {
+
+/// error = 1 / (n^2 k), cost = n (a + k): what stiff links do, roughly.
+struct Formula {
+  double overhead = 0.5;
+  int runs = 0;
+  int most = 1000;
+
+  std::optional<Offer> operator()(const std::string& setting) {
+    if (++runs > most) return {};
+    const SolverChoice choice = parse_solver(setting);
+    const double n = choice.params.integer("substeps"), k = choice.params.integer("iterations");
+    const double cost = n * (overhead + k), error = 1 / (n * n * k);
+    const bool explodes = n * k < 4;
+    return Offer{std::string(choice.entry->name),
+                 setting,
+                 {cost, cost, cost},
+                 explodes ? std::nan("") : error,
+                 explodes};
+  }
+
+  /// The best of a full grid: 1024 x 128 runs.
+  double cheapest(double error) const {
+    double best = 1e300;
+    for (int n = 1; n <= 1024; ++n)
+      for (int k = 1; k <= 128; ++k)
+        if (n * k >= 4 && 1.0 / (n * n * k) <= error) best = std::min(best, n * (overhead + k));
+    return best;
+  }
+};
+
+Offer best_of(const std::vector<Offer>& tried, const Wish& wish) {
+  return *std::min_element(tried.begin(), tried.end(),
+                           [&](const Offer& a, const Offer& b) { return wish.prefers(a, b); });
+}
+
+constexpr const char* kPlain = "xpbd:precision=double";
+
+TEST(Search, FindsNearlyWhatAFullGridWouldFindInAFewDozenRuns) {
+  for (const double overhead : {0.1, 1.0, 10.0})
+    for (const double error : {0.1, 0.01, 1e-3, 1e-4}) {
+      Formula formula{overhead};
+      const Wish wish{error, {}};
+      const Offer best = best_of(search_settings(kPlain, wish, std::ref(formula)), wish);
+      EXPECT_TRUE(wish.grants(best));
+      EXPECT_LE(best.cost.mid, 1.25 * formula.cheapest(error)) << overhead << " " << error;
+      EXPECT_LE(formula.runs, 40);
+    }
+}
+
+TEST(Search, SpendsABudgetButNotMore) {
+  Formula formula;
+  const Wish wish{{}, 30};
+  const Offer best = best_of(search_settings(kPlain, wish, std::ref(formula)), wish);
+  EXPECT_LE(best.cost.mid, 30);
+  EXPECT_LE(best.error, 1.1 / (19 * 19));  // n = 20 at k = 1 fills the budget
+  EXPECT_LE(formula.runs, 30);
+}
+
+TEST(Search, WhatNoSettingReachesIsNotGranted) {
+  Formula formula;
+  const Wish wish{0, {}};
+  for (const Offer& o : search_settings(kPlain, wish, std::ref(formula)))
+    EXPECT_FALSE(wish.grants(o));
+}
+
+TEST(Search, ARivalThatIsFarCheaperEndsItEarly) {
+  Formula alone, beaten;
+  const Wish wish{1e-4, {}};
+  search_settings(kPlain, wish, std::ref(alone));
+  search_settings(kPlain, wish, std::ref(beaten), {{"other", "other", {0.1, 0.1, 0.1}, 1e-5}});
+  EXPECT_LT(beaten.runs, alone.runs / 2);
+}
+
+TEST(Search, StopsWhenTimeIsUp) {
+  Formula formula{.most = 3};
+  EXPECT_EQ(search_settings(kPlain, {1e-4, {}}, std::ref(formula)).size(), 3u);
+  EXPECT_EQ(formula.runs, 4);
+}
+
+TEST(Search, LeavesAloneWhatTheUserFixed) {
+  Formula formula;
+  for (const Offer& o :
+       search_settings("xpbd:precision=double,iterations=2", {0.01, {}}, std::ref(formula)))
+    EXPECT_NE(o.setting.find("iterations=2"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace taut

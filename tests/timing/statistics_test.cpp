@@ -1,0 +1,146 @@
+// Statistics of timings: what may be called a difference on a noisy machine.
+#include "experiments/timing/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iterator>
+#include <random>
+
+#include "tests/support/recorded_samples.hpp"
+
+namespace taut {
+namespace {
+
+/// A machine shared with others: log-normal noise, a slow drift of its speed and now and then a
+/// burst.
+class NoisyMachine {
+ public:
+  explicit NoisyMachine(unsigned seed) : random_(seed) {}
+  double time(double cost) {
+    speed_ = 0.98 * speed_ + 0.02 * normal_(random_);
+    const double burst = uniform_(random_) < 0.05 ? 1 + uniform_(random_) : 1;
+    return cost * burst * std::exp(0.1 * speed_ + 0.01 * normal_(random_));
+  }
+
+ private:
+  std::mt19937 random_;
+  std::normal_distribution<> normal_;
+  std::uniform_real_distribution<> uniform_;
+  double speed_ = 0;
+};
+
+struct Samples {
+  std::vector<double> a, b;
+};
+
+Samples interleave(NoisyMachine& machine, double cost_a, double cost_b, int blocks) {
+  Samples s;
+  for (int i = 0; i < blocks; ++i) {
+    s.a.push_back(machine.time(cost_a));
+    s.b.push_back(machine.time(cost_b));
+    s.b.push_back(machine.time(cost_b));
+    s.a.push_back(machine.time(cost_a));
+  }
+  return s;
+}
+
+TEST(Statistics, TheMedianOfAnEvenCountIsTheMeanOfTheMiddleTwo) {
+  EXPECT_EQ(median(std::vector{3.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(median(std::vector{4.0, 1.0, 2.0, 3.0}), 2.5);
+  EXPECT_TRUE(std::isnan(median({})));
+}
+
+TEST(Statistics, TheIntervalIsSeededAndShrinksWithSamples) {
+  NoisyMachine machine(3);
+  std::vector<double> few, many;
+  for (int i = 0; i < 10; ++i) few.push_back(machine.time(1));
+  for (int i = 0; i < 1000; ++i) many.push_back(machine.time(1));
+  const Interval wide = bootstrap_median(few), narrow = bootstrap_median(many),
+                 again = bootstrap_median(many);
+  EXPECT_LT(narrow.high - narrow.low, wide.high - wide.low);
+  EXPECT_EQ(narrow.low, again.low);
+  EXPECT_TRUE(narrow.contains(narrow.mid));
+}
+
+TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
+  int declared = 0, noisy = 0;
+  for (unsigned bench = 0; bench < 100; ++bench) {
+    NoisyMachine machine(bench);
+    const Samples control = interleave(machine, 1, 1, 20), pair = interleave(machine, 1, 1, 20);
+    const Judgement j =
+        judge(interleaved_ratio(pair.a, pair.b), interleaved_ratio(control.a, control.b), 0.05);
+    declared += j == Judgement::faster || j == Judgement::slower;
+    noisy += j == Judgement::too_noisy;
+  }
+  EXPECT_EQ(declared, 0);
+  EXPECT_LT(noisy, 30);  // most of these machines are still good enough to judge
+}
+
+/// A bench of one code against itself from samples that a busy machine gave: four neighbours of one
+/// session, two as the control, two as the pair, the second of which costs `factor` times as much.
+Judgement recorded_bench(std::size_t first, double factor) {
+  const auto samples = [](std::size_t row, double cost) {
+    std::vector<double> out;
+    for (const int value : kRecorded[row]) out.push_back(cost * value);
+    return out;
+  };
+  return judge(interleaved_ratio(samples(first + 2, factor), samples(first + 3, 1)),
+               interleaved_ratio(samples(first, 1), samples(first + 1, 1)), 0.05);
+}
+
+TEST(Statistics, RecordedSamplesOfOneCodeAreNeverADifferenceButATwofoldCostIs) {
+  int benches = 0, declared = 0, seen = 0;
+  for (std::size_t first = 0; first + 3 < std::size(kRecorded); ++first) {
+    ++benches;
+    const auto is_difference = [](Judgement j) {
+      return j == Judgement::faster || j == Judgement::slower;
+    };
+    declared += is_difference(recorded_bench(first, 1));
+    seen += recorded_bench(first, 2) == Judgement::slower;
+  }
+  EXPECT_GE(benches, 100);
+  EXPECT_EQ(declared, 0);
+  EXPECT_GE(seen, 10) << "of benches quiet enough to judge: the machine was busy";
+}
+
+TEST(Statistics, ATwentyPercentChangeIsSeenDespiteTheNoise) {
+  int slower = 0, faster = 0;
+  for (unsigned bench = 0; bench < 100; ++bench) {
+    NoisyMachine machine(bench);
+    const Samples control = interleave(machine, 1, 1, 20), pair = interleave(machine, 1.2, 1, 20);
+    const Judgement j =
+        judge(interleaved_ratio(pair.a, pair.b), interleaved_ratio(control.a, control.b), 0.05);
+    slower += j == Judgement::slower;
+    faster += j == Judgement::faster;
+  }
+  EXPECT_GE(slower, 70);
+  EXPECT_EQ(faster, 0);
+}
+
+TEST(Statistics, ALinearDriftCancelsInsideABlock) {
+  std::vector<double> a, b;
+  for (int i = 0; i < 80; i += 4) {
+    const auto speed = [&](int k) { return 1 + 0.01 * (i + k); };
+    a.push_back(speed(0)), b.push_back(speed(1)), b.push_back(speed(2)), a.push_back(speed(3));
+  }
+  EXPECT_NEAR(interleaved_ratio(a, b).mid, 1, 1e-12);
+}
+
+TEST(Statistics, APowerLawIsFoundWithItsUncertainty) {
+  std::vector<double> x, exact, bent;
+  for (double v = 1; v <= 256; v *= 2) {
+    x.push_back(v);
+    exact.push_back(3 / v);
+    bent.push_back(3 / v * (1 + 0.1 * std::sin(v)));
+  }
+  const PowerLaw law = fit_power_law(x, exact), rough = fit_power_law(x, bent);
+  EXPECT_NEAR(law.slope, -1, 1e-12);
+  EXPECT_NEAR(law.factor, 3, 1e-12);
+  EXPECT_LT(law.slope_error, 1e-12);
+  EXPECT_GT(rough.slope_error, 1e-3);
+  EXPECT_LT(std::abs(rough.slope + 1), 4 * rough.slope_error);
+}
+
+}  // namespace
+}  // namespace taut

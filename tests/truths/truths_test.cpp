@@ -1,0 +1,124 @@
+// The catalogue of truths as a whole, its ledger, and the references that are kept.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/study/reference_store.hpp"
+#include "experiments/truths/fit.hpp"
+#include "experiments/truths/probe.hpp"
+#include "experiments/truths/textbook.hpp"
+
+namespace taut {
+namespace {
+
+const std::filesystem::path kSource = TAUT_SOURCE_DIR;
+
+TEST(Truths, EverySectionHasItsRowsInOrderAndEveryTruthASource) {
+  std::set<std::pair<int, int>> places;
+  for (const TruthEntry* truth : truths()) {
+    EXPECT_TRUE(places.emplace(truth->section, truth->row).second) << truth->name;
+    EXPECT_FALSE(truth->statement.empty()) << truth->name;
+    EXPECT_FALSE(truth->source.empty()) << truth->name;
+  }
+  for (int section = 1; section <= 10; ++section)
+    EXPECT_TRUE(places.count({section, 1})) << section;
+  for (const auto& [section, row] : places)
+    EXPECT_TRUE(row == 1 || places.count({section, row - 1})) << section << '.' << row;
+}
+
+TEST(Truths, TheProgramHasEverySolverThatTheyBind) {
+  for (const char* name : {"jakobsen", "bullet", "xpbd", "mass-spring"})
+    EXPECT_NO_THROW(find_solver(name));
+}
+
+TEST(Ledger, JudgesByTheToleranceAndNeverPassesNan) {
+  Ledger ledger;
+  ledger.equal("a", "q", "m", 1.0, 1.1, 0.2);
+  ledger.equal("a", "q", "m", 1.0, 1.3, 0.2);
+  ledger.below("a", "q", "m", std::nan(""), 1);
+  ledger.deviates("a", "q", "m", 2.0, 1.0, 2.1, 0.2, "known");
+  ledger.deviates("a", "q", "m", 2.0, 1.0, 3.0, 0.2, "known");
+  ledger.deviates("a", "q", "m", 2.0, 1.9, 2.1, 0.2, "known");
+  std::vector<TruthVerdict> verdicts;
+  for (const Finding& f : ledger.findings()) verdicts.push_back(f.verdict);
+  EXPECT_EQ(verdicts,
+            (std::vector{TruthVerdict::passed, TruthVerdict::broken, TruthVerdict::broken,
+                         TruthVerdict::deviates, TruthVerdict::broken, TruthVerdict::passed}));
+}
+
+TEST(Ledger, KeepsOnlyTheSolversAskedFor) {
+  Ledger ledger({"bullet"});
+  EXPECT_TRUE(ledger.wants("bullet:iterations=3"));
+  EXPECT_FALSE(ledger.wants("jakobsen:iterations=3"));
+  ledger.equal("jakobsen", "q", "m", 0, 1, 0);
+  EXPECT_TRUE(ledger.findings().empty());
+}
+
+TEST(Fit, SlopesAndRecurrencesOfExactData) {
+  std::vector<double> x, y, wave;
+  for (const double v : {1.0, 2.0, 4.0, 8.0}) x.push_back(v), y.push_back(3 * std::pow(v, -1.5));
+  const Slope slope = log_slope(x, y);
+  EXPECT_NEAR(slope.value, -1.5, 1e-12);
+  EXPECT_LT(slope.error, 1e-12);
+  for (int n = 0; n < 20; ++n) wave.push_back(std::pow(0.9, n) * std::cos(0.3 * n + 1));
+  const auto [p, q] = two_term_recurrence(wave);
+  EXPECT_NEAR(p, 2 * 0.9 * std::cos(0.3), 1e-10);
+  EXPECT_NEAR(q, -0.81, 1e-10);
+}
+
+TEST(Textbook, TheSolverTakesTheStepsOfThePublishedListing) {
+  Scene s = bare::sheet(6, 6, {.shear = true});
+  s.pins = {0, 5};
+  s.gravity = {0, -kG, 0};
+  TextbookWithTensions textbook(s, 3);
+  textbook.load(s.start);
+  Probe probe(s, jakobsen(3));
+  for (int n = 0; n < 64; ++n) {
+    textbook.step(), probe.step();
+    ASSERT_LT(max_distance(textbook.x(), probe.state().x), 1e-10) << n;
+  }
+}
+
+TEST(References, AreReadAsTheyWereWritten) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "references";
+  const Scene s = bare::sheet(2, 2);
+  Reference reference{"sheet",    reference_digest(s, "static"), "static", 0, "by hand", 1e-16,
+                      s.mesh.rest};
+  reference.x[1] = Vec3(0.1, 1.0 / 3, -2e-17);
+  write_reference(reference, folder / "sheet");
+  Scene named = s;
+  named.name = "sheet";
+  const auto found = find_references(named, folder).rest;
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->x[1], reference.x[1]);
+  EXPECT_EQ(found->floor, reference.floor);
+  named.dt /= 2, named.steps *= 2, named.damping = 3;  // where it comes to rest is the same
+  EXPECT_TRUE(find_references(named, folder).rest);
+  named.mesh.mass[0] *= 2;
+  EXPECT_FALSE(find_references(named, folder).rest);
+}
+
+TEST(References, TheCommittedOnesBelongToTheShippedScenes) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kSource / "results/references")) {
+    const std::string name = entry.path().filename().string();
+    const Scene scene = load_scene(kSource / "experiments/scenes" / (name + ".toml"));
+    for (const auto& file : std::filesystem::directory_iterator(entry.path())) {
+      const Reference reference = read_reference(file.path());
+      EXPECT_EQ(reference.digest, reference_digest(scene, reference.kind))
+          << file << ": run `taut reference " << name << '`';
+      EXPECT_EQ(reference.x.size(), scene.start.x.size());
+      EXPECT_LT(reference.floor, 1e-6 * extent(scene));
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 6);
+}
+
+}  // namespace
+}  // namespace taut
