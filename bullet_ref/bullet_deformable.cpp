@@ -143,7 +143,7 @@ class BulletDeformable final : public Solver, public HoldsScene {
       state.v[static_cast<std::size_t>(scene_.pins[p])] = from_bullet(pin_velocity_[p]);
   }
 
-  std::vector<PassCost> plan() const override;
+  std::vector<PassCost> step_cost() const override;
   Scene read_back() const override;
 
  private:
@@ -215,7 +215,7 @@ class BulletDeformable final : public Solver, public HoldsScene {
   State now_;
 };
 
-std::vector<PassCost> BulletDeformable::plan() const {
+std::vector<PassCost> BulletDeformable::step_cost() const {
   const auto n = static_cast<std::size_t>(body_->m_nodes.size());
   const auto links = static_cast<std::size_t>(body_->m_links.size());
   const auto faces = static_cast<std::size_t>(body_->m_faces.size());
@@ -273,7 +273,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return std::make_unique<BulletDeformable>(scene, params);
 }
 
-std::vector<std::string> cannot(const Scene& scene, const Params& params) {
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons;
   if (scene.self_collision)
     reasons.push_back(
@@ -285,9 +285,9 @@ std::vector<std::string> cannot(const Scene& scene, const Params& params) {
   return reasons;
 }
 
-Effective effective(const Scene& scene, const Params& params) {
+ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const bool implicit = params.is("implicit", "true");
-  Effective lines = {
+  ResolvedSettings lines = {
       library_line(params),
       time_step_line(scene, params),
       {"precision", std::string(params.choice("precision"))},
@@ -332,6 +332,6 @@ TAUT_SOLVER(bullet_deformable) = {
         "Bullet Physics 3.24, btDeformableMultiBodyDynamicsWorld, btDeformableMassSpringForce",
     .params = taut::solver::bullet_deformable::kParams,
     .make = taut::solver::bullet_deformable::make,
-    .cannot = taut::solver::bullet_deformable::cannot,
-    .effective = taut::solver::bullet_deformable::effective,
+    .unsupported = taut::solver::bullet_deformable::unsupported,
+    .resolved_settings = taut::solver::bullet_deformable::resolved_settings,
     .program = taut::solver::bullet_deformable::program};

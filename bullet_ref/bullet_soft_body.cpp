@@ -142,7 +142,7 @@ class BulletSoftBody final : public Solver, public HoldsScene {
     }
   }
 
-  std::vector<PassCost> plan() const override;
+  std::vector<PassCost> step_cost() const override;
   Scene read_back() const override;
 
  private:
@@ -195,7 +195,7 @@ std::size_t held(const btAlignedObjectArray<T>& array) {
   return static_cast<std::size_t>(array.capacity()) * sizeof(T);
 }
 
-std::vector<PassCost> BulletSoftBody::plan() const {
+std::vector<PassCost> BulletSoftBody::step_cost() const {
   const btSoftBody& b = *body_;
   const auto n = static_cast<std::size_t>(b.m_nodes.size());
   const auto per_step = static_cast<std::size_t>(substeps_);
@@ -256,7 +256,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return std::make_unique<BulletSoftBody>(scene, params);
 }
 
-std::vector<std::string> cannot(const Scene& scene, const Params& params) {
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons;
   if (scene.self_collision)
     reasons.push_back(
@@ -277,9 +277,9 @@ std::vector<std::string> cannot(const Scene& scene, const Params& params) {
   return reasons;
 }
 
-Effective effective(const Scene& scene, const Params& params) {
+ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const double h = static_cast<double>(substep_length(scene, params));
-  Effective lines = {
+  ResolvedSettings lines = {
       library_line(params),
       time_step_line(scene, params),
       {"precision", std::string(params.choice("precision"))},
@@ -324,6 +324,6 @@ TAUT_SOLVER(bullet) = {.name = "bullet",
                        .source = "Bullet Physics 3.24, btSoftRigidDynamicsWorld",
                        .params = taut::solver::bullet_soft_body::kParams,
                        .make = taut::solver::bullet_soft_body::make,
-                       .cannot = taut::solver::bullet_soft_body::cannot,
-                       .effective = taut::solver::bullet_soft_body::effective,
+                       .unsupported = taut::solver::bullet_soft_body::unsupported,
+                       .resolved_settings = taut::solver::bullet_soft_body::resolved_settings,
                        .program = taut::solver::bullet_soft_body::program};

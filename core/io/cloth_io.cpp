@@ -110,9 +110,9 @@ void start_sheet(Section& cloth, const SheetShape& shape, Scene& scene) {
     const Grid& g = *scene.mesh.grid;
     for (int j = 0; j < g.nv; ++j)
       for (int i = 0; i < g.nu; ++i) {
-        const Vec3 down = scene.mesh.rest[at(g.index(0, j))];
-        scene.start.x[at(g.index(i, j))] =
-            down + row[at(i)].first * shape.u + row[at(i)].second * shape.v;
+        const Vec3 down = scene.mesh.rest[to_index(g.index(0, j))];
+        scene.start.x[to_index(g.index(i, j))] =
+            down + row[to_index(i)].first * shape.u + row[to_index(i)].second * shape.v;
       }
   }
   if (tilt != 0)
@@ -154,7 +154,7 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Lin
   try {
     if (name) surface = read_obj(folder / *name);
   } catch (const InputError& error) {
-    cloth.judge().report(error.diagnostics());
+    cloth.diagnostics().report(error.diagnostics());
   }
   for (Vec3& x : surface.vertices) {
     x = origin + rotation * (scale * x);
@@ -181,12 +181,12 @@ void stretch_start(Section& cloth, Scene& scene) {
 /// Vertices that are heavier or lighter than the lumping says.
 void read_weights(Section& cloth, Scene& scene) {
   for (const Value* entry : cloth.tables("weights")) {
-    Section weight(cloth.judge(), *entry, "'weights' in [cloth]");
+    Section weight(cloth.diagnostics(), *entry, "'weights' in [cloth]");
     for (const char* key : {"vertices", "factor"})
       if (!weight.find(key)) weight.missing(key);
     const double factor = weight.number("factor", {1e-9, 1e9}, 1);
     for (const int vertex : read_vertices(weight, "vertices", scene.mesh))
-      scene.mesh.mass[at(vertex)] *= factor;
+      scene.mesh.mass[to_index(vertex)] *= factor;
     weight.finish();
   }
 }
@@ -194,7 +194,7 @@ void read_weights(Section& cloth, Scene& scene) {
 /// Vertices that start elsewhere than the shape says.
 void read_placed(Section& cloth, Scene& scene) {
   for (const Value* entry : cloth.tables("placed")) {
-    Section placed(cloth.judge(), *entry, "'placed' in [cloth]");
+    Section placed(cloth.diagnostics(), *entry, "'placed' in [cloth]");
     for (const char* key : {"vertex", "at"})
       if (!placed.find(key)) placed.missing(key);
     const Value* vertex = placed.find("vertex");
@@ -209,10 +209,10 @@ void read_placed(Section& cloth, Scene& scene) {
         list.items = {one.items[i]};
         one.items[i] = list;
       }
-    Section single(cloth.judge(), one, "'placed' in [cloth]");
+    Section single(cloth.diagnostics(), one, "'placed' in [cloth]");
     const auto vertices = read_vertices(single, "vertex", scene.mesh);
     if (vertices.size() > 1) placed.report("vertex", "must name one vertex");
-    if (vertices.size() == 1) scene.start.x[at(vertices[0])] = *target;
+    if (vertices.size() == 1) scene.start.x[to_index(vertices[0])] = *target;
   }
 }
 
@@ -241,7 +241,7 @@ bool read_cloth(Section& cloth, const std::filesystem::path& folder, const LinkC
   if (!built) return false;
   scene.start.v.assign(scene.start.x.size(), velocity);
   scene.pins = read_vertices(cloth, "pins", scene.mesh);
-  for (const int pin : scene.pins) scene.start.v[at(pin)].setZero();
+  for (const int pin : scene.pins) scene.start.v[to_index(pin)].setZero();
   stretch_start(cloth, scene);
   read_weights(cloth, scene);
   read_placed(cloth, scene);

@@ -12,7 +12,7 @@ namespace taut {
 
 namespace {
 
-Place place_of(const toml::source_region& region, int override) {
+SourceLocation place_of(const toml::source_region& region, int override) {
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), override};
 }
 
@@ -85,7 +85,7 @@ void assign(Value& target, const toml::table& from, int override,
 /// The syntax error as ours; its line is kept inside the text even if the end is what is missing.
 Diagnostic syntax_error(const toml::parse_error& error, const Document& document,
                         const std::string& text, int override) {
-  Place place = place_of(error.source(), override);
+  SourceLocation place = place_of(error.source(), override);
   const auto breaks = std::count(text.begin(), text.end(), '\n');
   const int lines = static_cast<int>(breaks) + (text.empty() || text.back() != '\n' ? 1 : 0);
   place.line = std::clamp(place.line, 1, std::max(1, lines));
@@ -121,7 +121,7 @@ std::string describe(const Value& value) {
   return "";
 }
 
-Diagnostic Document::diagnostic(const Place& place, const std::string& message) const {
+Diagnostic Document::diagnostic(const SourceLocation& place, const std::string& message) const {
   if (place.override < 0) return {file, place.line, place.column, message};
   const std::string& text = overrides[static_cast<std::size_t>(place.override)];
   return {{}, 0, 0, "override '" + text + "': " + message};

@@ -9,7 +9,7 @@
 namespace taut {
 
 /// Where a value was written.
-struct Place {
+struct SourceLocation {
   int line = 0;       ///< 1-based; 0: unknown
   int column = 0;     ///< 1-based; 0: unknown
   int override = -1;  ///< index into Document::overrides; -1: the file itself
@@ -18,14 +18,14 @@ struct Place {
 /// A key of a table.
 struct Key {
   std::string text;
-  Place place;
+  SourceLocation place;
 };
 
 /// A value of a TOML document that remembers where it stands.
 struct Value {
   enum class Kind { boolean, integer, real, string, array, table, date };
   Kind kind = Kind::table;
-  Place place;
+  SourceLocation place;
   bool boolean = false;
   double number = 0;         ///< integers too
   std::string string;        ///< strings only
@@ -48,7 +48,7 @@ struct Document {
   std::vector<std::string> overrides;
   Value root;
 
-  Diagnostic diagnostic(const Place&, const std::string& message) const;
+  Diagnostic diagnostic(const SourceLocation&, const std::string& message) const;
 };
 
 /// Reads a TOML file. An override is a TOML assignment with a dotted key ("time.dt=\"1/120\""); it

@@ -15,7 +15,7 @@ namespace {
 std::vector<Motion::Key> read_path(Section& section) {
   std::vector<Motion::Key> path;
   for (const Value* item : section.tables("path")) {
-    Section key(section.judge(), *item, "'path' in " + section.name());
+    Section key(section.diagnostics(), *item, "'path' in " + section.name());
     for (const char* name : {"t", "displacement"})
       if (!key.find(name)) key.missing(name);
     const auto t = key.number("t", Range::within(1e6));
@@ -99,7 +99,7 @@ Eigen::Quaterniond read_rotation(Section& section) {
                    "must be { axis, angle } or a quaternion [w, x, y, z], not " + describe(*value));
     return Eigen::Quaterniond::Identity();
   }
-  Section rotation(section.judge(), *value, "'rotation' in " + section.name());
+  Section rotation(section.diagnostics(), *value, "'rotation' in " + section.name());
   for (const char* key : {"axis", "angle"})
     if (!rotation.find(key)) rotation.missing(key);
   const Vec3 axis = rotation.direction("axis", Vec3::UnitY());
@@ -110,7 +110,7 @@ Eigen::Quaterniond read_rotation(Section& section) {
 
 void read_colliders(Section& root, Scene& scene) {
   for (const Value* item : root.tables("collider")) {
-    Section section(root.judge(), *item, "[[collider]]");
+    Section section(root.diagnostics(), *item, "[[collider]]");
     scene.colliders.push_back(read_collider(section));
   }
 }
@@ -118,7 +118,7 @@ void read_colliders(Section& root, Scene& scene) {
 void read_pin_motions(Section& root, bool built, Scene& scene) {
   std::set<int> moved;
   for (const Value* item : root.tables("pin_motion")) {
-    Section section(root.judge(), *item, "[[pin_motion]]");
+    Section section(root.diagnostics(), *item, "[[pin_motion]]");
     PinMotion group;
     if (!section.find("vertices")) section.missing("vertices");
     if (built) group.vertices = read_vertices(section, "vertices", scene.mesh);

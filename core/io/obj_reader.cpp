@@ -137,9 +137,9 @@ Polygons parse_obj(const std::string& file, const std::string& text) {
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   Polygons polygons = reader.take();
-  errors.verdict();  // what follows presumes that every face names vertices that exist
+  errors.throw_if_any();  // what follows presumes that every face names vertices that exist
   judge_surface(polygons, errors);
-  errors.verdict();
+  errors.throw_if_any();
   return polygons;
 }
 

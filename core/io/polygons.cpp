@@ -28,10 +28,10 @@ std::vector<double> shares(const Polygons& p, const std::vector<int>& face) {
   for (std::size_t apex = 0; apex < (n == 3 ? 1 : n); ++apex)
     for (std::size_t k = 1; k + 1 < n; ++k) {
       const std::size_t corners[] = {apex, (apex + k) % n, (apex + k + 1) % n};
-      const double third =
-          triangle_area(p.vertices[at(face[corners[0]])], p.vertices[at(face[corners[1]])],
-                        p.vertices[at(face[corners[2]])]) /
-          3;
+      const double third = triangle_area(p.vertices[to_index(face[corners[0]])],
+                                         p.vertices[to_index(face[corners[1]])],
+                                         p.vertices[to_index(face[corners[2]])]) /
+                           3;
       for (const std::size_t corner : corners) share[corner] += third / fans;
     }
   return share;
@@ -48,8 +48,8 @@ void judge_faces(const Polygons& p, SurfaceErrors& errors) {
   for (std::size_t f = 0; f < p.faces.size(); ++f) {
     double longest2 = 0;
     for (std::size_t k = 0; k < p.faces[f].size(); ++k) {
-      const Vec3& a = p.vertices[at(p.faces[f][k])];
-      const Vec3& b = p.vertices[at(p.faces[f][(k + 1) % p.faces[f].size()])];
+      const Vec3& a = p.vertices[to_index(p.faces[f][k])];
+      const Vec3& b = p.vertices[to_index(p.faces[f][(k + 1) % p.faces[f].size()])];
       longest2 = std::max(longest2, (b - a).squaredNorm());
     }
     if (!(face_area(p, p.faces[f]) > 1e-9 * longest2))
@@ -60,20 +60,20 @@ void judge_faces(const Polygons& p, SurfaceErrors& errors) {
 void judge_vertices(const Polygons& p, SurfaceErrors& errors) {
   std::vector<bool> used(p.vertices.size());
   for (const auto& face : p.faces)
-    for (const int v : face) used[at(v)] = true;
+    for (const int v : face) used[to_index(v)] = true;
   for (std::size_t v = 0; v < used.size(); ++v)
     if (!used[v])
       errors.report(p.vertex_lines[v],
                     "vertex " + number(static_cast<int>(v)) + " belongs to no face");
   std::map<std::array<double, 3>, int> seen;
   for (int v = 0; v < static_cast<int>(p.vertices.size()); ++v) {
-    const Vec3& x = p.vertices[at(v)];
+    const Vec3& x = p.vertices[to_index(v)];
     const auto [first, added] = seen.emplace(std::array{x[0] + 0, x[1] + 0, x[2] + 0}, v);
     if (!added)
-      errors.report(p.vertex_lines[at(v)], "vertex " + number(v) + " coincides with vertex " +
-                                               number(first->second) + " (line " +
-                                               std::to_string(p.vertex_lines[at(first->second)]) +
-                                               "): a cloth is one surface, so join them");
+      errors.report(p.vertex_lines[to_index(v)],
+                    "vertex " + number(v) + " coincides with vertex " + number(first->second) +
+                        " (line " + std::to_string(p.vertex_lines[to_index(first->second)]) +
+                        "): a cloth is one surface, so join them");
   }
 }
 
@@ -83,7 +83,7 @@ void SurfaceErrors::report(int line, const std::string& message, int column) {
   found_.push_back({file_, line, column, message});
 }
 
-void SurfaceErrors::verdict() {
+void SurfaceErrors::throw_if_any() {
   if (found_.empty()) return;
   std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tie(a.line, a.column) < std::tie(b.line, b.column);
@@ -119,7 +119,7 @@ void judge_surface(const Polygons& p, SurfaceErrors& errors) {
   judge_faces(p, errors);
   for (const Edge& edge : edges_of(p))
     if (edge.faces.size() > 2)
-      errors.report(p.face_lines[at(edge.faces[2])],
+      errors.report(p.face_lines[to_index(edge.faces[2])],
                     "the edge from vertex " + number(edge.a) + " to " + number(edge.b) + " has " +
                         std::to_string(edge.faces.size()) + " faces; a cloth has two at most");
 }
@@ -135,7 +135,7 @@ Mesh make_mesh(const Polygons& p, double mass, Lumping lumping) {
   Mesh mesh;
   mesh.rest = p.vertices;
   for (std::vector<int> face : p.faces) {
-    const auto x = [&](std::size_t k) { return p.vertices[at(face[k])]; };
+    const auto x = [&](std::size_t k) { return p.vertices[to_index(face[k])]; };
     if (face.size() == 4 && (x(1) - x(3)).squaredNorm() < (x(0) - x(2)).squaredNorm())
       std::rotate(face.begin(), face.begin() + 1, face.end());
     for (std::size_t k = 1; k + 1 < face.size(); ++k)
@@ -150,7 +150,8 @@ Mesh make_mesh(const Polygons& p, double mass, Lumping lumping) {
   const double density = mass / area(p);
   for (const auto& face : p.faces) {
     const auto share = shares(p, face);
-    for (std::size_t k = 0; k < face.size(); ++k) mesh.mass[at(face[k])] += density * share[k];
+    for (std::size_t k = 0; k < face.size(); ++k)
+      mesh.mass[to_index(face[k])] += density * share[k];
   }
   return mesh;
 }
@@ -184,14 +185,14 @@ std::vector<Link> mesh_links(const Polygons& p, const LinkChoice& choice) {
   const std::set<Pair> sheared = choice.shear ? diagonals : std::set<Pair>{};
   for (const auto& [a, b, faces] : edges) {
     if (faces.size() != 2) continue;
-    const auto &left = p.faces[at(faces[0])], &right = p.faces[at(faces[1])];
+    const auto &left = p.faces[to_index(faces[0])], &right = p.faces[to_index(faces[1])];
     add(across, beside(left, a, b), beside(right, a, b), sheared);
     add(across, beside(left, b, a), beside(right, b, a), sheared);
   }
   std::vector<Link> links;
   const auto emit = [&](const std::set<Pair>& pairs, Family family) {
     for (const auto& [a, b] : pairs)
-      links.push_back({a, b, (p.vertices[at(b)] - p.vertices[at(a)]).norm(), family});
+      links.push_back({a, b, (p.vertices[to_index(b)] - p.vertices[to_index(a)]).norm(), family});
   };
   if (choice.structural) emit(edge_pairs, Family::structural);
   if (choice.shear) emit(diagonals, Family::shear);

@@ -14,7 +14,7 @@ class SurfaceErrors {
   explicit SurfaceErrors(std::string file) : file_(std::move(file)) {}
   void report(int line, const std::string& message, int column = 1);
   /// Throws InputError with the first hundred in the order of the file; returns if there are none.
-  void verdict();
+  void throw_if_any();
 
  private:
   std::string file_;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/io/cloth_io.hpp"
-#include "core/io/contact_judge.hpp"
+#include "core/io/contact_checks.hpp"
 #include "core/io/motion_io.hpp"
 #include "core/io/section.hpp"
 #include "core/model/shortest.hpp"
@@ -74,51 +74,51 @@ void read_time(Section& time, Scene& scene) {
 constexpr double kShortestLink = 1e-9;  ///< m
 
 /// What no single key is to blame for.
-void judge_whole(Section& root, Judge& judge, const Scene& scene) {
+void check_whole(Section& root, Diagnostics& diagnostics, const Scene& scene) {
   for (const Link& link : scene.links)
     if (!(link.rest >= kShortestLink)) {
-      judge.report(root.place("cloth"), "vertices " + std::to_string(link.a) + " and " +
-                                            std::to_string(link.b) +
-                                            " coincide: their link has no length");
+      diagnostics.report(root.place("cloth"), "vertices " + std::to_string(link.a) + " and " +
+                                                  std::to_string(link.b) +
+                                                  " coincide: their link has no length");
       break;
     }
   if (scene.wind && scene.mesh.triangles.empty())
-    judge.report(root.place("wind"), "[wind] acts on faces, and this cloth has none");
+    diagnostics.report(root.place("wind"), "[wind] acts on faces, and this cloth has none");
 }
 
 Scene scene_of(const Document& document, const std::filesystem::path& path) {
-  Judge judge(document);
-  Section root(judge, document.root, "the scene");
+  Diagnostics diagnostics(document);
+  Section root(diagnostics, document.root, "the scene");
   Scene scene;
   scene.name = path.stem().string();
   scene.summary = root.string("summary").value_or("");
 
   if (!root.find("cloth")) root.missing("cloth");
-  Section links(judge, part(root, "links"), "[links]");
+  Section links(diagnostics, part(root, "links"), "[links]");
   const LinkChoice choice = read_links(links);
-  Section cloth(judge, part(root, "cloth"), "[cloth]");
+  Section cloth(diagnostics, part(root, "cloth"), "[cloth]");
   const bool built = root.table("cloth") && read_cloth(cloth, path.parent_path(), choice, scene);
   ContactWishes wishes;
   wishes.resolve = cloth.choice("start_inside", {"error", "resolve"}, "error") == "resolve";
   if (root.table("cloth")) cloth.finish();
-  Section forces(judge, part(root, "forces"), "[forces]");
+  Section forces(diagnostics, part(root, "forces"), "[forces]");
   read_forces(forces, scene);
   if (const Value* table = root.table("wind")) {
-    Section wind(judge, *table, "[wind]");
+    Section wind(diagnostics, *table, "[wind]");
     scene.wind = read_wind(wind);
   }
   if (const Value* table = root.table("self_collision")) {
-    Section self(judge, *table, "[self_collision]");
+    Section self(diagnostics, *table, "[self_collision]");
     scene.self_collision = read_self_collision(self, wishes);
   }
   read_colliders(root, scene);
   read_pin_motions(root, built, scene);
-  Section time(judge, part(root, "time"), "[time]");
+  Section time(diagnostics, part(root, "time"), "[time]");
   read_time(time, scene);
   root.finish();
-  if (built) judge_whole(root, judge, scene);
-  if (built && judge.clean()) judge_contact(root, wishes, scene);
-  judge.verdict();
+  if (built) check_whole(root, diagnostics, scene);
+  if (built && diagnostics.clean()) check_contact(root, wishes, scene);
+  diagnostics.throw_if_any();
   return scene;
 }
 

@@ -10,7 +10,7 @@
 
 namespace taut {
 
-void Judge::verdict() {
+void Diagnostics::throw_if_any() {
   if (found_.empty()) return;
   // Overrides have no line and come last, as on the command line.
   std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
@@ -54,30 +54,30 @@ std::optional<double> as_number(const Value& value) {
   }
 }
 
-Section::Section(Judge& judge, const Value& table, std::string name)
-    : judge_(judge), table_(table), name_(std::move(name)) {}
+Section::Section(Diagnostics& diagnostics, const Value& table, std::string name)
+    : diagnostics_(diagnostics), table_(table), name_(std::move(name)) {}
 
 const Value* Section::find(const std::string& key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   return table_.find(key);
 }
 
-Place Section::place(const std::string& key) const {
+SourceLocation Section::place(const std::string& key) const {
   const Value* value = table_.find(key);
   return value ? value->place : table_.place;
 }
 
 void Section::missing(const std::string& key) {
-  judge_.report(table_.place, "missing key '" + key + "' in " + name_);
+  diagnostics_.report(table_.place, "missing key '" + key + "' in " + name_);
 }
 
 void Section::report(const std::string& key, const std::string& message) {
-  judge_.report(place(key), "'" + key + "' in " + name_ + " " + message);
+  diagnostics_.report(place(key), "'" + key + "' in " + name_ + " " + message);
 }
 
 void Section::wrong_type(const Value& value, const std::string& key, const std::string& wanted) {
-  judge_.report(value.place,
-                "'" + key + "' in " + name_ + " must be " + wanted + ", not " + describe(value));
+  diagnostics_.report(
+      value.place, "'" + key + "' in " + name_ + " must be " + wanted + ", not " + describe(value));
 }
 
 std::optional<double> Section::judged(const Value& value, const std::string& key,
@@ -86,10 +86,10 @@ std::optional<double> Section::judged(const Value& value, const std::string& key
   if (!number) {
     wrong_type(value, key, "a number or a fraction such as \"1/64\"");
   } else if (!std::isfinite(*number)) {
-    judge_.report(value.place, "'" + key + "' in " + name_ + " must be finite");
+    diagnostics_.report(value.place, "'" + key + "' in " + name_ + " must be finite");
   } else if (!range.holds(*number)) {
-    judge_.report(value.place, "'" + key + "' in " + name_ + " must be " + range.text() + ", not " +
-                                   shortest(*number));
+    diagnostics_.report(value.place, "'" + key + "' in " + name_ + " must be " + range.text() +
+                                         ", not " + shortest(*number));
   } else {
     return *number;
   }
@@ -193,8 +193,8 @@ std::vector<const Value*> Section::tables(const std::string& key) {
 void Section::finish() {
   for (const Key& key : table_.keys)
     if (std::find(known_.begin(), known_.end(), key.text) == known_.end())
-      judge_.report(key.place,
-                    "unknown key '" + key.text + "' in " + name_ + suggestion(key.text, known_));
+      diagnostics_.report(
+          key.place, "unknown key '" + key.text + "' in " + name_ + suggestion(key.text, known_));
 }
 
 }  // namespace taut

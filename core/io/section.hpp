@@ -12,10 +12,10 @@
 namespace taut {
 
 /// Collects everything that is wrong with a document.
-class Judge {
+class Diagnostics {
  public:
-  explicit Judge(const Document& document) : document_(document) {}
-  void report(const Place& place, const std::string& message) {
+  explicit Diagnostics(const Document& document) : document_(document) {}
+  void report(const SourceLocation& place, const std::string& message) {
     found_.push_back(document_.diagnostic(place, message));
   }
   void report(std::vector<Diagnostic> more) {
@@ -23,7 +23,7 @@ class Judge {
   }
   bool clean() const { return found_.empty(); }
   /// Throws InputError with all that was reported, in the order of the file; returns if none was.
-  void verdict();
+  void throw_if_any();
 
  private:
   const Document& document_;
@@ -50,17 +50,17 @@ struct Range {
 class Section {
  public:
   /// `name` as messages print it: "[cloth]".
-  Section(Judge& judge, const Value& table, std::string name);
+  Section(Diagnostics& diagnostics, const Value& table, std::string name);
   Section(const Section&) = delete;
   Section& operator=(const Section&) = delete;
 
-  const Place& place() const { return table_.place; }
+  const SourceLocation& place() const { return table_.place; }
   const std::string& name() const { return name_; }
-  Judge& judge() { return judge_; }
+  Diagnostics& diagnostics() { return diagnostics_; }
   /// The raw value; nullptr if it is absent.
   const Value* find(const std::string& key);
   /// Where the key stands, or the section if it is absent.
-  Place place(const std::string& key) const;
+  SourceLocation place(const std::string& key) const;
   void missing(const std::string& key);
   void report(const std::string& key, const std::string& message);
 
@@ -93,7 +93,7 @@ class Section {
   std::optional<double> judged(const Value&, const std::string& key, const Range&);
   void wrong_type(const Value&, const std::string& key, const std::string& wanted);
 
-  Judge& judge_;
+  Diagnostics& diagnostics_;
   const Value& table_;
   std::string name_;
   std::vector<std::string> known_;

@@ -48,7 +48,8 @@ class Selector {
 
  private:
   void report(const Value& value, const std::string& message) {
-    section_.judge().report(value.place, "'" + key_ + "' in " + section_.name() + " " + message);
+    section_.diagnostics().report(value.place,
+                                  "'" + key_ + "' in " + section_.name() + " " + message);
   }
 
   void add_part(const Value& value) {
@@ -90,7 +91,7 @@ class Selector {
   }
 
   void add_box(const Value& value) {
-    Section box(section_.judge(), value, "a box of '" + key_ + "' in " + section_.name());
+    Section box(section_.diagnostics(), value, "a box of '" + key_ + "' in " + section_.name());
     for (const char* corner : {"min", "max"})
       if (!box.find(corner)) box.missing(corner);
     const auto low = box.vec3("min", kFar), high = box.vec3("max", kFar);

@@ -6,7 +6,7 @@ namespace taut {
 
 std::size_t projections_per_step(const Solver& solver) {
   std::size_t sum = 0;
-  for (const PassCost& cost : solver.plan())
+  for (const PassCost& cost : solver.step_cost())
     if (cost.projections) sum += cost.items * cost.repeats;
   return sum;
 }

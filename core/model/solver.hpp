@@ -30,12 +30,12 @@ class Solver {
   virtual void load(const State&) = 0;         ///< start or restart here (untimed)
   virtual void step(double t, double dt) = 0;  ///< advance [t, t + dt]: the only timed call
   virtual void store(State&) const = 0;        ///< copy out (untimed); step() leaves no debt behind
-  virtual std::vector<PassCost> plan() const = 0;  ///< the passes of one step, in order
+  virtual std::vector<PassCost> step_cost() const = 0;  ///< the passes of one step, in order
 };
 
 /// A line of the fairness panel: what the solver makes of a setting ("time step", "1/64 s, as
 /// binary32").
-using Effective = std::vector<std::pair<std::string, std::string>>;
+using ResolvedSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// How a solver introduces itself: one per file, found by its TAUT_SOLVER line.
 struct SolverEntry {
@@ -45,8 +45,8 @@ struct SolverEntry {
   std::span<const ParamSpec> params;  ///< drives the command line, the documentation and the errors
   std::unique_ptr<Solver> (*make)(const Scene&, const Params&);
   /// Why it would misread this scene, a sentence each; empty: it can.
-  std::vector<std::string> (*cannot)(const Scene&, const Params&);
-  Effective (*effective)(const Scene&, const Params&);
+  std::vector<std::string> (*unsupported)(const Scene&, const Params&);
+  ResolvedSettings (*resolved_settings)(const Scene&, const Params&);
   /// Which program can run this choice: "taut", "taut-f32", or "" for either. Null: either.
   /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
   /// other one, make() throws InputError.

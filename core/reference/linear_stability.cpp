@@ -26,9 +26,9 @@ std::vector<Bar> bars(const Scene& scene, const std::vector<double>& w,
                       const std::array<double, kFamilies.size()>& stiffness) {
   std::vector<Bar> result;
   for (const Link& link : scene.links) {
-    const Vec3 delta = scene.start.x[at(link.b)] - scene.start.x[at(link.a)];
+    const Vec3 delta = scene.start.x[to_index(link.b)] - scene.start.x[to_index(link.a)];
     const double k = stiffness[static_cast<std::size_t>(link.family)];
-    if (k > 0 && delta.norm() > 0 && w[at(link.a)] + w[at(link.b)] > 0)
+    if (k > 0 && delta.norm() > 0 && w[to_index(link.a)] + w[to_index(link.b)] > 0)
       result.push_back({link.a, link.b, delta.normalized(), k});
   }
   return result;
@@ -70,7 +70,7 @@ double spring_eigenvalue(const std::vector<Bar>& springs, const std::vector<doub
       y.segment<3>(k) = damped * w[i] * x.segment<3>(k);
     }
     for (const Bar& s : springs) {
-      const double ra = std::sqrt(w[at(s.a)]), rb = std::sqrt(w[at(s.b)]);
+      const double ra = std::sqrt(w[to_index(s.a)]), rb = std::sqrt(w[to_index(s.b)]);
       const double stretch = s.along.dot(rb * x.segment<3>(3 * s.b) - ra * x.segment<3>(3 * s.a));
       y.segment<3>(3 * s.b) += stiff * s.stiffness * stretch * rb * s.along;
       y.segment<3>(3 * s.a) -= stiff * s.stiffness * stretch * ra * s.along;
@@ -114,8 +114,8 @@ Eigen::MatrixXd sweep(const std::vector<Bar>& links, const std::vector<double>& 
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
       const Bar &p = links[static_cast<std::size_t>(i)], &q = links[static_cast<std::size_t>(j)];
-      coupling(i, j) = p.along.dot(q.along) * (w[at(p.a)] * side(p, p.a) * side(q, p.a) +
-                                               w[at(p.b)] * side(p, p.b) * side(q, p.b));
+      coupling(i, j) = p.along.dot(q.along) * (w[to_index(p.a)] * side(p, p.a) * side(q, p.a) +
+                                               w[to_index(p.b)] * side(p, p.b) * side(q, p.b));
     }
   Eigen::MatrixXd g = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {

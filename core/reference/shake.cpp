@@ -21,9 +21,9 @@ std::vector<Vec3> wind_forces(const Scene& scene, const std::vector<Vec3>& x,
   std::vector<Vec3> f(x.size(), Vec3::Zero());
   if (!scene.wind) return f;
   for (const auto& [a, b, c] : scene.mesh.triangles) {
-    const Vec3 corner = wind_on_corner(*scene.wind, x[at(a)], x[at(b)], x[at(c)],
-                                       (v[at(a)] + v[at(b)] + v[at(c)]) / 3);
-    for (const int i : {a, b, c}) f[at(i)] += corner;
+    const Vec3 corner = wind_on_corner(*scene.wind, x[to_index(a)], x[to_index(b)], x[to_index(c)],
+                                       (v[to_index(a)] + v[to_index(b)] + v[to_index(c)]) / 3);
+    for (const int i : {a, b, c}) f[to_index(i)] += corner;
   }
   return f;
 }
@@ -42,15 +42,15 @@ struct Shake::Impl {
 
   Impl(const Scene& s, double h) : scene(s), dt(h), w(inverse_masses(s)), x(s.start.x) {
     for (const Link& l : s.links)
-      if (w[at(l.a)] + w[at(l.b)] > 0) links.push_back(l);
+      if (w[to_index(l.a)] + w[to_index(l.b)] > 0) links.push_back(l);
   }
 
   /// J M^-1 J^T at x, J the gradients d of (|d|^2 - r^2)/2: links that share a vertex couple.
   bool factor() {
     std::vector<std::vector<std::pair<int, double>>> beside(x.size());  // link, sign at the vertex
     for (int j = 0; j < static_cast<int>(links.size()); ++j) {
-      beside[at(links[at(j)].a)].emplace_back(j, -1.0);
-      beside[at(links[at(j)].b)].emplace_back(j, 1.0);
+      beside[to_index(links[to_index(j)].a)].emplace_back(j, -1.0);
+      beside[to_index(links[to_index(j)].b)].emplace_back(j, 1.0);
     }
     std::vector<Triplet> entries;
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -69,7 +69,7 @@ struct Shake::Impl {
   }
 
   Vec3 delta(const std::vector<Vec3>& y, int j) const {
-    return y[at(links[at(j)].b)] - y[at(links[at(j)].a)];
+    return y[to_index(links[to_index(j)].b)] - y[to_index(links[to_index(j)].a)];
   }
 
   /// Corrects y along the directions at x until every link has its length.
@@ -82,7 +82,7 @@ struct Shake::Impl {
     for (int iteration = 0; iteration < 200; ++iteration) {
       double worst = 0;
       for (int j = 0; j < m; ++j) {
-        const double r = links[at(j)].rest;
+        const double r = links[to_index(j)].rest;
         violation[j] = (delta(y, j).squaredNorm() - r * r) / 2;
         worst = std::max(worst, std::abs(violation[j]) / (r * r));
       }
@@ -92,9 +92,9 @@ struct Shake::Impl {
       const Vector lambda = ldlt.solve(violation);
       for (int j = 0; j < m; ++j) {
         const Vec3 d = lambda[j] * delta(x, j);
-        const Link& l = links[at(j)];
-        y[at(l.a)] += w[at(l.a)] * d;
-        y[at(l.b)] -= w[at(l.b)] * d;
+        const Link& l = links[to_index(j)];
+        y[to_index(l.a)] += w[to_index(l.a)] * d;
+        y[to_index(l.b)] -= w[to_index(l.b)] * d;
       }
     }
     return false;
@@ -150,8 +150,8 @@ std::vector<std::string> refuse_dynamic(const Scene& scene) {
          "rigid shear or bending links lock: J M^-1 J^T is singular in the plane");
   const std::vector<double> w = inverse_masses(scene);
   for (const Link& l : scene.links) {
-    const double d = (scene.start.x[at(l.b)] - scene.start.x[at(l.a)]).norm();
-    if (w[at(l.a)] + w[at(l.b)] > 0 && std::abs(d - l.rest) > 1e-6 * l.rest) {
+    const double d = (scene.start.x[to_index(l.b)] - scene.start.x[to_index(l.a)]).norm();
+    if (w[to_index(l.a)] + w[to_index(l.b)] > 0 && std::abs(d - l.rest) > 1e-6 * l.rest) {
       refuse(true, "a slack or stretched start is ill-posed: start on the constraints");
       break;
     }

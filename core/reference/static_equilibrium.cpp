@@ -23,7 +23,7 @@ class Problem {
     for (std::size_t i = 0; i < w.size(); ++i)
       if (w[i] > 0) column_[i] = 3 * free_++;
     for (const Link& l : scene.links)
-      if (column_[at(l.a)] >= 0 || column_[at(l.b)] >= 0) links_.push_back(l);
+      if (column_[to_index(l.a)] >= 0 || column_[to_index(l.b)] >= 0) links_.push_back(l);
     weight_ = Vector::Zero(3 * free_);
     for (std::size_t i = 0; i < w.size(); ++i)
       if (column_[i] >= 0) weight_.segment<3>(column_[i]) = scene.mesh.mass[i] * scene.gravity;
@@ -32,7 +32,7 @@ class Problem {
   int unknowns() const { return 3 * free_; }
   int links() const { return static_cast<int>(links_.size()); }
   const Vector& weight() const { return weight_; }
-  const Link& link(int j) const { return links_[at(j)]; }
+  const Link& link(int j) const { return links_[to_index(j)]; }
 
   std::vector<Vec3> positions(const Vector& y) const {
     std::vector<Vec3> x = scene_.start.x;
@@ -54,8 +54,8 @@ class Problem {
   /// out += scale * gradient of C_j.
   void add_gradient(const Vector& y, int j, double scale, Vector& out) const {
     const Vec3 g = scale / link(j).rest * delta(y, j);
-    if (const int b = column_[at(link(j).b)]; b >= 0) out.segment<3>(b) += g;
-    if (const int a = column_[at(link(j).a)]; a >= 0) out.segment<3>(a) -= g;
+    if (const int b = column_[to_index(link(j).b)]; b >= 0) out.segment<3>(b) += g;
+    if (const int a = column_[to_index(link(j).a)]; a >= 0) out.segment<3>(a) -= g;
   }
   /// The blocks of pull * Hessian(C_j) + stiff * gradient gradient^T, lower triangle.
   void add_hessian(const Vector& y, int j, double pull, double stiff,
@@ -64,7 +64,7 @@ class Problem {
     const Vec3 n = delta(y, j) / r;
     const Eigen::Matrix3d block =
         pull / r * Eigen::Matrix3d::Identity() + stiff * n * n.transpose();
-    const int a = column_[at(link(j).a)], b = column_[at(link(j).b)];
+    const int a = column_[to_index(link(j).a)], b = column_[to_index(link(j).b)];
     const auto put = [&](int row, int col, double sign) {
       if (row < 0 || col < 0 || row < col) return;
       for (int p = 0; p < 3; ++p)
@@ -75,7 +75,7 @@ class Problem {
   }
   void add_jacobian(const Vector& y, int j, int row, std::vector<Triplet>& out) const {
     const Vec3 g = delta(y, j) / link(j).rest;
-    const int a = column_[at(link(j).a)], b = column_[at(link(j).b)];
+    const int a = column_[to_index(link(j).a)], b = column_[to_index(link(j).b)];
     for (int p = 0; p < 3; ++p) {
       if (b >= 0) out.emplace_back(row, b + p, g[p]);
       if (a >= 0) out.emplace_back(row, a + p, -g[p]);
@@ -84,7 +84,8 @@ class Problem {
 
  private:
   Vec3 end(const Vector& y, int i) const {
-    return column_[at(i)] >= 0 ? Vec3(y.segment<3>(column_[at(i)])) : scene_.start.x[at(i)];
+    return column_[to_index(i)] >= 0 ? Vec3(y.segment<3>(column_[to_index(i)]))
+                                     : scene_.start.x[to_index(i)];
   }
   const Scene& scene_;
   std::vector<int> column_;  ///< of a vertex's first unknown; -1: pinned
@@ -166,7 +167,7 @@ bool polish(const Problem& p, const std::vector<int>& pulling, Point& point) {
     residual.head(n) = gradient(p, point.y, point.lambda);
     std::vector<Triplet> entries, exact;
     for (int i = 0; i < m; ++i) {
-      const int j = pulling[at(i)];
+      const int j = pulling[to_index(i)];
       residual[n + i] = p.constraint(point.y, j);
       p.add_hessian(point.y, j, point.lambda[j], 0, entries);
       p.add_jacobian(point.y, j, n + i, entries);
@@ -183,7 +184,7 @@ bool polish(const Problem& p, const std::vector<int>& pulling, Point& point) {
       step += ldlt.solve(Vector(-residual - kkt.selfadjointView<Eigen::Lower>() * step));
     if (!step.allFinite()) return false;
     point.y += step.head(n);
-    for (int i = 0; i < m; ++i) point.lambda[pulling[at(i)]] += step[n + i];
+    for (int i = 0; i < m; ++i) point.lambda[pulling[to_index(i)]] += step[n + i];
     if (step.head(n).lpNorm<Eigen::Infinity>() < 1e-15) break;
   }
   return true;
@@ -267,7 +268,8 @@ Solution solve(const Problem& p, const std::vector<Vec3>& start, double mu_facto
 
 void measure(const Scene& scene, Equilibrium& e) {
   for (const Link& l : scene.links)
-    e.violation = std::max(e.violation, std::abs((e.x[at(l.b)] - e.x[at(l.a)]).norm() - l.rest));
+    e.violation =
+        std::max(e.violation, std::abs((e.x[to_index(l.b)] - e.x[to_index(l.a)]).norm() - l.rest));
 }
 
 Equilibrium refused(const std::string& reason) {
@@ -329,7 +331,7 @@ Equilibrium static_equilibrium(const Scene& scene) {
   const std::vector<double> w = inverse_masses(scene);
   int j = 0;
   for (const Link& l : scene.links)
-    e.tension.push_back(w[at(l.a)] + w[at(l.b)] > 0 ? s.point.lambda[j++] : 0.0);
+    e.tension.push_back(w[to_index(l.a)] + w[to_index(l.b)] > 0 ? s.point.lambda[j++] : 0.0);
   measure(scene, e);
   return e;
 }

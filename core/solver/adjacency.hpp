@@ -13,14 +13,14 @@ namespace taut {
 class Adjacency {
  public:
   Adjacency(std::span<const Link> links, int vertices)
-      : first_(at(vertices) + 1), ends_(2 * links.size()) {
-    for (const Link& link : links) ++first_[at(link.a) + 1], ++first_[at(link.b) + 1];
+      : first_(to_index(vertices) + 1), ends_(2 * links.size()) {
+    for (const Link& link : links) ++first_[to_index(link.a) + 1], ++first_[to_index(link.b) + 1];
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     std::vector<int> next(first_.begin(), first_.end() - 1);
     for (int l = 0; l < static_cast<int>(links.size()); ++l) {
-      const Link& link = links[at(l)];
-      ends_[at(next[at(link.a)]++)] = {link.b, l};
-      ends_[at(next[at(link.b)]++)] = {link.a, l};
+      const Link& link = links[to_index(l)];
+      ends_[to_index(next[to_index(link.a)]++)] = {link.b, l};
+      ends_[to_index(next[to_index(link.b)]++)] = {link.a, l};
     }
   }
 
@@ -28,7 +28,7 @@ class Adjacency {
     int vertex, link;
   };
   std::span<const End> of(int v) const {
-    return {ends_.data() + first_[at(v)], ends_.data() + first_[at(v) + 1]};
+    return {ends_.data() + first_[to_index(v)], ends_.data() + first_[to_index(v) + 1]};
   }
 
  private:

@@ -15,13 +15,13 @@ namespace {
 std::vector<bool> choose(const std::vector<int>& vertices, const Adjacency& neighbours,
                          std::span<const double> w) {
   std::vector<bool> coarse(w.size());
-  for (const int v : vertices) coarse[at(v)] = w[at(v)] == 0;
+  for (const int v : vertices) coarse[to_index(v)] = w[to_index(v)] == 0;
   for (const int v : vertices) {
     const auto near = neighbours.of(v);
     if (std::none_of(near.begin(), near.end(), [&](const auto& end) {
-          return coarse[at(end.vertex)] && w[at(end.vertex)] > 0;
+          return coarse[to_index(end.vertex)] && w[to_index(end.vertex)] > 0;
         }))
-      coarse[at(v)] = true;
+      coarse[to_index(v)] = true;
   }
   return coarse;
 }
@@ -37,18 +37,19 @@ std::vector<Link> coarse_links(const Scene& scene, std::span<const Link> links,
   std::map<std::pair<int, int>, double> rest;
   const auto offer = [&](int a, int b, double length) {
     if (a == b) return;
-    if (straight) length = (flat[at(a)] - flat[at(b)]).norm();
+    if (straight) length = (flat[to_index(a)] - flat[to_index(b)]).norm();
     const auto [place, is_new] = rest.try_emplace(std::minmax(a, b), length);
     place->second = std::min(place->second, length);
   };
   for (const int v : vertices) {
     const auto near = neighbours.of(v);
     for (const auto& [a, to_a] : near) {
-      if (!coarse[at(a)]) continue;
-      if (coarse[at(v)]) offer(v, a, links[at(to_a)].rest);
-      if (coarse[at(v)]) continue;
+      if (!coarse[to_index(a)]) continue;
+      if (coarse[to_index(v)]) offer(v, a, links[to_index(to_a)].rest);
+      if (coarse[to_index(v)]) continue;
       for (const auto& [b, to_b] : near)
-        if (coarse[at(b)] && a < b) offer(a, b, links[at(to_a)].rest + links[at(to_b)].rest);
+        if (coarse[to_index(b)] && a < b)
+          offer(a, b, links[to_index(to_a)].rest + links[to_index(to_b)].rest);
     }
   }
   std::vector<Link> result;
@@ -62,27 +63,27 @@ std::vector<Link> coarse_links(const Scene& scene, std::span<const Link> links,
 std::vector<Level> make_hierarchy(const Scene& scene, std::span<const double> w, int levels) {
   std::vector<Link> links = scene.links;
   std::erase_if(links, [](const Link& l) { return l.family != Family::structural; });
-  std::vector<int> vertices(at(scene.mesh.size()));
-  for (int v = 0; v < scene.mesh.size(); ++v) vertices[at(v)] = v;
+  std::vector<int> vertices(to_index(scene.mesh.size()));
+  for (int v = 0; v < scene.mesh.size(); ++v) vertices[to_index(v)] = v;
   std::vector<Level> hierarchy;
   while (static_cast<int>(hierarchy.size()) < levels) {
     const Adjacency neighbours(links, scene.mesh.size());
     const std::vector<bool> coarse = choose(vertices, neighbours, w);
     Level level;
     for (const int v : vertices) {
-      if (coarse[at(v)]) {
+      if (coarse[to_index(v)]) {
         level.vertices.push_back(v);
         continue;
       }
       Level::Child child{v, static_cast<int>(level.parents.size()), 0};
       double sum = 0;
       for (const auto& [p, link] : neighbours.of(v))
-        if (coarse[at(p)] && links[at(link)].rest > 0) {
-          level.parents.push_back({p, 1 / links[at(link)].rest});
+        if (coarse[to_index(p)] && links[to_index(link)].rest > 0) {
+          level.parents.push_back({p, 1 / links[to_index(link)].rest});
           sum += level.parents.back().weight;
         }
       child.end = static_cast<int>(level.parents.size());
-      for (int p = child.first; p < child.end; ++p) level.parents[at(p)].weight /= sum;
+      for (int p = child.first; p < child.end; ++p) level.parents[to_index(p)].weight /= sum;
       if (child.end > child.first) level.children.push_back(child);
     }
     if (level.vertices.size() == vertices.size()) break;

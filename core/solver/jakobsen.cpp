@@ -75,7 +75,7 @@ class Jakobsen final : public Solver {
     }
   }
 
-  std::vector<PassCost> plan() const override {
+  std::vector<PassCost> step_cost() const override {
     std::vector<PassCost> costs;
     const auto add = [&](std::vector<PassCost> lines, int repeats) {
       for (PassCost& line : lines) {
@@ -148,7 +148,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 /// In float, x + g h^2 is x once g h^2 is less than half a unit in the last place of x: nothing
 /// would ever begin to fall.
-std::vector<std::string> cannot(const Scene& scene, const Params& params) {
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   if (!params.is("precision", "float")) return {};
   const double h = scene.dt / params.integer("substeps");
   double farthest = 0;
@@ -170,5 +170,5 @@ TAUT_SOLVER(jakobsen) = {
     .source = "Jakobsen, Advanced Character Physics, GDC 2001",
     .params = taut::kJakobsenParams,
     .make = taut::solver::jakobsen::make,
-    .cannot = taut::solver::jakobsen::cannot,
-    .effective = taut::jakobsen_effective};
+    .unsupported = taut::solver::jakobsen::unsupported,
+    .resolved_settings = taut::jakobsen_settings};

@@ -175,9 +175,9 @@ Firmness firmness(const Params& params, double substep, int iterations) {
           .iterations = iterations};
 }
 
-Effective jakobsen_effective(const Scene& scene, const Params& params) {
+ResolvedSettings jakobsen_settings(const Scene& scene, const Params& params) {
   const double h = scene.dt / params.integer("substeps");
-  Effective lines{
+  ResolvedSettings lines{
       {"time step", shortest(h) + " s x " + std::string(params.value("substeps"))},
       {"integration", "Verlet"},
       {"projection", std::string(params.choice("projection")) + ", weighted by inverse mass"},
@@ -188,7 +188,7 @@ Effective jakobsen_effective(const Scene& scene, const Params& params) {
   if (scene.damping > 0)
     lines.emplace_back("damping",
                        "velocity x " + shortest(std::exp(-scene.damping * h)) + " per substep");
-  for (auto& line : contact_effective(scene, params)) lines.push_back(std::move(line));
+  for (auto& line : contact_settings(scene, params)) lines.push_back(std::move(line));
   return lines;
 }
 

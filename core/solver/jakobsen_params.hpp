@@ -27,6 +27,6 @@ Order order_of(const Params&);
 std::optional<Jacobi> jacobi_of(const Params&);  ///< empty: Gauss-Seidel
 Firmness firmness(const Params&, double substep, int iterations);
 
-Effective jakobsen_effective(const Scene&, const Params&);
+ResolvedSettings jakobsen_settings(const Scene&, const Params&);
 
 }  // namespace taut

@@ -94,7 +94,8 @@ class MassSpring final : public Solver {
       Springs springs{family, stiffness(params, family), {}};
       if (springs.stiffness == 0) continue;
       for (const Link& l : scene.links)
-        if (l.family == family && (w_[at(l.a)] > 0 || w_[at(l.b)] > 0)) springs.links.push_back(l);
+        if (l.family == family && (w_[to_index(l.a)] > 0 || w_[to_index(l.b)] > 0))
+          springs.links.push_back(l);
       if (!springs.links.empty()) springs_.push_back(std::move(springs));
     }
   }
@@ -130,7 +131,7 @@ class MassSpring final : public Solver {
     }
   }
 
-  std::vector<PassCost> plan() const override {
+  std::vector<PassCost> step_cost() const override {
     const auto repeats = static_cast<std::size_t>(substeps_);
     std::vector<PassCost> costs;
     if (scene_.wind)
@@ -157,12 +158,12 @@ class MassSpring final : public Solver {
     for (const Springs& springs : springs_) {
       const Real k = static_cast<Real>(springs.stiffness);
       for (const Link& l : springs.links) {
-        const V delta = x_[at(l.b)] - x_[at(l.a)];
+        const V delta = x_[to_index(l.b)] - x_[to_index(l.a)];
         const Real length = delta.norm();
         if (length == 0) continue;  // no direction to pull in
         const V pull = k * (length - static_cast<Real>(l.rest)) / length * delta;
-        a_[at(l.a)] += w_[at(l.a)] * pull;
-        a_[at(l.b)] -= w_[at(l.b)] * pull;
+        a_[to_index(l.a)] += w_[to_index(l.a)] * pull;
+        a_[to_index(l.b)] -= w_[to_index(l.b)] * pull;
       }
     }
   }
@@ -186,8 +187,8 @@ class MassSpring final : public Solver {
     if (scene_.pin_motions.empty()) return;
     for (const int pin : scene_.pins) {
       const V place = pin_position(scene_, pin, t).template cast<Real>();
-      v_[at(pin)] = (place - x_[at(pin)]) / static_cast<Real>(dt);
-      x_[at(pin)] = place;
+      v_[to_index(pin)] = (place - x_[to_index(pin)]) / static_cast<Real>(dt);
+      x_[to_index(pin)] = place;
     }
   }
 
@@ -206,7 +207,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return std::make_unique<MassSpring<double>>(scene, params);
 }
 
-std::vector<std::string> cannot(const Scene& scene, const Params& params) {
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons;
   if (!scene.colliders.empty()) reasons.emplace_back("springs alone do not model contact");
   if (scene.self_collision) reasons.emplace_back("self-collision is not modelled");
@@ -215,7 +216,7 @@ std::vector<std::string> cannot(const Scene& scene, const Params& params) {
   return reasons;
 }
 
-Effective effective(const Scene&, const Params& params) {
+ResolvedSettings resolved_settings(const Scene&, const Params& params) {
   std::string springs;
   for (const Family family : kFamilies)
     springs += (springs.empty() ? "" : ", ") + std::string(to_string(family)) + " " +
@@ -233,5 +234,5 @@ TAUT_SOLVER(mass_spring) = {.name = "mass-spring",
                             .source = "the report, section 3; Provot 1995; Lander 1999",
                             .params = taut::solver::mass_spring::kParams,
                             .make = taut::solver::mass_spring::make,
-                            .cannot = taut::solver::mass_spring::cannot,
-                            .effective = taut::solver::mass_spring::effective};
+                            .unsupported = taut::solver::mass_spring::unsupported,
+                            .resolved_settings = taut::solver::mass_spring::resolved_settings};

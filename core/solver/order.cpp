@@ -17,24 +17,24 @@ constexpr int kTileVertices = kTileSide * kTileSide;  ///< 16 KiB of packed floa
 
 /// Tile of each vertex: squares of a grid; runs of a breadth-first walk on any other mesh.
 std::vector<int> tiles_of(std::span<const Link> links, const Mesh& mesh) {
-  std::vector<int> tile(at(mesh.size()), -1);
+  std::vector<int> tile(to_index(mesh.size()), -1);
   if (mesh.grid) {
     const int across = (mesh.grid->nu + kTileSide - 1) / kTileSide;
     for (int v = 0; v < mesh.size(); ++v)
-      tile[at(v)] = v / mesh.grid->nu / kTileSide * across + v % mesh.grid->nu / kTileSide;
+      tile[to_index(v)] = v / mesh.grid->nu / kTileSide * across + v % mesh.grid->nu / kTileSide;
     return tile;
   }
   const Adjacency neighbours(links, mesh.size());
   std::vector<int> queue;
   queue.reserve(tile.size());
   for (int start = 0, next = 0; start < mesh.size(); ++start) {
-    if (tile[at(start)] >= 0) continue;
-    tile[at(start)] = static_cast<int>(queue.size()) / kTileVertices;
+    if (tile[to_index(start)] >= 0) continue;
+    tile[to_index(start)] = static_cast<int>(queue.size()) / kTileVertices;
     queue.push_back(start);
     for (; next < static_cast<int>(queue.size()); ++next)
-      for (const auto& [v, link] : neighbours.of(queue[at(next)]))
-        if (tile[at(v)] < 0) {
-          tile[at(v)] = static_cast<int>(queue.size()) / kTileVertices;
+      for (const auto& [v, link] : neighbours.of(queue[to_index(next)]))
+        if (tile[to_index(v)] < 0) {
+          tile[to_index(v)] = static_cast<int>(queue.size()) / kTileVertices;
           queue.push_back(v);
         }
   }
@@ -47,7 +47,7 @@ void colour_family(std::vector<Link> links, std::vector<int>& stamp, int& now, T
     ++now;
     Colour colour;
     std::erase_if(links, [&](const Link& link) {
-      int &a = stamp[at(link.a)], &b = stamp[at(link.b)];
+      int &a = stamp[to_index(link.a)], &b = stamp[to_index(link.b)];
       if (a == now || b == now) return false;
       a = b = now;
       colour.push_back(link);
@@ -70,7 +70,8 @@ std::vector<Phase> phases(std::vector<Tile> tiles, std::size_t vertices) {
       const auto touches = [&](const auto& does) {
         for (const Colour& c : tiles[t])
           for (const Link& link : c)
-            if (does(phase_of_vertex[at(link.a)]) || does(phase_of_vertex[at(link.b)])) return true;
+            if (does(phase_of_vertex[to_index(link.a)]) || does(phase_of_vertex[to_index(link.b)]))
+              return true;
         return false;
       };
       if (touches([&](int p) { return p == now; })) continue;
@@ -87,10 +88,11 @@ std::vector<Phase> phases(std::vector<Tile> tiles, std::size_t vertices) {
 std::vector<Phase> colour(std::span<const Link> links, const Mesh& mesh) {
   const std::vector<int> tile_of = tiles_of(links, mesh);
   const int count = mesh.size() == 0 ? 0 : *std::max_element(tile_of.begin(), tile_of.end()) + 1;
-  std::vector<std::array<std::vector<Link>, kFamilies.size()>> sorted(at(count));
+  std::vector<std::array<std::vector<Link>, kFamilies.size()>> sorted(to_index(count));
   for (const Link& link : links)
-    sorted[at(tile_of[at(link.a)])][static_cast<std::size_t>(link.family)].push_back(link);
-  std::vector<int> stamp(at(mesh.size()), 0);
+    sorted[to_index(tile_of[to_index(link.a)])][static_cast<std::size_t>(link.family)].push_back(
+        link);
+  std::vector<int> stamp(to_index(mesh.size()), 0);
   int now = 0;
   std::vector<Tile> tiles;
   for (auto& families : sorted) {
@@ -98,7 +100,7 @@ std::vector<Phase> colour(std::span<const Link> links, const Mesh& mesh) {
     for (auto& family : families) colour_family(std::move(family), stamp, now, tile);
     if (!tile.empty()) tiles.push_back(std::move(tile));
   }
-  return phases(std::move(tiles), at(mesh.size()));
+  return phases(std::move(tiles), to_index(mesh.size()));
 }
 
 std::vector<std::uint32_t> tile_ranks(std::span<const Link> links, const Mesh& mesh) {

@@ -92,8 +92,8 @@ class Points {
   }
   [[gnu::always_inline]] void add(std::size_t i, const Point& p) { set(i, (*this)[i] + p); }
 
-  /// Calls f(at), where at(points, i) is particle i of any points with this layout, which has been
-  /// looked up: for loops over all.
+  /// Calls f(at), where at(points, i) is particle i of any points with this layout, which has
+  /// been looked up: for loops over all.
   template <class F>
   void read(const F& f) const {
     const std::uint32_t* const slots = layout_->slots();

@@ -26,7 +26,9 @@ constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::str
 int lanes_of(const Grid& grid) { return grid.nu >= 4 * kWide ? kWide : kNarrow; }
 int vectors_of(const Grid& grid) { return (grid.nu + lanes_of(grid) - 1) / lanes_of(grid); }
 /// One vector more than the row needs: rows of a power of two would share cache sets.
-std::size_t stride_of(const Grid& grid) { return at((vectors_of(grid) + 1) * 3 * lanes_of(grid)); }
+std::size_t stride_of(const Grid& grid) {
+  return to_index((vectors_of(grid) + 1) * 3 * lanes_of(grid));
+}
 
 }  // namespace
 
@@ -46,16 +48,16 @@ std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link
             kDirections[d].family != link.family))
       ++d;
     if (d == kDirections.size()) return {};
-    if (seen[d].empty()) seen[d].resize(at(grid.size())), rest[d] = link.rest;
-    if (seen[d][at(from)] || !(std::abs(link.rest - rest[d]) <= 1e-9 * rest[d])) return {};
-    seen[d][at(from)] = true;
+    if (seen[d].empty()) seen[d].resize(to_index(grid.size())), rest[d] = link.rest;
+    if (seen[d][to_index(from)] || !(std::abs(link.rest - rest[d]) <= 1e-9 * rest[d])) return {};
+    seen[d][to_index(from)] = true;
     ++count[d];
   }
   for (std::size_t d = 0; d < kDirections.size(); ++d) {
     if (count[d] == 0) continue;
     RegularLinks::Direction direction = kDirections[d];
     const int complete = (grid.nu - std::abs(direction.columns)) * (grid.nv - direction.rows);
-    if (count[d] != at(complete)) return {};
+    if (count[d] != to_index(complete)) return {};
     direction.rest = rest[d];
     regular.directions.push_back(direction);
   }
@@ -66,12 +68,12 @@ std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link
 Layout strip_layout(const Grid& grid) {
   const int vectors = vectors_of(grid), lanes = lanes_of(grid);
   std::vector<std::uint32_t> slots;
-  slots.reserve(at(grid.size()));
+  slots.reserve(to_index(grid.size()));
   for (int j = 0; j < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i)
-      slots.push_back(static_cast<std::uint32_t>(at(j) * stride_of(grid) +
-                                                 at(i % vectors * 3 * lanes + i / vectors)));
-  return Layout::strips(std::move(slots), at(lanes), at(grid.nv) * stride_of(grid));
+      slots.push_back(static_cast<std::uint32_t>(to_index(j) * stride_of(grid) +
+                                                 to_index(i % vectors * 3 * lanes + i / vectors)));
+  return Layout::strips(std::move(slots), to_index(lanes), to_index(grid.nv) * stride_of(grid));
 }
 
 template <class Real>
@@ -97,18 +99,18 @@ StripPlan<Real>::StripPlan(const RegularLinks& links, std::span<const double> w,
           .row = nullptr};
     std::map<Real, int> votes;  // equal shares, by how many links have them
     const auto shares = [&, kind = family](int i, int j, bool left) {  // clang 14: no binding
-      const double wl = w[at(grid.index(i, j + to.left))],
-                   wr = w[at(grid.index(i + to.columns, j + to.right))];
+      const double wl = w[to_index(grid.index(i, j + to.left))],
+                   wr = w[to_index(grid.index(i + to.columns, j + to.right))];
       if (wl + wr == 0) return Real(0);
       return static_cast<Real>(softened(firm, kind, wl + wr) * ((left ? wl : wr) / (wl + wr)));
     };
     for (int j = 0; j < to.rows; ++j) {
-      std::vector<Real> row(at(2 * lanes * sweep_.vectors), Real(0));
+      std::vector<Real> row(to_index(2 * lanes * sweep_.vectors), Real(0));
       for (int i = 0; i + to.columns < grid.nu; ++i) {
         const int k = i % sweep_.vectors, lane = i / sweep_.vectors;
         const Real left = shares(i, j, true), right = shares(i, j, false);
-        row[at(2 * lanes * k + lane)] = left;
-        row[at(2 * lanes * k + lanes + lane)] = right;
+        row[to_index(2 * lanes * k + lane)] = left;
+        row[to_index(2 * lanes * k + lanes + lane)] = right;
         if (left == right) ++votes[left];
       }
       const auto [place, is_new] = known.try_emplace(std::move(row), shares_.size());
@@ -143,7 +145,7 @@ StripPlan<Real>::StripPlan(const RegularLinks& links, std::span<const double> w,
 template <class Real>
 std::size_t StripPlan<Real>::blocks(int parity) const {
   const int all = (links_.grid.nv + kBlockRows - 1) / kBlockRows;
-  return at((all + 1 - parity) / 2);
+  return to_index((all + 1 - parity) / 2);
 }
 
 template <class Real>

@@ -70,8 +70,8 @@ class Xpbd final : public Solver {
     for (const double wi : inverse_masses(scene)) w_.push_back(static_cast<Real>(wi));
     for (const Family family : kFamilies)
       for (const Link& l : scene.links)
-        if (l.family == family && (w_[at(l.a)] > 0 || w_[at(l.b)] > 0))
-          rods_.push_back({at(l.a), at(l.b), static_cast<Real>(l.rest),
+        if (l.family == family && (w_[to_index(l.a)] > 0 || w_[to_index(l.b)] > 0))
+          rods_.push_back({to_index(l.a), to_index(l.b), static_cast<Real>(l.rest),
                            params.real(to_string(family)), Real(0)});
   }
 
@@ -106,7 +106,7 @@ class Xpbd final : public Solver {
     }
   }
 
-  std::vector<PassCost> plan() const override {
+  std::vector<PassCost> step_cost() const override {
     const auto substeps = static_cast<std::size_t>(substeps_);
     const std::size_t sweeps = substeps * static_cast<std::size_t>(iterations_);
     std::vector<PassCost> costs;
@@ -153,7 +153,7 @@ class Xpbd final : public Solver {
     }
     if (scene_.pin_motions.empty()) return;
     for (const int pin : scene_.pins)
-      x_[at(pin)] = pin_position(scene_, pin, end).template cast<Real>();
+      x_[to_index(pin)] = pin_position(scene_, pin, end).template cast<Real>();
   }
 
   void solve(Rod& rod, double h) {
@@ -191,7 +191,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return std::make_unique<Xpbd<double>>(scene, params);
 }
 
-std::vector<std::string> cannot(const Scene& scene, const Params&) {
+std::vector<std::string> unsupported(const Scene& scene, const Params&) {
   std::vector<std::string> reasons;
   if (scene.self_collision) reasons.emplace_back("self-collision is not modelled");
   for (const Collider& collider : scene.colliders)
@@ -202,9 +202,9 @@ std::vector<std::string> cannot(const Scene& scene, const Params&) {
   return reasons;
 }
 
-Effective effective(const Scene& scene, const Params& params) {
-  Effective lines{{"precision", std::string(params.choice("precision"))},
-                  {"link order", "the scene's, mesh order"}};
+ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
+  ResolvedSettings lines{{"precision", std::string(params.choice("precision"))},
+                         {"link order", "the scene's, mesh order"}};
   if (!scene.colliders.empty()) lines.emplace_back("order of passes", "links, then contacts");
   return lines;
 }
@@ -217,5 +217,5 @@ TAUT_SOLVER(xpbd) = {.name = "xpbd",
                      .source = "Macklin, Mueller, Chentanez 2016; Macklin et al. 2019",
                      .params = taut::solver::xpbd::kParams,
                      .make = taut::solver::xpbd::make,
-                     .cannot = taut::solver::xpbd::cannot,
-                     .effective = taut::solver::xpbd::effective};
+                     .unsupported = taut::solver::xpbd::unsupported,
+                     .resolved_settings = taut::solver::xpbd::resolved_settings};

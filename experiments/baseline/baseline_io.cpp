@@ -123,13 +123,13 @@ Tolerances read_tolerances(const fs::path& folder) {
   const fs::path file = folder / "tolerances.toml";
   if (!fs::exists(file)) return {};
   const Document document = read_document(file, {});
-  Judge judge(document);
-  Section root(judge, document.root, "the tolerances");
+  Diagnostics diagnostics(document);
+  Section root(diagnostics, document.root, "the tolerances");
   std::map<std::string, Tolerance> by_name;
   for (const Key& key : document.root.keys) {
     const Value* table = root.table(key.text);
     if (!table) continue;
-    Section section(judge, *table, "[" + key.text + "]");
+    Section section(diagnostics, *table, "[" + key.text + "]");
     Tolerance tolerance;
     tolerance.absolute = section.number("absolute", Range::non_negative(1e30), 0);
     tolerance.relative = section.number("relative", Range::non_negative(1), 0);
@@ -139,7 +139,7 @@ Tolerances read_tolerances(const fs::path& folder) {
     section.finish();
     by_name[key.text] = tolerance;
   }
-  judge.verdict();
+  diagnostics.throw_if_any();
   return Tolerances(by_name);
 }
 

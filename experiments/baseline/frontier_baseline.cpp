@@ -31,7 +31,7 @@ FrontierQuestion question_of(Section& section) {
   const double to = section.number("to", {-1e9, 1e9}, 0);
   const double tolerance = section.number("tolerance", {1e-9, 0.5}, SearchRange{}.tolerance);
   section.finish();
-  section.judge().verdict();
+  section.diagnostics().throw_if_any();
   question.range = range_of(question.base, question.of, from, to);
   question.range.tolerance = tolerance;
   return question;
@@ -49,14 +49,14 @@ std::vector<FrontierQuestion> read_frontiers(const std::filesystem::path& folder
   std::vector<FrontierQuestion> questions;
   if (!std::filesystem::exists(file)) return questions;
   const Document document = read_document(file, {});
-  Judge judge(document);
-  Section root(judge, document.root, "the frontiers");
+  Diagnostics diagnostics(document);
+  Section root(diagnostics, document.root, "the frontiers");
   for (const Value* table : root.tables("frontier")) {
-    Section section(judge, *table, "[[frontier]]");
+    Section section(diagnostics, *table, "[[frontier]]");
     questions.push_back(question_of(section));
   }
   root.finish();
-  judge.verdict();
+  diagnostics.throw_if_any();
   return questions;
 }
 

@@ -23,19 +23,19 @@ Hanging hang(const Scene& scene) {
   const std::size_t n = scene.mesh.rest.size();
   std::vector<std::vector<const Link*>> links_of(n);
   for (const Link& link : scene.links) {
-    links_of[at(link.a)].push_back(&link);
-    links_of[at(link.b)].push_back(&link);
+    links_of[to_index(link.a)].push_back(&link);
+    links_of[to_index(link.b)].push_back(&link);
   }
   Hanging result{std::vector<int>(n, -1), std::vector<double>(n, 0)};
   std::vector<int> queue = scene.pins;
-  for (const int pin : scene.pins) result.hops[at(pin)] = 0;
+  for (const int pin : scene.pins) result.hops[to_index(pin)] = 0;
   for (std::size_t next = 0; next < queue.size(); ++next) {
     const int i = queue[next];
-    for (const Link* link : links_of[at(i)]) {
+    for (const Link* link : links_of[to_index(i)]) {
       const int j = link->a == i ? link->b : link->a;
-      if (result.hops[at(j)] >= 0) continue;
-      result.hops[at(j)] = result.hops[at(i)] + 1;
-      result.way[at(j)] = result.way[at(i)] + link->rest;
+      if (result.hops[to_index(j)] >= 0) continue;
+      result.hops[to_index(j)] = result.hops[to_index(i)] + 1;
+      result.way[to_index(j)] = result.way[to_index(i)] + link->rest;
       queue.push_back(j);
     }
   }
@@ -45,16 +45,16 @@ Hanging hang(const Scene& scene) {
 /// Extension [m] of the softest relaxation, one sweep a step, where every cut between neighbouring
 /// hop counts carries all that hangs below it.
 double soft_extension(const Scene& scene, const Hanging& hanging) {
-  const std::size_t cuts = at(hanging.depth()) + 1;
+  const std::size_t cuts = to_index(hanging.depth()) + 1;
   std::vector<double> mass(cuts, 0), yielding(cuts, 0), links(cuts, 0);
   const std::vector<double> w = inverse_masses(scene);
   for (std::size_t i = 0; i < w.size(); ++i)
-    if (hanging.hops[i] > 0) mass[at(hanging.hops[i])] += scene.mesh.mass[i];
+    if (hanging.hops[i] > 0) mass[to_index(hanging.hops[i])] += scene.mesh.mass[i];
   for (const auto& [a, b, rest, family] : scene.links) {
-    const int from = hanging.hops[at(a)], to = hanging.hops[at(b)];
+    const int from = hanging.hops[to_index(a)], to = hanging.hops[to_index(b)];
     if (from == to || from < 0) continue;
-    links[at(std::max(from, to))] += 1;
-    yielding[at(std::max(from, to))] += w[at(a)] + w[at(b)];
+    links[to_index(std::max(from, to))] += 1;
+    yielding[to_index(std::max(from, to))] += w[to_index(a)] + w[to_index(b)];
   }
   double extension = 0, below = 0;
   for (std::size_t cut = cuts - 1; cut > 0; --cut) {
@@ -103,7 +103,7 @@ double repair(const Scene& scene) {
   const auto& x = scene.start.x;
   double excess = 0, depth = 0;
   for (const Link& link : scene.links)
-    excess += std::abs((x[at(link.b)] - x[at(link.a)]).norm() - link.rest);
+    excess += std::abs((x[to_index(link.b)] - x[to_index(link.a)]).norm() - link.rest);
   for (const Collider& collider : scene.colliders)
     for (const Vec3& p : x)
       depth = std::max(depth, scene.thickness - surface(collider.shape, p).distance);
@@ -114,8 +114,8 @@ double repair(const Scene& scene) {
 double area(const Scene& scene) {
   double sum = 0;
   for (const auto& [a, b, c] : scene.mesh.triangles) {
-    const Vec3& p = scene.mesh.rest[at(a)];
-    sum += (scene.mesh.rest[at(b)] - p).cross(scene.mesh.rest[at(c)] - p).norm() / 2;
+    const Vec3& p = scene.mesh.rest[to_index(a)];
+    sum += (scene.mesh.rest[to_index(b)] - p).cross(scene.mesh.rest[to_index(c)] - p).norm() / 2;
   }
   return sum;
 }
@@ -159,11 +159,11 @@ double EnergyBudget::available(double t) const {
          wind_power_ * t + wind_mass_ / 2 * square(wind_acceleration_ * t);
 }
 
-std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& plan) {
+std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& step_cost) {
   const bool moved = std::any_of(scene.pin_motions.begin(), scene.pin_motions.end(),
                                  [](const PinMotion& pins) { return !pins.motion.at_rest(); });
   std::size_t sweeps = 0;
-  for (const PassCost& cost : plan)
+  for (const PassCost& cost : step_cost)
     if (cost.projections) sweeps = std::max(sweeps, cost.repeats);
   const Hanging hanging = hang(scene);
   const bool pinned =
@@ -180,20 +180,20 @@ std::optional<double> settling_time(const Scene& scene, const std::vector<PassCo
   return relaxing + swinging;
 }
 
-Verdict::Verdict(const Scene& scene, const std::vector<PassCost>& plan)
+DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<PassCost>& step_cost)
     : budget_(scene),
       free_mass_(scene.mesh.mass),
-      settling_(settling_time(scene, plan)),
+      settling_(settling_time(scene, step_cost)),
       duration_(scene.duration()),
       slow_(1e-3 * std::sqrt(scene.gravity.norm() * extent(scene))) {
-  for (const int pin : scene.pins) free_mass_[at(pin)] = 0;
+  for (const int pin : scene.pins) free_mass_[to_index(pin)] = 0;
 }
 
-void Verdict::explode(const char* reason, int step, std::size_t vertex) {
+void DivergenceDetector::explode(const char* reason, int step, std::size_t vertex) {
   status_ = {Status::Kind::exploded, reason, step, static_cast<int>(vertex)};
 }
 
-bool Verdict::sees(int step, double t, const State& state) {
+bool DivergenceDetector::observe(int step, double t, const State& state) {
   double energy = 0, fastest = 0;
   std::size_t fastest_vertex = 0;
   for (std::size_t i = 0; i < free_mass_.size(); ++i) {
@@ -215,7 +215,7 @@ bool Verdict::sees(int step, double t, const State& state) {
   return true;
 }
 
-void Verdict::finish() {
+void DivergenceDetector::finish() {
   if (!settling_ || duration_ < 5 * *settling_) return;
   const double decayed = peak_ * std::exp(-(duration_ - *settling_) / *settling_);
   if (late_ > std::max(slow_, decayed))

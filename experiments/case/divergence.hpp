@@ -52,7 +52,7 @@ class EnergyBudget {
 /// sweeps per step); swinging takes the inverse of ln(1 + w^2 dt^2)/(2 dt) + damping/2 with w
 /// = 1.2024 sqrt(g/L) (backward projection of the slowest transverse mode). Their sum. Empty where
 /// no such time is known: wind, motion, contact, no gravity, unpinned pieces, no sweeps.
-std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& plan);
+std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& step_cost);
 
 /// Judges a run, boundary by boundary (design: never by raw strain, which a soft solver may rightly
 /// bring to 500 %).
@@ -62,11 +62,11 @@ std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& p
 ///   unsettled            the run lasted at least five settling times and yet, in its last settling
 ///                        time, a vertex is faster than 1e-3 sqrt(|g| L) (L: extent) and than the
 ///                        fastest ever seen times exp(-t/T)
-class Verdict {
+class DivergenceDetector {
  public:
-  Verdict(const Scene&, const std::vector<PassCost>& plan);
+  DivergenceDetector(const Scene&, const std::vector<PassCost>& step_cost);
   /// False if the run has exploded at this boundary; status() says how.
-  bool sees(int step, double t, const State&);
+  bool observe(int step, double t, const State&);
   /// At the end of a run that was seen to the end.
   void finish();
   const Status& status() const { return status_; }

@@ -25,9 +25,10 @@ struct Status {
     interrupted
   };
   Kind kind = Kind::ok;
-  std::string reason;  ///< "nonfinite", "energy", "box", "SIGSEGV", what cannot() said, ...
-  int step = -1;       ///< where it happened; -1: not known or not applicable
-  int vertex = -1;     ///< the first vertex concerned; -1: not known or not applicable
+  std::string
+      reason;  ///< "nonfinite", "energy", "box", "SIGSEGV", what the solver does not support, ...
+  int step = -1;    ///< where it happened; -1: not known or not applicable
+  int vertex = -1;  ///< the first vertex concerned; -1: not known or not applicable
 
   bool is_result() const { return kind <= Kind::unsupported; }
 };
@@ -59,8 +60,8 @@ struct Record {
   Status status;
   std::map<std::string, double> values;  ///< by metric value name; NaN: no meaning here
   std::size_t projections = 0;           ///< per step
-  std::vector<PassCost> plan;
-  Effective effective;
+  std::vector<PassCost> step_cost;
+  ResolvedSettings resolved_settings;
   std::string digest;  ///< SHA-256 of the final state's bits
 };
 

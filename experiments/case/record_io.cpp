@@ -21,19 +21,19 @@ Json status_json(const Status& status) {
 }
 
 Json result_json(const Record& r) {
-  Json plan = Json::array(), effective = Json::array(), values = Json::object();
-  for (const PassCost& p : r.plan)
-    plan.push_back({{"pass", p.pass},
-                    {"items", p.items},
-                    {"repeats", p.repeats},
-                    {"bytes", p.bytes},
-                    {"projections", p.projections}});
-  for (const auto& [name, text] : r.effective) effective.push_back({name, text});
+  Json step_cost = Json::array(), resolved_settings = Json::array(), values = Json::object();
+  for (const PassCost& p : r.step_cost)
+    step_cost.push_back({{"pass", p.pass},
+                         {"items", p.items},
+                         {"repeats", p.repeats},
+                         {"bytes", p.bytes},
+                         {"projections", p.projections}});
+  for (const auto& [name, text] : r.resolved_settings) resolved_settings.push_back({name, text});
   for (const auto& [name, value] : r.values)
     values[name] = std::isfinite(value) ? Json(value) : Json(nullptr);
-  return {{"status", status_json(r.status)}, {"values", values},
-          {"projections", r.projections},    {"plan", plan},
-          {"effective", effective},          {"digest", r.digest}};
+  return {{"status", status_json(r.status)},        {"values", values},
+          {"projections", r.projections},           {"step_cost", step_cost},
+          {"resolved_settings", resolved_settings}, {"digest", r.digest}};
 }
 
 void append(std::string& text, double value) {
@@ -72,10 +72,11 @@ Record from_json(const Json& j) {
     r.values[name] =
         value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
   r.projections = j.at("projections");
-  for (const Json& p : j.at("plan"))
-    r.plan.push_back(
+  for (const Json& p : j.at("step_cost"))
+    r.step_cost.push_back(
         {p.at("pass"), p.at("items"), p.at("repeats"), p.at("bytes"), p.at("projections")});
-  for (const Json& e : j.at("effective")) r.effective.emplace_back(e.at(0), e.at(1));
+  for (const Json& e : j.at("resolved_settings"))
+    r.resolved_settings.emplace_back(e.at(0), e.at(1));
   r.digest = j.at("digest");
   return r;
 }

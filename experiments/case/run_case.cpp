@@ -80,7 +80,7 @@ Record describe(const Scene& scene, const SolverChoice& choice) {
 CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOptions& options) {
   CaseRun run{describe(scene, choice), {}, scene.start};
   Record& record = run.record;
-  for (const std::string& reason : choice.entry->cannot(scene, choice.params))
+  for (const std::string& reason : choice.entry->unsupported(scene, choice.params))
     record.status.reason += (record.status.reason.empty() ? "" : "; ") + reason;
   if (!record.status.reason.empty()) {
     record.status.kind = Status::Kind::unsupported;
@@ -88,11 +88,11 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
   }
   const std::unique_ptr<Solver> solver = choice.entry->make(scene, choice.params);
   solver->load(scene.start);
-  record.plan = solver->plan();
+  record.step_cost = solver->step_cost();
   record.projections = projections_per_step(*solver);
-  record.effective = choice.entry->effective(scene, choice.params);
+  record.resolved_settings = choice.entry->resolved_settings(scene, choice.params);
 
-  Verdict verdict(scene, record.plan);
+  DivergenceDetector verdict(scene, record.step_cost);
   Instruments instruments(scene, options.measure);
   if (options.series_rows > 0) run.series.columns = instruments.series_columns();
   const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));
@@ -102,7 +102,7 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
     if (step > 0) solver->step((step - 1) * scene.dt, scene.dt);
     solver->store(state);
     const Moment moment{step, step * scene.dt, state};
-    sound = verdict.sees(step, moment.t, state);
+    sound = verdict.observe(step, moment.t, state);
     if (!sound) break;
     instruments.observe(moment);
     if (options.series_rows > 0 && (step % stride == 0 || step == scene.steps))

@@ -128,8 +128,8 @@ Offer quick_offer(const Record& record, const std::string& metric) {
 struct Answer {
   Wish wish;
   std::vector<Offer> tried;
-  std::vector<std::string> cannot;  ///< "xpbd: why"
-  std::vector<std::string> cut;     ///< solvers whose share of the time ended their search
+  std::vector<std::string> unsupported;  ///< "xpbd: why"
+  std::vector<std::string> cut;          ///< solvers whose share of the time ended their search
   SceneBench bench;
   Advice advice;
   double searched = 0;  ///< s
@@ -158,9 +158,9 @@ void search(const Options& options, Runner& runner, Answer& answer) {
     deadline = since(start) + (options.patience - since(start)) / left--;
     in_time = true;
     const Case one = runner.make(solver);
-    const auto reasons = one.choice.entry->cannot(*one.scene, one.choice.params);
+    const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
     if (!reasons.empty()) {
-      answer.cannot.push_back(solver + ": " + reasons.front());
+      answer.unsupported.push_back(solver + ": " + reasons.front());
       continue;
     }
     const std::vector<Offer> found = search_settings(solver, answer.wish, run, answer.tried);
@@ -190,8 +190,12 @@ SceneBench time_them(const std::vector<Record>& records, const Options& options)
 }
 
 Answer advise(const Options& options) {
-  Answer answer{
-      .wish = wish_of(options), .tried = {}, .cannot = {}, .bench = {}, .advice = {}, .again = {}};
+  Answer answer{.wish = wish_of(options),
+                .tried = {},
+                .unsupported = {},
+                .bench = {},
+                .advice = {},
+                .again = {}};
   Runner runner(options);
   search(options, runner, answer);
   std::vector<Record> records;
@@ -256,7 +260,8 @@ void print_searched(const Options& options, const Answer& answer) {
   for (const std::string& solver : answer.cut)
     std::cout << "  NOT DONE   " << solver << ": stopped by --patience " << number(options.patience)
               << "\n";
-  for (const std::string& reason : answer.cannot) std::cout << "  cannot     " << reason << '\n';
+  for (const std::string& reason : answer.unsupported)
+    std::cout << "  cannot     " << reason << '\n';
 }
 
 /// How near anything came, where nothing granted the wish.
@@ -289,7 +294,7 @@ void print_json(const Options& options, const Answer& answer) {
            {"metric", options.metric},
            {"best", nullptr},
            {"runner_up", nullptr},
-           {"cannot", answer.cannot},
+           {"unsupported", answer.unsupported},
            {"searched_seconds", answer.searched},
            {"complete", answer.cut.empty()},
            {"not_done", answer.cut}};

@@ -166,7 +166,7 @@ BenchSession bench(const std::string& name, const std::vector<Case>& cases,
 
 void bench_study(const std::string& name, const Options& options) {
   const Study study = load_study(name, options.preset);
-  const BenchSession session = bench(study.name, plan(study), options);
+  const BenchSession session = bench(study.name, cases_of(study), options);
   const auto file = bench_file(options.out, study.name);
   make_folder(file.parent_path());
   write_durably(file, to_json(session));

@@ -81,7 +81,7 @@ int run(const Options& options) {
   else
     print_text(result.record);
   if (options.verbose)
-    for (const auto& [name, value] : result.record.effective)
+    for (const auto& [name, value] : result.record.resolved_settings)
       std::cerr << name << ": " << value << '\n';
   return kPass;
 }

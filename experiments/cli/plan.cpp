@@ -10,9 +10,9 @@ namespace taut::verb::planning {
 
 namespace {
 
-Json to_json(const Case& one, const std::vector<PassCost>& plan) {
+Json to_json(const Case& one, const std::vector<PassCost>& step_cost) {
   Json passes = Json::array();
-  for (const PassCost& cost : plan)
+  for (const PassCost& cost : step_cost)
     passes.push_back({{"pass", cost.pass},
                       {"items", cost.items},
                       {"repeats", cost.repeats},
@@ -21,13 +21,13 @@ Json to_json(const Case& one, const std::vector<PassCost>& plan) {
   return {{"id", one.id}, {"key", one.key}, {"passes", passes}};
 }
 
-void print_text(const Case& one, const std::vector<PassCost>& plan) {
+void print_text(const Case& one, const std::vector<PassCost>& step_cost) {
   std::cout << one.id << "\nkey " << one.key << "\n\n"
             << std::left << std::setw(24) << "pass" << std::right << std::setw(10) << "items"
             << std::setw(10) << "repeats" << std::setw(12) << "bytes" << std::setw(16)
             << "projections" << '\n';
   std::size_t bytes = 0, projections = 0;
-  for (const PassCost& cost : plan) {
+  for (const PassCost& cost : step_cost) {
     const std::size_t work = cost.projections ? cost.items * cost.repeats : 0;
     bytes += cost.bytes, projections += work;
     std::cout << std::left << std::setw(24) << cost.pass << std::right << std::setw(10)
@@ -40,7 +40,7 @@ void print_text(const Case& one, const std::vector<PassCost>& plan) {
 
 int run(const Case& one, bool json) {
   continue_in_right_program(one.choice);
-  if (const auto reasons = one.choice.entry->cannot(*one.scene, one.choice.params);
+  if (const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
       !reasons.empty()) {
     std::cerr << one.id << " is unsupported:\n";
     for (const std::string& reason : reasons) std::cerr << "  " << reason << '\n';
@@ -49,9 +49,9 @@ int run(const Case& one, bool json) {
   const std::unique_ptr<Solver> solver = one.choice.entry->make(*one.scene, one.choice.params);
   solver->load(one.scene->start);
   if (json)
-    std::cout << to_text(to_json(one, solver->plan()), 2) << '\n';
+    std::cout << to_text(to_json(one, solver->step_cost()), 2) << '\n';
   else
-    print_text(one, solver->plan());
+    print_text(one, solver->step_cost());
   return kPass;
 }
 

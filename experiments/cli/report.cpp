@@ -51,8 +51,8 @@ std::vector<report::SolverInfo> introductions() {
     const Scene scene = load_scene(find_scene(name));
     for (std::size_t i = 0; i < all.size(); ++i)
       for (const std::string& reason :
-           solvers()[i]->cannot(scene, parse_solver(all[i].name).params)) {
-        auto& reasons = all[i].cannot;
+           solvers()[i]->unsupported(scene, parse_solver(all[i].name).params)) {
+        auto& reasons = all[i].unsupported;
         auto at = std::ranges::find(reasons, reason, [](const auto& r) { return r.first; });
         if (at == reasons.end()) at = reasons.insert(reasons.end(), {reason, {}});
         at->second.push_back(name);

@@ -82,7 +82,7 @@ std::vector<Case> all_cases(const std::vector<Study>& studies) {
   std::vector<Case> cases;
   std::vector<Diagnostic> wrong;
   for (const Study& study : studies) try {
-      for (Case& one : plan(study)) cases.push_back(std::move(one));
+      for (Case& one : cases_of(study)) cases.push_back(std::move(one));
     } catch (const InputError& error) {
       for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);
     }

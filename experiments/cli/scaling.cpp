@@ -127,7 +127,7 @@ int run(const Options& options) {
   if (!options.preset.empty() && study.preset.empty())
     throw InputError("study '" + study.name + "' has no preset '" + options.preset + "'" +
                      suggestion(options.preset, study.presets));
-  const std::vector<Case> cases = plan(study);
+  const std::vector<Case> cases = cases_of(study);
   const Store store(options.out);
   store.prepare();
   const std::vector<ScalingLine> lines = measure_scaling(

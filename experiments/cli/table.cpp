@@ -52,7 +52,7 @@ Table run_all(const Study& study, const Store& store) {
   const auto add = [](std::vector<std::string>& names, const std::string& name) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
-  for (const Case& one : plan(study)) {
+  for (const Case& one : cases_of(study)) {
     const std::string setting = setting_of(one, study);
     add(table.settings, setting), add(table.scenes, one.scene->name);
     table.records[{setting, one.scene->name}] = run_stored(one, store);

@@ -101,7 +101,7 @@ BaselineStudy baseline_study(const std::string& name, const BaselineOptions& opt
   if (result.before.empty() && needs_baseline) return result;
 
   const Store store(options.out);
-  const std::vector<Case> cases = plan(study);
+  const std::vector<Case> cases = cases_of(study);
   run_missing(cases, store, options, result);
   std::map<const Scene*, std::string> digests;
   for (const Case& one : cases) {

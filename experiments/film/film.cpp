@@ -83,7 +83,7 @@ Film other_film(const report::Comparison& facts, const std::string& name) {
     if (quoted == contender.records.end() || film.request.solvers.size() == kMostPanels) continue;
     const SolverChoice choice = parse_solver(quoted->spec.solver);
     std::string why;
-    for (const std::string& reason : choice.entry->cannot(scene, choice.params))
+    for (const std::string& reason : choice.entry->unsupported(scene, choice.params))
       why += (why.empty() ? "" : "; ") + reason;
     if (!why.empty()) {
       film.refused.emplace_back(contender.solver, why);

@@ -34,7 +34,7 @@ class Distance final : public Metric {
     strain_ = 0;
     for (const Link& link : scene.links)
       if (link.family != Family::bend) {
-        const Vec3 delta = known_.rest->x[at(link.b)] - known_.rest->x[at(link.a)];
+        const Vec3 delta = known_.rest->x[to_index(link.b)] - known_.rest->x[to_index(link.a)];
         strain_ = std::max(strain_, std::abs(delta.norm() - link.rest) / link.rest);
       }
   }

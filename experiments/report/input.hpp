@@ -32,7 +32,7 @@ struct MapResult {
 struct SolverInfo {
   std::string name, summary, source;
   /// What it would misread: a reason and the shipped scenes to which it applies.
-  std::vector<std::pair<std::string, std::vector<std::string>>> cannot{};
+  std::vector<std::pair<std::string, std::vector<std::string>>> unsupported{};
 };
 
 struct SceneInfo {

@@ -168,7 +168,7 @@ Tally run_cases(const std::vector<Case>& cases, const Store& store, const Sessio
 }
 
 StudyRecords collect(const Study& study, const Store& store) {
-  StudyRecords result{study, plan(study), {}};
+  StudyRecords result{study, cases_of(study), {}};
   for (const Case& one : result.cases)
     if (std::optional<Record> record = store.find(one)) result.records.push_back(*record);
   return result;

@@ -19,7 +19,7 @@ std::vector<std::optional<Case>> cells_of(const Study& study, const MapPanel& pa
     for (const std::string& x : study.sweeps[0].values) {
       one.sweeps[0].values = {x};
       one.sweeps[1].values = {y};
-      std::vector<Case> cases = plan(one);
+      std::vector<Case> cases = cases_of(one);
       cells.push_back(cases.empty() ? std::nullopt : std::optional(std::move(cases.front())));
     }
   return cells;

@@ -46,13 +46,13 @@ bool has_param(const std::vector<SolverChoice>& solvers, const std::string& name
   return false;
 }
 
-/// Reads one document into a Study; what is wrong goes to the judge.
+/// Reads one document into a Study; what is wrong goes to the diagnostics.
 class StudyReader {
  public:
-  StudyReader(Judge& judge, Study& study) : judge_(judge), study_(study) {}
+  StudyReader(Diagnostics& diagnostics, Study& study) : diagnostics_(diagnostics), study_(study) {}
 
   void read(const Value& root, const std::string& preset) {
-    Section section(judge_, root, "the study");
+    Section section(diagnostics_, root, "the study");
     study_.question = section.string("question").value_or("");
     if (study_.question.empty()) section.missing("question");
     read_lists(section);
@@ -84,7 +84,7 @@ class StudyReader {
     into.clear();
     for (const Value& item : list->items) {
       if (!item.is_string()) {
-        judge_.report(item.place, "'" + key + "' holds texts, not " + describe(item));
+        diagnostics_.report(item.place, "'" + key + "' holds texts, not " + describe(item));
         continue;
       }
       guarded(item.place, [&] { check(item.string); });
@@ -94,11 +94,11 @@ class StudyReader {
   }
 
   /// InputErrors of `action` stand at `place`.
-  bool guarded(const Place& place, const std::function<void()>& action) try {
+  bool guarded(const SourceLocation& place, const std::function<void()>& action) try {
     action();
     return true;
   } catch (const InputError& error) {
-    for (const Diagnostic& d : error.diagnostics()) judge_.report(place, d.text());
+    for (const Diagnostic& d : error.diagnostics()) diagnostics_.report(place, d.text());
     return false;
   }
 
@@ -125,9 +125,9 @@ class StudyReader {
 
   void read_sweep(Sweep sweep, const Key& key, const Value& value) {
     if (!sweep.of_scene() && !choices_.empty() && !has_param(choices_, sweep.name, false)) {
-      judge_.report(key.place, "no solver of this study has a parameter '" + sweep.name + "'" +
-                                   suggestion(sweep.name, param_names()) +
-                                   " (a scene key has a dot, as \"time.dt\")");
+      diagnostics_.report(key.place, "no solver of this study has a parameter '" + sweep.name +
+                                         "'" + suggestion(sweep.name, param_names()) +
+                                         " (a scene key has a dot, as \"time.dt\")");
       return;
     }
     if (value.is_table())
@@ -136,8 +136,9 @@ class StudyReader {
       for (const Value& item : value.items) sweep.values.push_back(text_of(item, sweep.of_scene()));
     if (sweep.values.empty()) {
       if (!value.is_table())
-        judge_.report(value.place, "'" + sweep.name + "' must be a list of values or a range " +
-                                       "{ from, to, steps, scale }");
+        diagnostics_.report(value.place, "'" + sweep.name +
+                                             "' must be a list of values or a range " +
+                                             "{ from, to, steps, scale }");
       return;
     }
     if (!sweep.of_scene()) check_values(sweep, value);
@@ -147,7 +148,7 @@ class StudyReader {
   }
 
   std::vector<std::string> range(const Value& table, bool whole) {
-    Section section(judge_, table, "the range");
+    Section section(diagnostics_, table, "the range");
     const std::optional<double> from = section.number("from", {}), to = section.number("to", {});
     const std::optional<double> steps = section.number("steps", {2, 1000});
     const bool log = section.choice("scale", {"linear", "log"}, "linear") == "log";
@@ -156,7 +157,7 @@ class StudyReader {
     section.finish();
     if (!from || !to || !steps) return {};
     if (log && !(*from > 0 && *to > 0)) {
-      judge_.report(table.place, "a logarithmic range needs ends greater than 0");
+      diagnostics_.report(table.place, "a logarithmic range needs ends greater than 0");
       return {};
     }
     std::vector<std::string> values;
@@ -198,9 +199,9 @@ class StudyReader {
         const std::string& key = item.keys[i].text;
         const bool toml = key.find('.') != std::string::npos;
         if (std::ranges::count(settings(), key) == 0)
-          judge_.report(item.keys[i].place, "nothing that this study varies is called '" + key +
-                                                "'" + suggestion(key, settings()) +
-                                                " (scene, solver, or a sweep's name)");
+          diagnostics_.report(item.keys[i].place, "nothing that this study varies is called '" +
+                                                      key + "'" + suggestion(key, settings()) +
+                                                      " (scene, solver, or a sweep's name)");
         std::vector<std::string>& values = exclusion.when[key];
         if (item.items[i].is_array() && !toml)
           for (const Value& v : item.items[i].items) values.push_back(text_of(v, toml));
@@ -208,7 +209,7 @@ class StudyReader {
           values.push_back(text_of(item.items[i], toml));
       }
       if (exclusion.when.empty())
-        judge_.report(item.place, "an exclusion is a table such as { scene = \"ball\" }");
+        diagnostics_.report(item.place, "an exclusion is a table such as { scene = \"ball\" }");
       else
         study_.exclusions.push_back(std::move(exclusion));
     }
@@ -228,9 +229,9 @@ class StudyReader {
       const std::string& name = presets->keys[i].text;
       study_.presets.push_back(name);
       Study other = study_;  // a preset that was not asked for is judged all the same
-      StudyReader reader(judge_, name == wanted ? study_ : other);
+      StudyReader reader(diagnostics_, name == wanted ? study_ : other);
       reader.choices_ = choices_;
-      Section preset(judge_, presets->items[i], "[preset." + name + "]");
+      Section preset(diagnostics_, presets->items[i], "[preset." + name + "]");
       reader.read_lists(preset);
       preset.finish();
       if (name == wanted) study_.preset = name;
@@ -242,18 +243,19 @@ class StudyReader {
     const std::vector<std::string> known{"kind", "x", "y", "along", "title", "file", "slope"};
     for (std::size_t i = 0; i < table.items.size(); ++i)
       if (std::ranges::count(known, table.keys[i].text) == 0)
-        judge_.report(table.keys[i].place, "unknown key '" + table.keys[i].text + "' in [[plot]]" +
-                                               suggestion(table.keys[i].text, known));
+        diagnostics_.report(table.keys[i].place, "unknown key '" + table.keys[i].text +
+                                                     "' in [[plot]]" +
+                                                     suggestion(table.keys[i].text, known));
     for (std::size_t i = 0; i < table.items.size(); ++i)
       (table.keys[i].text == "kind" ? plot.kind : plot.options[table.keys[i].text]) =
           text_of(table.items[i], false);
     if (plot.kind.empty())
-      judge_.report(table.place, "missing key 'kind' in [[plot]]");
+      diagnostics_.report(table.place, "missing key 'kind' in [[plot]]");
     else
       study_.plots.push_back(std::move(plot));
   }
 
-  Judge& judge_;
+  Diagnostics& diagnostics_;
   Study& study_;
   std::vector<SolverChoice> choices_;
 };
@@ -265,9 +267,9 @@ Study load_study(const std::string& name_or_path, const std::string& preset) {
   study.file = find_study(name_or_path);
   study.name = study.file.stem();
   const Document document = read_document(study.file, {});
-  Judge judge(document);
-  StudyReader(judge, study).read(document.root, preset);
-  judge.verdict();
+  Diagnostics diagnostics(document);
+  StudyReader(diagnostics, study).read(document.root, preset);
+  diagnostics.throw_if_any();
   return study;
 }
 

@@ -51,6 +51,6 @@ Study load_study(const std::string& name_or_path, const std::string& preset = ""
 
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
 /// wrong with any of the scenes, or if it would be more than 100 000.
-std::vector<Case> plan(const Study&);
+std::vector<Case> cases_of(const Study&);
 
 }  // namespace taut

@@ -50,7 +50,7 @@ void measure(ScalingLine& line, const std::vector<const Case*>& cases, double li
 
 double plan_bytes(const Record& record) {
   double bytes = 0;
-  for (const PassCost& pass : record.plan) bytes += static_cast<double>(pass.bytes);
+  for (const PassCost& pass : record.step_cost) bytes += static_cast<double>(pass.bytes);
   return bytes;
 }
 

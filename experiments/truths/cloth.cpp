@@ -18,7 +18,7 @@ Scene two_corners(int n, double span, const LinkChoice& links = {}) {
   Scene s = bare::sheet(n, n, links);
   s.pins = {0, n - 1};
   for (int j = 0; j < n; ++j)  // planar, narrower, stretched downwards: on the way to rest
-    for (int i = 0; i < n; ++i) s.start.x[at(s.mesh.grid->index(i, j))].x() *= span;
+    for (int i = 0; i < n; ++i) s.start.x[to_index(s.mesh.grid->index(i, j))].x() *= span;
   s.gravity = {0, -kG, 0};
   return s;
 }
@@ -28,11 +28,12 @@ std::vector<Vec3> columns_below_a_catenary(const Scene& s, double span) {
   const Grid grid = *s.mesh.grid;
   const double l = s.links[0].rest;
   double column = 0;
-  for (int j = 0; j < grid.nv; ++j) column += s.mesh.mass[at(grid.index(1, j))];
+  for (int j = 0; j < grid.nv; ++j) column += s.mesh.mass[to_index(grid.index(1, j))];
   const auto top = reference::discrete_catenary(grid.nu - 1, span, l, column * kG);
   std::vector<Vec3> x;
   for (int j = 0; j < grid.nv; ++j)
-    for (int i = 0; i < grid.nu; ++i) x.emplace_back(top.x[at(i)], top.y[at(i)] - j * l, 0);
+    for (int i = 0; i < grid.nu; ++i)
+      x.emplace_back(top.x[to_index(i)], top.y[to_index(i)] - j * l, 0);
   return x;
 }
 
@@ -50,7 +51,8 @@ void draped_sheet(Ledger& ledger) {
         for (const int pin : s.pins)
           if (s.links[j].a == pin || s.links[j].b == pin) {
             const int other = s.links[j].a == pin ? s.links[j].b : s.links[j].a;
-            reaction += e.tension[j] * (s.start.x[at(pin)] - e.x[at(other)]).normalized().y();
+            reaction +=
+                e.tension[j] * (s.start.x[to_index(pin)] - e.x[to_index(other)]).normalized().y();
           }
       const auto w = inverse_masses(s);
       for (std::size_t i = 0; i < w.size(); ++i)
@@ -97,9 +99,9 @@ void two_edges(Ledger& ledger) {
   double worst = 0;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i)
-      worst = std::max(
-          worst,
-          (e.x[at(s.mesh.grid->index(i, j))] - Vec3(row.x[at(i)], row.y[at(i)], -j * l)).norm());
+      worst = std::max(worst, (e.x[to_index(s.mesh.grid->index(i, j))] -
+                               Vec3(row.x[to_index(i)], row.y[to_index(i)], -j * l))
+                                  .norm());
   ledger.below(kStatic, "distance of every section from the discrete catenary", "m", worst, 1e-13);
 }
 
@@ -202,7 +204,7 @@ SmallStrain small_strain_of(Scene s, const std::string& solver) {
   const auto w = inverse_masses(s);
   s.start.x = rest.x;
   const auto gradient = [&](const Link& l, int vertex) -> Vec3 {
-    const Vec3 direction = (rest.x[at(l.b)] - rest.x[at(l.a)]).normalized();
+    const Vec3 direction = (rest.x[to_index(l.b)] - rest.x[to_index(l.a)]).normalized();
     if (vertex == l.b) return direction;
     if (vertex == l.a) return -direction;
     return Vec3::Zero();
@@ -215,8 +217,8 @@ SmallStrain small_strain_of(Scene s, const std::string& solver) {
     double sum = 0;
     for (std::size_t j = i + 1; j < s.links.size(); ++j)
       for (const int vertex : {s.links[i].a, s.links[i].b})
-        sum += w[at(vertex)] * gradient(s.links[i], vertex).dot(gradient(s.links[j], vertex)) *
-               rest.tension[j];
+        sum += w[to_index(vertex)] *
+               gradient(s.links[i], vertex).dot(gradient(s.links[j], vertex)) * rest.tension[j];
     const double expected = -sum * s.dt * s.dt / s.links[i].rest, here = e[i] / s.links[i].rest;
     result.predicted = std::max(result.predicted, std::abs(expected));
     result.measured = std::max(result.measured, std::abs(here));
@@ -266,7 +268,7 @@ void mirror_symmetry(Ledger& ledger) {
   Scene s = two_corners(n, 1, {.shear = true, .bend = true});
   for (std::size_t i = 0; i < s.start.v.size(); ++i)  // a symmetric push out of the plane
     s.start.v[i].z() = std::cos(6 * (s.mesh.rest[i].x() - 0.5)) + s.mesh.rest[i].y();
-  for (const int pin : s.pins) s.start.v[at(pin)].setZero();
+  for (const int pin : s.pins) s.start.v[to_index(pin)].setZero();
   const auto asymmetry = [&](const std::string& solver) {
     Probe probe(s, solver);
     probe.step(128);

@@ -37,7 +37,7 @@ bool claims(Ledger& ledger, std::string_view solver, const Scene& scene) {
   std::vector<std::string> reasons;
   try {
     const SolverChoice choice = parse_solver(solver);
-    reasons = choice.entry->cannot(scene, choice.params);
+    reasons = choice.entry->unsupported(scene, choice.params);
     if (reasons.empty()) choice.entry->make(scene, choice.params);
   } catch (const InputError& error) {  // a solver or a precision that this program does not have
     reasons = {error.what()};
@@ -114,7 +114,7 @@ Scene sheet(int nu, int nv, const LinkChoice& choice, Lumping lumping, double wi
 std::vector<double> strains(const Scene& scene, const State& state) {
   std::vector<double> e;
   for (const Link& l : scene.links)
-    e.push_back((state.x[at(l.b)] - state.x[at(l.a)]).norm() - l.rest);
+    e.push_back((state.x[to_index(l.b)] - state.x[to_index(l.a)]).norm() - l.rest);
   return e;
 }
 

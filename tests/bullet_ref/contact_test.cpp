@@ -51,7 +51,7 @@ Range distances(const Solver& solver, const Scene& scene, double t) {
 /// Distances from the surface at the end of the scene.
 Range settle(const Scene& scene, const std::string& text) {
   const SolverChoice choice = parse_solver(text);
-  EXPECT_EQ(choice.entry->cannot(scene, choice.params), std::vector<std::string>{});
+  EXPECT_EQ(choice.entry->unsupported(scene, choice.params), std::vector<std::string>{});
   const auto solver = choice.entry->make(scene, choice.params);
   solver->load(scene.start);
   for (int n = 0; n < scene.steps; ++n) solver->step(n * scene.dt, scene.dt);
@@ -148,7 +148,7 @@ TEST(BulletLimits, SaysWhatItWouldMisread) {
                             Vec3::UnitX(), Vec3::UnitZ());
   const auto reasons = [&](const char* text) {
     const SolverChoice choice = parse_solver(text);
-    return choice.entry->cannot(scene, choice.params).size();
+    return choice.entry->unsupported(scene, choice.params).size();
   };
   EXPECT_EQ(reasons("bullet"), 0u);
   EXPECT_EQ(reasons("bullet:friction=refuse"), 1u);

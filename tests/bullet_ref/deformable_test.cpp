@@ -20,7 +20,7 @@ Scene sheet(const SheetShape& shape, const LinkChoice& links) {
 
 State run(const Scene& scene, const std::string& text, int steps) {
   const SolverChoice choice = parse_solver(text);
-  EXPECT_EQ(choice.entry->cannot(scene, choice.params), std::vector<std::string>{});
+  EXPECT_EQ(choice.entry->unsupported(scene, choice.params), std::vector<std::string>{});
   const auto solver = choice.entry->make(scene, choice.params);
   solver->load(scene.start);
   for (int n = 0; n < steps; ++n) solver->step(n * scene.dt, scene.dt);
@@ -120,7 +120,7 @@ TEST(BulletDeformable, RefusesSelfCollision) {
   Scene scene = sheet({.nu = 3, .nv = 3, .width = 1, .height = 1, .mass = 0.2}, {.shear = true});
   scene.self_collision = SelfCollision{0.01};
   const SolverChoice choice = parse_solver("bullet-deformable");
-  EXPECT_EQ(choice.entry->cannot(scene, choice.params).size(), 1u);
+  EXPECT_EQ(choice.entry->unsupported(scene, choice.params).size(), 1u);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST_P(ShippedScene, BulletHoldsWhatTheFileSays) {
   const Scene scene = load_scene(GetParam());
   for (const char* name : kSolvers) {
     const SolverChoice choice = parse_solver(name + (":precision=" + kPrecision));
-    if (!choice.entry->cannot(scene, choice.params).empty()) continue;
+    if (!choice.entry->unsupported(scene, choice.params).empty()) continue;
     const auto made = solver(choice.canonical(), scene);
     EXPECT_EQ(differences(scene, read_back(*made), kDouble ? 1e-13 : 1e-6),
               std::vector<std::string>{})

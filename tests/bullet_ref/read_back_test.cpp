@@ -48,7 +48,7 @@ Scene everything() {
 
 std::unique_ptr<Solver> bullet(const Scene& scene, const std::string& text = "bullet") {
   const SolverChoice choice = parse_solver(text);
-  EXPECT_EQ(choice.entry->cannot(scene, choice.params), std::vector<std::string>{});
+  EXPECT_EQ(choice.entry->unsupported(scene, choice.params), std::vector<std::string>{});
   auto solver = choice.entry->make(scene, choice.params);
   solver->load(scene.start);
   return solver;

@@ -40,7 +40,7 @@ Scene hang(const Cloth& cloth, const Vec3& v) {
 
 std::unique_ptr<Solver> solver(const std::string& text, const Scene& scene) {
   const SolverChoice choice = parse_solver(text);
-  EXPECT_TRUE(choice.entry->cannot(scene, choice.params).empty());
+  EXPECT_TRUE(choice.entry->unsupported(scene, choice.params).empty());
   auto made = choice.entry->make(scene, choice.params);
   made->load(scene.start);
   return made;

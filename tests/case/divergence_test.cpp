@@ -29,9 +29,9 @@ TEST(VerdictBorders, TenTimesTheAvailableEnergy) {
   for (const int step : {1, 10, 64}) {
     const double t = step * scene.dt;
     const double limit = std::sqrt(20 * EnergyBudget(scene).available(t) / scene.mesh.mass[5]);
-    Verdict below(scene, {}), above(scene, {});
-    EXPECT_TRUE(below.sees(step, t, moving(scene, 0.9999 * limit))) << step;
-    EXPECT_FALSE(above.sees(step, t, moving(scene, 1.0001 * limit))) << step;
+    DivergenceDetector below(scene, {}), above(scene, {});
+    EXPECT_TRUE(below.observe(step, t, moving(scene, 0.9999 * limit))) << step;
+    EXPECT_FALSE(above.observe(step, t, moving(scene, 1.0001 * limit))) << step;
     EXPECT_EQ(above.status().reason, "energy");
     EXPECT_EQ(above.status().step, step);
     EXPECT_EQ(above.status().vertex, 5);
@@ -42,10 +42,10 @@ TEST(VerdictBorders, PinsHaveNoEnergyButMustBeFinite) {
   const Scene scene = chain();
   State state = scene.start;
   state.v[0] = {1e9, 0, 0};
-  EXPECT_TRUE(Verdict(scene, {}).sees(1, scene.dt, state));
+  EXPECT_TRUE(DivergenceDetector(scene, {}).observe(1, scene.dt, state));
   state.v[0].y() = -std::numeric_limits<double>::infinity();
-  Verdict verdict(scene, {});
-  EXPECT_FALSE(verdict.sees(1, scene.dt, state));
+  DivergenceDetector verdict(scene, {});
+  EXPECT_FALSE(verdict.observe(1, scene.dt, state));
   EXPECT_EQ(verdict.status().reason, "nonfinite");
   EXPECT_EQ(verdict.status().vertex, 0);
 }
@@ -55,10 +55,10 @@ TEST(VerdictBorders, TheEndOfTheWorld) {
   for (const double side : {-1e6, 1e6}) {
     State state = scene.start;
     state.x[3].z() = side;
-    EXPECT_TRUE(Verdict(scene, {}).sees(1, scene.dt, state));
+    EXPECT_TRUE(DivergenceDetector(scene, {}).observe(1, scene.dt, state));
     state.x[3].z() = std::nextafter(side, 2 * side);
-    Verdict verdict(scene, {});
-    EXPECT_FALSE(verdict.sees(1, scene.dt, state));
+    DivergenceDetector verdict(scene, {});
+    EXPECT_FALSE(verdict.observe(1, scene.dt, state));
     EXPECT_EQ(verdict.status().reason, "box");
     EXPECT_EQ(verdict.status().vertex, 3);
   }
@@ -67,11 +67,11 @@ TEST(VerdictBorders, TheEndOfTheWorld) {
 /// The verdict on a run of `times` settling times in which a vertex never slows down.
 Status restless(double speed, double times) {
   Scene scene = chain();
-  const std::vector<PassCost> plan = sweeps(64);
-  scene.steps = static_cast<int>(std::ceil(times * *settling_time(scene, plan) / scene.dt));
-  Verdict verdict(scene, plan);
+  const std::vector<PassCost> step_cost = sweeps(64);
+  scene.steps = static_cast<int>(std::ceil(times * *settling_time(scene, step_cost) / scene.dt));
+  DivergenceDetector verdict(scene, step_cost);
   for (int n = 1; n <= scene.steps; ++n)  // at the very start there is no energy to be had
-    EXPECT_TRUE(verdict.sees(n, n * scene.dt, moving(scene, speed)));
+    EXPECT_TRUE(verdict.observe(n, n * scene.dt, moving(scene, speed)));
   verdict.finish();
   return verdict.status();
 }
@@ -93,14 +93,14 @@ TEST(VerdictBorders, NobodyIsUnsettledBeforeFiveSettlingTimes) {
 // e^-4 of the fastest ever seen is what five settling times leave of a decaying swing.
 TEST(VerdictBorders, ASwingThatDecaysAsTheorySaysIsSettled) {
   Scene scene = chain();
-  const std::vector<PassCost> plan = sweeps(64);
-  const double settling = *settling_time(scene, plan);
+  const std::vector<PassCost> step_cost = sweeps(64);
+  const double settling = *settling_time(scene, step_cost);
   scene.steps = static_cast<int>(std::ceil(5.5 * settling / scene.dt));
   for (const double rate : {1.001, 0.8}) {
-    Verdict verdict(scene, plan);
+    DivergenceDetector verdict(scene, step_cost);
     for (int n = 1; n <= scene.steps; ++n)
-      ASSERT_TRUE(
-          verdict.sees(n, n * scene.dt, moving(scene, std::exp(-rate * n * scene.dt / settling))));
+      ASSERT_TRUE(verdict.observe(n, n * scene.dt,
+                                  moving(scene, std::exp(-rate * n * scene.dt / settling))));
     verdict.finish();
     EXPECT_EQ(verdict.status().kind, rate > 1 ? Status::Kind::ok : Status::Kind::unsettled) << rate;
   }

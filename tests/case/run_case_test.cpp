@@ -44,7 +44,7 @@ struct Scripted final : Solver {
   void load(const State& s) override { state = s; }
   void step(double, double) override { script(++steps, state); }
   void store(State& s) const override { s = state; }
-  std::vector<PassCost> plan() const override { return {}; }
+  std::vector<PassCost> step_cost() const override { return {}; }
   static inline std::function<void(int, State&)> script;
   State state;
   int steps = 0;
@@ -57,13 +57,13 @@ CaseRun run_scripted(const Scene& scene, std::function<void(int, State&)> script
       .make = [](const Scene& s, const Params&) -> std::unique_ptr<Solver> {
         return std::make_unique<Scripted>(s);
       },
-      .cannot = [](const Scene&, const Params&) { return std::vector<std::string>{}; },
-      .effective = [](const Scene&, const Params&) { return Effective{}; }};
+      .unsupported = [](const Scene&, const Params&) { return std::vector<std::string>{}; },
+      .resolved_settings = [](const Scene&, const Params&) { return ResolvedSettings{}; }};
   Scripted::script = std::move(script);
   return run_case(scene, {&entry, Params("scripted", {}, "")}, options);
 }
 
-TEST(Verdict, NotANumberIsAnExplosionAtItsStepAndVertex) {
+TEST(DivergenceDetector, NotANumberIsAnExplosionAtItsStepAndVertex) {
   const Scene scene = at_rest({.nu = 3, .nv = 3, .width = 1, .height = 1, .mass = 0.2});
   const CaseRun run = run_scripted(scene, [](int step, State& s) {
     s.x[1].y() -= 0.001;
@@ -77,7 +77,7 @@ TEST(Verdict, NotANumberIsAnExplosionAtItsStepAndVertex) {
   for (const auto& [name, value] : run.record.values) EXPECT_TRUE(std::isnan(value)) << name;
 }
 
-TEST(Verdict, EnergyOutOfNothingIsAnExplosion) {
+TEST(DivergenceDetector, EnergyOutOfNothingIsAnExplosion) {
   const Scene scene = chain(16, 1.0 / 64);
   const CaseRun run = run_scripted(scene, [](int, State& s) {
     s.v[9] = 1.1 * s.v[9] + Vec3(0.01, 0, 0);  // grows by 10 % a step
@@ -87,7 +87,7 @@ TEST(Verdict, EnergyOutOfNothingIsAnExplosion) {
   EXPECT_EQ(run.record.status.vertex, 9);
 }
 
-TEST(Verdict, LeavingTheWorldIsAnExplosion) {
+TEST(DivergenceDetector, LeavingTheWorldIsAnExplosion) {
   const Scene scene = chain(4, 1.0 / 64);
   const CaseRun run = run_scripted(scene, [](int step, State& s) {
     if (step == 3) s.x[2].z() = -2e6;
@@ -96,14 +96,14 @@ TEST(Verdict, LeavingTheWorldIsAnExplosion) {
   EXPECT_EQ(run.record.status.step, 3);
 }
 
-TEST(Verdict, FreeFallIsNoExplosionHoweverLong) {
+TEST(DivergenceDetector, FreeFallIsNoExplosionHoweverLong) {
   Scene scene = at_rest({.nu = 3, .nv = 3, .width = 1, .height = 1, .mass = 0.2});
   scene.steps = 64 * 60;
   EXPECT_EQ(verdict_on(scene, listing("precision=double")).kind, Status::Kind::ok);
 }
 
 // One sweep at dt = 1/10 s stretches the top link to dozens of its rest length: soft, not unstable.
-TEST(Verdict, LegitimateStrainIsNoExplosion) {
+TEST(DivergenceDetector, LegitimateStrainIsNoExplosion) {
   for (const int links : {16, 64, 128})
     for (const double dt : {1.0 / 10, 1.0 / 30, 1.0 / 60, 1.0 / 480})
       for (const char* projection : {"exact", "sqrt-free"}) {
@@ -115,7 +115,7 @@ TEST(Verdict, LegitimateStrainIsNoExplosion) {
       }
 }
 
-TEST(Verdict, DrivenScenesAreNoExplosion) {
+TEST(DivergenceDetector, DrivenScenesAreNoExplosion) {
   Scene flag = at_rest({.nu = 12, .nv = 8, .width = 1, .height = 0.7, .mass = 0.05});
   for (int j = 0; j < 8; ++j) flag.pins.push_back(flag.mesh.grid->index(0, j));
   flag.wind = Wind{.velocity = {12, 0, 3}, .strength = 1};
@@ -131,38 +131,38 @@ TEST(Verdict, DrivenScenesAreNoExplosion) {
   EXPECT_EQ(verdict_on(whirled, listing("iterations=8")).kind, Status::Kind::ok);
 }
 
-TEST(Verdict, AStartFarFromRestMaySnapBack) {
+TEST(DivergenceDetector, AStartFarFromRestMaySnapBack) {
   Scene scene = chain(10, 1.0 / 64);
   scene.gravity.setZero();
   for (Vec3& x : scene.start.x) x *= 4;
   EXPECT_EQ(verdict_on(scene, listing("iterations=16,projection=exact")).kind, Status::Kind::ok);
 }
 
-TEST(Verdict, SettlingTimeIsKnownForHangingClothOnly) {
-  const std::vector<PassCost> plan{{.pass = "structural", .repeats = 4, .projections = true}};
+TEST(DivergenceDetector, SettlingTimeIsKnownForHangingClothOnly) {
+  const std::vector<PassCost> step_cost{{.pass = "structural", .repeats = 4, .projections = true}};
   Scene scene = chain(16, 1.0 / 64);
   const double pi = std::acos(-1.0);
-  ASSERT_TRUE(settling_time(scene, plan));
-  EXPECT_GT(*settling_time(scene, plan), 8 * 256 / (pi * pi * 4 * 64));
+  ASSERT_TRUE(settling_time(scene, step_cost));
+  EXPECT_GT(*settling_time(scene, step_cost), 8 * 256 / (pi * pi * 4 * 64));
   EXPECT_FALSE(settling_time(scene, {})) << "no sweeps";
   scene.wind = Wind{};
-  EXPECT_FALSE(settling_time(scene, plan)) << "wind";
+  EXPECT_FALSE(settling_time(scene, step_cost)) << "wind";
   scene = chain(16, 1.0 / 64);
   scene.pins.clear();
-  EXPECT_FALSE(settling_time(scene, plan)) << "nothing holds it";
+  EXPECT_FALSE(settling_time(scene, step_cost)) << "nothing holds it";
 }
 
-TEST(Verdict, WhatNeverRestsIsUnsettled) {
+TEST(DivergenceDetector, WhatNeverRestsIsUnsettled) {
   Scene scene = chain(4, 1.0 / 16);
   scene.steps = 320;  // 20 s; the slowest swing decays in 2.3 s
   const auto restless = [](int step, State& s) { s.v[3].x() = step % 2 ? 0.5 : -0.5; };
   EXPECT_EQ(run_scripted(scene, restless).record.status.kind, Status::Kind::ok)
       << "without sweeps there is no theory to judge by";
-  Verdict verdict(scene, {{.pass = "structural", .repeats = 16, .projections = true}});
+  DivergenceDetector verdict(scene, {{.pass = "structural", .repeats = 16, .projections = true}});
   State state = scene.start;
   for (int n = 0; n <= scene.steps; ++n) {
     if (n > 0) restless(n, state);
-    ASSERT_TRUE(verdict.sees(n, n * scene.dt, state));
+    ASSERT_TRUE(verdict.observe(n, n * scene.dt, state));
   }
   verdict.finish();
   EXPECT_EQ(verdict.status().kind, Status::Kind::unsettled);
@@ -176,11 +176,11 @@ TEST(RunCase, UnsupportedScenesAreSaidSoAndNotRun) {
   static const SolverEntry entry{
       .name = "picky",
       .make = [](const Scene&, const Params&) -> std::unique_ptr<Solver> { std::abort(); },
-      .cannot =
+      .unsupported =
           [](const Scene&, const Params&) {
             return std::vector<std::string>{"dislikes chains", "dislikes Mondays"};
           },
-      .effective = [](const Scene&, const Params&) { return Effective{}; }};
+      .resolved_settings = [](const Scene&, const Params&) { return ResolvedSettings{}; }};
   const CaseRun run = run_case(scene, {&entry, Params("picky", {}, "")});
   EXPECT_EQ(run.record.status.kind, Status::Kind::unsupported);
   EXPECT_EQ(run.record.status.reason, "dislikes chains; dislikes Mondays");

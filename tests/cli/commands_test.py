@@ -135,7 +135,7 @@ class Verbs(CommandLine):
         text = (pathlib.Path(__file__).parents[2] / "experiments/cli/README.md").read_text()
         for verb in ["case", "plan"]:
             keys = json.loads(self.taut(verb, "./small.toml", "jakobsen", "--json").out)
-            for key in [*keys, *keys.get("plan", [{}])[0], *keys.get("status", {}), *keys.get("spec", {})]:
+            for key in [*keys, *keys.get("step_cost", [{}])[0], *keys.get("status", {}), *keys.get("spec", {})]:
                 self.assertIn(f"`{key}`", text, verb)
 
     def test_every_verb_has_help_with_an_example(self):

@@ -40,7 +40,7 @@ class Faulty final : public Solver {
       : gravity_(scene.gravity), mode_(params.choice("mode")), at_(params.integer("at")) {}
   void load(const State& state) override { state_ = state; }
   void store(State& state) const override { state = state_; }
-  std::vector<PassCost> plan() const override { return {}; }
+  std::vector<PassCost> step_cost() const override { return {}; }
 
   void step(double, double dt) override {
     if (++step_ == at_) misbehave();
@@ -76,12 +76,12 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return std::make_unique<Faulty>(scene, params);
 }
 
-std::vector<std::string> cannot(const Scene&, const Params& params) {
+std::vector<std::string> unsupported(const Scene&, const Params& params) {
   if (params.is("mode", "refuse")) return {"refuses, as told"};
   return {};
 }
 
-Effective effective(const Scene&, const Params&) { return {}; }
+ResolvedSettings resolved_settings(const Scene&, const Params&) { return {}; }
 
 }  // namespace
 }  // namespace taut
@@ -91,5 +91,5 @@ TAUT_SOLVER(faulty) = {.name = "faulty",
                        .source = "tests/cli",
                        .params = taut::kParams,
                        .make = taut::make,
-                       .cannot = taut::cannot,
-                       .effective = taut::effective};
+                       .unsupported = taut::unsupported,
+                       .resolved_settings = taut::resolved_settings};

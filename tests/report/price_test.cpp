@@ -87,7 +87,8 @@ TEST(Price, ADifferenceExceedsTheToleranceAndTheNoise) {
   EXPECT_TRUE(told_apart({3.5, 4, 4.5}, {0.7, 1, 1.1})) << "a factor of four is more than that";
 }
 
-/// told_apart() does not fall silent on a noisy machine, so it has more to prove than judge().
+/// told_apart() does not fall silent on a noisy machine, so it has more to prove than
+/// diagnostics().
 TEST(Price, RecordedSamplesOfOneCodeAreNotToldApartButATwofoldCostIs) {
   const auto samples = [](std::size_t row, double cost) {
     std::vector<double> out;

@@ -136,7 +136,7 @@ TEST(Report, NamesFromOutsideStayText) {
     r.id += evil;
     r.status.reason = evil;
     r.params["mode"] = evil;
-    r.effective.emplace_back(evil, evil);
+    r.resolved_settings.emplace_back(evil, evil);
     if (r.scene == "ball") r.scene = evil;
   }
   const std::string html = make_report(input);

@@ -123,7 +123,7 @@ TEST(Accelerators, WorkInStripsAsWellAsPacked) {
 TEST(Accelerators, AbsentAreFree) {
   const Scene scene = hanging_sheet(20, 20);
   const SolverChoice choice = parse_solver("jakobsen");
-  for (const PassCost& line : choice.entry->make(scene, choice.params)->plan())
+  for (const PassCost& line : choice.entry->make(scene, choice.params)->step_cost())
     EXPECT_TRUE(line.pass == "verlet" || line.pass == "pins" || line.pass == "structural" ||
                 line.pass == "shear" || line.pass == "bend")
         << line.pass;
@@ -133,7 +133,7 @@ TEST(Memory, OfASheetIsAtMostAHundredBytesAVertexAndOfAMeshTwoHundred) {
   const auto per_vertex = [](const Scene& scene, const char* solver) {
     const SolverChoice choice = parse_solver(solver);
     double bytes = 0;
-    for (const PassCost& line : choice.entry->make(scene, choice.params)->plan())
+    for (const PassCost& line : choice.entry->make(scene, choice.params)->step_cost())
       bytes += static_cast<double>(line.bytes);
     return bytes / scene.mesh.size();
   };
@@ -150,7 +150,7 @@ TEST(Float, RefusesSubstepsThatGravityCannotMove) {
   scene.dt = 1.0 / 64;
   const auto refuses = [&](const char* solver) {
     const SolverChoice choice = parse_solver(solver);
-    return !choice.entry->cannot(scene, choice.params).empty();
+    return !choice.entry->unsupported(scene, choice.params).empty();
   };
   EXPECT_FALSE(refuses("jakobsen:substeps=200"));
   EXPECT_TRUE(refuses("jakobsen:substeps=400"));

@@ -250,7 +250,7 @@ TEST(Contact, APinInsideAColliderStays) {
 }
 
 TEST(Contact, WithoutCollidersThereIsNoPass) {
-  for (const PassCost& cost : Runner(points({0, 0, 0}), "").solver().plan())
+  for (const PassCost& cost : Runner(points({0, 0, 0}), "").solver().step_cost())
     EXPECT_TRUE(cost.pass == "verlet" || cost.pass == "pins") << cost.pass;
 }
 

@@ -44,7 +44,7 @@ TEST(MassSpring, SaysWhatItCannot) {
   s.colliders.push_back({Ball{Vec3::Zero(), 1}, {}, 0});
   s.self_collision = SelfCollision{0.01};
   const SolverChoice choice = parse_solver("mass-spring:integrator=explicit-euler,drag-at=central");
-  EXPECT_EQ(choice.entry->cannot(s, choice.params).size(), 3u);
+  EXPECT_EQ(choice.entry->unsupported(s, choice.params).size(), 3u);
 }
 
 TEST(Xpbd, WithoutComplianceItIsJakobsensExactProjection) {

@@ -148,7 +148,7 @@ TEST(SelfCollision, IsNoPassUnlessTheSceneHasIt) {
     if (!present) scene.self_collision.reset();
     const SolverChoice choice = parse_solver("jakobsen");
     bool found = false;
-    for (const PassCost& cost : choice.entry->make(scene, choice.params)->plan())
+    for (const PassCost& cost : choice.entry->make(scene, choice.params)->step_cost())
       found |= cost.pass.starts_with("self-collide");
     EXPECT_EQ(found, present);
   }

@@ -148,7 +148,7 @@ TEST(Torture, JakobsenStaysFinite) {
     const Scene scene = extremes.scene();
     const std::string solver = extremes.solver();
     const SolverChoice choice = parse_solver(solver);
-    if (!choice.entry->cannot(scene, choice.params).empty()) continue;
+    if (!choice.entry->unsupported(scene, choice.params).empty()) continue;
     const auto instance = choice.entry->make(scene, choice.params);
     instance->load(scene.start);
     State state = scene.start;

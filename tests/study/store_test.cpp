@@ -34,8 +34,8 @@ Record some_record() {
               {"c", std::numeric_limits<double>::denorm_min()},
               {"d", -1.7976931348623157e308}};
   r.projections = 6080;
-  r.plan = {{"structural", 760, 8, 12160, true}};
-  r.effective = {{"time step", "1/60 s"}};
+  r.step_cost = {{"structural", 760, 8, 12160, true}};
+  r.resolved_settings = {{"time step", "1/60 s"}};
   r.digest = "beef";
   return r;
 }
@@ -61,7 +61,7 @@ TEST(RecordText, KeepsEveryBit) {
   EXPECT_EQ(back.values.at("d"), -1.7976931348623157e308);
   EXPECT_EQ(back.status.kind, Status::Kind::exploded);
   EXPECT_EQ(back.status.step, 17);
-  EXPECT_EQ(back.plan[0].bytes, 12160u);
+  EXPECT_EQ(back.step_cost[0].bytes, 12160u);
 }
 
 TEST(RecordText, RefusesOtherSchemasAndNonsense) {

@@ -25,7 +25,7 @@ Study study_of(const std::string& text, const std::string& preset = "") {
 
 std::vector<std::string> ids(const Study& study) {
   std::vector<std::string> all;
-  for (const Case& one : plan(study)) all.push_back(one.id);
+  for (const Case& one : cases_of(study)) all.push_back(one.id);
   return all;
 }
 
@@ -92,9 +92,9 @@ sweep.iterations = [8]
 )";
   const Study whole = study_of(text), quick = study_of(text, "quick");
   EXPECT_EQ(whole.presets, Strings{"quick"});
-  EXPECT_EQ(plan(whole).size(), 2u * 2 * 3 * 2);
+  EXPECT_EQ(cases_of(whole).size(), 2u * 2 * 3 * 2);
   EXPECT_EQ(quick.scenes, Strings{"fall"});
-  EXPECT_EQ(plan(quick).size(), 1u * 2 * 1 * 2);
+  EXPECT_EQ(cases_of(quick).size(), 1u * 2 * 1 * 2);
   EXPECT_EQ(quick.preset, "quick");
 }
 
@@ -119,7 +119,7 @@ scenes = ["fall"]
 solvers = ["jakobsen", "jakobsen:iterations=3"]
 sweep."time.dt" = ["1/64", 0.015625]
 )");
-  EXPECT_EQ(plan(study).size(), 1u);
+  EXPECT_EQ(cases_of(study).size(), 1u);
 }
 
 TEST(Study, MoreCasesThanAnybodyWaitsForAreRefusedBeforeTheyAreMade) {
@@ -132,7 +132,7 @@ solvers = ["jakobsen"]
 "forces.damping" = { from = 0, to = 1, steps = 1000 }
 )");
   try {
-    plan(study);
+    cases_of(study);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("2000000 cases; at most 100000"), std::string::npos)
@@ -143,11 +143,11 @@ solvers = ["jakobsen"]
 TEST(Study, ShippedStudiesAndTheirPresetsArePlans) {
   for (const std::string& name : shipped("studies")) {
     Study study = load_study(name);
-    EXPECT_FALSE(plan(study).empty()) << name;
+    EXPECT_FALSE(cases_of(study).empty()) << name;
     for (const std::string& preset : study.presets) {
       const Study smaller = load_study(name, preset);
       EXPECT_EQ(smaller.preset, preset);
-      EXPECT_FALSE(plan(smaller).empty()) << name << " " << preset;
+      EXPECT_FALSE(cases_of(smaller).empty()) << name << " " << preset;
     }
   }
 }

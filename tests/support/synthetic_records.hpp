@@ -21,11 +21,11 @@ inline Record record(const std::string& scene, const std::string& solver, int sw
   r.steps = static_cast<int>(4 / dt);
   r.vertices = 400, r.links = 1482;
   r.projections = static_cast<std::size_t>(r.links * sweeps);
-  r.plan = {{"verlet", 400, 1, 28800, false},
-            {"structural", 760, static_cast<std::size_t>(sweeps), 12160, true},
-            {"shear", 722, static_cast<std::size_t>(sweeps), 11552, true}};
-  r.effective = {{"time step", "1/64 s, as binary32"},
-                 {"projection", solver == "bullet" ? "sqrt-free" : "exact"}};
+  r.step_cost = {{"verlet", 400, 1, 28800, false},
+                 {"structural", 760, static_cast<std::size_t>(sweeps), 12160, true},
+                 {"shear", 722, static_cast<std::size_t>(sweeps), 11552, true}};
+  r.resolved_settings = {{"time step", "1/64 s, as binary32"},
+                         {"projection", solver == "bullet" ? "sqrt-free" : "exact"}};
   return r;
 }
 

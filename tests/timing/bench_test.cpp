@@ -79,7 +79,7 @@ TEST(Bench, OnlyStepIsInsideTheClock) {
     void load(const State&) override { burn(0.02); }
     void step(double, double) override { burn(0.002); }
     void store(State&) const override { burn(0.02); }
-    std::vector<PassCost> plan() const override { return {}; }
+    std::vector<PassCost> step_cost() const override { return {}; }
 
    private:
     static void burn(double seconds) {

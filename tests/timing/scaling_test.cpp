@@ -23,7 +23,7 @@ std::vector<Case> squares(std::initializer_list<int> sides) {
 Measured measured(const Case& one) {
   const double n = one.scene->mesh.size(), seconds = std::pow(n, 1.5);
   Measured m{{describe(*one.scene, one.choice), {}}, seconds};
-  m.benched.record.plan = {{"verlet", 1, 1, static_cast<std::size_t>(100 * n), false}};
+  m.benched.record.step_cost = {{"verlet", 1, 1, static_cast<std::size_t>(100 * n), false}};
   m.benched.timing.samples = std::vector<double>(4, seconds / 1000);
   m.benched.timing.wall = m.benched.timing.samples;
   return m;

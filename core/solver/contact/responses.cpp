@@ -52,8 +52,8 @@ ContactPasses<Real> make_contact(const Scene& scene, const Params& params) {
 template ContactPasses<float> make_contact(const Scene&, const Params&);
 template ContactPasses<double> make_contact(const Scene&, const Params&);
 
-Effective contact_effective(const Scene& scene, const Params& params) {
-  Effective lines;
+ResolvedSettings contact_settings(const Scene& scene, const Params& params) {
+  ResolvedSettings lines;
   if (!scene.colliders.empty())
     lines = {{"contact response", std::string(params.choice("contact"))},
              {"friction", "Coulomb: tangential correction at most mu times the depth"},

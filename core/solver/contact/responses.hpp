@@ -22,6 +22,6 @@ template <class Real>
 ContactPasses<Real> make_contact(const Scene&, const Params&);
 
 /// What the fairness panel says of contact.
-Effective contact_effective(const Scene&, const Params&);
+ResolvedSettings contact_settings(const Scene&, const Params&);
 
 }  // namespace taut

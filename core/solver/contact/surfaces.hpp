@@ -87,7 +87,8 @@ struct BallSurface {
     const Triple<T> out = x - spread_out<T>(center);
     const T distance = norm(out);
     const auto apart = distance > T(0);
-    return at(select(apart, out / select(apart, distance, T(1)), Triple<T>{T(0), T(1), T(0)}));
+    return tangent_at(
+        select(apart, out / select(apart, distance, T(1)), Triple<T>{T(0), T(1), T(0)}));
   }
   template <class T>
   [[gnu::always_inline]] Entry<T> entry(const Triple<T>& from, const Triple<T>& to) const {
@@ -100,12 +101,12 @@ struct BallSurface {
     const T root = sqrt(select(ahead, discriminant, T(1)));
     const T share = above / select(ahead, root - ad, T(1));  // the nearer root, no cancellation
     return {inside || (ahead && share <= T(1)),
-            select(inside, nearest(from), at((a + share * d) / T(radius)))};
+            select(inside, nearest(from), tangent_at((a + share * d) / T(radius)))};
   }
 
  private:
   template <class T>
-  [[gnu::always_inline]] Tangent<T> at(const Triple<T>& normal) const {
+  [[gnu::always_inline]] Tangent<T> tangent_at(const Triple<T>& normal) const {
     return {normal, dot(normal, spread_out<T>(center)) + T(radius)};
   }
 };

@@ -195,7 +195,7 @@ class SelfCollidePass final : public Pass<Real> {
     const std::vector<double> w = inverse_masses(scene);
     const Adjacency links(scene.links, static_cast<int>(n));
     neighbours_.pairs(rest, kMeets * diameter_, [&](std::uint32_t a, std::uint32_t b) {
-      const auto leads_to_b = [b](const Adjacency::End& end) { return at(end.vertex) == b; };
+      const auto leads_to_b = [b](const Adjacency::End& end) { return to_index(end.vertex) == b; };
       const auto ends = links.of(static_cast<int>(a));
       const Real distance = (rest[b] - rest[a]).norm();
       if (w[a] + w[b] != 0 && distance > 0 && std::ranges::none_of(ends, leads_to_b))

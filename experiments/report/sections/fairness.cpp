@@ -23,7 +23,7 @@ const Record* example(const Page& page, const Contender& contender) {
 
 std::string passes(const Record& record) {
   std::string out;
-  for (const PassCost& pass : record.plan)
+  for (const PassCost& pass : record.step_cost)
     out += (out.empty() ? "" : ", ") + pass.pass +
            (pass.repeats > 1 ? " × " + std::to_string(pass.repeats) : "");
   return out;
@@ -32,7 +32,7 @@ std::string passes(const Record& record) {
 std::string panel(const std::vector<const Record*>& examples, const Comparison& facts) {
   std::vector<std::string> names;
   for (const Record* r : examples)
-    for (const auto& [name, value] : r->effective)
+    for (const auto& [name, value] : r->resolved_settings)
       if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   std::string out =
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Effective "
@@ -56,8 +56,9 @@ std::string panel(const std::vector<const Record*>& examples, const Comparison& 
   for (const std::string& name : names) {
     std::vector<std::string> cells;
     for (const Record* r : examples) {
-      const auto at = std::ranges::find(r->effective, name, [](const auto& e) { return e.first; });
-      cells.push_back(at == r->effective.end() ? "–" : at->second);
+      const auto at =
+          std::ranges::find(r->resolved_settings, name, [](const auto& e) { return e.first; });
+      cells.push_back(at == r->resolved_settings.end() ? "–" : at->second);
     }
     row(name, cells);
   }
@@ -80,10 +81,10 @@ std::string refusals(const Page& page) {
     const auto solver = std::ranges::find(all, c.solver, &SolverInfo::name);
     if (solver == all.end()) continue;
     out += "<li>" + solver_name(c.solver, solver_title(c.solver)) + " ";
-    if (solver->cannot.empty()) out += "can run every shipped scene.";
-    for (const auto& [reason, scenes] : solver->cannot)
-      out += (&reason == &solver->cannot.front().first ? "cannot run " : "; ") + listed(scenes) +
-             " (" + escape_html(reason) + ")";
+    if (solver->unsupported.empty()) out += "can run every shipped scene.";
+    for (const auto& [reason, scenes] : solver->unsupported)
+      out += (&reason == &solver->unsupported.front().first ? "cannot run " : "; ") +
+             listed(scenes) + " (" + escape_html(reason) + ")";
     out += "</li>\n";
   }
   return out.empty()

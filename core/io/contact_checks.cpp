@@ -1,4 +1,4 @@
-#include "core/io/contact_judge.hpp"
+#include "core/io/contact_checks.hpp"
 
 #include <algorithm>
 
@@ -38,7 +38,7 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
     if (depth > deepest) deepest = depth, vertex = i;
   }
   if (count == 0) return;
-  root.judge().report(
+  root.diagnostics().report(
       item.place, "the cloth starts inside this " + std::string(type_name(collider.shape)) + ": " +
                       std::to_string(count) + " vertices, vertex " + std::to_string(vertex) + " " +
                       shortest(deepest) +
@@ -52,10 +52,10 @@ void judge_path(const Value& item, Section& root, const Collider& collider, cons
     const double speed =
         (path[k].displacement - path[k - 1].displacement).norm() / (path[k].t - path[k - 1].t);
     if (speed * scene.dt <= farthest) continue;
-    root.judge().report(item.place, "the path jumps: from key " + std::to_string(k) + " to key " +
-                                        std::to_string(k + 1) + " it makes " +
-                                        shortest(speed * scene.dt) +
-                                        " m in one time step, more than the size of the cloth");
+    root.diagnostics().report(
+        item.place, "the path jumps: from key " + std::to_string(k) + " to key " +
+                        std::to_string(k + 1) + " it makes " + shortest(speed * scene.dt) +
+                        " m in one time step, more than the size of the cloth");
     return;
   }
 }
@@ -84,7 +84,7 @@ void judge_sizes(Section& root, const ContactWishes& wishes, const Scene& scene)
 
 }  // namespace
 
-void judge_contact(Section& root, const ContactWishes& wishes, Scene& scene) {
+void check_contact(Section& root, const ContactWishes& wishes, Scene& scene) {
   if (wishes.resolve) resolve(scene);
   const auto items = root.tables("collider");
   for (std::size_t k = 0; k < items.size() && k < scene.colliders.size(); ++k) {

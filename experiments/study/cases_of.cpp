@@ -92,7 +92,7 @@ CaseSpec spec_of(const Study& study, const std::string& scene, const std::string
 
 }  // namespace
 
-std::vector<Case> plan(const Study& study) {
+std::vector<Case> cases_of(const Study& study) {
   require_few(study);
   CaseMaker maker;
   std::vector<Case> cases;

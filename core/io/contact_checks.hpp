@@ -14,6 +14,6 @@ struct ContactWishes {
 /// Reports what makes contact meaningless in an otherwise complete scene: a cloth that starts
 /// inside a collider (moved to its surface, at the scene's thickness, if that is wished) or through
 /// itself, a thickness or a particle larger than the spacing, a collider whose path jumps.
-void judge_contact(Section& root, const ContactWishes&, Scene&);
+void check_contact(Section& root, const ContactWishes&, Scene&);
 
 }  // namespace taut
