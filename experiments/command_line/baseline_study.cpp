@@ -9,6 +9,7 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/study/store.hpp"
+#include "experiments/system/data.hpp"
 
 namespace taut {
 
@@ -73,6 +74,7 @@ const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
 }  // namespace
 
 void BaselineOptions::bind(Arguments& arguments) {
+  baselines = results_folder() / "baselines";
   out = default_results();
   jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   arguments.option("--baselines", baselines,

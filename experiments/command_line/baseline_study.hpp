@@ -13,7 +13,7 @@ namespace taut {
 
 /// Options that every verb about baselines has.
 struct BaselineOptions {
-  std::string baselines = "results/baselines";
+  std::string baselines;
   std::string out;  ///< results folder
   int jobs = 1;
   bool repeat = false;  ///< run every case a second time, to mark those that differ as flaky

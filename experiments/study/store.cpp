@@ -11,6 +11,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -55,7 +56,7 @@ bool abandoned(const std::string& name) {
 
 }  // namespace
 
-fs::path default_results() { return fs::path("results") / "runs"; }
+fs::path default_results() { return results_folder() / "runs"; }
 
 Store::Store(fs::path root, Notice notice) : root_(std::move(root)), notice_(std::move(notice)) {
   if (!notice_) notice_ = [](const std::string& text) { std::cerr << text << '\n'; };

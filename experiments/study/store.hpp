@@ -67,7 +67,7 @@ class Store {
   Notice notice_;
 };
 
-/// Where results go unless the user says otherwise: results/runs below the current folder.
+/// Where results go unless the user says otherwise: runs in the results folder.
 std::filesystem::path default_results();
 
 }  // namespace taut

@@ -31,6 +31,11 @@ fs::path references_folder() {
                                      : data_folder().parent_path() / "results" / "references";
 }
 
+fs::path results_folder() {
+  const char* given = std::getenv("TAUT_RESULTS");
+  return given && *given ? given : "results";
+}
+
 std::vector<std::string> shipped(const std::string& kind) {
   std::vector<std::string> names;
   std::error_code none;

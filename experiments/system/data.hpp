@@ -14,6 +14,10 @@ std::filesystem::path data_folder();
 /// results/references of the source tree.
 std::filesystem::path references_folder();
 
+/// Where results are kept: $TAUT_RESULTS if it is set (`./taut` names its own repository when it is
+/// called from another folder), else results below the current folder.
+std::filesystem::path results_folder();
+
 /// Names of the shipped "scenes" or "studies", sorted.
 std::vector<std::string> shipped(const std::string& kind);
 

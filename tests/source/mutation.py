@@ -6,7 +6,9 @@ survives its mutation is decoration.
 Usage: mutation.py BUILD_DIR [NAME...]     BUILD_DIR: a Ninja build of this tree with `taut` and
                                            `tests/taut_tests` in it
 """
+import concurrent.futures
 import json
+import os
 import pathlib
 import shlex
 import subprocess
@@ -168,8 +170,9 @@ def main():
     survivors = []
     with tempfile.TemporaryDirectory() as folder:
         planted = {**MUTATIONS, **TESTED}
-        for name in sys.argv[2:] or planted:
-            red = noticed(build, pathlib.Path(folder), name)
+        names = sys.argv[2:] or list(planted)
+        pool = concurrent.futures.ThreadPoolExecutor(os.cpu_count())
+        for name, red in zip(names, pool.map(lambda n: noticed(build, pathlib.Path(folder), n), names)):
             print(f"{'noticed ' if red else 'SURVIVED'}  {name}: {planted[name][1]}  ->  "
                   f"{planted[name][2]}", flush=True)
             if not red:

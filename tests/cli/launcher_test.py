@@ -1,0 +1,211 @@
+#!/usr/bin/env python3
+"""What ./taut promises, on a small project of its own in a folder whose name has spaces and umlauts: silent and quick
+when there is nothing to build, own sources after a copy or a move, the caller's paths, no root, two calls at once."""
+
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parent.parent.parent
+NOBODY = 65534
+
+CMAKE = """
+cmake_minimum_required(VERSION 3.25)
+project(toy LANGUAGES CXX)
+option(TAUT_TESTS "" ON)
+# Fails if it runs twice at once.
+add_custom_command(OUTPUT made.hpp DEPENDS core/main.cpp COMMAND mkdir alone COMMAND sleep 0.3
+                   COMMAND rmdir alone COMMAND ${CMAKE_COMMAND} -E touch made.hpp)
+add_executable(taut core/main.cpp made.hpp)
+target_include_directories(taut PRIVATE ${PROJECT_BINARY_DIR})
+target_compile_definitions(taut PRIVATE SOURCE="${PROJECT_SOURCE_DIR}")
+add_custom_target(taut-f32)
+if(TAUT_TESTS)
+  enable_testing()
+  foreach(target taut_tests taut_tests_f32)
+    add_custom_target(${target})
+  endforeach()
+  add_test(NAME one COMMAND true)
+  add_test(NAME planted COMMAND true)
+  add_test(NAME absent COMMAND false)
+  set_tests_properties(one PROPERTIES LABELS unit)
+  set_tests_properties(planted PROPERTIES LABELS mutation)
+  set_tests_properties(absent PROPERTIES LABELS browser SKIP_RETURN_CODE 1)
+endif()
+"""
+
+MAIN = r"""
+#include <cstdio>
+#include <cstdlib>
+#include <made.hpp>
+int main(int count, char** words) {
+  std::printf("version 1\nbuilt from %s\n", SOURCE);
+  std::printf("results %s\n", std::getenv("TAUT_RESULTS") ? std::getenv("TAUT_RESULTS") : "-");
+  for (int k = 1; k < count; ++k) std::printf("word %s\n", words[k]);
+}
+"""
+
+# Each tool that may be started writes its name down, then is itself; packages are all there, but for $MISSING.
+TOOL = """#!/bin/sh
+echo {name} >>"$TOOL_LOG"
+exec {real} "$@"
+"""
+DPKG_QUERY = """#!/bin/sh
+echo dpkg-query >>"$TOOL_LOG"
+for word; do [ "$word" = "$MISSING" ] || echo "$word install ok installed"; done
+"""
+FORBIDDEN = """#!/bin/sh
+echo {name} >>"$TOOL_LOG"
+exit 1
+"""
+
+
+class Launcher(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        os.chmod(self.folder, 0o755)
+        self.clone = self.folder / "Tücher und Wäsche" / "taut"
+        (self.clone / "core").mkdir(parents=True)
+        for name in ["cmake", "bullet_ref", "experiments", "tests"]:
+            (self.clone / name).mkdir()
+        for name in ["taut", "CMakePresets.json"]:
+            shutil.copy2(REPOSITORY / name, self.clone)
+        (self.clone / "CMakeLists.txt").write_text(CMAKE)
+        (self.clone / "core/main.cpp").write_text(MAIN)
+        self.tools = self.folder / "tools"
+        self.tools.mkdir()
+        for name in ["cmake", "ninja", "ctest"]:
+            self.tool(name, TOOL.format(name=name, real=shutil.which(name)))
+        self.tool("dpkg-query", DPKG_QUERY)
+        for name in ["apt-get", "sudo"]:
+            self.tool(name, FORBIDDEN.format(name=name))
+        self.log = self.folder / "log"
+        self.log.touch()
+        self.user = None
+
+    def tool(self, name, text):
+        (self.tools / name).write_text(text)
+        (self.tools / name).chmod(0o755)
+
+    def start(self, *words, clone=None, cwd=None, **environment):
+        clone = clone or self.clone
+        known = {key: value for key, value in os.environ.items() if key not in ("CI", "TAUT_RESULTS")}
+        environment = {**known, "PATH": f"{self.tools}:{os.environ['PATH']}", "TOOL_LOG": str(self.log), **environment}
+        return subprocess.Popen([clone / "taut", *words], cwd=cwd or clone, env=environment, text=True, user=self.user,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    def call(self, *words, expect=0, **more):
+        process = self.start(*words, **more)
+        process.out, process.err = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, expect, process.out + process.err)
+        return process
+
+    def started(self):
+        """The tools that were started since it was last asked."""
+        names = self.log.read_text().split()
+        self.log.write_text("")
+        return names
+
+    def edit(self, there, then):
+        file = self.clone / "core/main.cpp"
+        file.write_text(file.read_text().replace(there, then))
+
+    def test_nothing_to_build_nothing_said_nothing_started(self):
+        self.assertEqual(self.call("run").err, "taut: building default\n")
+        self.assertIn("cmake", self.started())
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.assertEqual(self.call("run").err, "")
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.assertEqual(self.started(), [])
+        self.assertLess(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 0.3)
+
+    def test_an_edit_is_built_and_a_new_file_seen(self):
+        self.call("run")
+        self.edit("version 1", "version 2")
+        self.assertIn("version 2", self.call("run").out)
+        self.started()
+        (self.clone / "core/new.cpp").touch()
+        os.utime(self.clone / "core/new.cpp", (0, 0))
+        self.call("run")
+        self.assertIn("cmake", self.started())
+        (self.clone / "tests/new_test.cpp").touch()
+        self.call("run")
+        self.assertEqual(self.started(), [], "a test is no part of the program")
+
+    def test_what_does_not_compile_is_said_and_tried_again(self):
+        self.call("run")
+        self.edit("int main", "int main(")
+        for _ in range(2):
+            broken = self.call("run", expect=2)
+            self.assertIn("main.cpp", broken.err)
+            self.assertNotIn("version", broken.out)
+        self.edit("int main(", "int main")
+        self.assertIn("version 1", self.call("run").out)
+
+    def test_a_copied_or_moved_clone_builds_its_own_sources(self):
+        self.call("run")
+        copy, moved = self.folder / "copy", self.folder / "moved"
+        shutil.copytree(self.clone, copy, symlinks=True)
+        self.assertIn(f"built from {copy}\n", self.call("run", clone=copy).out)
+        self.assertIn(f"built from {self.clone}\n", self.call("run").out)
+        self.clone.rename(moved)
+        self.assertIn(f"built from {moved}\n", self.call("run", clone=moved).out)
+
+    def test_paths_are_the_callers(self):
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        self.assertIn("results -\nword run\nword my study.toml\n", self.call("run", "my study.toml").out)
+        there = self.call("run", "my study.toml", cwd=elsewhere)
+        self.assertIn(f"results {self.clone}/results\nword run\nword my study.toml\n", there.out)
+        self.assertIn("results mine\n", self.call("run", cwd=elsewhere, TAUT_RESULTS="mine").out)
+        (elsewhere / "link").symlink_to(self.clone / "taut")
+        done = subprocess.run([elsewhere / "link", "run"], cwd=elsewhere, capture_output=True, text=True, check=True)
+        self.assertIn(f"built from {self.clone}\n", done.stdout)
+
+    def test_a_user_who_is_not_root_needs_nobody_when_nothing_is_missing(self):
+        if os.getuid() == 0:
+            self.user = NOBODY
+            for path in [self.log, *self.clone.rglob("*"), self.clone]:
+                os.chown(path, NOBODY, NOBODY)
+        self.assertIn("version 1", self.call("run").out)
+        self.assertFalse({"sudo", "apt-get"} & set(self.started()))
+
+    def test_what_is_missing_is_named(self):
+        done = self.call("--no-install", "run", expect=2, MISSING="gnuplot-nox")
+        self.assertRegex(done.err, r"gnuplot-nox +draws the plots")
+        self.assertNotIn("libeigen3-dev", done.err)
+        self.assertEqual(self.started(), ["dpkg-query"])
+
+    def test_two_calls_at_once_build_once(self):
+        self.call("run")
+        self.edit("version 1", "version 2")
+        calls = [self.start("run") for _ in range(2)]
+        for process in calls:
+            out, err = process.communicate(timeout=120)
+            self.assertEqual(process.returncode, 0, err)
+            self.assertIn("version 2", out)
+
+    def test_a_test_run_names_what_was_skipped(self):
+        quick = self.call("test")
+        self.assertIn("one", quick.out)
+        self.assertNotIn("planted", quick.out)
+        self.assertRegex(quick.err, r"(?s)skipped:\n  default: absent\n  not run: sanitizers, clang\+\+, planted")
+        whole = self.call("test", "--all")
+        self.assertRegex(whole.out, r"planted \.+ +Passed")
+        for preset in ["asan", "clang"]:
+            self.assertIn(f"build/{preset}\n", whole.out)
+        self.assertIn("default: absent\n", whole.err)
+        cmake = self.clone / "CMakeLists.txt"
+        cmake.write_text(cmake.read_text().replace("planted COMMAND true", "planted COMMAND false"))
+        self.call("test")
+        self.call("test", "--all", expect=1)
+
+
+if __name__ == "__main__":
+    unittest.main()
