@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -31,6 +32,19 @@ class Solver {
   virtual void step(double t, double dt) = 0;  ///< advance [t, t + dt]: the only timed call
   virtual void store(State&) const = 0;        ///< copy out (untimed); step() leaves no debt behind
   virtual std::vector<PassCost> step_cost() const = 0;  ///< the passes of one step, in order
+
+  /// Calls `visit` with the time at the end of every substep inside a step, where store() gives the
+  /// state: for those who need the path between two step boundaries. Not while timing.
+  void visit_substeps(std::function<void(double t)> visit) { visit_ = std::move(visit); }
+
+ protected:
+  /// For solvers with substeps: at the end of each but a step's last.
+  void substep_ended(double t) const {
+    if (visit_) visit_(t);
+  }
+
+ private:
+  std::function<void(double)> visit_;
 };
 
 /// A line of the fairness panel: what the solver makes of a setting ("time step", "1/64 s, as

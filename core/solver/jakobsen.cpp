@@ -54,6 +54,7 @@ class Jakobsen final : public Solver {
         apply(contact_.sweep, t, h);
       }
       apply(contact_.after, t, h);
+      if (s + 1 < substeps_) substep_ended(t + h);
     }
   }
 

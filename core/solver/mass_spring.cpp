@@ -120,6 +120,7 @@ class MassSpring final : public Solver {
         else
           v_[i].setZero();
       move_pins(t + (s + 1) * h, h);
+      if (s + 1 < substeps_) substep_ended(t + (s + 1) * h);
     }
   }
 

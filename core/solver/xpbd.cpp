@@ -94,6 +94,7 @@ class Xpbd final : public Solver {
         for (Rod& rod : rods_) solve(rod, h);
         for (const Collider& collider : scene_.colliders) collide(collider, t + (s + 1) * h);
       }
+      if (s + 1 < substeps_) substep_ended(t + (s + 1) * h);
     }
   }
 

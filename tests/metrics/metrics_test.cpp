@@ -360,6 +360,29 @@ TEST(SelfIntersection, OfAFlapThatFoldsThroughTheSheet) {
   EXPECT_NEAR(measure_at_rest(scene, state).at("self.gap"), 0.03 - 0.1, 1e-12);
 }
 
+// Layers in one plane cross nowhere: without collision a fold that has come to rest would look
+// like a cloth that never passed through itself.
+TEST(SelfIntersection, CountsLayersThatCoincide) {
+  Scene scene = sheet(5);
+  scene.self_collision = SelfCollision{.radius = 0.05};
+  State folded = scene.start;  // the last two rows lie on the first two, half a cell aside
+  for (std::size_t i = 15; i < 25; ++i) {
+    folded.x[i].x() += 0.11;
+    folded.x[i].z() = 1 - folded.x[i].z();
+  }
+  const auto lifted = [&](double height) {
+    State state = folded;
+    for (std::size_t i = 15; i < 25; ++i) state.x[i].y() += height;
+    return measure_at_rest(scene, state);
+  };
+  const double flat = lifted(0).at("self.crossings");
+  EXPECT_GT(flat, 8);
+  EXPECT_EQ(lifted(0).at("self.crossings.max"), flat);
+  EXPECT_EQ(lifted(0.4e-3).at("self.crossings"), flat) << "within 1 % of the radius";
+  EXPECT_LT(lifted(0.6e-3).at("self.crossings"), flat);
+  EXPECT_EQ(lifted(0.1).at("self.crossings"), 0);
+}
+
 /// The scene as seen after a rigid motion of the whole world.
 struct Rigid {
   Eigen::Quaterniond turn{Eigen::AngleAxisd(0.8, Vec3(1, 2, -0.5).normalized())};
