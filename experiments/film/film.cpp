@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <csignal>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -199,7 +198,6 @@ Shot shoot(const Film& film) {
 
 void film_scenes(report::ReportInput& input, const std::vector<std::string>& others,
                  const std::function<void(const std::string&)>& say) {
-  std::signal(SIGPIPE, SIG_IGN);
   const std::vector<Film> films = all_films(input, others);
   std::vector<std::optional<Shot>> shots(films.size());
   std::atomic<std::size_t> next{0};

@@ -5,6 +5,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::report {
 
@@ -48,7 +49,7 @@ Figure make_figure(FigureSpec spec, const FigureData& data, const fs::path& out_
   if (spec.file.empty()) spec.file = slug(spec.kind + "-" + spec.y + "-over-" + spec.x);
   Drawing drawing = entry.draw(spec, data);
 
-  fs::create_directories(out_dir);
+  make_folder(out_dir);
   const auto path = [&](const char* extension) { return out_dir / (spec.file + extension); };
   Figure figure{spec.title,   drawing.description, {},          {}, path(".gp"),
                 path(".csv"), drawing.table,       drawing.area};

@@ -9,6 +9,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/report/section.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::report {
 
@@ -91,7 +92,7 @@ Figure Page::draw(FigureSpec spec, const FigureData& data, std::string& svg) {
   spec.formats = {Format::svg};
   spec.file = id + "-" + slug(spec.file.empty() ? spec.kind : spec.file);
   Figure figure = make_figure(spec, data, scratch_);
-  svg = inline_svg(read_file(figure.svg), id, title, figure.description);
+  svg = inline_svg(read_text(figure.svg), id, title, figure.description);
   return figure;
 }
 
@@ -122,7 +123,7 @@ std::string Page::figure(FigureSpec spec, const FigureData& data, const std::str
          (svg.empty()
               ? note
               : "<div class=\"broad\">" + svg + "</div><div class=\"narrow\">" + phone + "</div>") +
-         html_data(figure.table, heading, read_file(figure.csv), figure.csv.filename().string()) +
+         html_data(figure.table, heading, read_text(figure.csv), figure.csv.filename().string()) +
          "</figure>\n";
 }
 

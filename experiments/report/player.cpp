@@ -8,6 +8,7 @@
 #include "experiments/report/axis.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/html.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::report {
 
@@ -141,7 +142,7 @@ std::string timeline(Page& page, const std::string& scene, const std::string& va
          plots + "<input type=\"range\" class=\"scrub\" min=\"" + exact(a.low) + "\" max=\"" +
          exact(a.high) + "\" step=\"any\" value=\"" + exact(a.low) + "\" style=\"" + style +
          "\" aria-label=\"Simulated time of " + escape_html(scene) + " in seconds\" hidden>" +
-         html_data(figure.table, heading, read_file(figure.csv), slug(scene) + "-series.csv") +
+         html_data(figure.table, heading, read_text(figure.csv), slug(scene) + "-series.csv") +
          "</div>";
 }
 

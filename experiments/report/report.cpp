@@ -1,41 +1,18 @@
 #include "experiments/report/report.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/assets.hpp"
-#include "experiments/report/gnuplot.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::report {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder for gnuplot's files that goes away with the report.
-class Scratch {
- public:
-  Scratch() {
-    std::string pattern = (fs::temp_directory_path() / "taut-report-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw std::runtime_error("cannot make a folder in " + fs::temp_directory_path().string());
-    path_ = pattern;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 std::string title_text(const ReportInput& input, const Comparison& facts) {
   if (!input.title.empty()) return input.title;
@@ -119,7 +96,7 @@ std::string make_report(const ReportInput& input) {
 
 fs::path write_report(const ReportInput& input, const fs::path& path) {
   const std::string html = make_report(input);
-  if (path.has_parent_path()) fs::create_directories(path.parent_path());
+  if (path.has_parent_path()) make_folder(path.parent_path());
   write_file(path, html);
   return path;
 }

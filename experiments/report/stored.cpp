@@ -8,9 +8,9 @@
 #include "experiments/report/axis.hpp"
 #include "experiments/report/comparison.hpp"
 #include "experiments/report/curves.hpp"
-#include "experiments/report/gnuplot.hpp"
 #include "experiments/report/palette.hpp"
 #include "experiments/study/map.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::report {
 
@@ -63,7 +63,7 @@ void add_costs(const BenchSession& bench, std::vector<Record>& records) {
 std::optional<BenchSession> stored_bench(const Store& store, const std::string& study) {
   const std::filesystem::path file = bench_file(store.root(), study);
   if (!std::filesystem::exists(file)) return std::nullopt;
-  BenchSession bench = bench_from_json(read_file(file), file.string());
+  BenchSession bench = bench_from_json(read_text(file), file.string());
   CaseMaker maker;
   for (SceneBench& scene : bench.scenes)
     std::erase_if(scene.cases, [&](const BenchedCase& c) {

@@ -12,6 +12,7 @@
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/palette.hpp"
+#include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report {
@@ -47,7 +48,7 @@ TEST_F(Figures, EveryFileIsThereAndNoTemporaryOne) {
   for (const fs::path& path : {figure.svg, figure.pdf, figure.gp, figure.csv})
     EXPECT_GT(fs::file_size(path), 500U) << path;
   EXPECT_EQ(std::distance(fs::directory_iterator(dir_), fs::directory_iterator()), 4);
-  const std::string svg = read_file(figure.svg);
+  const std::string svg = read_text(figure.svg);
   EXPECT_NE(svg.find(">Stretch_of ~{hang}<"), std::string::npos)
       << "markup must not be interpreted";
   EXPECT_NE(svg.find("theory: slope −1"), std::string::npos);
@@ -56,11 +57,11 @@ TEST_F(Figures, EveryFileIsThereAndNoTemporaryOne) {
 TEST_F(Figures, AFailedCaseIsAGlyphAndARowNeverAGap) {
   const auto records = synthetic::iterations("hang");
   const Figure figure = draw({.kind = "error-iterations"}, records);
-  const std::string svg = read_file(figure.svg);
+  const std::string svg = read_text(figure.svg);
   EXPECT_EQ(count(svg, ">×<"), 1U);
   EXPECT_EQ(count(svg, ">failed<"), 1U);
   EXPECT_EQ(figure.table.rows.size(), records.size());
-  EXPECT_EQ(count(read_file(figure.csv), "exploded,nonfinite"), 1U);
+  EXPECT_EQ(count(read_text(figure.csv), "exploded,nonfinite"), 1U);
   EXPECT_NE(figure.description.find("1 failed"), std::string::npos);
 }
 
@@ -68,8 +69,8 @@ TEST_F(Figures, ExactZerosStayOnTheFloorOfALogarithmicAxis) {
   const auto records = synthetic::iterations("ball");
   const Figure figure = draw({.kind = "penetration"}, records);
   // Three zeros of ours, two of Bullet's (its k = 128 exploded): open triangles, gnuplot's point 9.
-  EXPECT_EQ(count(read_file(figure.svg), "xlink:href='#gpPt9'") - 1, 5U);
-  EXPECT_NE(read_file(figure.csv).find(",0,"), std::string::npos);
+  EXPECT_EQ(count(read_text(figure.svg), "xlink:href='#gpPt9'") - 1, 5U);
+  EXPECT_NE(read_text(figure.csv).find(",0,"), std::string::npos);
 }
 
 TEST_F(Figures, AllZeroAllFailedAndNanDrawAllTheSame) {
@@ -79,7 +80,7 @@ TEST_F(Figures, AllZeroAllFailedAndNanDrawAllTheSame) {
   auto failed = synthetic::iterations("ball");
   for (Record& r : failed) synthetic::fail(r, Status::Kind::timeout, "60 s");
   const Figure figure = draw({.kind = "error-iterations", .file = "failed", .slope = -1}, failed);
-  EXPECT_EQ(count(read_file(figure.svg), ">T<"), failed.size());
+  EXPECT_EQ(count(read_text(figure.svg), ">T<"), failed.size());
   auto holes = synthetic::iterations("ball");
   for (std::size_t i = 0; i < holes.size(); i += 3)
     holes[i].values["stretch.rms"] = std::numeric_limits<double>::quiet_NaN();
@@ -90,7 +91,7 @@ TEST_F(Figures, AllZeroAllFailedAndNanDrawAllTheSame) {
 TEST_F(Figures, StabilityMapHasACellAndAGlyphForEachOutcome) {
   const auto records = synthetic::time_steps("hang");
   const Figure figure = draw({.kind = "stability", .title = "Where each stays stable"}, records);
-  const std::string svg = read_file(figure.svg);
+  const std::string svg = read_text(figure.svg);
   std::map<Status::Kind, std::size_t> counts;
   for (const Record& r : records) ++counts[r.status.kind];
   for (const auto& [kind, n] : counts)
@@ -108,7 +109,7 @@ TEST_F(Figures, CellsThatWereNotRunAreSmallAndHaveNoGlyph) {
     std::erase_if(records, [&](const Record& r) { return r.id == one.id; });
   fs::create_directories(dir_);
   const Figure figure = make_figure({.kind = "stability"}, {records, {}, inferred}, dir_);
-  const std::string svg = read_file(figure.svg);
+  const std::string svg = read_text(figure.svg);
   std::map<Status::Kind, std::size_t> counts;
   for (const Record& r : records) ++counts[r.status.kind];
   for (const auto& [kind, n] : counts)
@@ -127,7 +128,7 @@ TEST_F(Figures, NamesWithQuotesCommasAndLineBreaksReachNobodysSyntax) {
   }
   const Figure figure =
       draw({.kind = "error-iterations", .title = "'; system 'date `id` \\n"}, records);
-  EXPECT_NE(read_file(figure.svg).find("'; system 'date `id` \\n"), std::string::npos);
+  EXPECT_NE(read_text(figure.svg).find("'; system 'date `id` \\n"), std::string::npos);
 }
 
 TEST_F(Figures, WithoutGnuplotTheErrorSaysWhatToInstallAndDataAreThere) {

@@ -11,9 +11,9 @@
 #include "core/model/input_error.hpp"
 #include "experiments/report/axis.hpp"
 #include "experiments/report/comparison.hpp"
-#include "experiments/report/gnuplot.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
+#include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report {
@@ -61,7 +61,7 @@ TEST(Report, OneFileThatAsksForNothing) {
   const fs::path path =
       fs::temp_directory_path() / ("taut_report_" + std::to_string(getpid()) + ".html");
   EXPECT_EQ(write_report(example(), path), path);
-  const std::string html = read_file(path);
+  const std::string html = read_text(path);
   fs::remove(path);
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
   for (const char* request : {"src=\"http", "href=\"http", "url(", "@import", "<link", "fetch("})
@@ -207,7 +207,7 @@ std::string test_video(const fs::path& path) {
       "-pix_fmt yuv420p -g 15 '" +
       path.string() + "' </dev/null";
   if (std::system(command.c_str()) != 0) return "";
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_text(path);
   fs::remove(path);
   return bytes;
 }
