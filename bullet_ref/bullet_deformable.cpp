@@ -322,6 +322,9 @@ std::string_view program(const Params& params) {
   return bullet_program(params.choice("precision"));
 }
 
+constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"},
+                                                   {"newton", "2|4"}};
+
 }  // namespace
 }  // namespace taut::solver::bullet_deformable
 
@@ -334,4 +337,7 @@ TAUT_SOLVER(bullet_deformable) = {
     .make = taut::solver::bullet_deformable::make,
     .unsupported = taut::solver::bullet_deformable::unsupported,
     .resolved_settings = taut::solver::bullet_deformable::resolved_settings,
-    .program = taut::solver::bullet_deformable::program};
+    .program = taut::solver::bullet_deformable::program,
+    .knobs = {.substeps = "substeps",
+              .stiffness = {"stiffness", "1000|4000|16000|64000|256000|1024000"},
+              .alternatives = taut::solver::bullet_deformable::kAlternatives}};

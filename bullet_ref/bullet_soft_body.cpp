@@ -316,6 +316,15 @@ std::string_view program(const Params& params) {
   return bullet_program(params.choice("precision"));
 }
 
+constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"}};
+
+LinearModel linear_model(const Scene& scene, const Params& params) {
+  if (scene.damping != 0) return {};
+  return LinearSweeps{.omega = params.real("stiffness"),
+                      .sweeps = params.integer("iterations"),
+                      .substeps = params.integer("substeps")};
+}
+
 }  // namespace
 }  // namespace taut::solver::bullet_soft_body
 
@@ -326,4 +335,8 @@ TAUT_SOLVER(bullet) = {.name = "bullet",
                        .make = taut::solver::bullet_soft_body::make,
                        .unsupported = taut::solver::bullet_soft_body::unsupported,
                        .resolved_settings = taut::solver::bullet_soft_body::resolved_settings,
-                       .program = taut::solver::bullet_soft_body::program};
+                       .program = taut::solver::bullet_soft_body::program,
+                       .knobs = {.substeps = "substeps",
+                                 .sweeps = "iterations",
+                                 .alternatives = taut::solver::bullet_soft_body::kAlternatives},
+                       .linear_model = taut::solver::bullet_soft_body::linear_model};
