@@ -273,6 +273,15 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
+constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"}};
+
+LinearModel linear_model(const Scene& scene, const Params& params) {
+  if (scene.damping != 0) return {};
+  return LinearSweeps{.omega = params.real("stiffness"),
+                      .sweeps = params.integer("iterations"),
+                      .substeps = params.integer("substeps")};
+}
+
 }  // namespace
 }  // namespace taut::solver::bullet_soft_body
 
@@ -283,4 +292,8 @@ TAUT_SOLVER(bullet) = {.name = "bullet",
                        .make = taut::solver::bullet_soft_body::make,
                        .unsupported = taut::solver::bullet_soft_body::unsupported,
                        .resolved_settings = taut::solver::bullet_soft_body::resolved_settings,
-                       .program = taut::bullet_ref::program};
+                       .program = taut::bullet_ref::program,
+                       .knobs = {.substeps = "substeps",
+                                 .sweeps = "iterations",
+                                 .alternatives = taut::solver::bullet_soft_body::kAlternatives},
+                       .linear_model = taut::solver::bullet_soft_body::linear_model};

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/model/params.hpp"
@@ -51,6 +53,38 @@ class Solver {
 /// binary32").
 using ResolvedSettings = std::vector<std::pair<std::string, std::string>>;
 
+/// The parameters that decide how accurate a result is and what it costs, and what a search for a
+/// setting may try of them (experiments/timing/search.hpp). Names and values as typed.
+struct AccuracyKnobs {
+  /// Parameters that take one of the values together: "structural|shear", "50|200|800".
+  struct Ladder {
+    std::string_view parameters, values;
+  };
+  std::string_view substeps;  ///< steps of dt / substeps; "": the solver has none
+  std::string_view sweeps;    ///< more of them need fewer substeps; "": the solver has none
+  Ladder stiffness;           ///< of a solver without sweeps: each value needs its own substeps
+  std::span<const Ladder> alternatives;  ///< tried one at a time, at the best of the others
+};
+
+/// What a solver does to small displacements of links at their rest length, without gravity, wind
+/// or contact: what linear stability needs to know (core/reference/linear_stability.hpp).
+struct LinearSprings {
+  std::array<double, kFamilies.size()> stiffness{};  ///< N/m, by family; 0: no spring
+  double drag = 0;                                   ///< N s/m, c of F = -c v
+  bool central_drag = false;    ///< at the mean of the velocities before and after, else before
+  bool explicit_euler = false;  ///< else symplectic Euler or Verlet
+  int substeps = 1;
+};
+/// Hard links, relaxed in the scene's order.
+struct LinearSweeps {
+  bool jacobi = false;  ///< all links at once, corrections added; else Gauss-Seidel
+  double omega = 1;     ///< relaxation factor
+  int sweeps = 1;       ///< per substep
+  int substeps = 1;
+};
+/// Neither: no theory is known.
+using LinearModel = std::variant<std::monostate, LinearSprings, LinearSweeps>;
+
 /// How a solver introduces itself: one per file, found by its TAUT_SOLVER line.
 struct SolverEntry {
   std::string_view name;
@@ -65,6 +99,8 @@ struct SolverEntry {
   /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
   /// other one, make() throws InputError.
   std::string_view (*program)(const Params&) = nullptr;
+  AccuracyKnobs knobs = {};
+  LinearModel (*linear_model)(const Scene&, const Params&) = nullptr;  ///< null: none is known
 };
 
 /// Constraint projections in one step: sum of items x repeats over the passes that project.
