@@ -273,10 +273,12 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
-constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"}};
+constexpr AccuracyKnobs::Ladder kAlternatives[] = {
+    {"precision", "float|double"}, {"reorder", "off|on"}, {"faces", "on|off"}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
-  if (scene.damping != 0) return {};
+  if (scene.damping != 0 || params.is("reorder", "on"))
+    return {};  // theory is of the scene's order
   return LinearSweeps{.omega = params.real("stiffness"),
                       .sweeps = params.integer("iterations"),
                       .substeps = params.integer("substeps")};
