@@ -133,9 +133,9 @@ std::vector<Subject> subjects_of(int side) {
     keep_structural(scene);
     Scene bare = scene;
     bare.colliders.clear();
-    for (const char* setting : {"contact=swept,order=mesh", "contact=sweep,order=mesh",
-                                "contact=after,order=mesh", "contact=swept,order=coloured",
-                                "contact=sweep,order=coloured", "contact=after,order=coloured"})
+    for (const char* setting : {"contact=continuous,order=mesh", "contact=discrete,order=mesh",
+                                "contact=after,order=mesh", "contact=continuous,order=coloured",
+                                "contact=discrete,order=coloured", "contact=after,order=coloured"})
       all.emplace_back(name, setting, 4, scene, bare, start);
   }
   for (const double seconds : {0.3, 0.6}) {  // its lower edge folds; all of it collapses

@@ -10,7 +10,7 @@ namespace taut {
 /// What contact costs one setting of `jakobsen` on one scene, beside the structural links of the
 /// same cloth.
 struct ContactRow {
-  std::string scene, setting;  ///< "ball", "contact=swept,order=coloured"
+  std::string scene, setting;  ///< "ball", "contact=continuous,order=coloured"
   std::size_t particles = 0;
   int steps = 1;        ///< timed in one go from the same state
   double touching = 0;  ///< share of the particles in contact with a collider at the start

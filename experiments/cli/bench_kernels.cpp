@@ -52,9 +52,10 @@ void print(const KernelBench& bench) {
   std::printf(
       "a square-root-free projection in registers, without loads and stores: %.3f ns in float, "
       "%.3f ns in double\n"
-      "a packed projection that loads and stores, but adds a constant instead: %.3f ns in float, "
+      "a link of a colour batch, loaded and stored with an addition instead of a projection: %.3f "
+      "ns in float, "
       "%.3f ns in double\n",
-      bench.arithmetic_float, bench.arithmetic_double, bench.carried_float, bench.carried_double);
+      bench.arithmetic_float, bench.arithmetic_double, bench.traffic_float, bench.traffic_double);
   const TwoCores& cores = bench.two_cores;
   const auto text = [](const Interval& i) {
     char number[64];
@@ -100,6 +101,6 @@ std::function<int()> bind(Arguments& arguments) {
 
 TAUT_VERB(bench_kernels) = {
     .name = "bench-kernels",
-    .summary = "Measures one link projection: textbook, packed, strips, Bullet, in one session",
+    .summary = "Measures one link projection: textbook, colour batches, interleaved sheet, Bullet",
     .example = "taut bench kernels --sizes 32,1024\n  taut-f32 bench kernels   (Bullet in float)",
     .bind = taut::verb::kernels::bind};

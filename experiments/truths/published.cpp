@@ -1,9 +1,9 @@
 // Section 8: numbers that papers print, and how near to them the same set-up comes here.
 #include <cmath>
 
+#include "core/reference/textbook.hpp"
 #include "experiments/truths/fit.hpp"
 #include "experiments/truths/probe.hpp"
-#include "experiments/truths/textbook.hpp"
 
 namespace taut {
 
@@ -85,7 +85,7 @@ void xpbd_chain_force(Ledger& ledger) {
     if (!claims(ledger, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(12000 / k);
-    TextbookWithTensions textbook(s, k);
+    Textbook<double> textbook(s, k);
     textbook.load(probe.state());
     textbook.step();
     ledger.equal(solver, "force of the top link of 20 at rest over the weight", "1",

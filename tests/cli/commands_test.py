@@ -244,7 +244,7 @@ class Verbs(CommandLine):
         cores = re.search(r"two threads: ([\d.]+) .* sheets at once: ([\d.]+) .* get ([\d.]+) ", out)
         self.assertGreater(min(map(float, cores.groups())), 0)
         out = self.taut("bench", "contact", *short).out
-        for text in ["contact=swept,order=mesh", "self=grid,order=coloured", "8 x 8, 64 particles"]:
+        for text in ["contact=continuous,order=mesh", "self=grid,order=coloured", "8 x 8, 64 particles"]:
             self.assertIn(text, out)
 
     def test_the_same_scene_under_another_name_is_the_same_case(self):

@@ -18,7 +18,7 @@
 namespace taut {
 namespace {
 
-constexpr const char* kSolvers[] = {"jakobsen", "jakobsen:order=mesh", "jakobsen:layout=packed",
+constexpr const char* kSolvers[] = {"jakobsen", "jakobsen:order=mesh", "jakobsen:layout=batches",
                                     "xpbd", "mass-spring"};
 
 std::unique_ptr<Solver> make(const Scene& scene, const std::string& solver) {
@@ -166,8 +166,8 @@ TEST(AbsentIsFree, NoFlagIsTestedForEachLink) {
       return *branches_per_link(scene, "jakobsen:substeps=1,precision=" + (precision + setting));
     };
     EXPECT_LE(per_link(",order=mesh"), 1.05) << precision;
-    EXPECT_LE(per_link(",layout=packed"), 0.5) << precision;
-    EXPECT_LE(per_link(",layout=strips"), 0.5) << precision;
+    EXPECT_LE(per_link(",layout=batches"), 0.5) << precision;
+    EXPECT_LE(per_link(",layout=interleaved"), 0.5) << precision;
     EXPECT_GE(per_link(",order=mesh"), 0.2) << precision << ": does it count at all?";
   }
 }
@@ -175,7 +175,7 @@ TEST(AbsentIsFree, NoFlagIsTestedForEachLink) {
 TEST(AbsentIsFree, NoFlagIsTestedForEachParticle) {
   if (!branches([] {})) GTEST_SKIP() << "this machine does not let a process be traced";
   for (const char* solver : {"jakobsen:substeps=1,iterations=0,order=mesh",
-                             "jakobsen:substeps=1,iterations=0,layout=strips"}) {
+                             "jakobsen:substeps=1,iterations=0,layout=interleaved"}) {
     const long small = *branches_of_step(bare_sheet(20), solver),
                large = *branches_of_step(bare_sheet(40), solver);
     EXPECT_LE(static_cast<double>(large - small), 0.5 * (40 * 40 - 20 * 20)) << solver;
