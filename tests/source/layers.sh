@@ -12,7 +12,7 @@ core/io                  | core/(model|io)/
 core/solver              | core/(model|solver)/
 core/reference           | core/(model|reference)/
 bullet_ref               | (core/model|bullet_ref)/
-experiments/system       | (core/model|experiments/system)/
+experiments/system       | (core/(model|io)|experiments/system)/
 experiments/metrics      | (core/model|experiments/metrics)/
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
