@@ -36,11 +36,12 @@ std::vector<Record> physics(const std::vector<Case>& cases, const Options& optio
   store.prepare();
   const Session session(store, "taut bench", cases, {});
   Progress progress;
-  const Tally tally =
-      run_cases(cases, store, session,
-                {.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency())),
-                 .progress = [&](const Tally& t, const Record* r) { progress.show(t, r); }});
-  progress.finish(tally);
+  const CampaignProgress campaign = run_cases(
+      cases, store, session,
+      {.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency())),
+       .progress = [&](const CampaignProgress& t, const Record* r) { progress.show(t, r); }});
+  progress.finish(campaign);
+  if (campaign.interrupted) throw Interrupted();
   std::vector<Record> records;
   for (const Case& one : cases)
     if (auto record = store.find(one)) records.push_back(std::move(*record));

@@ -63,7 +63,7 @@ void tell(const Moment& m, int steps) {
             << fastest << " m/s\n";
 }
 
-int run(const Options& options) {
+int run(const Options& options) try {
   const Case one = options.which.make();
   continue_in_right_program(one.choice);
   if (!options.into.empty()) return run_into(one, options.into);
@@ -84,6 +84,9 @@ int run(const Options& options) {
     for (const auto& [name, value] : result.record.resolved_settings)
       std::cerr << name << ": " << value << '\n';
   return kPass;
+} catch (const std::bad_alloc&) {  // while the scene was read
+  if (options.into.empty()) throw;
+  return kOutOfMemory;
 }
 
 std::function<int()> bind(Arguments& arguments) {

@@ -89,11 +89,11 @@ void print_text(const CaseFrontier& result, const std::optional<Prediction>& the
     print_line("theory",
                "none for these settings; there is one for few links, with jakobsen in order=mesh");
   std::string above = std::to_string(found.above) + " values above the bracket, ";
-  if (found.islands.empty()) {
+  if (found.stable_above.empty()) {
     above += "none stable";
   } else {
     above += "NOT MONOTONE: stable again at";
-    for (const double value : found.islands) above += " " + shortest(value);
+    for (const double value : found.stable_above) above += " " + shortest(value);
   }
   if (found.kind != Frontier::Kind::all_stable) print_line("looked at", above);
   print_line("cases", std::to_string(found.probes.size()) + ", of which " +
@@ -114,7 +114,7 @@ Json to_json(const Options& options, const CaseFrontier& result,
   Json all{{"of", options.of}, {"kind", to_string(found.kind)}, {"probes", probes}};
   if (found.kind != Frontier::Kind::none_stable) all["stable"] = found.stable;
   if (found.kind != Frontier::Kind::all_stable) all["unstable"] = found.unstable;
-  all["islands"] = found.islands;
+  all["stable_above"] = found.stable_above;
   if (theory) {
     all["theory"] = {{"kind", to_string(theory->kind)}, {"law", theory->law}};
     if (theory->kind == Frontier::Kind::bracketed) all["theory"]["value"] = theory->value;
@@ -156,14 +156,15 @@ int run(const Options& options) {
   store.prepare();
   const Session session(store, "taut frontier " + first.id, {}, {});
   Progress progress;
-  const CaseFrontier result = find_frontier(question, store, session,
-                                            {.jobs = options.jobs,
-                                             .limits = {},
-                                             .shard = {},
-                                             .only_failed = false,
-                                             .progress = [&](const Tally& t, const Record* record) {
-                                               if (record) progress.show(t, record);
-                                             }});
+  const CaseFrontier result =
+      find_frontier(question, store, session,
+                    {.jobs = options.jobs,
+                     .limits = {},
+                     .shard = {},
+                     .only_failed = false,
+                     .progress = [&](const CampaignProgress& t, const Record* record) {
+                       if (record) progress.show(t, record);
+                     }});
   if (result.frontier.kind == Frontier::Kind::not_answered) return not_answered(result);
   const std::optional<Prediction> theory = predicted_frontier(question);
   if (options.json) {

@@ -49,23 +49,23 @@ int run(const std::vector<std::string>& folders, const std::string& out) {
     if (fs::weakly_canonical(folder) != fs::weakly_canonical(out))
       conflicts += copy_into(store, folder);
 
-  const std::vector<Planned> plan = planned(store.root());
+  const std::vector<ManifestEntry> manifest = read_manifests(store.root());
   std::set<std::string> missing_shards;
   std::size_t there = 0;
-  for (const Planned& one : plan) {
+  for (const ManifestEntry& one : manifest) {
     if (store.find(one.key))
       ++there;
     else
       missing_shards.insert(std::to_string(one.shard) + "/" + std::to_string(one.shards));
   }
-  std::cout << there << "/" << plan.size() << " cases";
+  std::cout << there << "/" << manifest.size() << " cases";
   if (!missing_shards.empty()) {
     std::cout << "; missing from shards";
     for (const std::string& shard : missing_shards) std::cout << ' ' << shard;
   }
   std::cout << "\nstore " << store.digest() << '\n';
   if (conflicts > 0) return kConflict;
-  return there == plan.size() ? kPass : kIncomplete;
+  return there == manifest.size() ? kPass : kIncomplete;
 }
 
 std::function<int()> bind(Arguments& arguments) {

@@ -9,7 +9,6 @@
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/stored.hpp"
-#include "experiments/study/map.hpp"
 
 namespace taut::verb::plot {
 
@@ -62,20 +61,14 @@ std::string hold(const FigureSpec& spec, std::vector<Record>& records, const std
 }
 
 /// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
-int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Record>& inferred,
-         const std::string& scene, const Store& store, const std::filesystem::path& out) {
+int draw(FigureSpec spec, const report::StudyResult& study, const std::string& scene,
+         const Store& store, const std::filesystem::path& out) {
   const report::FigureEntry& entry = report::find_figure(spec.kind);
   if (spec.x.empty()) spec.x = entry.x;
   if (spec.y.empty()) spec.y = entry.y;
-  const auto here = [&](const std::vector<Record>& all) {
-    std::vector<Record> chosen;
-    for (const Record& r : all)
-      if (r.scene == scene) chosen.push_back(r);
-    return chosen;
-  };
-  std::vector<Record> records = here(study.records);
-  const std::vector<Record> guessed =
-      spec.kind == "stability" ? here(inferred) : std::vector<Record>{};
+  std::vector<Record> records;
+  for (const Record& r : study.records)
+    if (r.scene == scene) records.push_back(r);
   if (spec.kind == "scaling") spec.slope = 1;
   const std::string held = spec.kind == "stability" ? "" : hold(spec, records, scene);
   std::vector<report::TimeSeries> series;
@@ -87,7 +80,7 @@ int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Re
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
   spec.file = report::slug(
       scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
-  const report::Figure figure = report::make_figure(spec, {records, series, guessed}, out);
+  const report::Figure figure = report::make_figure(spec, {records, series}, out);
   std::cout << figure.svg.string() << '\n' << figure.pdf.string() << '\n';
   return 1;
 }
@@ -102,7 +95,6 @@ int run(const Options& options) {
     throw InputError("none of the " + std::to_string(result.planned) + " cases of study '" +
                      study.name + "' is in " + options.results +
                      " as this build would run them; taut run makes them");
-  const std::vector<Record> inferred = inferred_records(study, store);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path(options.results) / "figures" /
                                 (study.name + (study.preset.empty() ? "" : "-" + study.preset))
@@ -111,7 +103,7 @@ int run(const Options& options) {
   try {
     for (const FigureSpec& spec : wanted(options, study))
       for (const report::SceneInfo& scene : input.scenes) try {
-          drawn += draw(spec, result, inferred, scene.name, store, out);
+          drawn += draw(spec, result, scene.name, store, out);
         } catch (const InputError& error) {
           std::cerr << scene.name << ": " << error.what() << '\n';
         }

@@ -14,7 +14,6 @@
 #include "experiments/film/film.hpp"
 #include "experiments/report/findings.hpp"
 #include "experiments/report/stored.hpp"
-#include "experiments/study/map.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 

@@ -42,7 +42,7 @@ std::string command_line(const Options& options) {
 void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
   std::vector<std::string> known = report::quantity_names();
   known.emplace_back("setting");
-  for (const Sweep& sweep : study.sweeps) known.push_back(sweep.name);
+  for (const StudyAxis& axis : study.axes) known.push_back(axis.name);
   const auto report = [&](std::size_t i, const std::string& text) {
     wrong.push_back({study.file, 0, 0, "[[plot]] " + std::to_string(i + 1) + ": " + text});
   };
@@ -94,16 +94,10 @@ std::vector<Case> all_cases(const std::vector<Study>& studies) {
   return cases;
 }
 
-int exit_code(const Tally& tally) {
-  if (tally.interrupted) return kInterrupted;
-  if (tally.conflicts > 0) return kConflict;
+int exit_code(const CampaignProgress& campaign) {
+  if (campaign.interrupted) return kInterrupted;
+  if (campaign.conflicts > 0) return kConflict;
   return kPass;
-}
-
-/// Where solvers break.
-void maps(const Options& options) {
-  if (!options.no_report && has_verb("map"))
-    invoke("map", {"--quiet", "--jobs", std::to_string(options.jobs), "--out", options.out});
 }
 
 /// What accuracy costs: exclusive, so after everything else has ended. A machine too noisy to judge
@@ -122,7 +116,8 @@ void prove(const Options& options) {
   std::cerr << "holding solvers to closed forms and published numbers\n";
   invoke("verify", {"--quiet", "-j", jobs, "--out", options.out + "/verify.json"});
   std::cerr << "comparing with the committed baselines\n";
-  invoke("check", {"--record", "-j", jobs, "--out", options.out});
+  if (invoke("check", {"--record", "-j", jobs, "--out", options.out}) == kInterrupted)
+    throw Interrupted();
 }
 
 int report(const Options& options) {
@@ -143,7 +138,10 @@ int run(Options options) {
     if (options.preset.empty()) options.preset = kMainPreset;
   }
   const Shard shard = Shard::parse(options.shard);
-  const std::vector<Case> cases = all_cases(load_studies(options));
+  std::vector<Study> studies = load_studies(options);
+  if (bare && !options.no_report)  // where solvers break
+    for (const std::string& name : shipped_maps()) studies.push_back(load_study(name, kMainPreset));
+  const std::vector<Case> cases = all_cases(studies);
   if (cases.empty()) {
     std::cerr << "these studies have no case: their exclusions leave out all\n";
     return kNothing;
@@ -152,27 +150,29 @@ int run(Options options) {
   store.prepare();
   const Session session(store, command_line(options), cases, shard);
   Progress progress;
-  const Tally tally = run_cases(
-      cases, store, session,
-      {.jobs = options.jobs,
-       .limits = {options.seconds, static_cast<std::size_t>(options.megabytes) << 20},
-       .shard = shard,
-       .only_failed = options.only == "failed",
-       .progress = [&](const Tally& t, const Record* record) { progress.show(t, record); }});
-  progress.finish(tally);
-  if (tally.conflicts > 0)
-    std::cerr << tally.conflicts << " cases gave another result than the one stored: see "
+  const CampaignProgress campaign =
+      run_cases(cases, store, session,
+                {.jobs = options.jobs,
+                 .limits = {options.seconds, static_cast<std::size_t>(options.megabytes) << 20},
+                 .shard = shard,
+                 .only_failed = options.only == "failed",
+                 .progress = [&](const CampaignProgress& t, const Record* record) {
+                   progress.show(t, record);
+                 }});
+  progress.finish(campaign);
+  if (campaign.conflicts > 0)
+    std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
               << (store.root() / "conflicts").string() << '\n';
-  if (tally.interrupted)
+  if (campaign.interrupted)
     std::cerr << "interrupted; the same command goes on where this one stopped\n";
   std::cerr << "store " << store.digest() << '\n';
-  if (const int code = exit_code(tally); code != kPass) return code;
-  if (tally.cases == 0 && options.only == "failed") std::cerr << "no stored failure to run again\n";
+  if (const int code = exit_code(campaign); code != kPass) return code;
+  if (campaign.cases == 0 && options.only == "failed")
+    std::cerr << "no stored failure to run again\n";
   if (!bare) {
     std::cout << options.out << '\n';
     return kPass;
   }
-  maps(options);
   bench(options);
   prove(options);
   return report(options);

@@ -21,16 +21,18 @@ void run_missing(const std::vector<Case>& cases, const Store& store, const Basel
   store.prepare();
   const Session session(store, "taut check " + result.name, cases, {});
   Progress progress;
-  const Tally tally = run_cases(
-      cases, store, session,
-      {.jobs = options.jobs,
-       .limits = {},
-       .shard = {},
-       .only_failed = false,
-       .progress = [&](const Tally& t, const Record* record) { progress.show(t, record); }});
-  progress.finish(tally);
-  result.conflict = tally.conflicts > 0;
-  result.interrupted = tally.interrupted;
+  const CampaignProgress campaign =
+      run_cases(cases, store, session,
+                {.jobs = options.jobs,
+                 .limits = {},
+                 .shard = {},
+                 .only_failed = false,
+                 .progress = [&](const CampaignProgress& t, const Record* record) {
+                   progress.show(t, record);
+                 }});
+  progress.finish(campaign);
+  result.conflict = campaign.conflicts > 0;
+  result.interrupted = campaign.interrupted;
 }
 
 /// Runs all cases again, beside the store, and marks those whose result is not the same to the bit.

@@ -107,7 +107,13 @@ int command_line(int argc, char** argv) {
   try {
     std::string joined;
     std::vector<char*> words = join_verb(argc, argv, joined);
-    return run_verb(static_cast<int>(words.size()), words.data());
+    const int code = run_verb(static_cast<int>(words.size()), words.data());
+    if (std::cout.flush()) return code;
+    std::cerr << "the output cannot be written\n";
+  } catch (const Interrupted&) {
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "out of memory\n";
   } catch (const InputError& error) {
     std::cerr << error.what() << '\n';
   } catch (const std::filesystem::filesystem_error& error) {

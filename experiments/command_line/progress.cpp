@@ -25,18 +25,18 @@ std::string outcome(const Record& record) {
 
 }  // namespace
 
-std::string counts(const Tally& tally) {
+std::string counts(const CampaignProgress& campaign) {
   std::string text;
-  for (const auto& [kind, count] : tally.by_status)
+  for (const auto& [kind, count] : campaign.by_status)
     text += (text.empty() ? "" : ", ") + std::string(to_string(kind)) + " " + std::to_string(count);
   return text.empty() ? "no case" : text;
 }
 
 Progress::Progress() : start_(std::chrono::steady_clock::now()), terminal_(isatty(2) == 1) {}
 
-void Progress::show(const Tally& tally, const Record* record) {
+void Progress::show(const CampaignProgress& campaign, const Record* record) {
   const std::string place =
-      "[" + std::to_string(tally.done()) + "/" + std::to_string(tally.cases) + "] ";
+      "[" + std::to_string(campaign.done()) + "/" + std::to_string(campaign.cases) + "] ";
   if (!terminal_) {
     if (record) std::cerr << place << record->id << ": " << outcome(*record) << '\n';
     return;
@@ -45,16 +45,16 @@ void Progress::show(const Tally& tally, const Record* record) {
   if (record && !record->status.is_result())
     std::cerr << "\r\033[K" << record->id << ": " << outcome(*record) << '\n';
   std::string left = "?";
-  if (tally.work_done > 0)
-    left = clock_text(elapsed.count() * (tally.work - tally.work_done) / tally.work_done);
-  std::cerr << "\r\033[K" << place << counts(tally) << "  elapsed " << clock_text(elapsed.count())
-            << "  left " << left << std::flush;
+  if (campaign.work_done > 0)
+    left = clock_text(elapsed.count() * (campaign.work - campaign.work_done) / campaign.work_done);
+  std::cerr << "\r\033[K" << place << counts(campaign) << "  elapsed "
+            << clock_text(elapsed.count()) << "  left " << left << std::flush;
 }
 
-void Progress::finish(const Tally& tally) {
+void Progress::finish(const CampaignProgress& campaign) {
   if (terminal_) std::cerr << "\r\033[K";
-  std::cerr << tally.done() << "/" << tally.cases << " cases: " << counts(tally) << " ("
-            << tally.reused << " were stored already)\n";
+  std::cerr << campaign.done() << "/" << campaign.cases << " cases: " << counts(campaign) << " ("
+            << campaign.reused << " were stored already)\n";
 }
 
 }  // namespace taut

@@ -11,8 +11,8 @@ namespace taut {
 class Progress {
  public:
   Progress();
-  void show(const Tally&, const Record*);
-  void finish(const Tally&);  ///< the last line: how the cases ended
+  void show(const CampaignProgress&, const Record*);
+  void finish(const CampaignProgress&);  ///< the last line: how the cases ended
 
  private:
   std::chrono::steady_clock::time_point start_;
@@ -20,6 +20,6 @@ class Progress {
 };
 
 /// "ok 88, exploded 4".
-std::string counts(const Tally&);
+std::string counts(const CampaignProgress&);
 
 }  // namespace taut

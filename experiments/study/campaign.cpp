@@ -29,7 +29,7 @@ class Campaign {
   Campaign(const Store& store, const Session& session, const CampaignOptions& options)
       : store_(store), session_(session), options_(options) {}
 
-  Tally run(const std::vector<Case>& cases) {
+  CampaignProgress run(const std::vector<Case>& cases) {
     sort_out(cases);
     const GracefulStop signals;
     while (!waiting_.empty() || !running_.empty()) {
@@ -43,13 +43,13 @@ class Campaign {
       reap();
       report(nullptr);
     }
-    tally_.interrupted = GracefulStop::requested();
+    progress_.interrupted = GracefulStop::requested();
     while (!running_.empty()) {
       const std::filesystem::path folder = running_.front().folder();
       running_.pop_front();
       std::filesystem::remove_all(folder);
     }
-    return tally_;
+    return progress_;
   }
 
  private:
@@ -59,13 +59,13 @@ class Campaign {
       const std::optional<Record> stored = store_.find(one);
       const bool failed = stored && !stored->status.is_result();
       if (options_.only_failed && !failed) continue;
-      ++tally_.cases;
+      ++progress_.cases;
       if (stored && !(options_.only_failed && failed)) {
-        ++tally_.reused;
-        ++tally_.by_status[stored->status.kind];
+        ++progress_.reused;
+        ++progress_.by_status[stored->status.kind];
         session_.done(*stored);
       } else {
-        tally_.work += estimated_work(one);
+        progress_.work += estimated_work(one);
         waiting_.push_back(&one);
       }
     }
@@ -92,17 +92,17 @@ class Campaign {
       }
       const Store::Commit commit = store_.commit(one->folder(), *record);
       session_.done(*record);
-      ++tally_.ran;
-      ++tally_.by_status[record->status.kind];
-      if (commit == Store::Commit::conflict) ++tally_.conflicts;
-      tally_.work_done += estimated_work(one->of());
+      ++progress_.ran;
+      ++progress_.by_status[record->status.kind];
+      if (commit == Store::Commit::conflict) ++progress_.conflicts;
+      progress_.work_done += estimated_work(one->of());
       one = running_.erase(one);
       report(&*record);
     }
   }
 
   void report(const Record* record) const {
-    if (options_.progress) options_.progress(tally_, record);
+    if (options_.progress) options_.progress(progress_, record);
   }
 
   const Store& store_;
@@ -110,7 +110,7 @@ class Campaign {
   const CampaignOptions& options_;
   std::list<const Case*> waiting_;
   std::list<IsolatedCase> running_;
-  Tally tally_;
+  CampaignProgress progress_;
 };
 
 Record wait_for(IsolatedCase& running) {
@@ -138,8 +138,8 @@ Record run_again(const Case& one, const Store& store, const Limits& limits) {
   return record;
 }
 
-Tally run_cases(const std::vector<Case>& cases, const Store& store, const Session& session,
-                const CampaignOptions& options) {
+CampaignProgress run_cases(const std::vector<Case>& cases, const Store& store,
+                           const Session& session, const CampaignOptions& options) {
   return Campaign(store, session, options).run(cases);
 }
 

@@ -13,7 +13,7 @@
 namespace taut {
 
 /// How far a campaign is.
-struct Tally {
+struct CampaignProgress {
   std::size_t cases = 0;      ///< of this shard
   std::size_t reused = 0;     ///< were stored already
   std::size_t ran = 0;        ///< have been run now
@@ -31,14 +31,15 @@ struct CampaignOptions {
   Shard shard;
   bool only_failed = false;  ///< run again what is stored as a failure, and nothing else
   /// After every case that was run, and about twice a second (record: nullptr).
-  std::function<void(const Tally&, const Record*)> progress;
+  std::function<void(const CampaignProgress&, const Record*)> progress;
 };
 
 /// Runs those cases that the store does not have, each in a process of its own, the longest first,
 /// and commits each as it ends. SIGINT and SIGTERM end it after the running cases are killed; what
 /// was finished is stored. Throws InputError if results cannot be written: nothing finished is
 /// lost.
-Tally run_cases(const std::vector<Case>&, const Store&, const Session&, const CampaignOptions&);
+CampaignProgress run_cases(const std::vector<Case>&, const Store&, const Session&,
+                           const CampaignOptions&);
 
 /// The stored record of a case, or the one that a process of its own gives and that is stored now.
 /// Throws InputError if the result differs from one that is stored.

@@ -50,7 +50,7 @@ class BadInput(CommandLine):
 scenes = ["hang", "hnag"]
 solvers = ["jakobsen:iterations=-1"]
 sovers = []
-[sweep]
+[axes]
 iteratons = [1, 2]
 substeps = [1, 0]
 [preset.quick]
@@ -67,7 +67,7 @@ x = "iterations"
         (self.folder / "bad.toml").write_text('''question = "?"
 scenes = ["hang"]
 solvers = ["jakobsen"]
-[sweep]
+[axes]
 iteratons = [1, 2]
 substeps = [1, 0]
 "time.dt" = 3
@@ -83,7 +83,7 @@ substeps = [1, 0]
 scenes = ["hang"]
 solvers = ["jakobsen"]
 exclude = [{ scen = "hang" }, { iteratons = 1 }]
-[sweep]
+[axes]
 iterations = [1, 2]
 [[plot]]
 kind = "series"
@@ -104,12 +104,12 @@ colour = "red"
         self.refuse("run", self.study(scenes=["hang", "./small.toml"]), says=["small.toml:", "unknown key 'mas'"])
 
     def test_a_swept_scene_key_that_does_not_exist(self):
-        self.refuse("run", self.study(rest='[sweep]\n"time.td" = [1]\n'), says="unknown key 'td'")
+        self.refuse("run", self.study(rest='[axes]\n"time.td" = [1]\n'), says="unknown key 'td'")
 
 
 class Verbs(CommandLine):
     def test_plots_of_values_over_time_and_what_is_held_is_said(self):
-        study = self.study(rest="sweep.iterations = [1, 2]\nsweep.time.dt = [0.02, 0.01]\n"
+        study = self.study(rest="axes.iterations = [1, 2]\naxes.time.dt = [0.02, 0.01]\n"
                                 '[[plot]]\nkind = "error-iterations"\nfile = "mine"\n')
         self.taut("run", study)
         drawn = self.taut("plot", study)

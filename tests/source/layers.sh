@@ -16,7 +16,7 @@ core/solver/constraints  | core/(model/|solver/((simd|layout|constraints)/|threa
 core/solver/contact      | core/(model|solver/(simd|layout|contact))/
 core/reference           | core/(model|reference)/
 bullet_ref               | (core/model|bullet_ref)/
-experiments/system       | (core/model|experiments/system)/
+experiments/system       | (core/(model|io)|experiments/system)/
 experiments/metrics      | (core/model|experiments/metrics)/
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/

@@ -12,6 +12,7 @@ namespace {
 BenchedCase benched(const std::string& solver, double stretch, double cost_per_step,
                     double dt = 0.5) {
   BenchedCase c;
+  c.record.key = std::string(64, 'a');
   c.record.id = "sheet " + solver;
   c.record.spec = {"sheet", {}, solver};
   c.record.scene = "sheet";
