@@ -26,7 +26,6 @@ struct TimeSeries {
 struct FigureData {
   std::span<const Record> records;
   std::span<const TimeSeries> series;
-  std::span<const Record> inferred = {};  ///< of a map: outcomes that neighbouring cells imply
 };
 
 enum class Format { svg, pdf };

@@ -9,7 +9,6 @@
 #include "experiments/report/comparison.hpp"
 #include "experiments/report/curves.hpp"
 #include "experiments/report/palette.hpp"
-#include "experiments/study/map.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {
@@ -96,12 +95,8 @@ std::vector<MapResult> stored_maps(const std::vector<Study>& studies, const Stor
       const auto option = plot->options.find(name);
       return option == plot->options.end() ? std::string(otherwise) : option->second;
     };
-    MapResult map{study.name,
-                  study.question,
-                  axis("x", "dt"),
-                  axis("y", "iterations"),
-                  collect(study, store).records,
-                  inferred_records(study, store)};
+    MapResult map{study.name, study.question, axis("x", "dt"), axis("y", "iterations"),
+                  collect(study, store).records};
     if (!map.records.empty()) maps.push_back(std::move(map));
   }
   return maps;

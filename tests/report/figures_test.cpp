@@ -101,25 +101,6 @@ TEST_F(Figures, StabilityMapHasACellAndAGlyphForEachOutcome) {
   EXPECT_EQ(figure.table.rows.size(), records.size());
 }
 
-TEST_F(Figures, CellsThatWereNotRunAreSmallAndHaveNoGlyph) {
-  auto records = synthetic::time_steps("hang");
-  std::vector<Record> inferred;
-  for (std::size_t i = 1; i < records.size(); i += 2) inferred.push_back(records[i]);
-  for (const Record& one : inferred)
-    std::erase_if(records, [&](const Record& r) { return r.id == one.id; });
-  fs::create_directories(dir_);
-  const Figure figure = make_figure({.kind = "stability"}, {records, {}, inferred}, dir_);
-  const std::string svg = read_text(figure.svg);
-  std::map<Status::Kind, std::size_t> counts;
-  for (const Record& r : records) ++counts[r.status.kind];
-  for (const auto& [kind, n] : counts)
-    if (const std::string glyph(status_style(kind).glyph); !glyph.empty()) {
-      EXPECT_EQ(count(svg, ">" + glyph + "<"), n) << to_string(kind);
-    }
-  EXPECT_EQ(figure.table.rows.size(), records.size() + inferred.size());
-  EXPECT_NE(figure.description.find("not run"), std::string::npos);
-}
-
 TEST_F(Figures, NamesWithQuotesCommasAndLineBreaksReachNobodysSyntax) {
   auto records = synthetic::iterations("hang");
   for (Record& r : records) {

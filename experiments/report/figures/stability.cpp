@@ -12,24 +12,18 @@ namespace taut::report::figure::stability {
 
 namespace {
 
-constexpr double kGap = 0.045;        ///< between cells, in cells
-constexpr double kBeside = 56;        ///< px between panels side by side
-constexpr double kBelow = 60;         ///< px between panels one below the other
-constexpr double kInferredGap = 0.3;  ///< around a cell that was not run
-
-struct Cell {
-  const Record* record = nullptr;
-  bool inferred = false;  ///< not run: neighbouring cells say so
-};
+constexpr double kGap = 0.045;  ///< between cells, in cells
+constexpr double kBeside = 56;  ///< px between panels side by side
+constexpr double kBelow = 60;   ///< px between panels one below the other
 
 /// One solver's map: a case for each (column, row).
 struct Panel {
   std::string label, solver;
-  std::map<std::pair<std::size_t, std::size_t>, Cell> cells;
+  std::map<std::pair<std::size_t, std::size_t>, const Record*> cells;
 };
 
 struct Map {
-  std::vector<Record> records;        ///< run ones, then inferred ones
+  std::vector<Record> records;
   std::vector<double> columns, rows;  ///< SI values, ascending
   std::vector<Panel> panels;
 };
@@ -52,7 +46,6 @@ Record held(Record r, const FigureSpec& spec) {
 Map make_map(const FigureSpec& spec, const FigureData& data) {
   Map map;
   map.records.assign(data.records.begin(), data.records.end());
-  map.records.insert(map.records.end(), data.inferred.begin(), data.inferred.end());
   std::set<double> columns, rows;
   for (const Record& r : map.records)
     if (const double x = value_of(r, spec.x), y = value_of(r, spec.y);
@@ -69,12 +62,11 @@ Map make_map(const FigureSpec& spec, const FigureData& data) {
   for (const Curve& curve : make_curves(flat, spec.x, spec.y, spec.x)) {
     Panel panel{curve.label, curve.solver, {}};
     for (const Point& p : curve.points) {
-      const auto at = static_cast<std::size_t>(p.record - flat.data());
-      const Record& r = map.records[at];
+      const Record& r = map.records[static_cast<std::size_t>(p.record - flat.data())];
       const double x = value_of(r, spec.x), y = value_of(r, spec.y);
       if (!std::isfinite(x) || !std::isfinite(y)) continue;
-      Cell& cell = panel.cells[{index(map.columns, x), index(map.rows, y)}];
-      if (cell.record == nullptr || worse(r, *cell.record)) cell = {&r, at >= data.records.size()};
+      const Record*& cell = panel.cells[{index(map.columns, x), index(map.rows, y)}];
+      if (!cell || worse(r, *cell)) cell = &r;
     }
     if (!panel.cells.empty()) map.panels.push_back(std::move(panel));
   }
@@ -84,15 +76,14 @@ Map make_map(const FigureSpec& spec, const FigureData& data) {
 }
 
 std::string make_csv(const Map& map) {
-  std::string out = "panel,column,row,x,y,status,reason,case,run\n";
+  std::string out = "panel,column,row,x,y,status,reason,case\n";
   for (const Panel& panel : map.panels) {
     if (&panel != &map.panels.front()) out += "\n\n";
-    for (const auto& [at, cell] : panel.cells)
+    for (const auto& [at, record] : panel.cells)
       out += csv_field(panel.label) + "," + std::to_string(at.first) + "," +
              std::to_string(at.second) + "," + exact(map.columns[at.first]) + "," +
-             exact(map.rows[at.second]) + "," + std::string(to_string(cell.record->status.kind)) +
-             "," + csv_field(cell.record->status.reason) + "," + csv_field(cell.record->id) + "," +
-             (cell.inferred ? "no" : "yes") + "\n";
+             exact(map.rows[at.second]) + "," + std::string(to_string(record->status.kind)) + "," +
+             csv_field(record->status.reason) + "," + csv_field(record->id) + "\n";
   }
   return out;
 }
@@ -136,7 +127,7 @@ std::string panel_titles(const FigureSpec& spec, const PlotArea& whole, const Pl
 std::set<Status::Kind> kinds_in(const Map& map) {
   std::set<Status::Kind> kinds;
   for (const Panel& panel : map.panels)
-    for (const auto& [at, cell] : panel.cells) kinds.insert(cell.record->status.kind);
+    for (const auto& [at, record] : panel.cells) kinds.insert(record->status.kind);
   return kinds;
 }
 
@@ -159,14 +150,13 @@ std::string plot_panel(const Map& map, std::size_t index, const PlotArea& at) {
                                std::to_string(index) + " using (strcol(6) eq '" + name +
                                "' ? $2 : 1/0):3:";
     first = false;
-    const std::string half =
-        "(strcol(9) eq 'no' ? " + exact(0.5 - kInferredGap) + " : " + exact(0.5 - kGap) + ")";
+    const std::string half = "(" + exact(0.5 - kGap) + ")";
     out += source + half + ":" + half + " with boxxyerror fs solid 1 noborder lc rgb '" +
            std::string(style.colour.light) + "' notitle";
     if (!style.glyph.empty() && !font.empty())
       out += ", \\\n  '@CSV@' index " + std::to_string(index) + " using (strcol(6) eq '" + name +
-             "' && strcol(9) eq 'yes' ? $2 : 1/0):3:(" + gnuplot_string(style.glyph) +
-             ") with labels center tc rgb '" + std::string(style.ink.light) + font;
+             "' ? $2 : 1/0):3:(" + gnuplot_string(style.glyph) + ") with labels center tc rgb '" +
+             std::string(style.ink.light) + font;
   }
   return out + "\n";
 }
@@ -261,12 +251,10 @@ Drawing draw(const FigureSpec& spec, const FigureData& data) {
   drawing.script = make_script(map, spec, drawing.area);
   drawing.table.header = {"solver", qx.title, qy.title, "status"};
   drawing.description = "Outcome for each " + qx.title + " and " + qy.title + ". ";
-  if (!data.inferred.empty())
-    drawing.description += "Small squares were not run: their neighbours agree. ";
   for (const Panel& panel : map.panels) {
     std::map<Status::Kind, int> counts;
-    for (const auto& [at, cell] : panel.cells) {
-      const Status& outcome = cell.record->status;
+    for (const auto& [at, record] : panel.cells) {
+      const Status& outcome = record->status;
       ++counts[outcome.kind];
       std::string status(to_string(outcome.kind));
       if (!outcome.reason.empty()) status += ": " + outcome.reason;

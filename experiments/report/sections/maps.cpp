@@ -7,19 +7,11 @@ namespace taut::report::section::maps {
 
 namespace {
 
-/// A solver's part of a map on one scene.
-struct Part {
-  std::vector<Record> records, inferred;
-};
-
 std::string card(Page& page, const MapResult& map, const std::string& scene,
-                 const std::string& solver, const Part& part) {
+                 const std::string& solver, const std::vector<Record>& records) {
   std::set<Status::Kind> kinds;
-  for (const Record& r : part.records) kinds.insert(r.status.kind);
-  const std::size_t run = part.records.size(), all = run + part.inferred.size();
-  const std::string caption = status_legend(kinds, false) + " " + std::to_string(run) + " of " +
-                              std::to_string(all) +
-                              " cells were run; small squares follow from their neighbours.";
+  for (const Record& r : records) kinds.insert(r.status.kind);
+  const std::string caption = status_legend(kinds, false);
   return "<div data-solver=\"" + escape_html(solver) + "\" class=\"half\">" +
          page.figure({.kind = "stability",
                       .x = map.x,
@@ -28,19 +20,15 @@ std::string card(Page& page, const MapResult& map, const std::string& scene,
                       .file = "map-" + solver,
                       .width = 540,
                       .height = 330},
-                     {part.records, {}, part.inferred}, solver_title(solver) + ", " + scene,
-                     caption) +
+                     {records, {}}, solver_title(solver) + ", " + scene, caption) +
          "</div>";
 }
 
 /// Cards of one study: a scene at a time, our solver first, then by name.
 std::string cards(Page& page, const MapResult& map) {
-  std::map<std::string, std::map<std::pair<bool, std::string>, Part>> parts;
-  const auto part = [&](const Record& r) -> Part& {
-    return parts[r.scene][{r.solver != "jakobsen", r.solver}];
-  };
-  for (const Record& r : map.records) part(r).records.push_back(r);
-  for (const Record& r : map.inferred) part(r).inferred.push_back(r);
+  std::map<std::string, std::map<std::pair<bool, std::string>, std::vector<Record>>> parts;
+  for (const Record& r : map.records)
+    parts[r.scene][{r.solver != "jakobsen", r.solver}].push_back(r);
   std::string out;
   for (const auto& [scene, solvers] : parts)
     for (const auto& [solver, cells] : solvers) out += card(page, map, scene, solver.second, cells);
@@ -50,9 +38,9 @@ std::string cards(Page& page, const MapResult& map) {
 std::string render(Page& page, const std::string&) {
   std::string out =
       "<section id=\"maps\"><h2>Where solvers break</h2><p class=\"lead\">How cases end over two "
-      "settings. Only cells along borders between outcomes are run.</p>";
+      "settings.</p>";
   if (page.input().maps.empty())
-    return out + "<div class=\"card\">" + absent("No map was run; this does it:", "taut map") +
+    return out + "<div class=\"card\">" + absent("No map was run; this does it:", "taut run") +
            "</div></section>\n";
   for (const MapResult& map : page.input().maps)
     out += "<h3>" + escape_html(map.question) + "</h3><div class=\"cards\">" + cards(page, map) +
