@@ -61,8 +61,10 @@ class RowComparison {
       return;
     }
     if (before.projections != now.projections)
-      add(Change::Kind::value_moved, "projections per step " + std::to_string(before.projections) +
-                                         " -> " + std::to_string(now.projections));
+      move("projections", static_cast<double>(before.projections),
+           static_cast<double>(now.projections),
+           "projections per step " + std::to_string(before.projections) + " -> " +
+               std::to_string(now.projections));
     for (const auto& [name, value] : before.values) compare(name, value, tolerances.of(name));
     for (const auto& [name, value] : now.values)
       if (!before.values.count(name) && !tolerances.of(name).ignored && !std::isnan(value))
@@ -75,6 +77,12 @@ class RowComparison {
   void add(Change::Kind kind, const std::string& text) {
     result_.findings.push_back({kind, now_.id, now_.solver(), text});
   }
+  void move(const std::string& name, double before, double now, const std::string& text) {
+    add(Change::Kind::value_moved, text);
+    Change& change = result_.findings.back();
+    change.scene = now_.spec.scene, change.value = name;
+    change.before = before, change.now = now;
+  }
   void compare(const std::string& name, double before, const Tolerance& tolerance) {
     if (tolerance.ignored) return;
     const auto now = now_.values.find(name);
@@ -84,7 +92,7 @@ class RowComparison {
     }
     ++result_.values;
     if (!tolerance.holds(now->second, before))
-      add(Change::Kind::value_moved, moved_text(name, before, now->second, tolerance));
+      move(name, before, now->second, moved_text(name, before, now->second, tolerance));
   }
 
   const BaselineRow& now_;

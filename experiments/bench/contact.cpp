@@ -88,7 +88,7 @@ class Subject {
     repeats_ = std::clamp(static_cast<int>(seconds / std::max(once * row_.steps, 1e-9)), 1, 10000);
   }
 
-  /// Adds one sample: every solver forth and back.
+  /// Adds one sample: every solver in alternating order (ABBA).
   void sample() {
     double t[2][2];
     for (std::size_t i = 0; i < 4; ++i) t[i / 2][i % 2] = time(i / 2, i % 2);

@@ -31,8 +31,9 @@ struct ContactBenchOptions {
 
 /// The scenes `plane`, `ball`, `box` and `crumple` with structural links alone, run until the cloth
 /// lies on what it falls on. From that state: steps of 2 and of 18 sweeps, with contact and
-/// without, all interleaved, forth and back; one thread, CPU time. A step of self-collision that
-/// begins afresh has to search for pairs, so it is timed in one step and in eight.
+/// without, all interleaved in alternating order (ABBA); one thread, CPU time. A step of
+/// self-collision that begins afresh has to search for pairs, so it is timed in one step and in
+/// eight.
 std::vector<ContactRow> bench_contact(const ContactBenchOptions&);
 
 }  // namespace taut

@@ -47,9 +47,9 @@ struct KernelBenchOptions {
   bool bullet = true;
 };
 
-/// All kernels interleaved: each round times every one of them, forth and then back. A projection's
-/// time is the difference between steps of 18 and of 2 sweeps, so that what a step costs besides
-/// drops out. One thread: CPU time; several: wall time.
+/// All kernels interleaved: each round times every one of them in alternating order (ABBA). A
+/// projection's time is the difference between steps of 18 and of 2 sweeps, so that what a step
+/// costs besides drops out. One thread: CPU time; several: wall time.
 KernelBench bench_kernels(const KernelBenchOptions&);
 
 /// Seconds of one addition or multiplication of floats (doubles) on this machine's widest vectors

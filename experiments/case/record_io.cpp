@@ -90,6 +90,20 @@ Record record_of(const JsonReader& j) {
   return r;
 }
 
+}  // namespace
+
+bool completed(const Status& status) {
+  return status.kind == Status::Kind::ok || status.kind == Status::Kind::unsettled;
+}
+
+std::string describe(const Status& status) {
+  std::string text(to_string(status.kind));
+  if (!status.reason.empty()) text += " (" + status.reason + ")";
+  if (status.step >= 0) text += " at step " + std::to_string(status.step);
+  if (status.vertex >= 0) text += ", vertex " + std::to_string(status.vertex);
+  return text;
+}
+
 std::string to_json(const Record& r, int indent) {
   Json j = result_json(r);
   j.update({{"schema", kRecordSchema},

@@ -10,6 +10,12 @@ namespace taut {
 
 class JsonReader;
 
+/// It ran to its end, so that its values say something.
+bool completed(const Status&);
+
+/// "exploded (energy) at step 12, vertex 3".
+std::string describe(const Status&);
+
 /// Version of every JSON text below; readers refuse others.
 inline constexpr int kRecordSchema = 1;
 

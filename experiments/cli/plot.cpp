@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/axis.hpp"
 #include "experiments/report/curves.hpp"
@@ -18,6 +19,7 @@ using report::FigureSpec;
 
 struct Options {
   std::string study, preset, kind, x, y, title, results = default_results(), out;
+  bool json = false;
 };
 
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
@@ -61,14 +63,13 @@ std::string hold(const FigureSpec& spec, std::vector<Record>& records, const std
 }
 
 /// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
-int draw(FigureSpec spec, const report::StudyResult& study, const std::string& scene,
-         const Store& store, const std::filesystem::path& out) {
+report::Figure draw(FigureSpec spec, const report::StudyResult& study, const std::string& scene,
+                    const Store& store, const std::filesystem::path& out) {
   const report::FigureEntry& entry = report::find_figure(spec.kind);
   if (spec.x.empty()) spec.x = entry.x;
   if (spec.y.empty()) spec.y = entry.y;
-  std::vector<Record> records;
-  for (const Record& r : study.records)
-    if (r.scene == scene) records.push_back(r);
+  std::vector<Record> records = study.records;
+  std::erase_if(records, [&](const Record& r) { return r.scene != scene; });
   if (spec.kind == "scaling") spec.slope = 1;
   const std::string held = spec.kind == "stability" ? "" : hold(spec, records, scene);
   std::vector<report::TimeSeries> series;
@@ -80,9 +81,7 @@ int draw(FigureSpec spec, const report::StudyResult& study, const std::string& s
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
   spec.file = report::slug(
       scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
-  const report::Figure figure = report::make_figure(spec, {records, series}, out);
-  std::cout << figure.svg.string() << '\n' << figure.pdf.string() << '\n';
-  return 1;
+  return report::make_figure(spec, {records, series}, out);
 }
 
 int run(const Options& options) {
@@ -99,11 +98,12 @@ int run(const Options& options) {
       options.out.empty() ? std::filesystem::path(options.results) / "figures" /
                                 (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                           : std::filesystem::path(options.out);
-  int drawn = 0;
+  std::vector<std::string> files;
   try {
     for (const FigureSpec& spec : wanted(options, study))
       for (const report::SceneInfo& scene : input.scenes) try {
-          drawn += draw(spec, result, scene.name, store, out);
+          const report::Figure figure = draw(spec, result, scene.name, store, out);
+          for (const auto& file : {figure.svg, figure.pdf}) files.push_back(file.string());
         } catch (const InputError& error) {
           std::cerr << scene.name << ": " << error.what() << '\n';
         }
@@ -111,27 +111,30 @@ int run(const Options& options) {
     std::cerr << error.what() << '\n';
     return kEnvironment;
   }
-  return drawn > 0 ? kPass : kNothing;
+  print_files(files, options.json);
+  return files.empty() ? kNothing : kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   std::string kinds;
+  std::vector<std::string> names;
   for (const report::FigureEntry* entry : report::figures())
-    kinds += (kinds.empty() ? "" : ", ") + std::string(entry->name);
-  arguments.option("STUDY", options->study, "Name or path of a study that was run").required();
-  arguments.option("--preset", options->preset, "The preset under which it was run");
-  arguments.option("--kind", options->kind,
-                   "One of: " + kinds + " (default: what the study asks for)");
-  arguments.option("--x", options->x,
-                   "Value on x: dt, iterations, projections or a metric's value");
-  arguments.option("--y", options->y, "Value on y, such as stretch.rms");
-  arguments.option("--title", options->title, "Title above the figure");
-  arguments.option("--results", options->results,
-                   "Results folder (default: " + options->results + ")");
-  arguments.option(
+    names.emplace_back(entry->name), kinds += (kinds.empty() ? "" : ", ") + names.back();
+  app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
+  app.add_option("--preset", options->preset, "The preset under which it was run");
+  app.add_option("--kind", options->kind,
+                 "One of: " + kinds + " (default: what the study asks for)")
+      ->check(known("kind of figure", names));
+  app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
+  app.add_option("--y", options->y, "Value on y, such as stretch.rms");
+  app.add_option("--title", options->title, "Title above the figure");
+  app.add_option("--results", options->results,
+                 "Results folder (default: " + options->results + ")");
+  app.add_option(
       "--out", options->out,
       "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
+  add_json(app, options->json, "The names of the files");
   return [options] { return run(*options); };
 }
 
@@ -139,6 +142,7 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::plot
 
 TAUT_VERB(plot) = {.name = "plot",
+                   .group = VerbGroup::studies,
                    .summary = "Draws the figures of a study: SVG, PDF, gnuplot script and CSV",
                    .example =
                        "taut plot iterations --preset quick\n  taut plot time-steps --kind "

@@ -3,10 +3,10 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <thread>
 
 #include "experiments/baseline/frontier_baseline.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"
@@ -75,14 +75,11 @@ const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
 
 }  // namespace
 
-void BaselineOptions::bind(Arguments& arguments) {
+void BaselineOptions::bind(CLI::App& app) {
   baselines = results_folder() / "baselines";
-  out = default_results();
-  jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  arguments.option("--baselines", baselines,
-                   "Folder of the baselines (default: " + baselines + ")");
-  arguments.option("--out", out, "Results folder (default: " + out + ")");
-  arguments.option("-j,--jobs", jobs, "Cases at a time (default: one per core)").range(1, 1024);
+  app.add_option("--baselines", baselines, "Folder of the baselines (default: " + baselines + ")");
+  add_results(app, out);
+  add_jobs(app, jobs);
 }
 
 Comparison BaselineStudy::compare() const {

@@ -9,31 +9,20 @@ namespace taut::report {
 
 namespace {
 
-constexpr double kTolerance = 0.05;
-
 ScenePrice price_on(const SceneBench& bench, const std::string& first, const std::string& other) {
-  const std::vector<Offer> offers = bench.offers(kPricedMetric);
+  const std::vector<Candidate> candidates = bench.candidates(kPricedMetric);
   ScenePrice price{bench.scene,
-                   cheapest_within(offers, first, kPricedError),
-                   cheapest_within(offers, other, kPricedError),
-                   std::ranges::find(offers, other, &Offer::solver) != offers.end(),
+                   best_for({kPricedError, {}}, candidates, first),
+                   best_for({kPricedError, {}}, candidates, other),
+                   std::ranges::find(candidates, other, &Candidate::solver) != candidates.end(),
                    {},
                    false};
   if (price.first && price.other) price.ratio = bench.ratio(*price.other, *price.first);
-  price.apart = price.ratio && told_apart(*price.ratio, bench.control);
+  price.apart = price.ratio && is_significant(*price.ratio, bench.control);
   return price;
 }
 
 }  // namespace
-
-double strayed(const Interval& control) {
-  return std::expm1(std::max(std::abs(std::log(control.low)), std::abs(std::log(control.high))));
-}
-
-bool told_apart(const Interval& ratio, const Interval& control) {
-  return !ratio.contains(1) &&
-         std::abs(std::log(ratio.mid)) > std::log1p(std::max(kTolerance, strayed(control)));
-}
 
 Interval geometric_mean(const std::vector<Interval>& ratios) {
   double mid = 0, below = 0, above = 0;
@@ -52,7 +41,7 @@ Price compare_price(const BenchSession& bench, const std::string& first, const s
   std::vector<Interval> ratios, ours, theirs;
   for (const SceneBench& scene : bench.scenes) {
     const ScenePrice& here = price.scenes.emplace_back(price_on(scene, first, other));
-    price.strayed = std::max(price.strayed, strayed(scene.control));
+    price.strayed = std::max(price.strayed, spread(scene.control));
     if (!here.ratio) continue;
     ratios.push_back(*here.ratio);
     ours.push_back(scene.cases[*here.first].cost());

@@ -12,21 +12,13 @@ namespace taut::report {
 inline constexpr const char* kPricedMetric = "stretch.rms";
 inline constexpr double kPricedError = 0.01;
 
-/// Whether a ratio of costs is a difference: its interval excludes 1, the change exceeds 5 % and
-/// exceeds what the same code showed against itself. Unlike judge(), a noisy machine does not
-/// silence a factor of four.
-bool told_apart(const Interval& ratio, const Interval& control);
-
-/// How far the same code strayed from itself, as a share: 0.03 for an interval 0.98 to 1.03.
-double strayed(const Interval& control);
-
 /// What the error costs two solvers on one scene, each with its own cheapest setting.
 struct ScenePrice {
   std::string scene;
   std::optional<std::size_t> first, other;  ///< cases of the bench; nothing: never reached
   bool other_ran = false;                   ///< it was timed at all
   std::optional<Interval> ratio;            ///< cost of the other over that of the first
-  bool apart = false;                       ///< told_apart
+  bool apart = false;                       ///< is_significant
 };
 
 /// Over all scenes of a bench.

@@ -113,27 +113,47 @@ class Campaign {
   CampaignProgress progress_;
 };
 
-Record wait_for(IsolatedCase& running) {
-  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
-    if (const auto record = running.poll()) return *record;
+using Clock = std::chrono::steady_clock;
+
+/// Nothing if it has not ended by then.
+std::optional<Record> wait_for(IsolatedCase& running, Clock::time_point deadline) {
+  for (; Clock::now() < deadline; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
+    if (const auto record = running.poll()) return record;
+  return std::nullopt;
 }
 
-}  // namespace
-
-Record run_stored(const Case& one, const Store& store, const Limits& limits) {
-  if (const auto record = store.find(one)) return *record;
-  IsolatedCase running(one, store.stage(one.key), limits);
-  const Record record = wait_for(running);
-  if (store.commit(running.folder(), record) == Store::Commit::conflict)
+std::optional<Record> run_and_store(const Case& one, const Store& store, const Limits& limits,
+                                    Clock::time_point deadline) {
+  if (const auto record = store.find(one)) return record;
+  const std::filesystem::path folder = store.stage(one.key);
+  std::optional<Record> record;
+  {
+    IsolatedCase running(one, folder, limits);
+    record = wait_for(running, deadline);
+  }
+  if (!record)
+    std::filesystem::remove_all(folder);
+  else if (store.commit(folder, *record) == Store::Commit::conflict)
     throw InputError(one.id + ": another result than the one stored; see " +
                      (store.root() / "conflicts").string());
   return record;
 }
 
+}  // namespace
+
+Record run_stored(const Case& one, const Store& store, const Limits& limits) {
+  return *run_and_store(one, store, limits, Clock::time_point::max());
+}
+
+std::optional<Record> run_stored_until(const Case& one, const Store& store,
+                                       Clock::time_point deadline) {
+  return run_and_store(one, store, {}, deadline);
+}
+
 Record run_again(const Case& one, const Store& store, const Limits& limits) {
   const std::filesystem::path folder = store.stage(one.key);
   IsolatedCase running(one, folder, limits);
-  const Record record = wait_for(running);
+  const Record record = *wait_for(running, Clock::time_point::max());
   std::filesystem::remove_all(folder);
   return record;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "experiments/case/case.hpp"
@@ -44,6 +46,10 @@ CampaignProgress run_cases(const std::vector<Case>&, const Store&, const Session
 /// The stored record of a case, or the one that a process of its own gives and that is stored now.
 /// Throws InputError if the result differs from one that is stored.
 Record run_stored(const Case&, const Store&, const Limits& = {});
+
+/// The same, but nothing if it has not ended by then; nothing is stored of that.
+std::optional<Record> run_stored_until(const Case&, const Store&,
+                                       std::chrono::steady_clock::time_point deadline);
 
 /// The same without looking into the store and without leaving anything there.
 Record run_again(const Case&, const Store&, const Limits& = {});

@@ -115,12 +115,4 @@ std::optional<Prediction> predicted_frontier(const FrontierQuestion& question) {
   return result;
 }
 
-std::string describe(const Status& status) {
-  std::string text(to_string(status.kind));
-  if (!status.reason.empty()) text += " (" + status.reason + ")";
-  if (status.step >= 0) text += " at step " + std::to_string(status.step);
-  if (status.vertex >= 0) text += ", vertex " + std::to_string(status.vertex);
-  return text;
-}
-
 }  // namespace taut

@@ -33,6 +33,9 @@ std::string text_of(const Value& value, bool toml) {
         items += (items.empty() ? "" : ", ") + text_of(item, toml);
       return "[" + items + "]";
     }
+    case Value::Kind::integer:  // 100000 and not 1e+05
+      if (std::abs(value.number) < 1e15) return std::to_string(std::lround(value.number));
+      return shortest(value.number);
     default:
       return shortest(value.number);
   }
@@ -100,18 +103,23 @@ class StudyReader {
         diagnostics_.report(item.place, "'" + key + "' holds texts, not " + describe(item));
         continue;
       }
-      guarded(item.place, [&] { check(item.string); });
+      guarded(item, [&] { check(item.string); });
       into.push_back(item.string);
     }
     return true;
   }
 
-  /// InputErrors of `action` stand at `place`.
-  bool guarded(const SourceLocation& place, const std::function<void()>& action) try {
+  /// InputErrors of `action` stand at the value; a column in a text counts from its quote.
+  bool guarded(const Value& value, const std::function<void()>& action) try {
     action();
     return true;
   } catch (const InputError& error) {
-    for (const Diagnostic& d : error.diagnostics()) diagnostics_.report(place, d.text());
+    for (const Diagnostic& d : error.diagnostics()) {
+      const bool of_argument = d.line == 0 && d.column > 0;
+      SourceLocation place = value.place;
+      if (of_argument && value.is_string()) place.column += d.column;
+      diagnostics_.report(place, of_argument ? d.message : d.text());
+    }
     return false;
   }
 
@@ -179,7 +187,7 @@ class StudyReader {
       const double s = static_cast<double>(i) / (count - 1);
       double value = log ? *from * std::pow(*to / *from, s) : *from + s * (*to - *from);
       if (i == count - 1) value = *to;
-      std::string text = shortest(whole ? std::round(value) : value);
+      std::string text = whole ? std::to_string(std::lround(value)) : shortest(value);
       if (values.empty() || values.back() != text) values.push_back(std::move(text));
     }
     return values;
@@ -189,8 +197,9 @@ class StudyReader {
     for (const SolverChoice& choice : choices_)
       if (has_param({choice}, axis.name, false))
         for (std::size_t i = 0; i < axis.values.size(); ++i)
-          if (!guarded(value.is_array() ? value.items[i].place : value.place, [&] {
-                Params(choice.entry->name, choice.entry->params, axis.name + "=" + axis.values[i]);
+          if (!guarded(value.is_array() ? value.items[i] : value, [&] {
+                Params(choice.entry->name, choice.entry->params,
+                       axis.name + "=" + axis.values[i]);
               }))
             return;
   }

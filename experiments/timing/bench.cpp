@@ -52,24 +52,24 @@ BenchSession session_of(const JsonReader& j) {
 
 }  // namespace
 
-bool BenchedCase::sound() const {
-  return timing.failure.empty() && !timing.samples.empty() &&
-         (record.status.kind == Status::Kind::ok || record.status.kind == Status::Kind::unsettled);
+bool BenchedCase::stable() const {
+  return timing.failure.empty() && !timing.samples.empty() && completed(record.status);
 }
 
 Interval BenchedCase::cost() const {
   return scaled(bootstrap_median(timing.samples), 1 / record.dt);
 }
 
-std::vector<Offer> SceneBench::offers(const std::string& metric) const {
-  std::vector<Offer> offers;
+std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
+  std::vector<Candidate> all;
   for (const BenchedCase& c : cases) {
     const auto value = c.record.values.find(metric);
-    const double error = value == c.record.values.end() ? std::nan("") : value->second;
-    const std::string setting = c.record.spec.solver;
-    offers.push_back({c.record.solver, setting, c.cost(), error, !c.sound()});
+    const double error = value == c.record.values.end() ? std::nan("") : std::abs(value->second);
+    std::string failure = c.timing.failure;
+    if (failure.empty() && !c.stable()) failure = describe(c.record.status);
+    all.push_back({c.record.solver, c.record.spec.solver, c.cost(), error, failure});
   }
-  return offers;
+  return all;
 }
 
 std::optional<Interval> SceneBench::ratio(std::size_t i, std::size_t j) const {
@@ -86,18 +86,6 @@ std::vector<std::string> solvers_of(const SceneBench& bench) {
     if (std::find(names.begin(), names.end(), c.record.solver) == names.end())
       names.push_back(c.record.solver);
   return names;
-}
-
-std::vector<Reached> equal_error(const SceneBench& bench, const std::string& metric, double level) {
-  const std::vector<Offer> offers = bench.offers(metric);
-  const std::optional<std::size_t> best = cheapest_within(offers, "", level);
-  std::vector<Reached> row;
-  for (const std::string& solver : solvers_of(bench)) {
-    Reached reached{solver, level, cheapest_within(offers, solver, level), {}};
-    if (reached.at && best) reached.times = bench.ratio(*reached.at, *best);
-    row.push_back(reached);
-  }
-  return row;
 }
 
 std::vector<Record> BenchSession::records() const {

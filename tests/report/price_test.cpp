@@ -80,14 +80,14 @@ TEST(Price, AFastExplosionNeverBuysTheError) {
 }
 
 TEST(Price, ADifferenceExceedsTheToleranceAndTheNoise) {
-  EXPECT_TRUE(told_apart({1.2, 1.3, 1.4}, {0.98, 1, 1.02}));
-  EXPECT_FALSE(told_apart({0.9, 1.3, 1.4}, {0.98, 1, 1.02})) << "the interval holds 1";
-  EXPECT_FALSE(told_apart({1.01, 1.03, 1.04}, {1, 1, 1})) << "below 5 %";
-  EXPECT_FALSE(told_apart({1.2, 1.3, 1.4}, {0.7, 1, 1.1})) << "the same code strays by 43 %";
-  EXPECT_TRUE(told_apart({3.5, 4, 4.5}, {0.7, 1, 1.1})) << "a factor of four is more than that";
+  EXPECT_TRUE(is_significant({1.2, 1.3, 1.4}, {0.98, 1, 1.02}));
+  EXPECT_FALSE(is_significant({0.9, 1.3, 1.4}, {0.98, 1, 1.02})) << "the interval holds 1";
+  EXPECT_FALSE(is_significant({1.01, 1.03, 1.04}, {1, 1, 1})) << "below 5 %";
+  EXPECT_FALSE(is_significant({1.2, 1.3, 1.4}, {0.7, 1, 1.1})) << "the same code strays by 43 %";
+  EXPECT_TRUE(is_significant({3.5, 4, 4.5}, {0.7, 1, 1.1})) << "a factor of four is more than that";
 }
 
-/// told_apart() does not fall silent on a noisy machine, so it has more to prove than
+/// is_significant() does not fall silent on a noisy machine, so it has more to prove than
 /// diagnostics().
 TEST(Price, RecordedSamplesOfOneCodeAreNotToldApartButATwofoldCostIs) {
   const auto samples = [](std::size_t row, double cost) {
@@ -99,7 +99,7 @@ TEST(Price, RecordedSamplesOfOneCodeAreNotToldApartButATwofoldCostIs) {
   for (std::size_t k = 0; k + 3 < std::size(kRecorded); ++k, ++benches) {
     const Interval control = interleaved_ratio(samples(k, 1), samples(k + 1, 1));
     const auto apart = [&](double factor) {
-      return told_apart(interleaved_ratio(samples(k + 2, factor), samples(k + 3, 1)), control);
+      return is_significant(interleaved_ratio(samples(k + 2, factor), samples(k + 3, 1)), control);
     };
     same += apart(1), twice += apart(2);
   }

@@ -62,8 +62,7 @@ Map make_map(const FigureSpec& spec, const FigureData& data) {
   for (const Curve& curve : make_curves(flat, spec.x, spec.y, spec.x)) {
     Panel panel{curve.label, curve.solver, {}};
     for (const Point& p : curve.points) {
-      const auto at = static_cast<std::size_t>(p.record - flat.data());
-      const Record& r = map.records[at];
+      const Record& r = map.records[static_cast<std::size_t>(p.record - flat.data())];
       const double x = value_of(r, spec.x), y = value_of(r, spec.y);
       if (!std::isfinite(x) || !std::isfinite(y)) continue;
       const Record*& cell = panel.cells[{index(map.columns, x), index(map.rows, y)}];

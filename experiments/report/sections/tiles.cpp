@@ -72,7 +72,7 @@ std::optional<Tile> cost(const Comparison& facts) {
   const Interval& r = *price.mean;
   const bool ours = r.mid > 1;
   const Interval by = ours ? r : Interval{1 / r.high, 1 / r.mid, 1 / r.low};
-  if (told_apart(r, {1, 1, 1}))
+  if (is_significant(r, {1, 1, 1}))
     tile.judged = "<p class=\"good\">" + escape_html(facts.contenders[ours ? 0 : 1].label) + ": " +
                   ratio(by.mid) + "× less (" + ratio(by.low) + "–" + ratio(by.high) + ")</p>";
   else

@@ -6,6 +6,7 @@
 #include "experiments/report/format.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/section.hpp"
+#include "experiments/timing/answer.hpp"
 
 namespace taut::report::section::trade {
 
@@ -13,7 +14,6 @@ namespace {
 
 constexpr const char* kMetric = kPricedMetric;
 constexpr double kQuestion = kPricedError;  ///< the level of "which solver at which setting?"
-constexpr double kFrame = 1.0 / 60;         ///< s; budgets are CPU time within it
 
 std::string span_text(const Interval& i, const char* unit, double scale = 1) {
   const int decimals = decimals_for((i.high - i.low) * scale);
@@ -33,18 +33,20 @@ std::string setting(const BenchedCase& c) {
 
 /// "never reached (at best 0.12 %)".
 std::string never(const SceneBench& scene, const std::string& solver) {
-  const std::vector<Offer> offers = scene.offers(kMetric);
-  const auto nearest = best_within(offers, solver, std::numeric_limits<double>::infinity());
-  return nearest ? "never reached (at best " + quantity(kMetric).text(offers[*nearest].error) + ")"
-                 : "never reached: every case failed";
+  const std::vector<Candidate> candidates = scene.candidates(kMetric);
+  const auto nearest = best_for({{}, std::numeric_limits<double>::infinity()}, candidates, solver);
+  return nearest
+             ? "never reached (at best " + quantity(kMetric).text(candidates[*nearest].error) + ")"
+             : "never reached: every case failed";
 }
 
 /// The rivals of the cheapest, nearest first.
-std::vector<const Reached*> rivals(const std::vector<Reached>& row, const Reached& best) {
-  std::vector<const Reached*> others;
-  for (const Reached& r : row)
+std::vector<const SolverAnswer*> rivals(const std::vector<SolverAnswer>& row,
+                                        const SolverAnswer& best) {
+  std::vector<const SolverAnswer*> others;
+  for (const SolverAnswer& r : row)
     if (&r != &best && r.times) others.push_back(&r);
-  std::ranges::sort(others, {}, [](const Reached* r) { return r->times->mid; });
+  std::ranges::sort(others, {}, [](const SolverAnswer* r) { return r->times->mid; });
   return others;
 }
 
@@ -59,18 +61,20 @@ std::string ask_again(const SceneBench& scene) {
 
 /// One row of the summary: who is cheapest for the level, by how much, and how to ask again.
 std::vector<std::string> answer(const SceneBench& scene) {
-  const std::vector<Reached> row = equal_error(scene, kMetric, kQuestion);
-  const auto best = cheapest_within(scene.offers(kMetric), "", kQuestion);
+  const Answer found = taut::answer(scene, {kQuestion, {}}, kMetric);
+  const std::vector<SolverAnswer>& row = found.solvers;
+  const auto best = found.best;
   const std::string again = ask_again(scene);
   if (!best) return {scene.scene, "never reached", "–", "–", again};
   const BenchedCase& c = scene.cases[*best];
-  const auto& first = *std::ranges::find_if(row, [&](const Reached& r) { return r.at == best; });
+  const auto& first =
+      *std::ranges::find_if(row, [&](const SolverAnswer& r) { return r.at == best; });
   std::string ratios;
-  for (const Reached* r : rivals(row, first))
+  for (const SolverAnswer* r : rivals(row, first))
     ratios += (ratios.empty() ? "" : ", ") + solver_title(r->solver) + " " +
               span_text(*r->times, " ×") +
-              (told_apart(*r->times, scene.control) ? "" : ", no difference that can be told");
-  for (const Reached& r : row)
+              (is_significant(*r->times, scene.control) ? "" : ", no difference that can be told");
+  for (const SolverAnswer& r : row)
     if (!r.at)
       ratios +=
           (ratios.empty() ? "" : ", ") + solver_title(r.solver) + " " + never(scene, r.solver);
@@ -92,7 +96,7 @@ Table levels(const SceneBench& scene, const std::vector<Record>& records) {
   for (const std::string& solver : solvers_of(scene)) table.header.push_back(solver_title(solver));
   for (const double level : kErrorLevels) {
     table.rows.push_back({quantity(kMetric).text(level, 1)});
-    for (const Reached& r : equal_error(scene, kMetric, level))
+    for (const SolverAnswer& r : taut::answer(scene, {level, {}}, kMetric).solvers)
       table.rows.back().push_back(
           !r.at ? never(scene, r.solver)
                 : span_text(scene.cases[*r.at].cost(), " ms", 1e3) +
@@ -104,14 +108,14 @@ Table levels(const SceneBench& scene, const std::vector<Record>& records) {
 
 Table budgets(const SceneBench& scene, const std::vector<Record>& records) {
   Table table{{"within, per frame"}, {}};
-  const std::vector<Offer> offers = scene.offers(kMetric);
+  const std::vector<Candidate> candidates = scene.candidates(kMetric);
   for (const std::string& solver : solvers_of(scene)) table.header.push_back(solver_title(solver));
   for (const double budget : kFrameBudgets) {
     table.rows.push_back({significant(1e3 * budget, 2) + " ms"});
     for (const std::string& solver : solvers_of(scene)) {
-      const auto at = best_within(offers, solver, budget / kFrame);
-      table.rows.back().push_back(at ? quantity(kMetric).text(offers[*at].error) + " for " +
-                                           span_text(offers[*at].cost, " ms", 1e3 * kFrame) +
+      const auto at = best_for({{}, budget / kFrame}, candidates, solver);
+      table.rows.back().push_back(at ? quantity(kMetric).text(candidates[*at].error) + " for " +
+                                           span_text(candidates[*at].cost, " ms", 1e3 * kFrame) +
                                            brief(scene.cases[*at], records)
                                      : "nothing that cheap");
     }
@@ -155,7 +159,8 @@ std::string render(Page& page, const std::string&) {
   return head + "<p class=\"lead\">Which solver at which setting for " +
          quantity(kMetric).text(kQuestion, 1) + " " + quantity(kMetric).title + "? Measured on " +
          escape_html(bench.machine) +
-         ", CPU time of a step alone, forth and back between processes; intervals are 95 %. "
+         ", CPU time of a step alone, in alternating order (ABBA) between processes; intervals are "
+         "95 %. "
          "The others' factors are their costs over that of the cheapest.</p><div class=\"card\">" +
          html_table(table, "Cheapest setting for the level") + "</div>" + parts + "</section>\n";
 }

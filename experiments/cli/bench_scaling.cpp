@@ -1,17 +1,17 @@
-#include "experiments/timing/scaling.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <sstream>
 
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/timing/scaling.hpp"
 
 namespace taut::verb::scaling {
 
@@ -20,25 +20,20 @@ namespace {
 constexpr std::size_t kMemory = std::size_t{8} << 30;  ///< of a case, bytes of address space
 
 struct Options {
-  std::string study = "scaling", preset, out = default_results();
+  std::string study = "scaling", preset, out;
   double limit = 20;
   int samples = 6;
   bool json = false;
 };
 
-std::string number(double value, int digits = 3) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
 std::string exponent(const std::optional<PowerLaw>& law) {
-  return law ? number(law->slope) + " +- " + number(2 * law->slope_error, 2) : "too few sizes";
+  return law ? number_text(law->slope) + " +- " + number_text(2 * law->slope_error, 2)
+             : "too few sizes";
 }
 
 Measured measure(const Case& one, const Store& store, const Options& options) {
   const auto start = std::chrono::steady_clock::now();
-  std::cerr << one.id << '\n';
+  progress() << one.id << '\n';
   BenchedCase benched{run_stored(one, store, {options.limit * 4, kMemory}), {}};
   Timing& timing = benched.timing;
   timing.spec = one.spec;
@@ -46,7 +41,7 @@ Measured measure(const Case& one, const Store& store, const Options& options) {
   if (record.status.kind != Status::Kind::unsupported && record.status.is_result()) try {
       TimingWorker worker(program_of(one.spec), one.spec);
       const int all = steps_done(record);
-      const double pilot = worker.rehearse(all).cpu;
+      const double pilot = worker.pilot_run(all).cpu;
       const int steps =
           std::clamp(static_cast<int>(std::min(0.05 / std::max(pilot, 1e-9), 1e6)), 1, all);
       for (int i = 0; i < options.samples; ++i) {
@@ -71,15 +66,14 @@ void print(const ScalingLine& line) {
     const Interval cpu = bootstrap_median(c.timing.samples);
     const auto n = static_cast<double>(c.record.vertices);
     const auto error = c.record.values.find("stretch.rms");
-    const std::string cost = number(1e3 * cpu.mid) + " (" + number(1e3 * cpu.low) + " to " +
-                             number(1e3 * cpu.high) + ")";
+    const std::string cost = interval_text(cpu, 1e-3);
     std::cout << std::right << std::setw(12) << c.record.vertices << "   " << std::left
               << std::setw(30) << cost << "  " << std::setw(8)
-              << number(1e3 * median(c.timing.wall)) << "  " << std::setw(14)
-              << number(1e9 * cpu.mid / n) << "  " << std::setw(12)
-              << (error == c.record.values.end() ? "-" : number(error->second)) << "  "
-              << std::setw(17) << number(plan_bytes(c.record) / n)
-              << number(1e-6 * static_cast<double>(c.timing.peak_bytes)) << '\n';
+              << number_text(1e3 * median(c.timing.wall)) << "  " << std::setw(14)
+              << number_text(1e9 * cpu.mid / n) << "  " << std::setw(12)
+              << (error == c.record.values.end() ? "-" : number_text(error->second)) << "  "
+              << std::setw(17) << number_text(plan_bytes(c.record) / n)
+              << number_text(1e-6 * static_cast<double>(c.timing.peak_bytes)) << '\n';
   }
   for (const std::string& skipped : line.skipped) std::cout << "    skipped " << skipped << '\n';
   std::cout << "    exponents over vertices, 95 %: CPU " << exponent(line.cpu) << ", wall "
@@ -144,18 +138,18 @@ int run(const Options& options) {
   return kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto o = std::make_shared<Options>();
-  arguments.option("STUDY", o->study, "A study that sweeps the cloth's grid (default: scaling)");
-  arguments.option("--preset", o->preset, "A smaller or larger version that the study defines");
-  arguments
-      .option("--limit", o->limit,
-              "Skip a case that would take longer than this, physics and timing [s] "
-              "(default: 20)")
-      .positive();
-  arguments.option("--samples", o->samples, "Samples of each case (default: 6)").range(1, 1000);
-  arguments.option("--out", o->out, "Results folder (default: " + o->out + ")");
-  arguments.flag("--json", o->json, "Everything measured, every sample, as JSON");
+  app.add_option("STUDY", o->study, "A study that sweeps the cloth's grid (default: scaling)");
+  add_preset(app, o->preset);
+  app.add_option("--limit", o->limit,
+                 "Skip a case that would take longer than this, physics and timing [s] "
+                 "(default: 20)")
+      ->check(above_zero());
+  app.add_option("--samples", o->samples, "Samples of each case (default: 6)")
+      ->check(CLI::Range(1, 1000));
+  add_results(app, o->out);
+  app.add_flag("--json", o->json, "Everything measured, every sample, as JSON");
   return [o] { return run(*o); };
 }
 
@@ -163,9 +157,11 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::scaling
 
 TAUT_VERB(scaling) = {
-    .name = "scaling",
-    .summary = "Cost, memory and error per step over the cloth's size, with fitted exponents",
+    .name = "bench scaling",
+    .group = VerbGroup::cost,
+    .summary = "Measures cost and memory over the cloth's size, with exponents",
     .example =
-        "taut scaling\n  taut scaling --preset quick --limit 5\n  taut plot scaling --preset "
+        "taut bench scaling\n  taut bench scaling --preset quick --limit 5\n  taut plot scaling "
+        "--preset "
         "quick",
     .bind = taut::verb::scaling::bind};
