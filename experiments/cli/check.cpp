@@ -8,7 +8,7 @@
 #include "experiments/command_line/baseline_study.hpp"
 #include "experiments/command_line/program.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/gnuplot.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::verb::check {
@@ -85,14 +85,14 @@ struct Notes {
             {{"study", study}, {"case", f.id.empty() ? f.solver : f.id}, {"change", f.text}});
   }
   void write(const std::string& results) const {
-    report::write_file(std::filesystem::path(results) / "check.json",
-                       to_text(Json{{"schema", "taut-check-1"},
-                                    {"program", program_digest()},
-                                    {"cases", cases},
-                                    {"values", values},
-                                    {"findings", findings}},
-                               1) +
-                           "\n");
+    write_whole(std::filesystem::path(results) / "check.json",
+                to_text(Json{{"schema", "taut-check-1"},
+                             {"program", program_digest()},
+                             {"cases", cases},
+                             {"values", values},
+                             {"findings", findings}},
+                        1) +
+                    "\n");
   }
 };
 

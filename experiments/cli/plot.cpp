@@ -1,11 +1,11 @@
+#include "experiments/report/plot.hpp"
+
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/axis.hpp"
-#include "experiments/report/curves.hpp"
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/stored.hpp"
@@ -15,7 +15,7 @@ namespace taut::verb::plot {
 
 namespace {
 
-using report::FigureSpec;
+using report::PlotSpec;
 
 struct Options {
   std::string study, preset, kind, x, y, title, results = default_results(), out;
@@ -23,13 +23,13 @@ struct Options {
 
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
 /// for.
-std::vector<FigureSpec> wanted(const Options& options, const Study& study) {
+std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
   if (!options.kind.empty() || !options.x.empty() || !options.y.empty())
     return {{.kind = options.kind.empty() ? "work-precision" : options.kind,
              .x = options.x,
              .y = options.y,
              .title = options.title}};
-  std::vector<FigureSpec> specs;
+  std::vector<PlotSpec> specs;
   for (const Plot& plot : study.plots) {
     const auto option = [&](const char* name) {
       const auto at = plot.options.find(name);
@@ -48,7 +48,7 @@ std::vector<FigureSpec> wanted(const Options& options, const Study& study) {
 
 /// Keeps the cases at the commonest value of what is not on x, and says so: in the title and, if
 /// that leaves out cases, on standard error.
-std::string hold(const FigureSpec& spec, std::vector<Record>& records, const std::string& scene) {
+std::string hold(const PlotSpec& spec, std::vector<Record>& records, const std::string& scene) {
   const std::string held = spec.x == "dt" ? "iterations" : "dt";
   report::Slice slice = report::most_common(records, held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
@@ -62,11 +62,11 @@ std::string hold(const FigureSpec& spec, std::vector<Record>& records, const std
 }
 
 /// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
-int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Record>& inferred,
+int draw(PlotSpec spec, const report::StudyResult& study, const std::vector<Record>& inferred,
          const std::string& scene, const Store& store, const std::filesystem::path& out) {
-  const report::FigureEntry& entry = report::find_figure(spec.kind);
-  if (spec.x.empty()) spec.x = entry.x;
-  if (spec.y.empty()) spec.y = entry.y;
+  const report::PlotKind& kind = report::find_plot_kind(spec.kind);
+  if (spec.x.empty()) spec.x = kind.x;
+  if (spec.y.empty()) spec.y = kind.y;
   const auto here = [&](const std::vector<Record>& all) {
     std::vector<Record> chosen;
     for (const Record& r : all)
@@ -87,13 +87,13 @@ int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Re
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
   spec.file = report::slug(
       scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
-  const report::Figure figure = report::make_figure(spec, {records, series, guessed}, out);
-  std::cout << figure.svg.string() << '\n' << figure.pdf.string() << '\n';
+  const report::PlotFiles files = report::make_plot(spec, records, guessed, series, out);
+  std::cout << files.svg.string() << '\n' << files.pdf.string() << '\n';
   return 1;
 }
 
 int run(const Options& options) {
-  if (!options.kind.empty()) report::find_figure(options.kind);
+  if (!options.kind.empty()) report::find_plot_kind(options.kind);
   const Study study = load_study(options.study, options.preset);
   const Store store(options.results);
   const report::ReportInput input = report::stored_results({study}, store);
@@ -107,9 +107,15 @@ int run(const Options& options) {
       options.out.empty() ? std::filesystem::path(options.results) / "figures" /
                                 (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                           : std::filesystem::path(options.out);
+  const std::vector<PlotSpec> specs = wanted(options, study);
+  for (const PlotSpec& spec : specs) {
+    report::find_plot_kind(spec.kind);
+    for (const std::string& name : {spec.x, spec.y})
+      if (!name.empty()) report::check_value_name(name, result.records);
+  }
   int drawn = 0;
   try {
-    for (const FigureSpec& spec : wanted(options, study))
+    for (const PlotSpec& spec : specs)
       for (const report::SceneInfo& scene : input.scenes) try {
           drawn += draw(spec, result, inferred, scene.name, store, out);
         } catch (const InputError& error) {
@@ -125,8 +131,8 @@ int run(const Options& options) {
 std::function<int()> bind(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   std::string kinds;
-  for (const report::FigureEntry* entry : report::figures())
-    kinds += (kinds.empty() ? "" : ", ") + std::string(entry->name);
+  for (const report::PlotKind& kind : report::plot_kinds())
+    kinds += (kinds.empty() ? "" : ", ") + std::string(kind.name);
   arguments.option("STUDY", options->study, "Name or path of a study that was run").required();
   arguments.option("--preset", options->preset, "The preset under which it was run");
   arguments.option("--kind", options->kind,

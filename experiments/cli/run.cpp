@@ -7,8 +7,7 @@
 #include "experiments/command_line/invoke.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/axis.hpp"
-#include "experiments/report/figures.hpp"
+#include "experiments/report/plot.hpp"
 #include "experiments/study/campaign.hpp"
 
 namespace taut::verb::run {
@@ -48,7 +47,7 @@ void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
   };
   for (std::size_t i = 0; i < study.plots.size(); ++i) {
     try {
-      report::find_figure(study.plots[i].kind);
+      report::find_plot_kind(study.plots[i].kind);
     } catch (const InputError& error) {
       report(i, error.diagnostics().front().text());
     }

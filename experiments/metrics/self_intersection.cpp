@@ -6,10 +6,12 @@ namespace taut::metric::self_intersection {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"self.crossings", "1", "pairs of faces that cross and share no vertex, at the end", true},
-    {"self.crossings.max", "1", "the same, largest of ten moments of the last second"},
-    {"self.crossings.peak", "1", "the same, largest of those and twenty moments of the run"},
-    {"self.gap", "m",
+    {"self.crossings", kCount, "pairs of faces that cross and share no vertex, at the end", true,
+     Window::end, "crossing faces"},
+    {"self.crossings.max", kCount, "the same, largest of ten moments of the last second"},
+    {"self.crossings.peak", kCount, "the same, largest of those and twenty moments of the run",
+     false, Window::run},
+    {"self.gap", kSignedLength,
      "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
      "overlap of the particles' balls, worst of ten moments of the last second",
      true},

@@ -8,10 +8,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 #include "experiments/report/format.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::report {
 
@@ -46,7 +45,7 @@ std::pair<int, std::string> spawn_gnuplot(const std::string& program, const fs::
   }
   std::string said;
   std::error_code ignored;
-  if (fs::exists(log, ignored)) said = read_file(log);
+  if (fs::exists(log, ignored)) said = read_text(log);
   fs::remove(log, ignored);
   if (failed != 0 || (WIFEXITED(state) && WEXITSTATUS(state) == 127))
     throw PlotError(program + " cannot be started (" +
@@ -56,25 +55,6 @@ std::pair<int, std::string> spawn_gnuplot(const std::string& program, const fs::
 }
 
 }  // namespace
-
-void write_file(const fs::path& path, const std::string& bytes) {
-  const fs::path temp = temporary(path);
-  {
-    std::ofstream out(temp, std::ios::binary);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!out.flush())
-      throw std::runtime_error("cannot write " + path.string() + ": " + std::strerror(errno));
-  }
-  fs::rename(temp, path);
-}
-
-std::string read_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) throw std::runtime_error("cannot read " + path.string() + ": " + std::strerror(errno));
-  return std::move(text).str();
-}
 
 void run_gnuplot(const fs::path& script, const std::string& terminal, const fs::path& out,
                  const std::string& program) {

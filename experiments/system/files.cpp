@@ -63,6 +63,30 @@ void write_durably(const fs::path& path, std::string_view text) {
   file.sync();
 }
 
+void write_whole(const fs::path& path, std::string_view text) {
+  const fs::path beside = path.string() + "." + unique_suffix();
+  std::error_code error;
+  try {
+    write_durably(beside, text);
+  } catch (const InputError&) {
+    fs::remove(beside, error);
+    throw;
+  }
+  fs::rename(beside, path, error);
+  if (!error) return;
+  std::error_code ignored;
+  fs::remove(beside, ignored);
+  throw InputError(path.string() + ": cannot write: " + error.message());
+}
+
+void test_writable(const fs::path& path) {
+  if (fs::is_directory(path)) throw InputError(path.string() + " is a folder; name a file in it");
+  if (path.has_parent_path()) make_folder(path.parent_path());
+  const fs::path probe = path.string() + "." + unique_suffix();
+  write_durably(probe, "");
+  fs::remove(probe);
+}
+
 void append_line(const fs::path& path, std::string_view line) {
   File(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC).write_all(std::string(line) + '\n');
 }

@@ -13,6 +13,14 @@ std::string read_text(const std::filesystem::path&);
 /// reason (read-only, full, no such folder).
 void write_durably(const std::filesystem::path&, std::string_view text);
 
+/// Writes a text beside the place and renames it: nobody ever sees half a file. Throws as
+/// write_durably.
+void write_whole(const std::filesystem::path&, std::string_view text);
+
+/// Whether a file can be written there: makes its folder and tries, before anything costs time.
+/// Leaves nothing behind. Throws InputError with the reason.
+void test_writable(const std::filesystem::path&);
+
 /// Appends a line in one write. Throws as write_durably.
 void append_line(const std::filesystem::path&, std::string_view line);
 
