@@ -280,7 +280,7 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
   Evidence evidence("dt",
                     "largest time step up to which every case completed, over all the work "
                     "that every solver tried");
-  std::vector<std::string> clauses;
+  std::vector<std::pair<std::string, std::vector<std::string>>> clauses;  // with their scenes
   std::vector<std::vector<double>> found(with_sweeps.size());
   bool limited = false, none = false;
   for (const QuotedScene& quoted : rivals.scenes) {
@@ -300,13 +300,19 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
           with_sweeps[i]->label + " " +
           (largest == 0 ? "none" : dt_text(largest) + (all ? " (the largest tried)" : "")));
     }
-    clauses.push_back("on " + scene + " (" + dt_text(*map.steps.begin()) + " to " +
-                      dt_text(*map.steps.rbegin()) + " tried, each at " + joined(works) + ") " +
-                      joined(parts));
+    const std::string clause = " (" + dt_text(*map.steps.begin()) + " to " +
+                               dt_text(*map.steps.rbegin()) + " tried, each at " + joined(works) +
+                               ") " + joined(parts);
+    const auto same = std::ranges::find(clauses, clause, [](const auto& c) { return c.first; });
+    if (same == clauses.end())
+      clauses.push_back({clause, {scene}});
+    else
+      same->second.push_back(scene);
   }
   if (clauses.empty()) return;
   std::string text;
-  for (const std::string& clause : clauses) text += (text.empty() ? "" : "; ") + clause;
+  for (const auto& [clause, scenes] : clauses)
+    text += (text.empty() ? "on " : "; on ") + joined(scenes) + clause;
   std::vector<Bar> bars;
   std::vector<std::string> means;
   for (std::size_t i = 0; i < with_sweeps.size() && !none; ++i) {
@@ -328,10 +334,11 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
 void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
   Evidence evidence("steps", "count of cases by status, all studies, all settings");
   std::vector<std::string> parts, refused;
-  for (const auto& [solver, cases] : rivals.by_solver) {
+  for (const Rival& rival : rivals.all) {
+    const std::vector<const Record*>& cases = rivals.by_solver.at(rival.solver);
     std::map<std::string, int> failed;
     int failures = 0, unsupported = 0;
-    const std::string name = solver_title(solver);
+    const std::string name = solver_title(rival.solver);
     for (const Record* r : cases) {
       evidence.look(name, *r);
       if (r->status.kind == Status::Kind::unsupported) ++unsupported;

@@ -233,8 +233,9 @@ std::string script(const PlotSpec& spec, const Sheet& sheet, const std::string& 
                      "\n# Again: gnuplot -e \"set terminal svg noenhanced; set output '" + stem +
                      ".svg'\" " + stem +
                      ".gp\n"
-                     "set encoding utf8\nset datafile separator ','\nset key outside below "
-                     "horizontal\nset grid lc rgb '#E5E7EB'\nset border 3\nset tics nomirror\n" +
+                     "set encoding utf8\nset datafile separator ','\nset key tmargin "
+                     "center horizontal\nset offsets graph 0.04, graph 0.04, 0, 0\nset grid lc rgb "
+                     "'#E5E7EB'\nset border 3\nset tics nomirror\n" +
                      sheet.settings + sheet.plot + "\n";
   for (std::size_t at; (at = text.find("@CSV@")) != std::string::npos;)
     text.replace(at, 5, stem + ".csv");

@@ -1,0 +1,264 @@
+// The page and its model: one file, everything in it, nothing that the data do not say.
+#include "experiments/report/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/model.hpp"
+#include "experiments/report/page.hpp"
+#include "experiments/report/palette.hpp"
+#include "experiments/report/rivals.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+#include "tests/report/made_up.hpp"
+#include "tests/support/synthetic_records.hpp"
+
+namespace taut::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+/// What a bare run gives: two studies on two scenes, with strain over time.
+ReportInput example() {
+  ReportInput input;
+  input.command = "./taut run iterations time-steps";
+  input.provenance = {{"program", "0123456789"}, {"toolchain", "g++ 12.2.0"}};
+  input.solvers = {{"jakobsen", "Verlet with relaxed distance constraints", "Jakobsen 2001"},
+                   {"bullet", "btSoftBody", "Bullet 3.24"}};
+  input.scenes = {{"hang", "A sheet held by two corners"}, {"ball", "A sheet on a ball"}};
+  StudyResult sweeps{"iterations", "How fast does stretch fall?", {}, 40, {{"hang", -1}}};
+  StudyResult steps{"time-steps", "Which steps survive?", {}, 0, {}};
+  for (const std::string scene : {"hang", "ball"}) {
+    for (const Record& r : synthetic::iterations(scene)) sweeps.records.push_back(r);
+    for (const Record& r : synthetic::time_steps(scene)) steps.records.push_back(r);
+  }
+  for (StudyResult* study : {&sweeps, &steps})
+    for (Record& r : study->records) {
+      const auto depth = r.values.extract("penetration.max");
+      if (r.scene == "ball" && depth) r.values["penetration.peak"] = depth.mapped();
+    }
+  input.studies = {sweeps, steps};
+  for (const std::string solver : {"jakobsen", "bullet"}) {
+    TimeSeries series{"ball", solver, solver_title(solver), "stretch.rms", {}, {}};
+    for (int i = 0; i <= 160; ++i) {
+      const double t = i / 64.0;
+      series.t.push_back(t);
+      series.y.push_back((solver == "bullet" ? 0.06 : 0.02) * std::exp(-t) * (1 - std::cos(6 * t)));
+    }
+    input.series.push_back(series);
+  }
+  return input;
+}
+
+Json model_of(const ReportInput& input) { return parse_json(make_model(input)); }
+
+TEST(Report, OneFileThatAsksForNothing) {
+  const std::string html = make_report(example());
+  EXPECT_TRUE(html.starts_with("<!doctype html>"));
+  for (const PageFile& file : page_files())
+    EXPECT_EQ(html.find("{{" + std::string(file.name) + "}}"), std::string::npos);
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+  const auto open = html.find("id=\"model\">") + 11;
+  EXPECT_EQ(parse_json(html.substr(open, html.find("</script>", open) - open)),
+            model_of(example()));
+}
+
+TEST(Report, NamesFromOutsideStayText) {
+  ReportInput input = example();
+  const std::size_t scripts = count(make_report(input), "</script");
+  const std::string evil = "</script><img src=x onerror=alert(1)><!--{{page.js}}";
+  input.title = evil, input.command = evil, input.scenes[0].summary = evil;
+  for (Record& r : input.studies[0].records) r.status.reason = evil, r.params["x"] = evil;
+  const std::string html = make_report(input);
+  EXPECT_EQ(count(html, "</script"), scripts);
+  EXPECT_EQ(html.find("<img"), std::string::npos);
+  EXPECT_EQ(html.find("<!--"), std::string::npos);
+}
+
+TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
+  const Json model = model_of(example());
+  EXPECT_EQ(model["schema"], "taut-report/1");
+  for (const char* part : {"meta", "solvers", "statuses", "metrics", "claims", "scenes", "charts",
+                           "maps", "method", "missing", "cases"})
+    EXPECT_TRUE(model.contains(part) && !model[part].empty()) << part;
+  for (const char* part : {"cost", "truths", "regressions", "films", "tables", "left_out"})
+    EXPECT_FALSE(model.contains(part)) << part;
+  EXPECT_EQ(model["missing"].size(), 3U);
+  EXPECT_EQ(model["meta"]["title"], "Jakobsen and Bullet");
+  EXPECT_EQ(model["scenes"][0]["maps"].size(), 2U);
+}
+
+/// Every id that something names exists, once; every quantity has its entry in the glossary.
+void check_references(const Json& model) {
+  std::map<std::string, int> ids;
+  for (const char* part : {"claims", "charts", "maps", "films", "tables", "scenes"})
+    for (const Json& one : model.value(part, Json::array())) ++ids[one["id"]];
+  for (const auto& [id, n] : ids) EXPECT_EQ(n, 1) << id;
+  std::map<std::string, int> cases;
+  for (const Json& one : model["cases"]) ++cases[one["key"]];
+  for (const auto& [key, n] : cases) EXPECT_EQ(n, 1) << key;
+  const auto named = [&](const Json& owner, const char* list) {
+    for (const Json& id : owner.value(list, Json::array()))
+      EXPECT_TRUE(ids.contains(id.get<std::string>())) << id;
+  };
+  for (const Json& scene : model["scenes"])
+    for (const char* list : {"claims", "films", "charts", "maps"}) named(scene, list);
+  if (model.contains("cost"))
+    for (const char* list : {"claims", "tables"}) named(model["cost"], list);
+  const auto known_case = [&](const Json& key) {
+    EXPECT_TRUE(cases.contains(key.get<std::string>())) << key;
+  };
+  for (const Json& claim : model["claims"])
+    for (const Json& basis : claim["basis"]) {
+      EXPECT_TRUE(model["metrics"].contains(basis["metric"].get<std::string>())) << basis["metric"];
+      EXPECT_FALSE(basis["cases"].empty());
+      for (const Json& key : basis["cases"]) known_case(key);
+    }
+  for (const Json& chart : model.value("charts", Json::array())) {
+    for (const char* axis : {"x", "y"})
+      EXPECT_TRUE(model["metrics"].contains(chart[axis]["metric"].get<std::string>()));
+    for (const Json& series : chart["series"])
+      for (const Json& p : series.value("points", Json::array())) known_case(p["case"]);
+  }
+  for (const Json& map : model.value("maps", Json::array()))
+    for (const Json& cell : map["cells"])
+      if (!cell["inferred"]) known_case(cell["case"]);
+}
+
+TEST(Model, EveryReferenceLeadsSomewhere) {
+  check_references(model_of(example()));
+  for (unsigned seed = 0; seed < 20; ++seed)
+    check_references(model_of(made_up::Maker(seed).input()));
+}
+
+TEST(Model, SurvivesNanFailuresOnlyAndASingleSolver) {
+  ReportInput input = example();
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records) r.values["stretch.rms"] = std::nan("");
+  check_references(model_of(input));
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records) synthetic::fail(r, Status::Kind::timeout, "60 s");
+  check_references(model_of(input));
+  input = example();
+  for (StudyResult& study : input.studies)
+    std::erase_if(study.records, [](const Record& r) { return r.solver == "bullet"; });
+  check_references(model_of(input));
+}
+
+TEST(Model, WithoutAnyRecordIsAnInputError) {
+  EXPECT_THROW(make_model({}), InputError);
+  ReportInput input;
+  input.studies = {{"iterations", "?", {}, 12, {}}};
+  EXPECT_THROW(make_report(input), InputError);
+}
+
+TEST(Model, AFilmSaysWhetherItShowsWhatTheSentenceIsAbout) {
+  ReportInput input = example();
+  Clip clip{.type = "image/png", .bytes = "x", .alt = "two sheets", .panels = {}};
+  for (const Record& r : input.studies[0].records)
+    if (r.scene == "ball" && r.params.at("iterations") == "16")
+      clip.panels.push_back({r.solver, "16 sweeps", r.key});
+  input.media = {{.scene = "ball", .clips = {clip}, .duration = 2.5}};
+  const auto claim = [&](const std::string& id) {
+    for (const Json& one : model_of(input)["claims"])
+      if (one["id"] == id) return one;
+    return Json();
+  };
+  EXPECT_EQ(claim("stretch")["film"], "film-ball");
+  EXPECT_FALSE(claim("stretch").contains("film_note"));
+  EXPECT_TRUE(claim("step").contains("film_note"));
+  input.media[0].clips[0].panels[0].key = input.studies[0].records[0].key;  // another setting
+  EXPECT_FALSE(claim("stretch").contains("film"));
+  EXPECT_TRUE(claim("stretch").contains("film_note"));
+}
+
+TEST(Model, PicturesThatWouldBurstThePageAreLeftOutAndSaidSo) {
+  ReportInput input = example();
+  const Clip clip{.type = "video/mp4", .bytes = std::string(4'000'000, 'x'), .panels = {}};
+  input.media = {{.scene = "ball", .clips = {clip, clip}}};
+  const Json films = model_of(input)["films"];
+  ASSERT_EQ(films.size(), 2U);
+  EXPECT_TRUE(films[0].contains("src"));
+  EXPECT_FALSE(films[1].contains("src"));
+  EXPECT_TRUE(films[1].contains("left_out"));
+}
+
+TEST(Model, ScenesThatNoStudyRanAreThereWithWhoRefusesThem) {
+  ReportInput input = example();
+  SceneMedia more{.scene = "twist", .summary = "A strip, wound up"};
+  more.refused = {{"bullet", "self-collision is not what it does"}};
+  input.media.push_back(more);
+  const Json scenes = model_of(input)["scenes"];
+  EXPECT_EQ(scenes.back()["id"], "twist");
+  EXPECT_FALSE(scenes.back()["studied"]);
+  EXPECT_EQ(scenes.back()["refusals"][0]["solver"], "bullet");
+}
+
+TEST(Rivals, OnlyWhatAnswersTheSameQuestionIsQuotedSideBySide) {
+  ReportInput input = example();
+  for (Record& r : input.studies[0].records)
+    if (r.solver == "bullet") r.spec.overrides = {"cloth.grid=[8, 8]"};
+  input.studies.pop_back();
+  const Rivals rivals = rivals_of(input);
+  for (const QuotedScene& quoted : rivals.scenes)
+    EXPECT_EQ(std::ranges::count(quoted.cases, nullptr), 1) << "another grid is another question";
+  EXPECT_EQ(rivals.work.sweeps, 16);
+}
+
+TEST(Files, WhatCannotBeWrittenIsSaidBeforeAnythingIsDone) {
+  EXPECT_THROW(test_writable(fs::temp_directory_path()), InputError);
+  EXPECT_THROW(test_writable("/proc/no-such/report.html"), InputError);
+  const fs::path file = fs::temp_directory_path() / "taut_writable" / "report.html";
+  test_writable(file);
+  EXPECT_TRUE(fs::is_empty(file.parent_path()));
+  fs::remove_all(file.parent_path());
+}
+
+/// A test picture as video, if ffmpeg is here; tests/browser uses it to try the slider.
+std::string test_video(const fs::path& path) {
+  const std::string command =
+      "ffmpeg -v error -y -f lavfi -i testsrc=size=320x180:rate=30:duration=2 "
+      "-pix_fmt yuv420p -g 15 '" +
+      path.string() + "' </dev/null";
+  if (std::system(command.c_str()) != 0) return "";
+  const std::string bytes = read_text(path);
+  fs::remove(path);
+  return bytes;
+}
+
+// Not a test by itself: writes the page that tests/browser/report.py opens.
+TEST(Report, SampleForTheBrowser) {
+  const char* path = getenv("TAUT_SAMPLE_REPORT");
+  if (path == nullptr) GTEST_SKIP() << "TAUT_SAMPLE_REPORT names no file";
+  ReportInput input = example();
+  if (const std::string video = test_video(std::string(path) + ".mp4"); !video.empty()) {
+    const Clip clip{.type = "video/mp4",
+                    .bytes = video,
+                    .alt = "A sheet on a ball, two solvers",
+                    .panels = {{"jakobsen", "1 × 16"}, {"bullet", "1 × 16"}}};
+    input.media = {{.scene = "ball", .clips = {clip}, .duration = 2.5, .speed = 1.25}};
+    input.media.front().poster = 1, input.media.front().frame = 1.25 / 30;
+    SceneMedia more{
+        .scene = "twist", .clips = {clip}, .duration = 2, .summary = "A strip, wound up"};
+    more.poster = 0.5, more.refused = {{"bullet", "self-collision is not what it does"}};
+    input.media.push_back(more);
+    input.series.push_back(
+        {"twist", "jakobsen", "Jakobsen", "stretch.rms", {0, 1, 2}, {0, 0.1, 0}});
+  }
+  test_writable(path);
+  write_whole(path, make_report(input));
+  EXPECT_TRUE(fs::exists(path));
+}
+
+}  // namespace
+}  // namespace taut::report
