@@ -54,6 +54,7 @@ class Jakobsen final : public Solver {
         apply(contact_.sweep, t, h);
       }
       apply(contact_.after, t, h);
+      if (s + 1 < substeps_) substep_ended(t + h);
     }
   }
 
@@ -161,6 +162,21 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
           std::to_string(std::max(most, 1)) + " substeps, or precision=double"};
 }
 
+constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"},
+                                                   {"order", "coloured|mesh"},
+                                                   {"omega", "1.3|1.6"},
+                                                   {"levels", "2|3"},
+                                                   {"tethers", "on"}};
+
+LinearModel linear_model(const Scene&, const Params& params) {
+  const bool jacobi = params.is("method", "jacobi");
+  if ((!jacobi && !params.is("method", "gauss-seidel")) || !params.is("order", "mesh")) return {};
+  for (const char* family : {"structural_stiffness", "shear_stiffness", "bend_stiffness"})
+    if (params.value(family) != "inf") return {};
+  return LinearSweeps{jacobi, params.real("omega"), params.integer("iterations"),
+                      params.integer("substeps")};
+}
+
 }  // namespace
 }  // namespace taut::solver::jakobsen
 
@@ -171,4 +187,8 @@ TAUT_SOLVER(jakobsen) = {
     .params = taut::kJakobsenParams,
     .make = taut::solver::jakobsen::make,
     .unsupported = taut::solver::jakobsen::unsupported,
-    .resolved_settings = taut::jakobsen_settings};
+    .resolved_settings = taut::jakobsen_settings,
+    .knobs = {.substeps = "substeps",
+              .sweeps = "iterations",
+              .alternatives = taut::solver::jakobsen::kAlternatives},
+    .linear_model = taut::solver::jakobsen::linear_model};

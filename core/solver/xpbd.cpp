@@ -94,6 +94,7 @@ class Xpbd final : public Solver {
         for (Rod& rod : rods_) solve(rod, h);
         for (const Collider& collider : scene_.colliders) collide(collider, t + (s + 1) * h);
       }
+      if (s + 1 < substeps_) substep_ended(t + (s + 1) * h);
     }
   }
 
@@ -209,6 +210,15 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
+constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"}};
+
+LinearModel linear_model(const Scene&, const Params& params) {
+  for (const Family family : kFamilies)
+    if (params.value(to_string(family)) != "0") return {};
+  return LinearSweeps{.sweeps = params.integer("iterations"),
+                      .substeps = params.integer("substeps")};
+}
+
 }  // namespace
 }  // namespace taut::solver::xpbd
 
@@ -218,4 +228,8 @@ TAUT_SOLVER(xpbd) = {.name = "xpbd",
                      .params = taut::solver::xpbd::kParams,
                      .make = taut::solver::xpbd::make,
                      .unsupported = taut::solver::xpbd::unsupported,
-                     .resolved_settings = taut::solver::xpbd::resolved_settings};
+                     .resolved_settings = taut::solver::xpbd::resolved_settings,
+                     .knobs = {.substeps = "substeps",
+                               .sweeps = "iterations",
+                               .alternatives = taut::solver::xpbd::kAlternatives},
+                     .linear_model = taut::solver::xpbd::linear_model};

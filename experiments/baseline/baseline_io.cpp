@@ -1,12 +1,12 @@
 // Baselines on disk: JSON lines and tolerances.toml.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <sstream>
 
 #include "core/io/section.hpp"
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {
@@ -47,20 +47,6 @@ BaselineRow row_of(const Json& json) {
   return row;
 }
 
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-void replace_file(const fs::path& path, const std::string& text) {
-  const fs::path draft = path.string() + ".tmp";
-  std::ofstream out(draft, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw InputError(draft.string() + ": cannot be written");
-  fs::rename(draft, path);
-}
-
 std::vector<fs::path> solver_files(const fs::path& folder) {
   std::vector<fs::path> files;
   if (fs::is_directory(folder))
@@ -81,7 +67,7 @@ Baseline read_baseline(const fs::path& folder) {
   Baseline rows;
   std::vector<Diagnostic> found;
   for (const fs::path& file : solver_files(folder)) {
-    std::istringstream in(slurp(file));
+    std::istringstream in(read_text(file));
     int number = 0;
     for (std::string line; std::getline(in, line);) {
       ++number;
@@ -110,10 +96,10 @@ void write_baseline(const fs::path& folder, const Baseline& baseline) {
   sort_by_id(rows);
   std::map<std::string, std::string> texts;
   for (const BaselineRow& row : rows) texts[row.solver()] += line_of(row);
-  fs::create_directories(folder);
+  make_folder(folder);
   for (const auto& [solver, text] : texts) {
     const fs::path file = folder / (solver + ".jsonl");
-    if (slurp(file) != text) replace_file(file, text);
+    if (!fs::exists(file) || read_text(file) != text) write_durably(file, text);
   }
   for (const fs::path& file : solver_files(folder))
     if (!texts.count(file.stem().string())) fs::remove(file);

@@ -11,6 +11,8 @@ namespace taut {
 
 namespace {
 
+double square(double value) { return value * value; }
+
 /// The cloth as seen from its pins: breadth first along the links.
 struct Hanging {
   std::vector<int> hops;    ///< [n] links to the nearest pin; -1: no way to any
@@ -111,6 +113,18 @@ double repair(const Scene& scene) {
          (scene.self_collision ? 2 * scene.self_collision->radius : 0);
 }
 
+/// Energy [J] that strained links store if they are the stiffest springs that a step can hold.
+double stored(const Scene& scene, const std::vector<double>& w) {
+  const auto& x = scene.start.x;
+  double energy = 0;
+  for (const auto& [a, b, rest, family] : scene.links) {
+    const double yielding = w[to_index(a)] + w[to_index(b)];
+    if (yielding > 0)
+      energy += 2 * square((x[to_index(b)] - x[to_index(a)]).norm() - rest) / yielding;
+  }
+  return energy / square(scene.dt);
+}
+
 double area(const Scene& scene) {
   double sum = 0;
   for (const auto& [a, b, c] : scene.mesh.triangles) {
@@ -119,8 +133,6 @@ double area(const Scene& scene) {
   }
   return sum;
 }
-
-double square(double value) { return value * value; }
 
 }  // namespace
 
@@ -142,6 +154,7 @@ EnergyBudget::EnergyBudget(const Scene& scene) : gravity_(scene.gravity.norm()),
   constant_ += mass / 2 *
                (square(2 * motion_speed(scene)) +
                 (square(repair(scene)) + square(rounding)) / square(scene.dt));
+  stored_ = stored(scene, w);
   if (!scene.wind) return;
   const double speed = scene.wind->velocity.norm();
   if (scene.wind->law == Wind::Law::relative) {
@@ -155,8 +168,9 @@ EnergyBudget::EnergyBudget(const Scene& scene) : gravity_(scene.gravity.norm()),
 
 double EnergyBudget::available(double t) const {
   const double fall = gravity_ * t * (t + dt_) / 2;
-  return constant_ + gravity_ * (free_mass_ * fall + hung_mass_ * std::min(fall, reach_)) +
-         wind_power_ * t + wind_mass_ / 2 * square(wind_acceleration_ * t);
+  return constant_ + square(2 * t / dt_ + 1) * stored_ +
+         gravity_ * (free_mass_ * fall + hung_mass_ * std::min(fall, reach_)) + wind_power_ * t +
+         wind_mass_ / 2 * square(wind_acceleration_ * t);
 }
 
 std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& step_cost) {

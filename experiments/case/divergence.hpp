@@ -29,6 +29,11 @@ namespace taut {
 ///            start breaks constraints: the summed excess of the links (at most the extent of the
 ///            cloth, at start and at rest), the deepest penetration, twice the self-collision
 ///            radius
+///   stored   what links that the start strains by e hold as springs: k e^2/2, for a k that the
+///            scene does not know, at most 4/((w1 + w2) dt^2), beyond which the step cannot hold
+///            the spring. Below that limit the motion stays bounded but swings out, n steps long
+///            by (2n + 1) at most: x_n = x_0 cos((n + 1/2) a)/cos(a/2), w dt = 2 sin(a/2). So
+///            (2 t/dt + 1)^2 sum of 2 e^2/((w1 + w2) dt^2)
 ///   rounding (1e-6 |x|/dt)^2 M/2: positions in binary32
 class EnergyBudget {
  public:
@@ -37,6 +42,7 @@ class EnergyBudget {
 
  private:
   double constant_ = 0;           ///< start, motion, repair, rounding [J]
+  double stored_ = 0;             ///< J, before the first step
   double gravity_ = 0;            ///< |g| [m/s^2]
   double dt_ = 0;                 ///< s
   double free_mass_ = 0;          ///< kg, of pieces without a pin

@@ -1,4 +1,3 @@
-#include <fstream>
 #include <iostream>
 #include <memory>
 
@@ -6,6 +5,7 @@
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/baseline_study.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::verb::baseline {
 
@@ -39,15 +39,15 @@ int diff(const Options& options) {
 /// Appends the reason; the file says in the order of time why the baseline is what it is.
 void note_reason(const BaselineStudy& study, const std::string& why, const Comparison& changes) {
   const std::filesystem::path file = study.folder / "why.md";
-  const bool fresh = !std::filesystem::exists(file);
-  std::ofstream out(file, std::ios::app);
-  if (fresh) out << "# Why the baseline of " << study.name << " is what it is, oldest first\n\n";
+  std::string text = std::filesystem::exists(file) ? read_text(file)
+                                                   : "# Why the baseline of " + study.name +
+                                                         " is what it is, oldest first\n\n";
   std::set<std::string> rows;
   for (const Change& finding : changes.findings) rows.insert(finding.id);
-  out << "- " << why << " (" << (study.before.empty() ? study.now.size() : rows.size())
-      << " cases)\n";
-  std::ofstream(study.folder / kToolchainFile) << toolchain() << '\n';
-  if (!out.flush()) throw InputError(file.string() + ": cannot be written");
+  text += "- " + why + " (" +
+          std::to_string(study.before.empty() ? study.now.size() : rows.size()) + " cases)\n";
+  write_durably(study.folder / kToolchainFile, std::string(toolchain()) + "\n");
+  write_durably(file, text);
 }
 
 int update(Options options) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
@@ -85,14 +84,14 @@ struct Notes {
             {{"study", study}, {"case", f.id.empty() ? f.solver : f.id}, {"change", f.text}});
   }
   void write(const std::string& results) const {
-    write_whole(std::filesystem::path(results) / "check.json",
-                to_text(Json{{"schema", "taut-check-1"},
-                             {"program", program_digest()},
-                             {"cases", cases},
-                             {"values", values},
-                             {"findings", findings}},
-                        1) +
-                    "\n");
+    write_file(std::filesystem::path(results) / "check.json",
+               to_text(Json{{"schema", "taut-check-1"},
+                            {"program", program_digest()},
+                            {"cases", cases},
+                            {"values", values},
+                            {"findings", findings}},
+                       1) +
+                   "\n");
   }
 };
 
@@ -132,10 +131,8 @@ int check(Options options) {
   for (const std::string& study : options.studies)
     code = worse(code, check_study(study, options, suites, notes));
   if (!options.junit.empty()) {
-    std::ofstream out(options.junit);
-    out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
-        << suites << "</testsuites>\n";
-    if (!out.flush()) throw InputError(options.junit + ": cannot be written");
+    write_file(options.junit, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n" +
+                                  suites + "</testsuites>\n");
   }
   if (options.record && notes.cases > 0) notes.write(options.out);
   return code;

@@ -16,6 +16,7 @@
 #include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut::verb::doctor {
 
@@ -68,13 +69,6 @@ std::string cpu_model() {
   for (std::string line; std::getline(in, line);)
     if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
   return "unknown";
-}
-
-bool on_path(const std::string& program) {
-  std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
-  return false;
 }
 
 Finding writable(const fs::path& results) {

@@ -115,7 +115,7 @@ int run(Options options) {
   }
   if (!options.no_media)
     film_scenes(input, options.films, [](const std::string& news) { std::cerr << news << '\n'; });
-  write_whole(options.out, report::make_report(input));
+  write_file(options.out, report::make_report(input));
   std::cout << options.out << '\n';
   return kPass;
 }

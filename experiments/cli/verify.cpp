@@ -2,7 +2,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/command_line/program.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/truths/truth.hpp"
 
@@ -182,9 +182,7 @@ int run(const Options& options) {
   const std::vector<Outcome> outcomes = check(choose(options), options);
   const std::string json = to_text(to_json(outcomes), 1);
   if (!options.out.empty()) {
-    std::ofstream file(options.out);
-    file << json << '\n';
-    if (!file.flush()) throw InputError("cannot write '" + options.out + "'");
+    write_file(options.out, json + "\n");
   }
   if (options.json)
     std::cout << json << '\n';

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "experiments/command_line/arguments.hpp"
+#include "experiments/system/signals.hpp"
 
 namespace taut {
 
@@ -17,7 +18,7 @@ enum ExitCode : int {
   kNothing = 4,      ///< nothing was compared: a check never passes vacuously
   kEnvironment = 5,  ///< environment mismatch under --strict-env
   kConflict = 6,     ///< the same key with another result: a determinism alarm
-  kInterrupted = 130
+  kInterrupted = kInterruptedExit
 };
 
 /// How `taut VERB` introduces itself: one per file in experiments/cli, found by its TAUT_VERB

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <csignal>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -213,10 +212,8 @@ Shot shoot(const Film& film) {
     shot.series.push_back({film.scene, solver_name(set.takes[k]), film.labels[k], "stretch.rms",
                            media.t, media.rms_strain[k]});
   if (!film.studied)
-    for (const auto& [metric, value] :
-         {std::pair<const char*, const char*>{"penetration", "penetration.max"},
-          {"tunnelling", "tunnelling.count"}})
-      std::ranges::move(watched(film, set, metric, value), std::back_inserter(shot.series));
+    std::ranges::move(watched(film, set, "penetration", "penetration.max"),
+                      std::back_inserter(shot.series));
   return shot;
 }
 
@@ -224,7 +221,6 @@ Shot shoot(const Film& film) {
 
 void film_scenes(report::ReportInput& input, const std::vector<std::string>& others,
                  const std::function<void(const std::string&)>& say) {
-  std::signal(SIGPIPE, SIG_IGN);
   const std::vector<Film> films = all_films(input, others);
   std::vector<std::optional<Shot>> shots(films.size());
   std::atomic<std::size_t> next{0};

@@ -57,6 +57,9 @@ class Metric {
  public:
   virtual ~Metric() = default;
   virtual void observe(const Moment&) = 0;
+  /// The ends of the substeps between two boundaries, in order: the moment's step is the one that
+  /// they lead to. Only called if `follows_path`.
+  virtual void observe_within(const Moment&) {}
   virtual std::vector<double> finish() = 0;
   /// The values of this very moment, for series; same order, NaN where `in_series` is false.
   virtual std::vector<double> now(const Moment&) const = 0;
@@ -70,6 +73,7 @@ struct MetricEntry {
   std::span<const ValueSpec> values;
   /// nullptr if the scene lacks what is measured (penetration without colliders).
   std::unique_ptr<Metric> (*make)(const Scene&);
+  bool follows_path = false;  ///< needs the path between step boundaries: see observe_within
 };
 
 /// All metrics of this program, sorted by name (generated; see cmake/registry.cmake).

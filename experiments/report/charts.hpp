@@ -20,12 +20,12 @@ struct Chart {
   Quantity x, y;
   std::string along = {};  ///< the setting that orders a curve
   std::vector<Curve> curves = {};
-  std::vector<TimeSeries> series = {};   ///< instead of curves: values over time
-  std::vector<double> ticks = {};        ///< of x: the values of a swept setting, SI, ascending
-  bool join = true;                      ///< the points of a curve by a line
-  std::optional<double> slope = {};      ///< the theory's exponent
-  std::optional<double> floor = {};      ///< the reference's own error
-  bool front = false;                    ///< with the Pareto front
+  std::vector<TimeSeries> series = {};  ///< instead of curves: values over time
+  std::vector<double> ticks = {};       ///< of x: the values of a swept setting, SI, ascending
+  bool join = true;                     ///< the points of a curve by a line
+  std::optional<double> slope = {};     ///< the theory's exponent
+  std::optional<double> floor = {};     ///< the reference's own error
+  bool front = false;                   ///< with the Pareto front
   std::map<std::string, Interval> cost = {};  ///< by case key: the interval of x
 };
 

@@ -294,8 +294,8 @@ PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
   make_folder(folder);
   const auto path = [&](const char* extension) { return folder / (spec.file + extension); };
   const PlotFiles files{path(".svg"), path(".pdf"), path(".gp"), path(".csv")};
-  write_whole(files.csv, sheet.csv);
-  write_whole(files.gp, script(spec, sheet, spec.file));
+  write_file(files.csv, sheet.csv);
+  write_file(files.gp, script(spec, sheet, spec.file));
   run_gnuplot(files.gp, "svg noenhanced size 760,520 font 'sans-serif,13' background '#ffffff'",
               files.svg);
   run_gnuplot(files.gp, "pdfcairo noenhanced size 7.6in,5.2in font 'sans,13' fontscale 0.72",

@@ -3,39 +3,15 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <csignal>
 #include <list>
 #include <thread>
 
 #include "core/model/input_error.hpp"
+#include "experiments/system/signals.hpp"
 
 namespace taut {
 
 namespace {
-
-volatile std::sig_atomic_t g_stop = 0;
-
-/// Turns SIGINT and SIGTERM into a flag for as long as it lives.
-class StopSignals {
- public:
-  StopSignals() {
-    g_stop = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { g_stop = 1; };
-    sigaction(SIGINT, &action, &old_int_);
-    sigaction(SIGTERM, &action, &old_term_);
-  }
-  ~StopSignals() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
-  }
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-
- private:
-  struct sigaction old_int_ {
-  }, old_term_{};
-};
 
 /// Work of a case, to order cases and to foresee the end: particles and links that it visits, if
 /// parameters of these names mean what they usually mean. Never part of a result.
@@ -55,9 +31,9 @@ class Campaign {
 
   Tally run(const std::vector<Case>& cases) {
     sort_out(cases);
-    const StopSignals signals;
+    const GracefulStop signals;
     while (!waiting_.empty() || !running_.empty()) {
-      if (g_stop) break;
+      if (GracefulStop::requested()) break;
       while (!waiting_.empty() && running_.size() < static_cast<std::size_t>(options_.jobs)) {
         const Case& next = *waiting_.front();
         waiting_.pop_front();
@@ -67,7 +43,7 @@ class Campaign {
       reap();
       report(nullptr);
     }
-    tally_.interrupted = g_stop != 0;
+    tally_.interrupted = GracefulStop::requested();
     while (!running_.empty()) {
       const std::filesystem::path folder = running_.front().folder();
       running_.pop_front();

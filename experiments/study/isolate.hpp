@@ -6,6 +6,7 @@
 
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut {
 
@@ -44,12 +45,9 @@ class IsolatedCase {
  public:
   /// Starts it; its files and what it says go into `folder`. Throws InputError if it cannot start.
   IsolatedCase(const Case&, std::filesystem::path folder, const Limits&);
-  ~IsolatedCase();  ///< kills it if it still runs
-  IsolatedCase(const IsolatedCase&) = delete;
-  IsolatedCase& operator=(const IsolatedCase&) = delete;
 
   /// Ready for reading when the process has ended.
-  int descriptor() const { return fd_; }
+  int descriptor() const { return process_.descriptor(); }
   std::chrono::steady_clock::time_point deadline() const { return deadline_; }
   /// Its record once it has ended or its time is up (it is killed then); until then nothing.
   /// Throws InputError if it could not write what it found.
@@ -58,12 +56,12 @@ class IsolatedCase {
   const Case& of() const { return case_; }
 
  private:
-  Record record_of(int wait_status, bool timed_out) const;
+  /// `end`: nothing if its time was up.
+  Record record_of(const std::optional<ProcessEnd>& end) const;
   Case case_;
-  std::filesystem::path folder_, program_;
+  std::filesystem::path folder_;
   std::chrono::steady_clock::time_point deadline_;
-  int pid_ = -1;
-  int fd_ = -1;
+  Process process_;
 };
 
 /// The child's side: runs the case in this process and leaves case.json, series.csv and its

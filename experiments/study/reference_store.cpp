@@ -1,7 +1,5 @@
 #include "experiments/study/reference_store.hpp"
 
-#include <fstream>
-
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/data.hpp"
@@ -35,11 +33,8 @@ void write_reference(const Reference& reference, const std::filesystem::path& fo
     text += (i == 0 ? "\n  " : ",\n  ") + to_text(Json{x.x(), x.y(), x.z()});
   }
   text += "\n ]\n}\n";
-  std::filesystem::create_directories(folder);
-  const std::filesystem::path path = folder / file_name(reference);
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) throw InputError("cannot write '" + path.string() + "'");
+  make_folder(folder);
+  write_file(folder / file_name(reference), text);
 }
 
 Reference read_reference(const std::filesystem::path& path) {

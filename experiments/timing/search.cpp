@@ -22,71 +22,60 @@ struct Columns {
   bool sweeps = false;  ///< more of it costs more and needs fewer substeps
 };
 
-/// Names that the user's text leaves open, with their declarations.
+/// The parts of "a|b|c".
+std::vector<std::string> parts_of(std::string_view list) {
+  std::vector<std::string> parts;
+  while (!list.empty()) {
+    const std::size_t end = std::min(list.find('|'), list.size());
+    parts.emplace_back(list.substr(0, end));
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+  return parts;
+}
+
+/// The solver's accuracy knobs, as far as the user's text leaves them open.
 class Knobs {
  public:
-  explicit Knobs(const std::string& solver)
-      : base_(solver), choice_(parse_solver(solver)), specs_(choice_.entry->params) {}
+  explicit Knobs(const std::string& solver) : base_(solver), entry_(*parse_solver(solver).entry) {}
 
-  const ParamSpec* open(std::string_view name) const {
-    for (const std::string& mark : {":" + std::string(name) + "=", "," + std::string(name) + "="})
-      if (base_.find(mark) != std::string::npos) return nullptr;
-    for (const ParamSpec& spec : specs_)
-      if (spec.name == name) return &spec;
-    return nullptr;
+  bool open(std::string_view name) const {
+    const auto fixed = [&](char mark) {
+      return base_.find(mark + std::string(name) + "=") != std::string::npos;
+    };
+    return !name.empty() && !fixed(':') && !fixed(',');
   }
 
+  std::string substeps() const { return std::string(entry_.knobs.substeps); }
+  bool has_substeps() const { return open(entry_.knobs.substeps); }
+  std::string sweeps() const { return std::string(entry_.knobs.sweeps); }
+
   Columns columns() const {
-    if (open("iterations")) return {{"iterations"}, doublings(1, 128), true};
-    for (const std::vector<std::string>& group :
-         {std::vector<std::string>{"stiffness"}, {"structural", "shear"}}) {
-      const ParamSpec* spec = open(group.front());
-      if (!spec || spec->unit != "N/m") continue;
-      Columns columns{group, {}, false};
-      for (double k = std::stod(std::string(spec->default_value)), i = 0; i < 6; ++i, k *= 4)
-        columns.values.push_back(text_of(k));
-      return columns;
-    }
-    return {{}, {""}, false};
+    if (open(entry_.knobs.sweeps)) return {{sweeps()}, doublings(1, 128), true};
+    Columns columns{parts_of(entry_.knobs.stiffness.parameters), {}, false};
+    std::erase_if(columns.knobs, [&](const std::string& name) { return !open(name); });
+    if (columns.knobs.empty()) return {{}, {""}, false};
+    columns.values = parts_of(entry_.knobs.stiffness.values);
+    return columns;
   }
 
   /// Single changes worth trying beside substeps and columns.
-  std::vector<std::pair<std::string, std::string>> extras() const {
-    static const std::pair<const char*, std::vector<std::string>> kExtras[] = {
-        {"precision", {"float", "double"}},
-        {"order", {"coloured", "mesh"}},
-        {"omega", {"1.3", "1.6"}},
-        {"levels", {"2", "3"}},
-        {"tethers", {"on"}},
-        {"newton", {"2", "4"}}};
+  std::vector<std::pair<std::string, std::string>> alternatives() const {
     std::vector<std::pair<std::string, std::string>> all;
-    for (const auto& [name, values] : kExtras) {
-      const ParamSpec* spec = open(name);
-      if (!spec) continue;
-      for (const std::string& value : values)
-        if (value != spec->default_value && allows(*spec, value)) all.emplace_back(name, value);
-    }
+    for (const auto& [name, values] : entry_.knobs.alternatives)
+      for (const std::string& value : parts_of(values))
+        if (open(name) && value != parse_solver(base_).params.value(name))
+          all.emplace_back(name, value);
     return all;
   }
 
+ private:
   static std::vector<std::string> doublings(int from, int to) {
     std::vector<std::string> values;
     for (int v = from; v <= to; v *= 2) values.push_back(std::to_string(v));
     return values;
   }
-
- private:
-  static std::string text_of(double value) {
-    return value == std::round(value) ? std::to_string(static_cast<long>(value))
-                                      : std::to_string(value);
-  }
-  static bool allows(const ParamSpec& spec, const std::string& value) {
-    if (spec.kind != ParamSpec::Kind::choice) return std::stod(value) <= spec.max;
-    return ("|" + std::string(spec.choices) + "|").find("|" + value + "|") != std::string::npos;
-  }
   std::string base_;
-  SolverChoice choice_;
-  std::span<const ParamSpec> specs_;
+  const SolverEntry& entry_;
 };
 
 using Values = std::map<std::string, std::string>;
@@ -113,7 +102,7 @@ class KnobSearch {
     }
     if (wish_.error) bisect();
     if (wish_.error && columns.sweeps) bisect_sweeps();
-    if (worth_more()) extras();
+    if (worth_more()) alternatives();
     return tried_;
   }
 
@@ -127,7 +116,7 @@ class KnobSearch {
 
   /// The offer at these values and substeps, run at most once; nullptr when time is up.
   const Offer* attempt(Values values, int substeps) {
-    if (knobs_.open("substeps")) values["substeps"] = std::to_string(substeps);
+    if (knobs_.has_substeps()) values[knobs_.substeps()] = std::to_string(substeps);
     const std::string setting = text(values);
     if (const auto at = index_.find(setting); at != index_.end()) return &tried_[at->second];
     if (over_) return nullptr;
@@ -169,7 +158,7 @@ class KnobSearch {
       return n;
     }
     double last = offer->error;
-    for (int stuck = 0; stuck < 3 && n < kMostSubsteps && knobs_.open("substeps");) {
+    for (int stuck = 0; stuck < 3 && n < kMostSubsteps && knobs_.has_substeps();) {
       if (2 * offer->cost.mid > bar()) {
         hopeless_ = n == from;  // not even the start of the next column can be cheaper
         return n;
@@ -192,7 +181,7 @@ class KnobSearch {
       if (!offer) return;
       const double room = 0.97 * *wish_.budget / offer->cost.mid;
       const int next = std::clamp(static_cast<int>(n * std::min(room, 1e6)), 1, kMostSubsteps);
-      if (next == n || !knobs_.open("substeps") || (room >= 1 && next < n * 1.15)) return;
+      if (next == n || !knobs_.has_substeps() || (room >= 1 && next < n * 1.15)) return;
       n = next;
     }
   }
@@ -229,10 +218,10 @@ class KnobSearch {
     if (!worth_more()) return;
     Values values = without_substeps(best_values_);
     const int substeps = best_substeps_;
-    int high = std::stoi(values["iterations"]), low = high / 2;
+    int high = std::stoi(values[knobs_.sweeps()]), low = high / 2;
     while (high - low > std::max(1, high / 10)) {
       const int middle = (low + high) / 2;
-      values["iterations"] = std::to_string(middle);
+      values[knobs_.sweeps()] = std::to_string(middle);
       const Offer* offer = attempt(values, substeps);
       if (!offer) return;
       (wish_.grants(*offer) ? high : low) = middle;
@@ -245,8 +234,8 @@ class KnobSearch {
     return wish_.budget || tried_[*best_].cost.mid <= kFar * least(known_);
   }
 
-  void extras() {
-    for (const auto& [name, value] : knobs_.extras()) {
+  void alternatives() {
+    for (const auto& [name, value] : knobs_.alternatives()) {
       if (over_) return;
       Values values = without_substeps(best_values_);
       if (values.contains(name) && values[name] == value) continue;
@@ -279,8 +268,8 @@ class KnobSearch {
     int substeps;
   };
 
-  static Values without_substeps(Values values) {
-    values.erase("substeps");
+  Values without_substeps(Values values) const {
+    values.erase(knobs_.substeps());
     return values;
   }
 

@@ -25,14 +25,14 @@ struct Wish {
 using Try = std::function<std::optional<Offer>(const std::string& setting)>;
 
 /// Looks for the setting of `solver` (its text fixes what it names) that serves the wish best,
-/// and gives all that it tried. It walks the accuracy knobs, not their grid:
+/// and gives all that it tried. It walks the accuracy knobs of the solver's
+/// entry, not their grid:
 ///   1. columns of the second knob (sweeps, or a stiffness): in each, the fewest substeps that
 ///      reach the error by doubling, from half of what the column before needed; or the most that
 ///      the budget allows. Two columns without progress end it, as does a cost far above what
 ///      `known`, the offers of others, have.
 ///   2. error: bisection of the substeps, then of the sweeps, between the last doubling.
-///   3. what else the solver has, one knob at a time: precision, order of links, over-relaxation,
-///      levels, tethers, Newton steps; each with as few substeps as it then needs.
+///   3. the entry's alternatives, one at a time; each with as few substeps as it then needs.
 std::vector<Offer> search_settings(const std::string& solver, const Wish&, const Try&,
                                    std::vector<Offer> known = {});
 

@@ -1,14 +1,9 @@
 #include "experiments/timing/timing.hpp"
 
-#include <fcntl.h>
-#include <spawn.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <ctime>
 #include <fstream>
 #include <iostream>
@@ -20,8 +15,6 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/system/data.hpp"
-
-extern char** environ;
 
 namespace taut {
 
@@ -52,14 +45,11 @@ class Clock {
 
 StepTime operator/(const StepTime& t, int steps) { return {t.cpu / steps, t.wall / steps}; }
 
-/// One line of the worker's answers, read byte by byte: the pipe holds no more than it.
-bool read_line(int fd, std::string& line) {
-  line.clear();
-  for (char c = 0; read(fd, &c, 1) == 1;) {
-    if (c == '\n') return true;
-    line += c;
-  }
-  return false;
+std::vector<std::string> worker_command(const std::filesystem::path& program,
+                                        const CaseSpec& spec) {
+  std::vector<std::string> words{program, "bench", "--worker", spec.scene, spec.solver};
+  for (const std::string& value : spec.overrides) words.insert(words.end(), {"--set", value});
+  return words;
 }
 
 }  // namespace
@@ -129,42 +119,19 @@ int serve_timing(const Scene& scene, const SolverChoice& choice) {
   return 0;
 }
 
-TimingWorker::TimingWorker(const std::filesystem::path& program, const CaseSpec& spec) {
-  std::signal(SIGPIPE, SIG_IGN);
-  std::vector<std::string> words{program.string(), "bench", "--worker", spec.scene, spec.solver};
-  for (const std::string& value : spec.overrides) words.insert(words.end(), {"--set", value});
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-
-  int in[2], out[2];
-  if (pipe2(in, O_CLOEXEC) != 0 || pipe2(out, O_CLOEXEC) != 0)
-    throw std::runtime_error("no pipe for a worker");
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, in[0], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
-  const int error = posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(in[0]), close(out[1]);
-  to_ = in[1], from_ = out[0];
+TimingWorker::TimingWorker(const std::filesystem::path& program, const CaseSpec& spec)
+    : process_(worker_command(program, spec), {.input = ProcessOptions::Stream::piped,
+                                               .output = ProcessOptions::Stream::piped,
+                                               .errors = ProcessOptions::Stream::inherited}) {
   std::string line;
-  if (error != 0 || !read_line(from_, line) || line != "ready")
+  if (!process_.read_line(line) || line != "ready")
     throw std::runtime_error("the timing worker of " + spec.scene + " " + spec.solver +
                              " did not start");
 }
 
-TimingWorker::~TimingWorker() {
-  close(to_);
-  close(from_);
-  if (pid_ > 0) waitpid(pid_, nullptr, 0);
-}
-
 std::string TimingWorker::ask(const std::string& request) {
-  const std::string line = request + "\n";
   std::string answer;
-  if (write(to_, line.data(), line.size()) != static_cast<ssize_t>(line.size()) ||
-      !read_line(from_, answer))
+  if (!process_.write(request + "\n") || !process_.read_line(answer))
     throw std::runtime_error("the timing worker died");
   return answer;
 }

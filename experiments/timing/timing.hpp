@@ -7,6 +7,7 @@
 
 #include "core/model/solver.hpp"
 #include "experiments/case/record.hpp"
+#include "experiments/system/process.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut {
@@ -50,9 +51,6 @@ class TimingWorker {
  public:
   /// Starts `program --worker` for the case; throws InputError if the case cannot be built.
   TimingWorker(const std::filesystem::path& program, const CaseSpec&);
-  ~TimingWorker();
-  TimingWorker(const TimingWorker&) = delete;
-  TimingWorker& operator=(const TimingWorker&) = delete;
 
   /// Runs the first `steps` steps once and gives their mean; required before sample(). Both throw
   /// std::runtime_error if the worker died.
@@ -63,9 +61,7 @@ class TimingWorker {
  private:
   std::string ask(const std::string& line);
   StepTime ask_time(const std::string& line);
-  int pid_ = -1;
-  int to_ = -1;
-  int from_ = -1;
+  Process process_;
 };
 
 /// The worker's side: reads requests from stdin and answers on stdout until the input ends.

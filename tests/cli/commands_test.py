@@ -2,9 +2,11 @@
 """What the verbs print, and what bad input costs: a message with its place, exit 2, nothing written."""
 
 import csv
+import hashlib
 import json
 import pathlib
 import re
+import struct
 
 from command_line import CommandLine, main
 
@@ -165,9 +167,10 @@ class Verbs(CommandLine):
         rows = list(csv.DictReader((self.folder / "end.csv").read_text().splitlines()))
         self.assertEqual(list(rows[0]), ["vertex", "x", "y", "z", "vx", "vy", "vz"])
         self.assertEqual(len(rows), 15)
-        for row in rows:  # the shortest text that is the same double
-            self.assertEqual(repr(float(row["y"])), repr(float(repr(float(row["y"])))))
-        self.assertGreater(max(len(row["y"]) for row in rows), 14)
+        # The texts are the same doubles: their bits have the digest that the record has of the state.
+        bits = b"".join(b"".join(struct.pack("<3d", *(float(row[key]) for key in keys)) for row in rows) + b"|"
+                        for keys in (("x", "y", "z"), ("vx", "vy", "vz")))
+        self.assertEqual(hashlib.sha256(bits).hexdigest(), record["digest"])
         self.assertEqual(len((self.folder / "series.csv").read_text().splitlines()), 34)
         self.assertEqual((self.folder / "all.traj").read_bytes()[:8], b"TAUTTRAJ")
 
@@ -223,8 +226,10 @@ class Verbs(CommandLine):
 
     def test_doctor(self):
         report = json.loads(self.taut("doctor", "--json").out)
-        self.assertIn(report["timing_trusted"], (True, False))
-        self.assertIn("toolchain", [finding["name"] for finding in report["findings"]])
+        good = {finding["name"]: finding["good"] for finding in report["findings"]}
+        self.assertIn("toolchain", good)
+        noise = [good.get(name, True) for name in ("load", "clock", "same code, twice")]
+        self.assertEqual(report["timing_trusted"], all(noise))
 
     def test_benches_of_two_words_take_options(self):
         short = ["--sizes", "8", "--rounds", "1", "--seconds", "0.0001"]
@@ -233,7 +238,7 @@ class Verbs(CommandLine):
         self.assertIn("fixed: what a step costs without a sweep", out)
         fixed = [float(line.split()[-1]) for line in out.splitlines() if line.startswith("jakobsen:")]
         self.assertGreater(len(fixed), 8)
-        self.assertGreater(min(fixed), 0)
+        self.assertGreaterEqual(min(fixed), 0)  # 0.00 where other programs slowed the sweeps
         traffic = re.search(r"loads and stores, .*: ([\d.]+) ns in float, ([\d.]+) ns in double", out)
         self.assertGreater(min(map(float, traffic.groups())), 0)
         cores = re.search(r"two threads: ([\d.]+) .* sheets at once: ([\d.]+) .* get ([\d.]+) ", out)

@@ -106,7 +106,7 @@ TEST_F(Plots, NamesWithQuotesCommasAndLineBreaksReachNobodysSyntax) {
 
 TEST_F(Plots, WithoutGnuplotTheErrorSaysWhatToInstall) {
   fs::create_directories(dir_);
-  write_whole(dir_ / "x.gp", "plot x\n");
+  write_file(dir_ / "x.gp", "plot x\n");
   try {
     run_gnuplot(dir_ / "x.gp", "svg", dir_ / "x.svg", "no-such-gnuplot");
     FAIL();
@@ -118,7 +118,7 @@ TEST_F(Plots, WithoutGnuplotTheErrorSaysWhatToInstall) {
 
 TEST_F(Plots, ABrokenScriptLeavesNoFile) {
   fs::create_directories(dir_);
-  write_whole(dir_ / "x.gp", "plot nonsense(\n");
+  write_file(dir_ / "x.gp", "plot nonsense(\n");
   EXPECT_THROW(run_gnuplot(dir_ / "x.gp", "svg", dir_ / "x.svg"), PlotError);
   EXPECT_EQ(files(), 1);
 }

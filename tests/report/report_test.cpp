@@ -256,7 +256,7 @@ TEST(Report, SampleForTheBrowser) {
         {"twist", "jakobsen", "Jakobsen", "stretch.rms", {0, 1, 2}, {0, 0.1, 0}});
   }
   test_writable(path);
-  write_whole(path, make_report(input));
+  write_file(path, make_report(input));
   EXPECT_TRUE(fs::exists(path));
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/solver/hierarchy.hpp"
 #include "core/solver/passes/tethers.hpp"
@@ -116,17 +117,11 @@ TEST(Accelerators, WorkInStripsAsWellAsPacked) {
     const std::string method = listing("precision=double,order=coloured,iterations=2") + more;
     const State strips = simulate(scene, method + ",layout=strips", 30);
     const State packed = simulate(scene, method + ",layout=packed", 30);
-    EXPECT_LT(largest_distance(strips.x, packed.x), 0.05) << more;  // other orders, same cloth
+    const State without = simulate(scene, method.substr(0, method.size() - std::strlen(more)), 30);
+    const double apart = largest_distance(strips.x, packed.x);  // other orders, same cloth
+    EXPECT_LT(3 * apart, largest_distance(strips.x, without.x)) << more;
+    EXPECT_LT(3 * apart, largest_distance(packed.x, without.x)) << more;
   }
-}
-
-TEST(Accelerators, AbsentAreFree) {
-  const Scene scene = hanging_sheet(20, 20);
-  const SolverChoice choice = parse_solver("jakobsen");
-  for (const PassCost& line : choice.entry->make(scene, choice.params)->step_cost())
-    EXPECT_TRUE(line.pass == "verlet" || line.pass == "pins" || line.pass == "structural" ||
-                line.pass == "shear" || line.pass == "bend")
-        << line.pass;
 }
 
 TEST(Memory, OfASheetIsAtMostAHundredBytesAVertexAndOfAMeshTwoHundred) {
@@ -135,6 +130,7 @@ TEST(Memory, OfASheetIsAtMostAHundredBytesAVertexAndOfAMeshTwoHundred) {
     double bytes = 0;
     for (const PassCost& line : choice.entry->make(scene, choice.params)->step_cost())
       bytes += static_cast<double>(line.bytes);
+    EXPECT_GE(bytes, 24 * scene.mesh.size()) << "two positions of three floats";
     return bytes / scene.mesh.size();
   };
   for (const int n : {32, 64, 128}) {

@@ -46,7 +46,6 @@ class Runner {
     solver_->store(state_);
     return state_;
   }
-  const Solver& solver() const { return *solver_; }
 
  private:
   Scene scene_;
@@ -249,11 +248,6 @@ TEST(Contact, APinInsideAColliderStays) {
         << response;
 }
 
-TEST(Contact, WithoutCollidersThereIsNoPass) {
-  for (const PassCost& cost : Runner(points({0, 0, 0}), "").solver().step_cost())
-    EXPECT_TRUE(cost.pass == "verlet" || cost.pass == "pins") << cost.pass;
-}
-
 /// One free triangle of 1 m sides about the origin, level, with corner masses 1, 2 and 3 kg.
 Scene one_face(const Collider& collider) {
   Scene scene;
@@ -307,6 +301,7 @@ void expect_model_surface(const Shape_& shape) {
   const SurfaceOf<double> fast = surface_of(shape);
   std::mt19937 random(3);
   std::uniform_real_distribution<> number(-1, 1);
+  int cleared = 0, compared = 0;
   for (int k = 0; k < 2000; ++k) {
     const Vec3 x(number(random), number(random), number(random));
     const Surface exact = surface(shape, x);
@@ -314,8 +309,10 @@ void expect_model_surface(const Shape_& shape) {
     const Tangent<double> tangent = fast.nearest(here);
     EXPECT_NEAR(dot(tangent.normal, here) - tangent.offset, exact.distance, 1e-12);
     EXPECT_NEAR((point(tangent.normal) - exact.normal).norm(), 0, 1e-7);
-    for (const double t : {0.0, 0.05})
+    for (const double t : {0.0, 0.05}) {
       EXPECT_FALSE(fast.clear(here, t) && exact.distance < t - 1e-12);
+      cleared += fast.clear(here, t);
+    }
     const double e = 1e-6;  // the gradient by central differences
     Vec3 gradient;
     for (Eigen::Index a = 0; a < 3; ++a)
@@ -324,7 +321,10 @@ void expect_model_surface(const Shape_& shape) {
                     (2 * e);
     const bool smooth = std::abs(gradient.norm() - 1) < 1e-4;  // away from the medial axis
     EXPECT_TRUE(!smooth || (gradient - exact.normal).norm() < 1e-3);
+    compared += smooth;
   }
+  EXPECT_GT(cleared, 500);
+  EXPECT_GT(compared, 1800);
 }
 
 /// entry() against marching along the path.

@@ -98,12 +98,14 @@ TEST(Relaxation, EveryOrderVisitsEveryLinkOnce) {
 
 TEST(Relaxation, LinksOfAColourShareNoVertexAndTilesOfAPhaseNeither) {
   const Scene scene = hanging_sheet(70, 35);
+  std::size_t links = 0;
   for (const Phase& phase : colour(scene.links, scene.mesh)) {
     std::vector<int> tile_of(scene.start.x.size(), -1);
     for (std::size_t t = 0; t < phase.size(); ++t)
       for (const Colour& colour : phase[t]) {
         std::vector<bool> seen(tile_of.size());
-        for (const Link& link : colour)
+        for (const Link& link : colour) {
+          ++links;
           for (const int v : {link.a, link.b}) {
             EXPECT_FALSE(seen[static_cast<std::size_t>(v)]);
             seen[static_cast<std::size_t>(v)] = true;
@@ -111,8 +113,10 @@ TEST(Relaxation, LinksOfAColourShareNoVertexAndTilesOfAPhaseNeither) {
             EXPECT_TRUE(tile == -1 || tile == static_cast<int>(t));
             tile = static_cast<int>(t);
           }
+        }
       }
   }
+  EXPECT_EQ(links, scene.links.size());
 }
 
 TEST(Relaxation, SeedsChooseTheRandomOrderAndNothingElse) {

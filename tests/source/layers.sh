@@ -19,14 +19,14 @@ experiments/study        | (core/(model|io|reference)|experiments/(system|metric
 experiments/timing       | (core/model|experiments/(system|case|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|baseline))/
 experiments/truths       | (core/(model|reference)|experiments/(metrics|case|truths))/
-experiments/render       | (core/(model|io)|experiments/(case|render))/
+experiments/render       | (core/(model|io)|experiments/(system|case|render))/
 experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
 experiments/bench        | (core/(model|io|solver)|experiments/(system|timing|bench))/
 experiments/film         | (core/(model|io)|experiments/(system|metrics|case|render|report|film))/
 '
 # what is included | files that may include it
 owners='
-BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/.*\.cpp
+BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/(.*\.cpp|bullet_solver\.hpp)
 toml\+\+                | ^core/io/document\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp

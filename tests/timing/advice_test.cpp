@@ -58,11 +58,11 @@ TEST(Advice, NobodyIsRecommendedForWhatNobodyReaches) {
 }
 
 TEST(Advice, EverySolverSendsItsBestToTheFinal) {
-  const std::vector<Offer> tried{{"a", "a1", {1, 1, 1}, 0.01},
-                                 {"a", "a2", {2, 2, 2}, 0.01},
-                                 {"a", "a3", {3, 3, 3}, 0.01},
-                                 {"b", "b1", {9, 9, 9}, 0.01},
-                                 {"c", "c1", {1, 1, 1}, 0.5}};
+  const std::vector<Offer> tried{{"a", "a1", {0.9, 1, 99}, 0.01},
+                                 {"a", "a2", {0.2, 2, 20}, 0.01},
+                                 {"a", "a3", {0.1, 3, 10}, 0.01},
+                                 {"b", "b1", {0.01, 9, 9}, 0.01},
+                                 {"c", "c1", {0.01, 1, 1}, 0.5}};
   EXPECT_EQ(finalists(tried, {0.01, {}}, 3), (std::vector<std::size_t>{0, 3, 1}));
 }
 

@@ -63,6 +63,26 @@ TEST(Statistics, TheIntervalIsSeededAndShrinksWithSamples) {
   EXPECT_TRUE(narrow.contains(narrow.mid));
 }
 
+// What 95 % means: the interval misses the true median in about one of twenty samples, on each side
+// alike. The noise is skewed, as that of timings is.
+TEST(Statistics, TheIntervalHoldsTheTrueMedianAsOftenAsItSays) {
+  std::mt19937 random(5);
+  std::normal_distribution<> normal;
+  const auto missed = [&](double confidence) {
+    int low = 0, high = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+      std::vector<double> samples;
+      for (int i = 0; i < 25; ++i) samples.push_back(std::exp(0.5 * normal(random)));  // median 1
+      const Interval interval = bootstrap_median(samples, confidence);
+      low += interval.high<1, high += interval.low> 1;
+    }
+    EXPECT_LT(std::abs(low - high), 40);
+    return (low + high) / 400.0;
+  };
+  EXPECT_NEAR(missed(0.95), 0.05, 0.025);
+  EXPECT_NEAR(missed(0.5), 0.5, 0.08);
+}
+
 TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
   int declared = 0, noisy = 0;
   for (unsigned bench = 0; bench < 100; ++bench) {

@@ -1,25 +1,13 @@
-#include "bullet_ref/cloth_builder.hpp"
+#include "bullet_ref/cloth.hpp"
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyHelpers.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "bullet_ref/convert.hpp"
-#include "core/model/input_error.hpp"
 
 namespace taut {
-
-float substep_length(const Scene& scene, const Params& params) {
-  return static_cast<float>(scene.dt / params.integer("substeps"));
-}
-
-void require_program(const std::string& solver, const Params& params) {
-  const std::string precision(params.choice("precision"));
-  if (precision != kBulletPrecision)
-    throw InputError(solver + ": precision=" + precision + " needs the program " +
-                     std::string(bullet_program(precision)));
-}
 
 void configure_world_info(btSoftBodyWorldInfo& info, const Scene& scene, double voxel) {
   info.m_gravity = to_bullet(scene.gravity);
@@ -30,7 +18,7 @@ void configure_world_info(btSoftBodyWorldInfo& info, const Scene& scene, double 
 }
 
 std::unique_ptr<btSoftBody> build_cloth(btSoftBodyWorldInfo& info, const Scene& scene,
-                                        double stiffness, double margin, bool faces) {
+                                        const ClothOptions& options) {
   const Mesh& mesh = scene.mesh;
   std::vector<btVector3> x;
   for (const Vec3& rest : mesh.rest) x.push_back(to_bullet(rest));
@@ -41,10 +29,10 @@ std::unique_ptr<btSoftBody> build_cloth(btSoftBodyWorldInfo& info, const Scene& 
 
   while (body->m_materials.size() < static_cast<int>(kFamilies.size())) body->appendMaterial();
   for (int i = 0; i < body->m_materials.size(); ++i)
-    body->m_materials[i]->m_kLST = static_cast<btScalar>(stiffness);
+    body->m_materials[i]->m_kLST = static_cast<btScalar>(options.stiffness);
   for (const Link& link : scene.links)
     body->appendLink(link.a, link.b, body->m_materials[static_cast<int>(link.family)]);
-  if (faces)
+  if (options.faces)
     for (const auto& [a, b, c] : mesh.triangles) body->appendFace(a, b, c);
 
   body->updateConstants();  // overwrites the rest lengths with the current ones
@@ -53,9 +41,11 @@ std::unique_ptr<btSoftBody> build_cloth(btSoftBodyWorldInfo& info, const Scene& 
     link.m_rl = static_cast<btScalar>(scene.links[static_cast<std::size_t>(i)].rest);
     link.m_c1 = link.m_rl * link.m_rl;
   }
-  body->m_bUpdateRtCst = false;  // or the first step does it again
+  body->m_bUpdateRtCst = false;                     // or the first step does it again
+  if (options.reorder && body->m_links.size() > 1)  // it reads the first link and the second node
+    btSoftBodyHelpers::ReoptimizeLinkOrder(body.get());
 
-  body->getCollisionShape()->setMargin(static_cast<btScalar>(scene.thickness + margin));
+  body->getCollisionShape()->setMargin(static_cast<btScalar>(scene.thickness + options.margin));
   body->setActivationState(DISABLE_DEACTIVATION);
   return body;
 }
@@ -85,6 +75,16 @@ void read_back_cloth(const btSoftBody& body, RestLength rest_length, Scene& scen
   scene.gravity = from_bullet(body.m_worldInfo->m_gravity);
 }
 
+int waiting_links(const btSoftBody& body) {
+  int waiting = 0;
+  for (int i = 1; i < body.m_links.size(); ++i) {
+    const auto &before = body.m_links[i - 1].m_n, &now = body.m_links[i].m_n;
+    waiting +=
+        now[0] == before[0] || now[0] == before[1] || now[1] == before[0] || now[1] == before[1];
+  }
+  return waiting;
+}
+
 std::size_t node_bytes(const btSoftBody& body) {
   const auto n = static_cast<std::size_t>(body.m_nodes.size());
   return static_cast<std::size_t>(body.m_nodes.capacity()) * sizeof(btSoftBody::Node) +
@@ -96,23 +96,6 @@ std::size_t distance_field_bytes(const btSoftBody& body) {
   const btSparseSdf<3>& sdf = body.m_worldInfo->m_sparsesdf;
   return static_cast<std::size_t>(sdf.cells.capacity()) * sizeof(sdf.cells[0]) +
          static_cast<std::size_t>(sdf.ncells) * sizeof(btSparseSdf<3>::Cell);
-}
-
-std::string short_text(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g", value);
-  return digits;
-}
-
-std::pair<std::string, std::string> library_line(const Params& params) {
-  return {"library", "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
-                         std::to_string(BT_BULLET_VERSION % 100) + ", " +
-                         std::string(params.choice("precision"))};
-}
-
-std::pair<std::string, std::string> time_step_line(const Scene& scene, const Params& params) {
-  return {"time step", short_text(static_cast<double>(substep_length(scene, params))) + " s x " +
-                           std::string(params.value("substeps")) + ", as binary32"};
 }
 
 }  // namespace taut
