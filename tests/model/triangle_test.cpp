@@ -192,7 +192,7 @@ TEST(Triangle, DistancesBeatSubdivisionAndAreZeroWhereTheyTouch) {
     return Corners{Vec3(x - 1, 1, 0), Vec3(x + 4, 1.1, 0), Vec3(x + 4, 1, 0)};
   };
   EXPECT_NEAR(distance(flat, beside(0)), 0, 1e-15);
-  EXPECT_NEAR(distance(flat, beside(5)), std::sqrt(4.5), 1e-12);
+  EXPECT_NEAR(distance(flat, beside(5)), std::sqrt(2.0), 1e-12);
 }
 
 TEST(Crossings, CoincidencesAreThosePairsThatAreNearAndDoNotCross) {

@@ -130,6 +130,7 @@ function fillCase(dialog, entry) {
     ['work', [`${entry.projections} projections per step`]],
     ...settings.split(',').filter(Boolean).map((part) => part.split(/=(.*)/s)).map(([name, value]) => [name, [value ?? '']]),
     ['studies', [entry.studies.join(', ')]], ['case', [el('code', {}, entry.id)]]];
+  dialog.setAttribute('aria-labelledby', 'case-title');
   dialog.replaceChildren(
     el('header', {}, el('h2', {id: 'case-title'}, named(entry.solver), ` ${short(entry.brief, 80)} on ${short(entry.scene, 60)}`),
        el('button', {type: 'button', onclick: close, 'aria-label': 'close the case'}, 'close')),

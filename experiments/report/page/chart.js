@@ -68,7 +68,7 @@ function pointLines(spec, series, point) {
     `${shown(point.y, y, 4)}${spread && ` (95 %: ${spread})`}`;
   return [`${series.label}${point.name ? `, ${point.name}` : ''}`, `${y.title}: ${value}`,
           `${x.title}: ${shown(point.x, x, 4)}${costs && ` (95 %: ${costs})`}`,
-          ...caseLines(point.status, cases.get(point.case)?.reason, point.case)];
+          ...caseLines(point.status, undefined, point.case)];
 }
 
 /** Charts that are on the page: they are drawn again when the page is printed. */
@@ -114,7 +114,7 @@ function chartFigure(spec) {
   const view = {kind: spec.y.axis, transform: d3.zoomIdentity, clip: `clip-${drawn.size}`};
   const plot = el('div', {className: 'plot'}), key = el('div'), bar = el('div', {className: 'tools'});
   const svg = d3.select(plot).append('svg').attr('role', 'group').attr('aria-label', short(`${spec.title}: points`, 160));
-  const reset = rove(svg.node(), '.point');
+  const reset = rove(plot, '.point');
   const draw = (width) => {
     if (!width) return;
     const active = document.activeElement?.dataset?.place;

@@ -18,20 +18,20 @@ function timeChart(track, seek, until) {
     return output;
   });
   const svg = d3.select(plot).append('svg').attr('role', 'img').attr('aria-label', short(`${track.title} over time`, 160));
-  const span = until ?? d3.max(track.series, (s) => s.t[s.t.length - 1]), h = 150;
+  const span = until ?? d3.max(track.series, (s) => s.t[s.t.length - 1]), h = 154, foot = 26;
   let xs = null, cursor = null, time = 0;
   const draw = (width) => {
     if (!width) return;
     svg.attr('viewBox', `0 0 ${width} ${h}`).attr('width', width).attr('height', h).selectAll('*').remove();
     const values = track.series.flatMap((s) => s.y).filter((v) => v !== null).map((v) => v * quantity.scale);
-    const ys = scaleOf('linear', values.length ? [0, ...values] : [], [h - 22, 8]);
+    const ys = scaleOf('linear', values.length ? [0, ...values] : [], [h - foot, 8]);
     const axis = svg.append('g').attr('class', 'axis y')
         .call(d3.axisLeft(ys).tickValues(ys.ticks(4)).tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
     const left = Math.ceil(axis.node().getBBox().width) + 4;
     axis.attr('transform', `translate(${left},0)`).selectAll('.tick line').attr('x2', width - left - 12);
     xs = d3.scaleLinear([0, span], [left, width - 12]);
-    svg.append('g').attr('class', 'axis x').attr('transform', `translate(0,${h - 22})`)
-        .call(d3.axisBottom(xs).ticks(width / 80).tickSize(4).tickFormat((v) => number(v) + ' s'));
+    svg.append('g').attr('class', 'axis x').attr('transform', `translate(0,${h - foot})`)
+        .call(d3.axisBottom(xs).ticks(width / 80).tickSize(4).tickPadding(7).tickFormat((v) => number(v) + ' s'));
     thin(svg.selectAll('.axis.x text').nodes());
     for (const s of track.series)
       svg.append('path').attr('class', 'line').attr('data-s', solverOf(s.solver).order).attr('stroke-dasharray', dashOf(s))
@@ -43,7 +43,7 @@ function timeChart(track, seek, until) {
   };
   const show = (t) => {
     time = t;
-    if (cursor) cursor.attr('d', `M${xs(Math.min(t, span))},6V${h - 22}`);
+    if (cursor) cursor.attr('d', `M${xs(Math.min(t, span))},6V${h - foot}`);
     track.series.forEach((s, i) => {
       const at = Math.max(0, d3.bisectRight(s.t, t + 1e-9) - 1);
       outputs[i].textContent = shown(s.y[at], quantity);

@@ -3,7 +3,10 @@
 
 const tip = document.getElementById('tip');
 
+let told = null;  // what the tip is about: {anchor, lines}
+
 function showTip(anchor, lines) {
+  told = {anchor, lines};
   tip.replaceChildren(...lines.map((line) => el('div', {}, line)));
   tip.hidden = false;
   const at = anchor.getBoundingClientRect(), size = tip.getBoundingClientRect(), gap = 8;
@@ -12,7 +15,10 @@ function showTip(anchor, lines) {
   tip.style.top = (below ? at.bottom + gap : at.top - gap - size.height) + 'px';
 }
 const hideTip = () => { tip.hidden = true; };
-addEventListener('scroll', hideTip, {passive: true, capture: true});
+addEventListener('scroll', () => {
+  if (!tip.hidden && document.activeElement === told.anchor) showTip(told.anchor, told.lines);
+  else hideTip();
+}, {passive: true, capture: true});
 addEventListener('keydown', (event) => { if (event.key === 'Escape') hideTip(); });
 
 /** Gives an element its text at the pointer and at the focus, and to readers of the screen. */
@@ -27,8 +33,8 @@ function describe(node, lines) {
 
 /** What is said of a case: how it ended, which one it is, and that more is to be had. */
 function caseLines(status, reason, key) {
-  const entry = statusOf(status), known = cases.get(key);
-  return [`status: ${entry.title}${reason ? ` (${short(reason, 120)})` : ''}`,
+  const entry = statusOf(status), known = cases.get(key), why = reason ?? known?.reason;
+  return [`status: ${entry.title}${why ? ` (${short(why, 120)})` : ''}`,
           ...(known ? [`case ${key}: ${short(known.id, 160)}`, 'Enter or click: settings, values, command'] : [])];
 }
 
@@ -37,12 +43,15 @@ function caseLines(status, reason, key) {
  * move within the group, up and down to the nearest item of the group before and behind.
  */
 function rove(box, selector) {
-  const items = () => [...box.querySelectorAll(selector)].filter((item) => item.checkVisibility());
+  const items = () => [...box.querySelectorAll(selector)].filter((item) => item.getClientRects().length);
   const at = (item) => { const r = item.getBoundingClientRect(); return r.left + r.width / 2; };
   const stop = (item) => {
     for (const other of box.querySelectorAll(selector)) other.setAttribute('tabindex', other === item ? 0 : -1);
   };
-  const reset = () => { const [first] = items(); if (first) stop(first); };
+  const reset = () => {
+    const shown = items();
+    if (shown.length && !shown.some((item) => item.getAttribute('tabindex') === '0')) stop(shown[0]);
+  };
   box.addEventListener('focusin', (event) => { if (event.target.matches(selector)) stop(event.target); });
   box.addEventListener('keydown', (event) => {
     const here = event.target.closest(selector);
@@ -55,6 +64,6 @@ function rove(box, selector) {
     const other = groups[mine + {ArrowUp: -1, ArrowDown: 1}[event.key]];
     (next ?? (other && d3.least(other.values, (item) => Math.abs(at(item) - at(here)))))?.focus();
   });
-  reset();
+  state.watch(reset);  // the stop may have been switched off with its solver
   return reset;
 }

@@ -39,8 +39,7 @@ function mapFigure(map) {
     el('tbody', {}, rows.map((row) => el('tr', {}, el('th', {scope: 'row'}, texts(map.y)[row]),
       map.x.values.map((_, column) => mapCell(map, at.get(`${row} ${column}`), row, column))))));
   const box = el('div', {className: 'scroll'}, table);
-  const reset = rove(table, '.cell');
-  drawn.add({plot: table, draw: reset});
+  rove(table, '.cell');
   return el('figure', {className: 'card chart', id: `map-${map.id}`, 'data-s': solverOf(map.solver).order},
             el('figcaption', {}, el('h4', {}, named(map.solver)), el('p', {className: 'note'},
               solverOf(map.solver).title === map.label ? '' : map.label)),

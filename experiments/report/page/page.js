@@ -18,7 +18,7 @@ function plainTable(title, columns, rows) {
 function tableNode(table, heading = 'h4') {
   const rows = table.rows.map((row) => el('tr', {}, row.map((cell, i) => tableCell(cell, i === 0))));
   return el('div', {className: 'card', id: `table-${table.id}`}, el(heading, {}, short(table.title, 120)),
-            el('p', {className: 'note'}, table.caption), scrolled(table.title, plainTable(table.title, table.columns.map((c) => c.title), rows)));
+            el('p', {className: 'note'}, table.caption), scrolled(`${table.title} (${table.id})`, plainTable(table.title, table.columns.map((c) => c.title), rows)));
 }
 
 const section = (id, title, ...content) => el('section', {id}, el('h2', {}, title), content);
@@ -57,9 +57,9 @@ function material({aspect, rows}) {
 }
 
 /** How the cases of a scene ended, solver by solver. */
-const ends = (counts) => el('ul', {className: 'key'}, Object.entries(counts ?? {}).map(([solver, byStatus]) =>
+const ends = (counts) => counts && el('ul', {className: 'key'}, Object.entries(counts).map(([solver, byStatus]) =>
   el('li', {'data-s': solverOf(solver).order}, named(solver), Object.entries(byStatus).map(([status, n]) =>
-    el('span', {}, ' ', glyphBox(status), ` ${n} ${statusOf(status).title}`)))));
+    el('span', {}, ' ', glyphBox(status), ` ${n} ${short(statusOf(status).title, 30)}`)))));
 
 function scenePart(scene) {
   const priced = model.cost?.scenes.find((entry) => entry.scene === scene.id);
@@ -174,7 +174,7 @@ function methodSection() {
 
 /** The contents, which stay in sight, and the solvers' switches. */
 function contents(sections) {
-  const links = sections.map((part) => choice({at: part.id}, {}, part.querySelector('h2')?.textContent ?? 'Answer'));
+  const links = sections.map((part) => choice({at: part.id}, {}, part.id === 'answer' ? 'Answer' : part.querySelector('h2').textContent));
   const seen = new IntersectionObserver(() => {
     const now = sections.findLastIndex((part) => part.getBoundingClientRect().top < 140);
     links.forEach((link, i) => link.classList.toggle('here', i === Math.max(0, now)));
