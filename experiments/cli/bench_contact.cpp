@@ -5,7 +5,7 @@
 #include "experiments/bench/contact.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/figures.hpp"
+#include "experiments/report/plot.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::verb::contact {
@@ -91,13 +91,13 @@ void plot(const std::vector<Rows>& sizes, const std::string& folder) {
       records.push_back(plotted(row, self, bare + seconds_per_step(row)));
       if (self == "grid") records.push_back(plotted(row, "off", bare));
     }
-  const report::Figure figure =
-      report::make_figure({.kind = "scaling",
-                           .title = "A step of one sweep, by what keeps the cloth from itself",
-                           .file = "self-collision-scaling",
-                           .slope = 1},
-                          {records, {}}, folder);
-  std::printf("%s\n%s\n", figure.svg.c_str(), figure.pdf.c_str());
+  const report::PlotFiles files =
+      report::make_plot({.kind = "scaling",
+                         .title = "A step of one sweep, by what keeps the cloth from itself",
+                         .file = "self-collision-scaling",
+                         .slope = 1},
+                        records, {}, folder);
+  std::printf("%s\n%s\n", files.svg.c_str(), files.pdf.c_str());
 }
 
 Json json_of(const std::vector<Rows>& sizes) {

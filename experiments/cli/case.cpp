@@ -26,7 +26,7 @@ struct Options {
 std::string_view unit_of(const std::string& value) {
   for (const MetricEntry* metric : metrics())
     for (const ValueSpec& spec : metric->values)
-      if (spec.name == value) return spec.unit == "1" ? "" : spec.unit;
+      if (spec.name == value) return spec.unit.si == "1" ? "" : spec.unit.si;
   return "";
 }
 

@@ -60,8 +60,8 @@ class TidyTable {
     for (const Case& one : known.cases)
       for (const ParamSpec& spec : one.choice.entry->params) params.insert(std::string(spec.name));
     params_.assign(params.begin(), params.end());
-    for (const Sweep& sweep : known.study.sweeps)
-      if (sweep.of_scene()) axes_.push_back(sweep.name);
+    for (const StudyAxis& axis : known.study.axes)
+      if (axis.of_scene()) axes_.push_back(axis.name);
     for (const MetricEntry* metric : metrics())
       for (const ValueSpec& value : metric->values) values_.emplace_back(value.name);
     for (const Record& record : known.records) records_[record.key] = &record;

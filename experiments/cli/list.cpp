@@ -63,7 +63,7 @@ Json list_metrics() {
     Json values = Json::array();
     for (const ValueSpec& spec : entry->values)
       values.push_back({{"name", spec.name},
-                        {"unit", spec.unit},
+                        {"unit", spec.unit.si},
                         {"help", spec.help},
                         {"in_series", spec.in_series}});
     all.push_back({{"name", entry->name},

@@ -1,3 +1,5 @@
+#include "experiments/report/plot.hpp"
+
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -5,8 +7,6 @@
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/axis.hpp"
-#include "experiments/report/curves.hpp"
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/stored.hpp"
@@ -15,7 +15,7 @@ namespace taut::verb::plot {
 
 namespace {
 
-using report::FigureSpec;
+using report::PlotSpec;
 
 struct Options {
   std::string study, preset, kind, x, y, title, results = default_results(), out;
@@ -24,13 +24,13 @@ struct Options {
 
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
 /// for.
-std::vector<FigureSpec> wanted(const Options& options, const Study& study) {
+std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
   if (!options.kind.empty() || !options.x.empty() || !options.y.empty())
     return {{.kind = options.kind.empty() ? "work-precision" : options.kind,
              .x = options.x,
              .y = options.y,
              .title = options.title}};
-  std::vector<FigureSpec> specs;
+  std::vector<PlotSpec> specs;
   for (const Plot& plot : study.plots) {
     const auto option = [&](const char* name) {
       const auto at = plot.options.find(name);
@@ -49,7 +49,7 @@ std::vector<FigureSpec> wanted(const Options& options, const Study& study) {
 
 /// Keeps the cases at the commonest value of what is not on x, and says so: in the title and, if
 /// that leaves out cases, on standard error.
-std::string hold(const FigureSpec& spec, std::vector<Record>& records, const std::string& scene) {
+std::string hold(const PlotSpec& spec, std::vector<Record>& records, const std::string& scene) {
   const std::string held = spec.x == "dt" ? "iterations" : "dt";
   report::Slice slice = report::most_common(records, held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
@@ -63,11 +63,11 @@ std::string hold(const FigureSpec& spec, std::vector<Record>& records, const std
 }
 
 /// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
-report::Figure draw(FigureSpec spec, const report::StudyResult& study, const std::string& scene,
-                    const Store& store, const std::filesystem::path& out) {
-  const report::FigureEntry& entry = report::find_figure(spec.kind);
-  if (spec.x.empty()) spec.x = entry.x;
-  if (spec.y.empty()) spec.y = entry.y;
+report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const std::string& scene,
+                       const Store& store, const std::filesystem::path& out) {
+  const report::PlotKind& kind = report::find_plot_kind(spec.kind);
+  if (spec.x.empty()) spec.x = kind.x;
+  if (spec.y.empty()) spec.y = kind.y;
   std::vector<Record> records = study.records;
   std::erase_if(records, [&](const Record& r) { return r.scene != scene; });
   if (spec.kind == "scaling") spec.slope = 1;
@@ -81,11 +81,11 @@ report::Figure draw(FigureSpec spec, const report::StudyResult& study, const std
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
   spec.file = report::slug(
       scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
-  return report::make_figure(spec, {records, series}, out);
+  return report::make_plot(spec, records, series, out);
 }
 
 int run(const Options& options) {
-  if (!options.kind.empty()) report::find_figure(options.kind);
+  if (!options.kind.empty()) report::find_plot_kind(options.kind);
   const Study study = load_study(options.study, options.preset);
   const Store store(options.results);
   const report::ReportInput input = report::stored_results({study}, store);
@@ -98,12 +98,18 @@ int run(const Options& options) {
       options.out.empty() ? std::filesystem::path(options.results) / "figures" /
                                 (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                           : std::filesystem::path(options.out);
+  const std::vector<PlotSpec> specs = wanted(options, study);
+  for (const PlotSpec& spec : specs) {
+    report::find_plot_kind(spec.kind);
+    for (const std::string& name : {spec.x, spec.y})
+      if (!name.empty()) report::check_value_name(name, result.records);
+  }
   std::vector<std::string> files;
   try {
-    for (const FigureSpec& spec : wanted(options, study))
+    for (const PlotSpec& spec : specs)
       for (const report::SceneInfo& scene : input.scenes) try {
-          const report::Figure figure = draw(spec, result, scene.name, store, out);
-          for (const auto& file : {figure.svg, figure.pdf}) files.push_back(file.string());
+          const report::PlotFiles plot = draw(spec, result, scene.name, store, out);
+          for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
         } catch (const InputError& error) {
           std::cerr << scene.name << ": " << error.what() << '\n';
         }
@@ -119,13 +125,13 @@ std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   std::string kinds;
   std::vector<std::string> names;
-  for (const report::FigureEntry* entry : report::figures())
-    names.emplace_back(entry->name), kinds += (kinds.empty() ? "" : ", ") + names.back();
+  for (const report::PlotKind& kind : report::plot_kinds())
+    names.emplace_back(kind.name), kinds += (kinds.empty() ? "" : ", ") + names.back();
   app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
   app.add_option("--preset", options->preset, "The preset under which it was run");
   app.add_option("--kind", options->kind,
                  "One of: " + kinds + " (default: what the study asks for)")
-      ->check(known("kind of figure", names));
+      ->check(known("kind of plot", names));
   app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
   app.add_option("--y", options->y, "Value on y, such as stretch.rms");
   app.add_option("--title", options->title, "Title above the figure");

@@ -15,6 +15,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/film/film.hpp"
 #include "experiments/report/findings.hpp"
+#include "experiments/report/model.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/main_job.hpp"
 #include "experiments/system/data.hpp"
@@ -27,7 +28,7 @@ namespace {
 struct Options {
   std::vector<std::string> studies, films;
   std::string preset, results = default_results(), out = "report.html";
-  bool no_media = false;
+  bool no_media = false, json = false;
 };
 
 std::string command_line(const Options& options) {
@@ -79,11 +80,7 @@ int run(Options options) {
     if (options.films.empty()) options.films = shipped("scenes");
     if (options.preset.empty()) options.preset = job.preset;
   }
-  const std::filesystem::path page = options.out;
-  if (std::filesystem::is_directory(page))
-    throw InputError(options.out + " is a folder; name the page: -o " +
-                     (page / "report.html").string());
-  if (page.has_parent_path()) std::filesystem::create_directories(page.parent_path());
+  if (!options.json) test_writable(options.out);
   std::vector<Study> studies;
   for (const std::string& name : options.studies)
     studies.push_back(load_study(name, options.preset));
@@ -95,13 +92,31 @@ int run(Options options) {
   input.command = command;
   input.solvers = introductions();
   const std::string program = program_digest();
-  input.provenance = {{"version", "program " + program.substr(0, 10)},
+  if (studies.size() == 1) input.question = studies.front().question;
+  input.provenance = {{"program", program.substr(0, 10)},
                       {"made", readable(utc_stamp())},
-                      {"built with", std::string(toolchain())},
+                      {"toolchain", std::string(toolchain())},
                       {"preset", options.preset}};
   if (options.preset.empty()) input.provenance.pop_back();
-  input.truths = report::stored_truths(options.results, program);
-  input.regressions = report::stored_regressions(options.results, program);
+  const auto left_out = [&](const char* file, const InputError& error) {
+    input.left_out.emplace_back((std::filesystem::path(options.results) / file).string(),
+                                error.what());
+    std::cerr << "left out: " << error.what() << '\n';
+  };
+  try {
+    input.truths = report::stored_truths(options.results, program);
+  } catch (const InputError& error) {
+    left_out("verify.json", error);
+  }
+  try {
+    input.regressions = report::stored_regressions(options.results, program);
+  } catch (const InputError& error) {
+    left_out("check.json", error);
+  }
+  if (options.json) {
+    std::cout << report::make_model(input, 1) << '\n';
+    return kPass;
+  }
   if (!options.no_media) {
     std::set<std::string> scenes(options.films.begin(), options.films.end());
     for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);
@@ -112,7 +127,8 @@ int run(Options options) {
       countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());
     });
   }
-  std::cout << report::write_report(input, options.out).string() << '\n';
+  write_file(options.out, report::make_report(input));
+  std::cout << options.out << '\n';
   return kPass;
 }
 
@@ -128,6 +144,8 @@ std::function<int()> bind(CLI::App& app) {
                  "shipped scenes")
       ->allow_extra_args(false);
   app.add_flag("--no-media", options->no_media, "Without pictures and videos");
+  add_json(app, options->json,
+           "The model of the page (experiments/report/MODEL.md), without pictures");
   app.add_option("-o,--out", options->out, "The page (default: report.html)");
   return [options] { return run(*options); };
 }
@@ -135,8 +153,11 @@ std::function<int()> bind(CLI::App& app) {
 }  // namespace
 }  // namespace taut::verb::reporting
 
-TAUT_VERB(report) = {.name = "report",
-                     .group = VerbGroup::studies,
-                     .summary = "Writes the comparison of stored results as one HTML page",
-                     .example = "taut report\n  taut report iterations --preset quick -o hang.html",
-                     .bind = taut::verb::reporting::bind};
+TAUT_VERB(report) = {
+    .name = "report",
+    .group = VerbGroup::studies,
+    .summary = "Writes the comparison of stored results as one HTML page",
+    .example =
+        "taut report\n  taut report iterations --preset quick -o hang.html\n  taut "
+        "report iterations --json | jq .claims",
+    .bind = taut::verb::reporting::bind};

@@ -7,8 +7,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/axis.hpp"
-#include "experiments/report/figures.hpp"
+#include "experiments/report/plot.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/main_job.hpp"
 #include "experiments/study/table.hpp"
@@ -46,7 +45,7 @@ void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
   };
   for (std::size_t i = 0; i < study.plots.size(); ++i) {
     try {
-      report::find_figure(study.plots[i].kind);
+      report::find_plot_kind(study.plots[i].kind);
     } catch (const InputError& error) {
       report(i, error.diagnostics().front().text());
     }
@@ -116,8 +115,8 @@ int finish_main_job(const MainJob& job, const Options& options) {
 }
 
 Json to_json(const CampaignProgress& campaign, const Options& options, const Store& store) {
-  Json all{{"results", options.out}, {"store", store.digest()}, {"cases", campaign.cases},
-           {"ran", campaign.ran},       {"stored", campaign.reused},  {"statuses", Json::object()}};
+  Json all{{"results", options.out}, {"store", store.digest()},   {"cases", campaign.cases},
+           {"ran", campaign.ran},    {"stored", campaign.reused}, {"statuses", Json::object()}};
   for (const auto& [kind, count] : campaign.by_status) all["statuses"][to_string(kind)] = count;
   return all;
 }
@@ -187,7 +186,8 @@ int run(Options options) {
     std::cerr << "interrupted; the same command goes on where this one stopped\n";
   std::cerr << "store " << store.digest() << '\n';
   if (const int code = exit_code(campaign); code != kPass) return code;
-  if (campaign.cases == 0 && options.only == "failed") std::cerr << "no stored failure to run again\n";
+  if (campaign.cases == 0 && options.only == "failed")
+    std::cerr << "no stored failure to run again\n";
   if (bare && !options.no_report) return finish_main_job(job, options);
   if (!options.values.empty())
     print_tables(studies, options, store);

@@ -6,13 +6,14 @@ namespace taut::metric::self_intersection {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"self.crossings", "1",
+    {"self.crossings", kCount,
      "pairs of faces that share no vertex and cross or coincide (nearer than 1 % of the radius: "
      "layers that lie in one plane cross nowhere), at the end",
-     true},
-    {"self.crossings.max", "1", "the same, largest of ten moments of the last second"},
-    {"self.crossings.peak", "1", "the same, largest of those and twenty moments of the run"},
-    {"self.gap", "m",
+     true, Window::end, "crossing faces"},
+    {"self.crossings.max", kCount, "the same, largest of ten moments of the last second"},
+    {"self.crossings.peak", kCount, "the same, largest of those and twenty moments of the run",
+     false, Window::run},
+    {"self.gap", kSignedLength,
      "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
      "overlap of the particles' balls, worst of ten moments of the last second",
      true},

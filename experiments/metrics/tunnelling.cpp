@@ -8,13 +8,14 @@ namespace taut::metric::tunnelling {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"tunnelling.count", "1",
+    {"tunnelling.count", kCount,
      "free vertices that end on the other side of a ball or box: in through one side and out "
      "through the opposite one, even within one substep; their path is straight from substep to "
      "substep",
-     true},
-    {"tunnelling.share", "1", "the same as a share of the free vertices"},
-    {"tunnelling.events", "1", "passages through a ball or box over the run, returns included"},
+     true, Window::end, "vertices on the other side"},
+    {"tunnelling.share", kShare, "the same as a share of the free vertices", false, Window::end},
+    {"tunnelling.events", kCount, "passages through a ball or box over the run, returns included",
+     false, Window::run, "passages through a collider"},
 };
 
 /// Where a straight path enters and leaves a solid, as outward unit normals.

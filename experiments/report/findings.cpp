@@ -79,7 +79,7 @@ std::optional<Truths> stored_truths(const std::filesystem::path& results,
       const Json* nearest = nullptr;
       std::vector<TruthRow> apart;
       for (const Json& finding : truth.at("findings")) {
-        ++truths.findings;
+        ++truths.findings, ++truths.verdicts[finding.at("verdict").get<std::string>()];
         if (finding.at("verdict") != "passed")
           apart.push_back(row_of(truth, finding));
         else if (!nearest || strain_of(finding) > strain_of(*nearest))

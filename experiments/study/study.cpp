@@ -198,8 +198,7 @@ class StudyReader {
       if (has_param({choice}, axis.name, false))
         for (std::size_t i = 0; i < axis.values.size(); ++i)
           if (!guarded(value.is_array() ? value.items[i] : value, [&] {
-                Params(choice.entry->name, choice.entry->params,
-                       axis.name + "=" + axis.values[i]);
+                Params(choice.entry->name, choice.entry->params, axis.name + "=" + axis.values[i]);
               }))
             return;
   }

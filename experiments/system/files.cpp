@@ -104,6 +104,14 @@ void write_durably(const fs::path& path, std::string_view bytes) {
   replace_file(path, bytes, true);
 }
 
+void test_writable(const fs::path& path) {
+  if (fs::is_directory(path)) throw InputError(path.string() + " is a folder; name a file in it");
+  if (path.has_parent_path()) make_folder(path.parent_path());
+  const fs::path probe = path.string() + "." + unique_suffix();
+  write_durably(probe, "");
+  fs::remove(probe);
+}
+
 void append_line(const fs::path& path, std::string_view line) {
   File(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC).write_all(std::string(line) + '\n');
 }

@@ -17,6 +17,10 @@ void write_file(const std::filesystem::path&, std::string_view bytes);
 /// The same; returns when it is on the disk, its name included.
 void write_durably(const std::filesystem::path&, std::string_view bytes);
 
+/// Whether a file can be written there: makes its folder and tries, before anything costs time.
+/// Leaves nothing behind. Throws InputError with the reason.
+void test_writable(const std::filesystem::path&);
+
 /// Appends a line in one write. Throws as write_durably.
 void append_line(const std::filesystem::path&, std::string_view line);
 

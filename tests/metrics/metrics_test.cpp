@@ -67,7 +67,7 @@ TEST(Metrics, HaveUniqueNamesUnitsAndAsManyNumbersNowAsAtTheEnd) {
     EXPECT_EQ(metric->now({0, 0, scene.start}).size(), entry->values.size()) << entry->name;
     for (const ValueSpec& value : entry->values) {
       EXPECT_EQ(++seen[value.name], 1) << value.name;
-      EXPECT_FALSE(value.unit.empty() || value.help.empty()) << value.name;
+      EXPECT_FALSE(value.unit.si.empty() || value.help.empty()) << value.name;
     }
   }
 }

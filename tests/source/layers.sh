@@ -26,7 +26,7 @@ experiments/truths       | (core/(model|reference)|experiments/(metrics|case|tru
 experiments/render       | (core/(model|io)|experiments/(system|case|render))/
 experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
 experiments/bench        | (core/(model|io|solver|reference)|experiments/(system|timing|bench))/
-experiments/film         | (core/(model|io)|experiments/(system|case|render|report|film))/
+experiments/film         | (core/(model|io)|experiments/(system|metrics|case|render|report|film))/
 '
 # what is included | files that may include it
 owners='
