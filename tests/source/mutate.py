@@ -269,6 +269,8 @@ def draw(layers, sample, seed, build, widest):
     while True:
         for layer in layers:
             pool = pools[layer]
+            if not any(pool.values()):
+                sys.exit(f"mutate: every place in {layer} was tried")
             operator = random_.choice(sorted(o for o in pool if pool[o]))
             yield layer, *pool[operator].pop(random_.randrange(len(pool[operator])))
 
