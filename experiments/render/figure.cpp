@@ -20,18 +20,13 @@ std::string formatted(const char* format, double value) {
 std::vector<std::string> caption(const Studio& studio, const Take& take, double t) {
   const Scene& scene = studio.scene();
   const auto& frame = take.at(t);
+  std::vector<std::string> parts{formatted("t = %.2f s", frame.t)};
   const LiveFigures live = live_figures(scene, frame.state, frame.t);
-  std::vector<std::string> parts{formatted("t = %.2f s", frame.t),
-                                 "max |ε| = " + strain_text(live.max_strain, false),
-                                 "mean ε = " + strain_text(live.mean_strain, true)};
-  if (studio.scale().quantity == Quantity::penetration)
-    parts.push_back("max depth = " + formatted("%.3g mm", 1e3 * live.max_depth));
-  if (studio.scale().quantity == Quantity::speed)
-    parts.push_back("max |v| = " + formatted("%.3g m/s", live.max_speed));
-  if (parts.size() == 3)
-    parts.push_back(scene.mesh.grid ? std::to_string(scene.mesh.grid->nu) + " × " +
-                                          std::to_string(scene.mesh.grid->nv) + " vertices"
-                                    : std::to_string(scene.mesh.size()) + " vertices");
+  for (std::string& part : quantity_text(studio.scale().quantity, live))
+    parts.push_back(std::move(part));
+  parts.push_back(scene.mesh.grid ? std::to_string(scene.mesh.grid->nu) + " × " +
+                                        std::to_string(scene.mesh.grid->nv) + " vertices"
+                                  : std::to_string(scene.mesh.size()) + " vertices");
   return parts;
 }
 
@@ -106,6 +101,19 @@ std::string strain_text(double value, bool sign) {
                                                       : "%.0f %%",
                                        size);
   return (sign ? value < 0 ? "\u2212" : "+" : "") + digits;
+}
+
+std::vector<std::string> quantity_text(Quantity quantity, const LiveFigures& live) {
+  switch (quantity) {
+    case Quantity::strain:
+      return {"max |ε| = " + strain_text(live.max_strain, false),
+              "mean ε = " + strain_text(live.mean_strain, true)};
+    case Quantity::penetration:
+      return {"max depth = " + formatted("%.3g mm", 1e3 * live.max_depth)};
+    case Quantity::speed:
+      break;
+  }
+  return {"max |v| = " + formatted("%.3g m/s", live.max_speed)};
 }
 
 PageLayout::PageLayout(int w, int h, int panels)

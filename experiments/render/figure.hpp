@@ -24,6 +24,10 @@ struct PageLayout {
 /// apart.
 std::string strain_text(double value, bool sign);
 
+/// What is written below a picture of this quantity: the strains, the depth or the speed of this
+/// moment, "max depth = 1.5 mm".
+std::vector<std::string> quantity_text(Quantity, const LiveFigures&);
+
 /// A picture of all takes at one moment: captions with live figures, panels, material space, the
 /// colour bar. Sizes come from the layout that the studio was made for.
 Image compose(const Studio&, const PageLayout&, double t);

@@ -8,6 +8,8 @@
 namespace taut {
 
 /// The functions of OpenGL 3.3 core that the renderer calls; X(NAME, Name) stands for glName.
+/// Loaded here because libepoxy 1.5 knows GLX and EGL only: under OSMesa it finds no context and
+/// aborts.
 #define TAUT_GL_FUNCTIONS(X)                                        \
   X(ACTIVETEXTURE, ActiveTexture)                                   \
   X(ATTACHSHADER, AttachShader)                                     \
@@ -51,8 +53,10 @@ namespace taut {
   X(GETSHADERIV, GetShaderiv)                                       \
   X(GETSTRING, GetString)                                           \
   X(GETUNIFORMLOCATION, GetUniformLocation)                         \
+  X(LINEWIDTH, LineWidth)                                           \
   X(LINKPROGRAM, LinkProgram)                                       \
   X(PIXELSTOREI, PixelStorei)                                       \
+  X(POLYGONMODE, PolygonMode)                                       \
   X(READPIXELS, ReadPixels)                                         \
   X(RENDERBUFFERSTORAGEMULTISAMPLE, RenderbufferStorageMultisample) \
   X(SHADERSOURCE, ShaderSource)                                     \

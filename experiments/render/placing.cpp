@@ -9,8 +9,10 @@ namespace taut {
 
 namespace {
 
-void add_collider_points(const Collider& collider, double t, std::vector<Vec3>& points) {
+/// None of a plane, which has no end.
+std::vector<Vec3> collider_points(const Collider& collider, double t) {
   const Shape shape = shape_at(collider, t);
+  std::vector<Vec3> points;
   for (const double x : {-1.0, 0.0, 1.0})
     for (const double y : {-1.0, 0.0, 1.0})
       for (const double z : {-1.0, 0.0, 1.0}) {
@@ -20,6 +22,14 @@ void add_collider_points(const Collider& collider, double t, std::vector<Vec3>& 
         if (const auto* box = std::get_if<Box>(&shape))
           points.push_back(box->center + box->rotation * box->half_extents.cwiseProduct(corner));
       }
+  return points;
+}
+
+Eigen::AlignedBox3d box_around(const std::vector<Vec3>& points, double margin) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : points) box.extend(x);
+  const Vec3 rim = Vec3::Constant(margin);
+  return {box.min() - rim, box.max() + rim};
 }
 
 const Collider* level_floor(const Scene& scene, const Vec3& up) {
@@ -42,12 +52,20 @@ std::vector<Vec3> cloth_points(const std::vector<Take>& takes, const std::vector
   return points;
 }
 
-/// What the camera has to see.
-std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Vec3>& cloth,
+/// What the camera has to see: a collider that moves counts while it is at the cloth, not all the
+/// way there and back.
+std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Take>& takes,
+                                     const std::vector<Vec3>& cloth,
                                      const std::vector<double>& times) {
   std::vector<Vec3> points;
-  for (const double t : times)
-    for (const Collider& collider : scene.colliders) add_collider_points(collider, t, points);
+  for (const double t : times) {
+    const auto at_cloth = box_around(cloth_points(takes, {t}, false), 0.1 * extent(scene));
+    for (const Collider& collider : scene.colliders) {
+      const std::vector<Vec3> solid = collider_points(collider, t);
+      if (collider.motion.at_rest() || at_cloth.intersects(box_around(solid, 0)))
+        points.insert(points.end(), solid.begin(), solid.end());
+    }
+  }
   Eigen::AlignedBox3d near;
   for (const Vec3& x : points) near.extend(x);
   for (const Vec3& x : scene.start.x) near.extend(x);
@@ -121,7 +139,8 @@ Placing place(const Scene& scene, const std::vector<Take>& takes, const std::vec
   p.follows = scene.pins.empty() && scene.colliders.empty();
   p.inset = inset;
   const std::vector<Vec3> cloth = cloth_points(takes, times, p.follows);
-  const std::vector<Vec3> points = p.follows ? cloth : points_of_interest(scene, cloth, times);
+  const std::vector<Vec3> points =
+      p.follows ? cloth : points_of_interest(scene, takes, cloth, times);
   Eigen::AlignedBox3d box;
   double lowest = 1e300;
   for (const Vec3& x : points) box.extend(x), lowest = std::min(lowest, x.dot(p.up));

@@ -37,7 +37,7 @@ Image compose_sheet(const Studio& studio, const std::vector<double>& times) {
       char time[32];
       std::snprintf(time, sizeof time, "t = %.2f s    ", frame.t);
       Canvas(panel).text({18 * u, 30 * u},
-                         time + ("max |ε| = " + strain_text(live.max_strain, false)),
+                         time + quantity_text(studio.scale().quantity, live).front(),
                          {15 * u, on_stage});
       picture.paste(panel, column * (wide + gap), head + row * (high + gap));
     }

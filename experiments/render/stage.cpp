@@ -1,6 +1,7 @@
 #include "experiments/render/stage.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "core/model/input_error.hpp"
 #include "experiments/render/shaders.hpp"
@@ -70,6 +71,28 @@ std::vector<Vertex> vertices_of(const Skin& skin) {
                         {skin.front[i], skin.back[i], skin.value[i], skin.hidden[i]}});
   }
   return vertices;
+}
+
+/// The triangles that are lower than a pixel where the picture is `width` x `height` pixels: none
+/// of a pixel's samples may lie in them.
+std::vector<std::array<std::uint32_t, 3>> thinner_than_a_pixel(const Skin& skin,
+                                                               const Eigen::Matrix4f& world_to_clip,
+                                                               float width, float height) {
+  std::vector<Eigen::Vector3f> seen;  // x, y in pixels, w
+  for (const Vec3f& p : skin.position) {
+    const Eigen::Vector4f clip = world_to_clip * p.homogeneous();
+    seen.emplace_back(0.5f * width * clip.x() / clip.w(), 0.5f * height * clip.y() / clip.w(),
+                      clip.w());
+  }
+  std::vector<std::array<std::uint32_t, 3>> thin;
+  for (const auto& triangle : skin.triangles) {
+    const auto &a = seen[triangle[0]], &b = seen[triangle[1]], &c = seen[triangle[2]];
+    if (std::min({a.z(), b.z(), c.z()}) <= 0) continue;
+    const Eigen::Vector2f ab = (b - a).head<2>(), ac = (c - a).head<2>(), bc = (c - b).head<2>();
+    const float longest = std::max({ab.norm(), ac.norm(), bc.norm()});
+    if (std::abs(ab.x() * ac.y() - ab.y() * ac.x()) < longest) thin.push_back(triangle);
+  }
+  return thin;
 }
 
 template <class T>
@@ -220,6 +243,16 @@ void Stage::draw_skin(const Panel& panel, const Painted& painted,
   set(gl_, surface_, "line_width", 1.3f * static_cast<float>(supersampling_));
   gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * painted.skin->triangles.size()),
                     GL_UNSIGNED_INT, nullptr);
+  if (painted.colour) return;
+  // Cloth never vanishes: what is too thin to be filled is drawn by its edges, a pixel wide.
+  const auto thin = thinner_than_a_pixel(*painted.skin, world_to_clip, static_cast<float>(width_),
+                                         static_cast<float>(height_));
+  if (thin.empty()) return;
+  upload(gl_, GL_ELEMENT_ARRAY_BUFFER, indices_, thin);
+  gl_->PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  gl_->LineWidth(static_cast<float>(supersampling_));
+  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * thin.size()), GL_UNSIGNED_INT, nullptr);
+  gl_->PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
 Image Stage::read() const {

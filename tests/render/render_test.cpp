@@ -157,6 +157,54 @@ TEST(Studio, VerticesAreProjectedToWhereTheyAreDrawn) {
   for (const auto& p : points) EXPECT_LT(std::max(std::abs(p.x()), std::abs(p.y())), 1);
 }
 
+// Stretched to a thread of a thousandth of a pixel, no sample of any pixel lies in it.
+TEST(Studio, AThreadOfClothIsSeenFromEndToEnd) {
+  const Scene scene = test::level_sheet(9);
+  Take thread = test::stretched(scene, 0);
+  for (auto& frame : thread.trajectory.frames)
+    for (Vec3& x : frame.state.x) x = Vec3(3 * x.x(), 0, 1e-5 * x.z());
+  const std::vector<Take> takes{thread};
+  StudioOptions options = small();
+  options.view = parse_view("front");
+  options.range = 0.05;
+  const Studio studio(scene, takes, options);
+  const Image panel = studio.panel(0, 0.5);
+  const auto ends =
+      std::ranges::minmax(studio.projected(0, 0.5), {}, [](const auto& p) { return p.x(); });
+  const auto column = [](float x) { return static_cast<int>((x + 1) / 2 * 240); };
+  int seen = 0;
+  for (int x = column(ends.min.x()); x < column(ends.max.x()); ++x)
+    for (int y = 0; y < 180; ++y)
+      if (panel.at(x, y).r > panel.at(x, y).g + 40) {
+        ++seen;
+        break;
+      }
+  EXPECT_GT(column(ends.max.x()) - column(ends.min.x()), 150);
+  EXPECT_GE(seen, column(ends.max.x()) - column(ends.min.x()) - 2);
+}
+
+// A ball that comes from far away is seen at the cloth, the cloth is not a speck on its way.
+TEST(Placing, FramesTheClothAndNotTheWholeWayOfACollider) {
+  Scene scene = test::level_sheet(9);
+  scene.colliders.push_back({Ball{Vec3(-10, 0, 0), 0.3}, {.velocity = Vec3(20, 0, 0)}, 0});
+  const std::vector<Take> takes{test::stretched(scene, 0)};
+  std::vector<double> times;
+  for (int k = 0; k <= 24; ++k) times.push_back(k / 24.0);
+  const Placing passing = place(scene, takes, times, View{}, Frame{}, 4.0 / 3, 0);
+  EXPECT_LT(passing.radius, 1.5);
+  EXPECT_GT(passing.radius, 0.8) << "the ball is seen while it passes";
+}
+
+TEST(Figure, WhatIsWrittenBelowIsTheQuantityThatIsShown) {
+  const LiveFigures live{
+      .max_strain = 0.041, .mean_strain = -0.002, .max_depth = 0.0015, .max_speed = 0.8};
+  EXPECT_EQ(quantity_text(Quantity::penetration, live),
+            std::vector<std::string>{"max depth = 1.5 mm"});
+  EXPECT_EQ(quantity_text(Quantity::speed, live), std::vector<std::string>{"max |v| = 0.8 m/s"});
+  EXPECT_EQ(quantity_text(Quantity::strain, live),
+            (std::vector<std::string>{"max |ε| = 4.10 %", "mean ε = \u22120.20 %"}));
+}
+
 // Cloth that sinks into a ball is lifted to its surface, and only hatched there.
 TEST(Studio, SunkenClothStaysVisible) {
   const Scene scene = test::sheet_over_ball(17);
