@@ -12,12 +12,8 @@
 
 #include <cmath>
 
-#include "bullet_ref/cloth_builder.hpp"
-#include "bullet_ref/common_params.hpp"
+#include "bullet_ref/bullet_solver.hpp"
 #include "bullet_ref/convert.hpp"
-#include "bullet_ref/read_back.hpp"
-#include "bullet_ref/rigid_colliders.hpp"
-#include "core/model/solver.hpp"
 #include "core/model/wind.hpp"
 
 namespace taut::solver::bullet_deformable {
@@ -44,8 +40,8 @@ constexpr ParamSpec kParams[] = {
      .min = 1,
      .max = 1000,
      .help = "Newton steps at most per implicit substep (Bullet's default: 1)"},
-    bullet_param::substeps,
-    bullet_param::precision,
+    bullet_ref::kSubsteps,
+    bullet_ref::kPrecision,
     {.name = "spring-damping",
      .kind = Kind::real,
      .unit = "N s/m",
@@ -53,14 +49,8 @@ constexpr ParamSpec kParams[] = {
      .min = 0,
      .max = 1e6,
      .help = "damping along every link, on top of the scene's (Bullet's default: 0.05)"},
-    bullet_param::margin,
-    {.name = "voxel",
-     .kind = Kind::real,
-     .unit = "m",
-     .default_value = "0.05",
-     .min = 1e-3,
-     .max = 10,
-     .help = "grid spacing of the colliders' distance fields (this world's default: 0.005)"},
+    bullet_ref::kMargin,
+    bullet_ref::kVoxel,
 };
 
 /// Bullet has no setter for its number of Newton steps.
@@ -82,26 +72,22 @@ struct World {
                                            &deformables};
 };
 
-class BulletDeformable final : public Solver, public HoldsScene {
+int newton_steps(const Params& params) {
+  return params.is("implicit", "true") ? params.integer("newton") : 1;
+}
+
+class BulletDeformable final : World, public BulletSolver {
  public:
   BulletDeformable(const Scene& scene, const Params& params)
-      : scene_(scene),
-        margin_(params.real("margin")),
-        substeps_(params.integer("substeps")),
-        newton_(params.is("implicit", "true") ? params.integer("newton") : 1),
-        h_(static_cast<btScalar>(substep_length(scene, params))),
+      : World(newton_steps(params)),
+        BulletSolver(scene, params, world, world.getWorldInfo(), {.margin = params.real("margin")}),
+        newton_(newton_steps(params)),
         loss_(static_cast<btScalar>(-std::expm1(-scene.damping * static_cast<double>(h_)))),
-        world_(newton_),
-        colliders_(scene, world_.world),
         springs_(static_cast<btScalar>(params.real("stiffness")),
                  static_cast<btScalar>(params.real("spring-damping"))),
         gravity_(to_bullet(scene.gravity)) {
-    auto& world = world_.world;
-    world.setGravity(to_bullet(scene.gravity));  // does not reach soft bodies
-    configure_world_info(world.getWorldInfo(), scene, params.real("voxel"));
     world.setImplicit(params.is("implicit", "true"));
     world.setUseProjection(true);  // without it pinned implicit bodies do not move
-    body_ = build_cloth(world.getWorldInfo(), scene, 1, margin_, true);
     body_->m_cfg.drag = 0;
     body_->m_cfg.kDF = 1;  // so that a collider's friction is what the scene says
     body_->m_cfg.collisions =
@@ -112,7 +98,7 @@ class BulletDeformable final : public Solver, public HoldsScene {
     world.addForce(body_.get(), &gravity_);
     load(scene.start);
   }
-  ~BulletDeformable() override { world_.world.removeSoftBody(body_.get()); }
+  ~BulletDeformable() override { world.removeSoftBody(body_.get()); }
 
   void load(const State& state) override {
     for (std::size_t i = 0; i < state.x.size(); ++i) {
@@ -128,11 +114,6 @@ class BulletDeformable final : public Solver, public HoldsScene {
     body_->updateBounds();
   }
 
-  void step(double t, double dt) override {
-    const double h = dt / substeps_;
-    for (int s = 0; s < substeps_; ++s) substep(t + s * h, t + (s + 1) * h);
-  }
-
   void store(State& state) const override {
     state.x.resize(scene_.start.x.size()), state.v.resize(state.x.size());
     for (std::size_t i = 0; i < state.x.size(); ++i) {
@@ -143,20 +124,27 @@ class BulletDeformable final : public Solver, public HoldsScene {
       state.v[static_cast<std::size_t>(scene_.pins[p])] = from_bullet(pin_velocity_[p]);
   }
 
-  std::vector<PassCost> step_cost() const override;
-  Scene read_back() const override;
+  Scene read_back() const override {
+    Scene scene = held_scene(RestLength::m_rl);
+    scene.gravity = from_bullet(gravity_.m_gravity);
+    scene.damping = -std::log1p(-static_cast<double>(loss_)) / static_cast<double>(h_);
+    return scene;
+  }
 
  private:
+  std::vector<PassCost> solve_cost() const override;
+  std::size_t wind_bytes() const override { return 3 * body_->m_nodes.size() * sizeof(Vec3); }
+
   /// The implicit scheme starts from m_vn, the explicit one from m_v.
   static void set_velocity(btSoftBody::Node& n, const btVector3& v) { n.m_v = n.m_vn = v; }
 
-  void substep(double from, double to) {
+  void substep(double from, double to) override {
     if (scene_.wind) find_wind();
     if (scene_.damping > 0) damp();
     if (scene_.wind) blow();
     colliders_.move(from, to);
     move_pins(to);
-    world_.world.stepSimulation(h_, 0);  // with its default arguments it would step by 1/60 s
+    world.stepSimulation(h_, 0);
   }
 
   /// Bullet's drag is lost in the implicit scheme, so velocities are damped here.
@@ -196,120 +184,61 @@ class BulletDeformable final : public Solver, public HoldsScene {
     }
   }
 
-  btSoftBody::Node& node(std::size_t i) { return body_->m_nodes[static_cast<int>(i)]; }
-  const btSoftBody::Node& node(std::size_t i) const { return body_->m_nodes[static_cast<int>(i)]; }
-
-  Scene scene_;
-  double margin_;
-  int substeps_;
   int newton_;
-  btScalar h_;
   btScalar loss_;  ///< share of a velocity that damping takes in one substep
-  World world_;
-  RigidColliders colliders_;
   btDeformableMassSpringForce springs_;
   btDeformableGravityForce gravity_;
-  std::unique_ptr<btSoftBody> body_;
   std::vector<btVector3> pin_velocity_;  ///< [pins] m/s, for wind and store()
   std::vector<Vec3> wind_;               ///< [n] N
   State now_;
 };
 
-std::vector<PassCost> BulletDeformable::step_cost() const {
-  const auto n = static_cast<std::size_t>(body_->m_nodes.size());
-  const auto links = static_cast<std::size_t>(body_->m_links.size());
-  const auto faces = static_cast<std::size_t>(body_->m_faces.size());
-  const auto per_step = static_cast<std::size_t>(substeps_);
-  std::vector<PassCost> costs;
-  if (scene_.wind)
-    costs.push_back({.pass = "wind",
-                     .items = faces,
-                     .repeats = per_step,
-                     .bytes = n * 3 * sizeof(Vec3) + faces * sizeof(Triangle)});
-  costs.push_back({.pass = "predict and update tree",
-                   .items = n,
-                   .repeats = per_step,
-                   .bytes = node_bytes(*body_)});
-  if (!scene_.colliders.empty())
-    costs.push_back({.pass = "detect contacts",
-                     .items = n * scene_.colliders.size(),
-                     .repeats = per_step,
-                     .bytes = distance_field_bytes(*body_) + colliders_.bytes()});
+std::vector<PassCost> BulletDeformable::solve_cost() const {
   // Conjugate gradients visit every spring once per iteration, up to 300 times; Bullet keeps no
   // count.
-  costs.push_back(
-      {.pass = "springs (Newton steps)",
-       .items = links,
-       .repeats = per_step * static_cast<std::size_t>(newton_),
-       .bytes = static_cast<std::size_t>(body_->m_links.capacity()) * sizeof(btSoftBody::Link) +
-                9 * n * sizeof(btVector3)});
-  if (faces > 0)
-    costs.push_back(
-        {.pass = "normals",
-         .items = faces,
-         .repeats = per_step,
-         .bytes = static_cast<std::size_t>(body_->m_faces.capacity()) * sizeof(btSoftBody::Face)});
-  return costs;
-}
-
-Scene BulletDeformable::read_back() const {
-  Scene scene;
-  read_back_cloth(*body_, RestLength::m_rl, scene);
-  scene.gravity = from_bullet(gravity_.m_gravity);
-  store(scene.start);
-  scene.colliders = colliders_.read_back(0);
-  scene.thickness = static_cast<double>(body_->getCollisionShape()->getMargin()) - margin_;
-  scene.dt = static_cast<double>(h_) * substeps_;
-  // Bullet has no place for these; the adapter applies them at each substep.
-  scene.damping = -std::log1p(-static_cast<double>(loss_)) / static_cast<double>(h_);
-  scene.pin_motions = scene_.pin_motions;
-  scene.wind = scene_.wind;
-  scene.steps = scene_.steps;
-  return scene;
+  const auto& links = body_->m_links;
+  return {{.pass = "springs (Newton steps)",
+           .items = static_cast<std::size_t>(links.size()),
+           .repeats = static_cast<std::size_t>(substeps_) * static_cast<std::size_t>(newton_),
+           .bytes = static_cast<std::size_t>(links.capacity()) * sizeof(btSoftBody::Link) +
+                    9 * scene_.mesh.rest.size() * sizeof(btVector3)}};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
-  require_program("bullet-deformable", params);
+  bullet_ref::require_program("bullet-deformable", params);
   return std::make_unique<BulletDeformable>(scene, params);
 }
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
-  std::vector<std::string> reasons;
+  std::vector<std::string> reasons = bullet_ref::unsupported(scene, params);
   if (scene.self_collision)
     reasons.push_back(
         "self-collision: Bullet shuffles its contacts by a generator that the whole process "
         "shares, "
         "so that a case could not be repeated");
-  if (static_cast<btScalar>(substep_length(scene, params)) <= SIMD_EPSILON)
-    reasons.push_back("stepSimulation ignores a substep this short");
   return reasons;
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const bool implicit = params.is("implicit", "true");
-  ResolvedSettings lines = {
-      library_line(params),
-      time_step_line(scene, params),
-      {"precision", std::string(params.choice("precision"))},
-      {"integration", implicit ? "backward Euler, " + std::string(params.value("newton")) +
-                                     " Newton step(s), conjugate gradients"
-                               : "symplectic Euler, explicit springs"},
-      {"links", "springs of " + short_text(params.real("stiffness")) +
-                    " N/m, all families; the "
-                    "scene's are rigid"},
-      {"spring damping", short_text(params.real("spring-damping")) + " N s/m (default 0.05)"},
-      {"gravity", "the scene's, by btDeformableGravityForce (default: none)"},
-      {"damping", "velocities x exp(-damping h) before each substep"},
-      {"NaN", "Bullet turns velocity changes that are not numbers into zero"},
-  };
+  ResolvedSettings lines = bullet_ref::library_settings(scene, params);
+  lines.insert(
+      lines.end(),
+      {{"integration", implicit ? "backward Euler, " + std::string(params.value("newton")) +
+                                      " Newton step(s), conjugate gradients"
+                                : "symplectic Euler, explicit springs"},
+       {"links", "springs of " + bullet_ref::short_text(params.real("stiffness")) +
+                     " N/m, all families; the scene's are rigid"},
+       {"spring damping",
+        bullet_ref::short_text(params.real("spring-damping")) + " N s/m (default 0.05)"},
+       {"gravity", "the scene's, by btDeformableGravityForce (default: none)"},
+       {"damping", "velocities x exp(-damping h) before each substep"},
+       {"NaN", "Bullet turns velocity changes that are not numbers into zero"}});
   if (!implicit) lines.emplace_back("speed limit", "the cloth's bounding box per substep");
   if (scene.wind) lines.emplace_back("wind", "our face law, as an impulse before each substep");
   if (scene.colliders.empty()) return lines;
   lines.emplace_back("contacts", "vertices only, found once per substep");
-  lines.emplace_back("margin",
-                     short_text(scene.thickness + params.real("margin")) + " m (default 0.25)");
-  lines.emplace_back("distance field",
-                     "trilinear, voxel " + short_text(params.real("voxel")) + " m (default 0.005)");
+  for (auto& line : bullet_ref::contact_settings(scene, params, "0.005")) lines.push_back(line);
   lines.emplace_back("friction", "Coulomb, kDF 1");
   if (implicit && !scene.pins.empty())
     lines.emplace_back("contact prediction",
@@ -318,9 +247,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
-std::string_view program(const Params& params) {
-  return bullet_program(params.choice("precision"));
-}
+constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"},
+                                                   {"newton", "2|4"}};
 
 }  // namespace
 }  // namespace taut::solver::bullet_deformable
@@ -334,4 +262,7 @@ TAUT_SOLVER(bullet_deformable) = {
     .make = taut::solver::bullet_deformable::make,
     .unsupported = taut::solver::bullet_deformable::unsupported,
     .resolved_settings = taut::solver::bullet_deformable::resolved_settings,
-    .program = taut::solver::bullet_deformable::program};
+    .program = taut::bullet_ref::program,
+    .knobs = {.substeps = "substeps",
+              .stiffness = {"stiffness", "1000|4000|16000|64000|256000|1024000"},
+              .alternatives = taut::solver::bullet_deformable::kAlternatives}};

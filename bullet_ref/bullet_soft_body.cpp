@@ -9,12 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bullet_ref/cloth_builder.hpp"
-#include "bullet_ref/common_params.hpp"
+#include "bullet_ref/bullet_solver.hpp"
 #include "bullet_ref/convert.hpp"
-#include "bullet_ref/read_back.hpp"
-#include "bullet_ref/rigid_colliders.hpp"
-#include "core/model/solver.hpp"
 #include "core/model/wind.hpp"
 
 namespace taut::solver::bullet_soft_body {
@@ -29,8 +25,8 @@ constexpr ParamSpec kParams[] = {
      .min = 0,
      .max = 1e6,
      .help = "m_cfg.piterations: sweeps over contacts and links per substep (Bullet's default: 1)"},
-    bullet_param::substeps,
-    bullet_param::precision,
+    bullet_ref::kSubsteps,
+    bullet_ref::kPrecision,
     {.name = "order",
      .kind = Kind::choice,
      .default_value = "contacts-first",
@@ -48,14 +44,8 @@ constexpr ParamSpec kParams[] = {
      .min = 0,
      .max = 1,
      .help = "kKHR: share of the penetration that one contact pass removes; 0.1 is Bullet's own"},
-    bullet_param::margin,
-    {.name = "voxel",
-     .kind = Kind::real,
-     .unit = "m",
-     .default_value = "0.05",
-     .min = 1e-3,
-     .max = 10,
-     .help = "grid spacing of the colliders' distance fields (Bullet's default: 0.25)"},
+    bullet_ref::kMargin,
+    bullet_ref::kVoxel,
     {.name = "friction",
      .kind = Kind::choice,
      .default_value = "own",
@@ -66,6 +56,11 @@ constexpr ParamSpec kParams[] = {
      .default_value = "on",
      .choices = "on|off",
      .help = "off: no faces, so that Bullet does not compute normals, which we do not either"},
+    {.name = "reorder",
+     .kind = Kind::choice,
+     .default_value = "off",
+     .choices = "off|on",
+     .help = "on: links in the order of Bullet's ReoptimizeLinkOrder, the same at every vertex"},
 };
 
 /// A world with nothing in it; the order of members is the order in which Bullet wants them built.
@@ -81,7 +76,7 @@ void configure_body(btSoftBody& body, const Scene& scene, const Params& params) 
   btSoftBody::Config& c = body.m_cfg;
   c.piterations = params.integer("iterations");
   c.viterations = c.diterations = c.citerations = 0;
-  const double h = static_cast<double>(substep_length(scene, params));
+  const double h = static_cast<double>(bullet_ref::substep_length(scene, params));
   c.kDP = static_cast<btScalar>(-std::expm1(-scene.damping * h));
   c.kDG = c.kLF = c.kPR = c.kVC = c.kMT = 0;
   c.timescale = 1;
@@ -95,24 +90,24 @@ void configure_body(btSoftBody& body, const Scene& scene, const Params& params) 
   }
 }
 
-class BulletSoftBody final : public Solver, public HoldsScene {
+ClothOptions options(const Params& params) {
+  return {.stiffness = params.real("stiffness"),
+          .margin = params.real("margin"),
+          .faces = params.is("faces", "on"),
+          .reorder = params.is("reorder", "on")};
+}
+
+class BulletSoftBody final : World, public BulletSolver {
  public:
   BulletSoftBody(const Scene& scene, const Params& params)
-      : scene_(scene),
-        margin_(params.real("margin")),
+      : BulletSolver(scene, params, world, world.getWorldInfo(), options(params)),
         iterations_(params.integer("iterations")),
-        substeps_(params.integer("substeps")),
-        h_(static_cast<btScalar>(substep_length(scene, params))),
-        colliders_(scene, world_.world) {
-    world_.world.setGravity(to_bullet(scene.gravity));  // does not reach soft bodies
-    configure_world_info(world_.world.getWorldInfo(), scene, params.real("voxel"));
-    body_ = build_cloth(world_.world.getWorldInfo(), scene, params.real("stiffness"), margin_,
-                        params.is("faces", "on"));
+        reordered_(params.is("reorder", "on")) {
     configure_body(*body_, scene, params);
-    world_.world.addSoftBody(body_.get());
+    world.addSoftBody(body_.get());
     load(scene.start);
   }
-  ~BulletSoftBody() override { world_.world.removeSoftBody(body_.get()); }
+  ~BulletSoftBody() override { world.removeSoftBody(body_.get()); }
 
   void load(const State& state) override {
     // Bullet damps a velocity when it makes one, we when we use it; store() undoes this.
@@ -128,11 +123,6 @@ class BulletSoftBody final : public Solver, public HoldsScene {
     body_->updateBounds();
   }
 
-  void step(double t, double dt) override {
-    const double h = dt / substeps_;
-    for (int s = 0; s < substeps_; ++s) substep(t + s * h, t + (s + 1) * h);
-  }
-
   void store(State& state) const override {
     state.x.resize(scene_.start.x.size()), state.v.resize(state.x.size());
     for (std::size_t i = 0; i < state.x.size(); ++i) {
@@ -142,15 +132,20 @@ class BulletSoftBody final : public Solver, public HoldsScene {
     }
   }
 
-  std::vector<PassCost> step_cost() const override;
-  Scene read_back() const override;
+  Scene read_back() const override {
+    Scene scene = held_scene(RestLength::m_c1);
+    scene.damping = -std::log1p(-static_cast<double>(body_->m_cfg.kDP)) / static_cast<double>(h_);
+    return scene;
+  }
 
  private:
-  void substep(double from, double to) {
+  std::vector<PassCost> solve_cost() const override;
+
+  void substep(double from, double to) override {
     if (scene_.wind) blow();
     colliders_.move(from, to);
     if (scene_.pin_motions.empty()) {
-      world_.world.stepSimulation(h_, 0);  // with its default arguments it would step by 1/60 s
+      world.stepSimulation(h_, 0);
       return;
     }
     std::vector<btVector3> before;
@@ -159,7 +154,7 @@ class BulletSoftBody final : public Solver, public HoldsScene {
       before.push_back(n.m_x);
       n.m_x = to_bullet(pin_position(scene_, pin, to));
     }
-    world_.world.stepSimulation(h_, 0);
+    world.stepSimulation(h_, 0);
     for (std::size_t p = 0; p < scene_.pins.size(); ++p)  // their velocity, for wind and store()
       node(static_cast<std::size_t>(scene_.pins[p])).m_q = before[p];
   }
@@ -177,17 +172,8 @@ class BulletSoftBody final : public Solver, public HoldsScene {
     }
   }
 
-  btSoftBody::Node& node(std::size_t i) { return body_->m_nodes[static_cast<int>(i)]; }
-  const btSoftBody::Node& node(std::size_t i) const { return body_->m_nodes[static_cast<int>(i)]; }
-
-  Scene scene_;
-  double margin_;
   int iterations_;
-  int substeps_;
-  btScalar h_;
-  World world_;
-  RigidColliders colliders_;
-  std::unique_ptr<btSoftBody> body_;
+  bool reordered_;
 };
 
 template <class T>
@@ -195,69 +181,48 @@ std::size_t held(const btAlignedObjectArray<T>& array) {
   return static_cast<std::size_t>(array.capacity()) * sizeof(T);
 }
 
-std::vector<PassCost> BulletSoftBody::step_cost() const {
+std::vector<PassCost> BulletSoftBody::solve_cost() const {
   const btSoftBody& b = *body_;
-  const auto n = static_cast<std::size_t>(b.m_nodes.size());
-  const auto per_step = static_cast<std::size_t>(substeps_);
-  const std::size_t sweeps = per_step * static_cast<std::size_t>(iterations_);
+  const std::size_t sweeps =
+      static_cast<std::size_t>(substeps_) * static_cast<std::size_t>(iterations_);
   std::size_t links = 0;
   for (int i = 0; i < b.m_links.size(); ++i) links += b.m_links[i].m_c0 > 0;
-
   std::vector<PassCost> costs;
-  if (scene_.wind)
-    costs.push_back({.pass = "wind",
-                     .items = scene_.mesh.triangles.size(),
-                     .repeats = per_step,
-                     .bytes = scene_.mesh.triangles.size() * sizeof(Triangle)});
-  costs.push_back(
-      {.pass = "predict and update tree", .items = n, .repeats = per_step, .bytes = node_bytes(b)});
-  if (!scene_.colliders.empty()) {
-    costs.push_back({.pass = "detect contacts",
-                     .items = n * scene_.colliders.size(),
-                     .repeats = per_step,
-                     .bytes = distance_field_bytes(b) + colliders_.bytes()});
+  if (!scene_.colliders.empty())
     costs.push_back({.pass = "contacts",
                      .items = static_cast<std::size_t>(b.m_rcontacts.size()),
                      .repeats = sweeps,
                      .bytes = held(b.m_rcontacts)});
-  }
   if (links > 0)
-    costs.push_back({.pass = "links",
+    costs.push_back({.pass = reordered_ ? "links, reordered" : "links",
                      .items = links,
                      .repeats = sweeps,
                      .bytes = held(b.m_links),
                      .projections = true});
-  if (b.m_faces.size() > 0)
-    costs.push_back({.pass = "normals",
-                     .items = static_cast<std::size_t>(b.m_faces.size()),
-                     .repeats = per_step,
-                     .bytes = held(b.m_faces)});
   return costs;
 }
 
-Scene BulletSoftBody::read_back() const {
-  const btSoftBody& b = *body_;
-  Scene scene;
-  read_back_cloth(b, RestLength::m_c1, scene);
-  store(scene.start);
-  scene.colliders = colliders_.read_back(0);
-  scene.damping = -std::log1p(-static_cast<double>(b.m_cfg.kDP)) / static_cast<double>(h_);
-  scene.thickness = static_cast<double>(b.getCollisionShape()->getMargin()) - margin_;
-  scene.dt = static_cast<double>(h_) * substeps_;
-  // Bullet has no place for these; the adapter applies them at each substep.
-  scene.pin_motions = scene_.pin_motions;
-  scene.wind = scene_.wind;
-  scene.steps = scene_.steps;
-  return scene;
+/// How many links wait for the one before them, in the order that Bullet was given and in the one
+/// that it solves.
+std::string link_order(const Scene& scene, const Params& params) {
+  if (!params.is("reorder", "on")) return "the scene's";
+  btSoftBodyWorldInfo info;
+  const auto waiting = [&](bool reorder) {
+    const auto body = build_cloth(info, scene, {.faces = false, .reorder = reorder});
+    return std::to_string(waiting_links(*body));
+  };
+  return "ReoptimizeLinkOrder: the same at every vertex; " + waiting(true) + " of " +
+         std::to_string(scene.links.size()) + " links share a vertex with the one before them (" +
+         waiting(false) + " in the scene's order)";
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
-  require_program("bullet", params);
+  bullet_ref::require_program("bullet", params);
   return std::make_unique<BulletSoftBody>(scene, params);
 }
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
-  std::vector<std::string> reasons;
+  std::vector<std::string> reasons = bullet_ref::unsupported(scene, params);
   if (scene.self_collision)
     reasons.push_back(
         "self-collision: btSoftBody leaves itself out of its vertex-face test (VF_SS)");
@@ -272,25 +237,21 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
     reasons.push_back("friction above 1 turns btSoftBody's tangential motion around");
   if (params.integer("iterations") == 0 && scene.damping > 0)
     reasons.push_back("damping: without iterations btSoftBody skips it");
-  if (static_cast<btScalar>(substep_length(scene, params)) <= SIMD_EPSILON)
-    reasons.push_back("stepSimulation ignores a substep this short");
   return reasons;
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
-  const double h = static_cast<double>(substep_length(scene, params));
-  ResolvedSettings lines = {
-      library_line(params),
-      time_step_line(scene, params),
-      {"precision", std::string(params.choice("precision"))},
-      {"integration", "symplectic Euler; the same positions as Verlet"},
-      {"projection",
-       "sqrt-free, weighted by inverse mass, kLST " + short_text(params.real("stiffness"))},
-      {"link order", "the scene's"},
-      {"gravity", "the scene's (soft bodies' own default: -10 m/s^2 in y)"},
-      {"damping", "kDP " + short_text(-std::expm1(-scene.damping * h)) + " per substep"},
-      {"normals", params.is("faces", "on") ? "computed every substep" : "off"},
-  };
+  const double h = static_cast<double>(bullet_ref::substep_length(scene, params));
+  ResolvedSettings lines = bullet_ref::library_settings(scene, params);
+  lines.insert(lines.end(),
+               {{"integration", "symplectic Euler; the same positions as Verlet"},
+                {"projection", "sqrt-free, weighted by inverse mass, kLST " +
+                                   bullet_ref::short_text(params.real("stiffness"))},
+                {"link order", link_order(scene, params)},
+                {"gravity", "the scene's (soft bodies' own default: -10 m/s^2 in y)"},
+                {"damping",
+                 "kDP " + bullet_ref::short_text(-std::expm1(-scene.damping * h)) + " per substep"},
+                {"normals", params.is("faces", "on") ? "computed every substep" : "off"}});
   if (scene.wind)
     lines.emplace_back("wind", "our face law through addForce; Bullet's own medium is empty");
   if (scene.colliders.empty()) return lines;
@@ -298,22 +259,29 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                             ? "links, then contacts"
                                             : "contacts, then links (Bullet's own)");
   lines.emplace_back("contacts", "vertices only, found once per substep at the predicted place");
-  lines.emplace_back("margin",
-                     short_text(scene.thickness + params.real("margin")) + " m (default 0.25)");
-  lines.emplace_back("distance field",
-                     "trilinear, voxel " + short_text(params.real("voxel")) + " m (default 0.25)");
-  lines.emplace_back("contact hardness", "kKHR " + short_text(params.real("hardness")));
-  lines.emplace_back("friction", params.is("friction", "own")
-                                     ? "tangential motion x (1 - mu) per contact pass"
-                                     : "none");
+  for (auto& line : bullet_ref::contact_settings(scene, params, "0.25")) lines.push_back(line);
+  lines.emplace_back("contact hardness", "kKHR " + bullet_ref::short_text(params.real("hardness")));
+  lines.emplace_back("friction",
+                     params.is("friction", "own")
+                         ? "holds if the predicted way along the surface in a substep is "
+                           "less than mu times the way into it; else each contact pass "
+                           "takes the share mu of it, whatever the load"
+                         : "none");
   for (const Collider& collider : scene.colliders)
     if (std::holds_alternative<Plane>(collider.shape))
       lines.emplace_back("plane", "the top of a box of 100 m x 10 m x 100 m");
   return lines;
 }
 
-std::string_view program(const Params& params) {
-  return bullet_program(params.choice("precision"));
+constexpr AccuracyKnobs::Ladder kAlternatives[] = {
+    {"precision", "float|double"}, {"reorder", "off|on"}, {"faces", "on|off"}};
+
+LinearModel linear_model(const Scene& scene, const Params& params) {
+  if (scene.damping != 0 || params.is("reorder", "on"))
+    return {};  // theory is of the scene's order
+  return LinearSweeps{.omega = params.real("stiffness"),
+                      .sweeps = params.integer("iterations"),
+                      .substeps = params.integer("substeps")};
 }
 
 }  // namespace
@@ -326,4 +294,8 @@ TAUT_SOLVER(bullet) = {.name = "bullet",
                        .make = taut::solver::bullet_soft_body::make,
                        .unsupported = taut::solver::bullet_soft_body::unsupported,
                        .resolved_settings = taut::solver::bullet_soft_body::resolved_settings,
-                       .program = taut::solver::bullet_soft_body::program};
+                       .program = taut::bullet_ref::program,
+                       .knobs = {.substeps = "substeps",
+                                 .sweeps = "iterations",
+                                 .alternatives = taut::solver::bullet_soft_body::kAlternatives},
+                       .linear_model = taut::solver::bullet_soft_body::linear_model};

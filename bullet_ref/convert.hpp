@@ -17,11 +17,6 @@ inline constexpr bool kBulletIsDouble = false;
 #endif
 inline constexpr std::string_view kBulletPrecision = kBulletIsDouble ? "double" : "float";
 
-/// The program that is linked with Bullet of this precision.
-inline std::string_view bullet_program(std::string_view precision) {
-  return precision == "double" ? "taut" : "taut-f32";
-}
-
 btVector3 to_bullet(const Vec3&);
 Vec3 from_bullet(const btVector3&);
 btTransform to_bullet(const Eigen::Quaterniond& rotation, const Vec3& origin);

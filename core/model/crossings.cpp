@@ -32,14 +32,16 @@ struct BoxedFace {
   int face = 0;
 };
 
-}  // namespace
-
-std::vector<std::array<int, 2>> crossings(const std::vector<Triangle>& faces,
-                                          const std::vector<Vec3>& x) {
+/// Pairs of faces that share no vertex, whose boxes are nearer than `reach` and which `meet`.
+template <class Meet>
+std::vector<std::array<int, 2>> pairs_of(const std::vector<Triangle>& faces,
+                                         const std::vector<Vec3>& x, double reach,
+                                         const Meet& meet) {
   const Eigen::Index axis = longest_axis(x);
   std::vector<BoxedFace> boxed(faces.size());
   for (std::size_t f = 0; f < faces.size(); ++f) {
     for (const Vec3& p : corners(faces[f], x)) boxed[f].box.extend(p);
+    boxed[f].box.max().array() += reach;  // one side is enough: a is nearer to b, or b to a
     boxed[f].face = static_cast<int>(f);
   }
   std::sort(boxed.begin(), boxed.end(), [axis](const BoxedFace& a, const BoxedFace& b) {
@@ -51,11 +53,25 @@ std::vector<std::array<int, 2>> crossings(const std::vector<Triangle>& faces,
       if (!a->box.intersects(b->box)) continue;
       const Triangle &s = faces[static_cast<std::size_t>(a->face)],
                      &t = faces[static_cast<std::size_t>(b->face)];
-      if (share_vertex(s, t) || !cross(corners(s, x), corners(t, x))) continue;
+      if (share_vertex(s, t) || !meet(corners(s, x), corners(t, x))) continue;
       pairs.push_back({std::min(a->face, b->face), std::max(a->face, b->face)});
     }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
+}
+
+}  // namespace
+
+std::vector<std::array<int, 2>> crossings(const std::vector<Triangle>& faces,
+                                          const std::vector<Vec3>& x) {
+  return pairs_of(faces, x, 0, cross);
+}
+
+std::vector<std::array<int, 2>> coincidences(const std::vector<Triangle>& faces,
+                                             const std::vector<Vec3>& x, double distance) {
+  return pairs_of(faces, x, distance, [distance](const Corners& s, const Corners& t) {
+    return taut::distance(s, t) < distance && !cross(s, t);
+  });
 }
 
 double least_gap(const std::vector<Vec3>& x, const std::vector<Vec3>& rest, double radius) {

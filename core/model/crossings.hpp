@@ -11,6 +11,11 @@ namespace taut {
 /// longest side of their bounding box, so that only those that overlap there are compared.
 std::vector<std::array<int, 2>> crossings(const std::vector<Triangle>&, const std::vector<Vec3>& x);
 
+/// Pairs of faces that share no vertex, do not cross, and are nearer than `distance` [m] to each
+/// other, ascending: layers in one place, which cross nowhere if they lie in one plane.
+std::vector<std::array<int, 2>> coincidences(const std::vector<Triangle>&,
+                                             const std::vector<Vec3>& x, double distance);
+
 /// The least of (distance - min(2 radius, distance at rest)) over all pairs of vertices [m], at
 /// most 0: how far the balls of the given radius [m] overlap more than they do at rest.
 double least_gap(const std::vector<Vec3>& x, const std::vector<Vec3>& rest, double radius);

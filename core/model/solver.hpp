@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/model/params.hpp"
@@ -31,11 +34,56 @@ class Solver {
   virtual void step(double t, double dt) = 0;  ///< advance [t, t + dt]: the only timed call
   virtual void store(State&) const = 0;        ///< copy out (untimed); step() leaves no debt behind
   virtual std::vector<PassCost> step_cost() const = 0;  ///< the passes of one step, in order
+
+  /// Calls `visit` with the time at the end of every substep inside a step, where store() gives the
+  /// state: for those who need the path between two step boundaries. Not while timing.
+  void visit_substeps(std::function<void(double t)> visit) { visit_ = std::move(visit); }
+
+ protected:
+  /// For solvers with substeps: at the end of each but a step's last.
+  void substep_ended(double t) const {
+    if (visit_) visit_(t);
+  }
+
+ private:
+  std::function<void(double)> visit_;
 };
 
 /// A line of the fairness panel: what the solver makes of a setting ("time step", "1/64 s, as
 /// binary32").
 using ResolvedSettings = std::vector<std::pair<std::string, std::string>>;
+
+/// The parameters that decide how accurate a result is and what it costs, and what a search for a
+/// setting may try of them (experiments/timing/search.hpp). Names and values as typed.
+struct AccuracyKnobs {
+  /// Parameters that take one of the values together: "structural|shear", "50|200|800".
+  struct Ladder {
+    std::string_view parameters, values;
+  };
+  std::string_view substeps;  ///< steps of dt / substeps; "": the solver has none
+  std::string_view sweeps;    ///< more of them need fewer substeps; "": the solver has none
+  Ladder stiffness;           ///< of a solver without sweeps: each value needs its own substeps
+  std::span<const Ladder> alternatives;  ///< tried one at a time, at the best of the others
+};
+
+/// What a solver does to small displacements of links at their rest length, without gravity, wind
+/// or contact: what linear stability needs to know (core/reference/linear_stability.hpp).
+struct LinearSprings {
+  std::array<double, kFamilies.size()> stiffness{};  ///< N/m, by family; 0: no spring
+  double drag = 0;                                   ///< N s/m, c of F = -c v
+  bool central_drag = false;    ///< at the mean of the velocities before and after, else before
+  bool explicit_euler = false;  ///< else symplectic Euler or Verlet
+  int substeps = 1;
+};
+/// Hard links, relaxed in the scene's order.
+struct LinearSweeps {
+  bool jacobi = false;  ///< all links at once, corrections added; else Gauss-Seidel
+  double omega = 1;     ///< relaxation factor
+  int sweeps = 1;       ///< per substep
+  int substeps = 1;
+};
+/// Neither: no theory is known.
+using LinearModel = std::variant<std::monostate, LinearSprings, LinearSweeps>;
 
 /// How a solver introduces itself: one per file, found by its TAUT_SOLVER line.
 struct SolverEntry {
@@ -51,6 +99,8 @@ struct SolverEntry {
   /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
   /// other one, make() throws InputError.
   std::string_view (*program)(const Params&) = nullptr;
+  AccuracyKnobs knobs = {};
+  LinearModel (*linear_model)(const Scene&, const Params&) = nullptr;  ///< null: none is known
 };
 
 /// Constraint projections in one step: sum of items x repeats over the passes that project.

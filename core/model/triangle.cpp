@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace taut {
 
@@ -16,6 +17,18 @@ double nearest_share(const Vec3& a, const Vec3& b, const Vec3& p) {
   const Vec3 along = b - a;
   const double length2 = along.squaredNorm();
   return length2 > 0 ? std::clamp(along.dot(p - a) / length2, 0.0, 1.0) : 0.0;
+}
+
+/// Distance of the segments pq and ab [m].
+double distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
+  const Vec3 u = q - p, v = b - a, r = a - p;
+  const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
+  const double det = uu * vv - uv * uv;
+  // Where the lines are nearest to each other, clamped to pq; then to ab, and back again.
+  double on_pq = det > 0 ? std::clamp((vv * u.dot(r) - uv * v.dot(r)) / det, 0.0, 1.0) : 0;
+  const double on_ab = nearest_share(a, b, p + on_pq * u);
+  on_pq = nearest_share(p, q, a + on_ab * v);
+  return (p + on_pq * u - a - on_ab * v).norm();
 }
 
 /// Six times the volume of the tetrahedron; positive if d lies above the triangle abc. 0 if the
@@ -152,6 +165,17 @@ bool cross(const Corners& s, const Corners& t) {
     if (pierces(s[a], s[b], t) || pierces(t[a], t[b], s)) return true;
   }
   return false;
+}
+
+double distance(const Corners& s, const Corners& t) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t a = 0; a < 3; ++a) {
+    least = std::min(least, (closest_point(t, s[a]).position - s[a]).norm());
+    least = std::min(least, (closest_point(s, t[a]).position - t[a]).norm());
+    for (std::size_t b = 0; b < 3; ++b)
+      least = std::min(least, distance(s[a], s[(a + 1) % 3], t[b], t[(b + 1) % 3]));
+  }
+  return least;
 }
 
 }  // namespace taut

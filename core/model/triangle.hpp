@@ -43,4 +43,7 @@ double enclosing_radius(const Corners&);
 /// overlap within one plane do not count.
 bool cross(const Corners&, const Corners&);
 
+/// Distance of two triangles that do not cross [m]; 0 where they touch or overlap.
+double distance(const Corners&, const Corners&);
+
 }  // namespace taut

@@ -79,23 +79,21 @@ double spring_eigenvalue(const std::vector<Bar>& springs, const std::vector<doub
   });
 }
 
-std::optional<LinearStability> springs(const Scene& scene, const Params& params) {
+std::optional<LinearStability> stability(const Scene& scene, const LinearSprings& model) {
   if (scene.wind) return {};
   const std::vector<double> w = inverse_masses(scene);
-  const double h = scene.dt / params.integer("substeps"), drag = params.real("drag");
+  const double h = scene.dt / model.substeps, drag = model.drag;
   const double q = std::exp(-scene.damping * h);
-  const std::vector<Bar> all =
-      bars(scene, w, {params.real("structural"), params.real("shear"), params.real("bend")});
+  const std::vector<Bar> all = bars(scene, w, model.stiffness);
   if (all.empty()) return {};
-  if (params.is("integrator", "explicit-euler")) {
+  if (model.explicit_euler) {
     if (drag > 0 || scene.damping > 0) return {};
     const double growth = std::sqrt(1 + spring_eigenvalue(all, w, h * h, 0));
     return LinearStability{growth, growth, "explicit Euler grows by sqrt(1 + w^2 dt^2) at any dt"};
   }
-  const bool central = params.is("drag-at", "central");
-  const double damped = central ? -(1 - q) * h * drag : 2 * h * drag;
+  const double damped = model.central_drag ? -(1 - q) * h * drag : 2 * h * drag;
   const double margin = spring_eigenvalue(all, w, h * h, damped) / (2 * (1 + q));
-  const bool shrunk = drag > 0 && !central;
+  const bool shrunk = drag > 0 && !model.central_drag;
   return LinearStability{
       margin, 0,
       shrunk ? "substep < (2/w)(sqrt(1 + zeta^2) - zeta), w the fastest mode of the springs"
@@ -139,44 +137,26 @@ double growth(const Eigen::MatrixXd& g, int k, double q) {
   return most;
 }
 
-std::optional<LinearStability> relaxation(const Scene& scene, const std::vector<Bar>& links,
-                                          const std::vector<double>& w, double omega, bool jacobi,
-                                          int sweeps, int substeps) {
+std::optional<LinearStability> stability(const Scene& scene, const LinearSweeps& model) {
+  const std::vector<double> w = inverse_masses(scene);
+  const std::vector<Bar> links = bars(scene, w, {1, 1, 1});
   if (links.empty() || links.size() > kMostLinks) return {};
-  const double q = std::exp(-scene.damping * scene.dt / substeps);
-  const double fastest = growth(sweep(links, w, omega, jacobi), sweeps, q);
+  const double q = std::exp(-scene.damping * scene.dt / model.substeps);
+  const double fastest = growth(sweep(links, w, model.omega, model.jacobi), model.sweeps, q);
   return LinearStability{fastest, fastest,
-                         "z^2 - 2 mu z + mu = 0, mu the eigenvalues of " + std::to_string(sweeps) +
-                             (jacobi ? " Jacobi sweeps" : " Gauss-Seidel sweeps")};
+                         "z^2 - 2 mu z + mu = 0, mu the eigenvalues of " +
+                             std::to_string(model.sweeps) +
+                             (model.jacobi ? " Jacobi sweeps" : " Gauss-Seidel sweeps")};
 }
 
-bool hard(const Params& params, const char* value, std::initializer_list<const char*> names) {
-  return std::all_of(names.begin(), names.end(),
-                     [&](const char* name) { return params.value(name) == value; });
-}
+std::optional<LinearStability> stability(const Scene&, std::monostate) { return {}; }
 
 }  // namespace
 
 std::optional<LinearStability> linear_stability(const Scene& scene, const SolverChoice& choice) {
-  const Params& params = choice.params;
-  if (choice.entry->name == "mass-spring") return springs(scene, params);
-  const std::vector<double> w = inverse_masses(scene);
-  const std::vector<Bar> links = bars(scene, w, {1, 1, 1});
-  if (choice.entry->name == "jakobsen") {
-    const bool jacobi = params.is("method", "jacobi");
-    if ((!jacobi && !params.is("method", "gauss-seidel")) || !params.is("order", "mesh") ||
-        !hard(params, "inf", {"structural_stiffness", "shear_stiffness", "bend_stiffness"}))
-      return {};
-    return relaxation(scene, links, w, params.real("omega"), jacobi, params.integer("iterations"),
-                      params.integer("substeps"));
-  }
-  if (choice.entry->name == "xpbd" && hard(params, "0", {"structural", "shear", "bend"}))
-    return relaxation(scene, links, w, 1, false, params.integer("iterations"),
-                      params.integer("substeps"));
-  if (choice.entry->name == "bullet" && scene.damping == 0)
-    return relaxation(scene, links, w, params.real("stiffness"), false,
-                      params.integer("iterations"), params.integer("substeps"));
-  return {};
+  if (!choice.entry->linear_model) return {};
+  return std::visit([&](const auto& model) { return stability(scene, model); },
+                    choice.entry->linear_model(scene, choice.params));
 }
 
 }  // namespace taut

@@ -17,18 +17,17 @@ struct LinearStability {
   bool stable() const { return margin <= 1 + 1e-6; }
 };
 
-/// Empty where no theory is known. Known are:
+/// Empty where no theory is known: the solver says what it does (SolverEntry::linear_model).
 ///
-/// mass-spring, Verlet and symplectic Euler. With the stiffness K, masses M, drag C, h the substep,
-/// q = exp(-damping h), a mode turns unstable when its multiplier reaches -1:
+/// LinearSprings, Verlet and symplectic Euler. With the stiffness K, masses M, drag C, h the
+/// substep, q = exp(-damping h), a mode turns unstable when its multiplier reaches -1:
 ///     lagged drag    h^2 K + 2 h C          against 2 (1 + q) M
 ///     central drag   h^2 K - (1 - q) h C    against 2 (1 + q) M
 /// For one mass: h < (2/w)(sqrt(1 + zeta^2) - zeta), and 2/w without drag. `margin` is the largest
 /// eigenvalue of M^-1/2 (left) M^-1/2 over 2 (1 + q), by Lanczos. Explicit Euler without drag or
 /// damping grows by sqrt(1 + h^2 w^2) at every h.
 ///
-/// jakobsen with hard links, Gauss-Seidel in mesh order or plain Jacobi, xpbd with hard links, and
-/// Bullet's soft body; at most 128 links. k sweeps G take the predicted strains to
+/// LinearSweeps, at most 128 links. k sweeps G take the predicted strains to
 /// e' = G^k ((1 + q) e - q e''), so an eigenvalue mu of G^k gives the multipliers
 /// z^2 - (1 + q) mu z + q mu = 0. `margin` and `growth` are the largest |z|. It does not depend on
 /// dt. One link, one sweep: stable up to the relaxation factor 4/3.

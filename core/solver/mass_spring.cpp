@@ -1,6 +1,7 @@
-// The report's section 3, before any constraint: F = -k x - c v on springs, integrated explicitly.
+// Springs and dampers before any constraint, F = -k x - c v, integrated explicitly: Vasilovici,
+// Cloth Simulation Report, section 3.
 //
-//     explicit-euler     x' = x + v dt;   v' = v + a(x, v) dt              the report's two lines
+//     explicit-euler     x' = x + v dt;   v' = v + a(x, v) dt              as printed there
 //     symplectic-euler   v' = v + a dt;   x' = x + v' dt
 //     verlet             x* = 2x - x' + a dt^2                             v = (x - x')/dt
 //
@@ -12,7 +13,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/solver.hpp"
-#include "core/solver/external_forces.hpp"
+#include "core/solver/wind.hpp"
 
 namespace taut::solver::mass_spring {
 
@@ -24,7 +25,7 @@ constexpr ParamSpec kParams[] = {
      .kind = Kind::choice,
      .default_value = "verlet",
      .choices = "explicit-euler|symplectic-euler|verlet",
-     .help = "how the particles move; explicit-euler is the report's first pair of lines"},
+     .help = "how the particles move"},
     {.name = "structural",
      .unit = "N/m",
      .default_value = "50",
@@ -120,6 +121,7 @@ class MassSpring final : public Solver {
         else
           v_[i].setZero();
       move_pins(t + (s + 1) * h, h);
+      if (s + 1 < substeps_) substep_ended(t + (s + 1) * h);
     }
   }
 
@@ -226,13 +228,29 @@ ResolvedSettings resolved_settings(const Scene&, const Params& params) {
           {"work unit", "spring evaluations, not projections"}};
 }
 
+constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"}};
+
+LinearModel linear_model(const Scene&, const Params& params) {
+  return LinearSprings{
+      .stiffness = {params.real("structural"), params.real("shear"), params.real("bend")},
+      .drag = params.real("drag"),
+      .central_drag = params.is("drag-at", "central"),
+      .explicit_euler = params.is("integrator", "explicit-euler"),
+      .substeps = params.integer("substeps")};
+}
+
 }  // namespace
 }  // namespace taut::solver::mass_spring
 
-TAUT_SOLVER(mass_spring) = {.name = "mass-spring",
-                            .summary = "Hooke springs with drag, integrated explicitly",
-                            .source = "the report, section 3; Provot 1995; Lander 1999",
-                            .params = taut::solver::mass_spring::kParams,
-                            .make = taut::solver::mass_spring::make,
-                            .unsupported = taut::solver::mass_spring::unsupported,
-                            .resolved_settings = taut::solver::mass_spring::resolved_settings};
+TAUT_SOLVER(mass_spring) = {
+    .name = "mass-spring",
+    .summary = "Hooke springs with drag, integrated explicitly",
+    .source = "Vasilovici, Cloth Simulation Report, section 3; Provot 1995; Lander 1999",
+    .params = taut::solver::mass_spring::kParams,
+    .make = taut::solver::mass_spring::make,
+    .unsupported = taut::solver::mass_spring::unsupported,
+    .resolved_settings = taut::solver::mass_spring::resolved_settings,
+    .knobs = {.substeps = "substeps",
+              .stiffness = {"structural|shear", "50|200|800|3200|12800|51200"},
+              .alternatives = taut::solver::mass_spring::kAlternatives},
+    .linear_model = taut::solver::mass_spring::linear_model};

@@ -1,12 +1,12 @@
 // Baselines on disk: JSON lines and tolerances.toml.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <sstream>
 
 #include "core/io/section.hpp"
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {
@@ -32,33 +32,18 @@ std::string line_of(const BaselineRow& row) {
   return to_text(json) + "\n";
 }
 
-BaselineRow row_of(const Json& json) {
+BaselineRow row_of(const JsonReader& json) {
   BaselineRow row;
-  row.id = json.at("id");
-  row.spec = {json.at("scene"), json.at("overrides").get<std::vector<std::string>>(),
-              json.at("solver")};
-  row.scene = json.at("content");
-  row.status = json.at("status");
-  row.projections = json.at("projections");
-  row.frontier = json.value("frontier", "");
-  row.flaky = json.value("flaky", false);
-  for (const auto& [name, value] : json.at("values").items())
-    row.values[name] = value.is_null() ? std::nan("") : value.get<double>();
+  row.id = json.at("id").text();
+  row.spec = {json.at("scene").text(), json.at("overrides").texts(), json.at("solver").text()};
+  row.scene = json.at("content").text();
+  row.status = json.at("status").text();
+  row.projections = json.at("projections").count();
+  if (const auto frontier = json.find("frontier")) row.frontier = frontier->text();
+  if (const auto flaky = json.find("flaky")) row.flaky = flaky->flag();
+  for (const auto& [name, value] : json.at("values").members())
+    row.values[name] = value.number_or_null();
   return row;
-}
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-void replace_file(const fs::path& path, const std::string& text) {
-  const fs::path draft = path.string() + ".tmp";
-  std::ofstream out(draft, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw InputError(draft.string() + ": cannot be written");
-  fs::rename(draft, path);
 }
 
 std::vector<fs::path> solver_files(const fs::path& folder) {
@@ -81,18 +66,18 @@ Baseline read_baseline(const fs::path& folder) {
   Baseline rows;
   std::vector<Diagnostic> found;
   for (const fs::path& file : solver_files(folder)) {
-    std::istringstream in(slurp(file));
+    std::istringstream in(read_text(file));
     int number = 0;
     for (std::string line; std::getline(in, line);) {
       ++number;
       try {
-        rows.push_back(row_of(parse_json(line)));
+        rows.push_back(read_json(line, file.string(), row_of, number));
         const BaselineRow& row = rows.back();
         if (row.solver() != file.stem())
           found.push_back({file.string(), number, 1, "this row belongs to " + row.solver()});
-      } catch (const Json::exception& error) {
-        found.push_back(
-            {file.string(), number, 1, std::string("no baseline row: ") + error.what()});
+      } catch (const InputError& error) {
+        for (const Diagnostic& d : error.diagnostics())
+          found.push_back({file.string(), number, 1, "no baseline row: " + d.message});
       }
     }
   }
@@ -110,10 +95,10 @@ void write_baseline(const fs::path& folder, const Baseline& baseline) {
   sort_by_id(rows);
   std::map<std::string, std::string> texts;
   for (const BaselineRow& row : rows) texts[row.solver()] += line_of(row);
-  fs::create_directories(folder);
+  make_folder(folder);
   for (const auto& [solver, text] : texts) {
     const fs::path file = folder / (solver + ".jsonl");
-    if (slurp(file) != text) replace_file(file, text);
+    if (!fs::exists(file) || read_text(file) != text) write_durably(file, text);
   }
   for (const fs::path& file : solver_files(folder))
     if (!texts.count(file.stem().string())) fs::remove(file);

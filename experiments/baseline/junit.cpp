@@ -3,6 +3,7 @@
 #include <set>
 
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut {
 
@@ -23,16 +24,6 @@ std::string escaped(const std::string& text) {
       xml += c;
   }
   return xml;
-}
-
-/// A word of a shell command, quoted if it needs to be.
-std::string shell_word(const std::string& text) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-=:,./+@%";
-  if (!text.empty() && text.find_first_not_of(kPlain) == text.npos) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 }  // namespace

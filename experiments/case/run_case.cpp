@@ -22,6 +22,14 @@ class Instruments {
   void observe(const Moment& moment) {
     for (auto& [entry, metric] : watching_) metric->observe(moment);
   }
+  bool follow_path() const {
+    return std::any_of(watching_.begin(), watching_.end(),
+                       [](const Watching& w) { return w.entry->follows_path; });
+  }
+  void observe_within(const Moment& moment) {
+    for (auto& [entry, metric] : watching_)
+      if (entry->follows_path) metric->observe_within(moment);
+  }
 
   std::vector<std::string> series_columns() const {
     std::vector<std::string> columns{"step", "t"};
@@ -98,7 +106,13 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
   const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));
   State state;
   bool sound = true;
-  for (int step = 0; step <= scene.steps; ++step) {
+  int step = 0;
+  if (instruments.follow_path())
+    solver->visit_substeps([&](double t) {
+      solver->store(state);
+      instruments.observe_within({step, t, state});
+    });
+  for (; step <= scene.steps; ++step) {
     if (step > 0) solver->step((step - 1) * scene.dt, scene.dt);
     solver->store(state);
     const Moment moment{step, step * scene.dt, state};

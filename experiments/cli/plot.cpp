@@ -1,35 +1,36 @@
+#include "experiments/report/plot.hpp"
+
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/axis.hpp"
-#include "experiments/report/curves.hpp"
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/stored.hpp"
-#include "experiments/study/map.hpp"
 
 namespace taut::verb::plot {
 
 namespace {
 
-using report::FigureSpec;
+using report::PlotSpec;
 
 struct Options {
   std::string study, preset, kind, x, y, title, results = default_results(), out;
+  bool json = false;
 };
 
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
 /// for.
-std::vector<FigureSpec> wanted(const Options& options, const Study& study) {
+std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
   if (!options.kind.empty() || !options.x.empty() || !options.y.empty())
     return {{.kind = options.kind.empty() ? "work-precision" : options.kind,
              .x = options.x,
              .y = options.y,
              .title = options.title}};
-  std::vector<FigureSpec> specs;
+  std::vector<PlotSpec> specs;
   for (const Plot& plot : study.plots) {
     const auto option = [&](const char* name) {
       const auto at = plot.options.find(name);
@@ -48,7 +49,7 @@ std::vector<FigureSpec> wanted(const Options& options, const Study& study) {
 
 /// Keeps the cases at the commonest value of what is not on x, and says so: in the title and, if
 /// that leaves out cases, on standard error.
-std::string hold(const FigureSpec& spec, std::vector<Record>& records, const std::string& scene) {
+std::string hold(const PlotSpec& spec, std::vector<Record>& records, const std::string& scene) {
   const std::string held = spec.x == "dt" ? "iterations" : "dt";
   report::Slice slice = report::most_common(records, held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
@@ -62,20 +63,13 @@ std::string hold(const FigureSpec& spec, std::vector<Record>& records, const std
 }
 
 /// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
-int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Record>& inferred,
-         const std::string& scene, const Store& store, const std::filesystem::path& out) {
-  const report::FigureEntry& entry = report::find_figure(spec.kind);
-  if (spec.x.empty()) spec.x = entry.x;
-  if (spec.y.empty()) spec.y = entry.y;
-  const auto here = [&](const std::vector<Record>& all) {
-    std::vector<Record> chosen;
-    for (const Record& r : all)
-      if (r.scene == scene) chosen.push_back(r);
-    return chosen;
-  };
-  std::vector<Record> records = here(study.records);
-  const std::vector<Record> guessed =
-      spec.kind == "stability" ? here(inferred) : std::vector<Record>{};
+report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const std::string& scene,
+                       const Store& store, const std::filesystem::path& out) {
+  const report::PlotKind& kind = report::find_plot_kind(spec.kind);
+  if (spec.x.empty()) spec.x = kind.x;
+  if (spec.y.empty()) spec.y = kind.y;
+  std::vector<Record> records = study.records;
+  std::erase_if(records, [&](const Record& r) { return r.scene != scene; });
   if (spec.kind == "scaling") spec.slope = 1;
   const std::string held = spec.kind == "stability" ? "" : hold(spec, records, scene);
   std::vector<report::TimeSeries> series;
@@ -87,13 +81,11 @@ int draw(FigureSpec spec, const report::StudyResult& study, const std::vector<Re
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
   spec.file = report::slug(
       scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
-  const report::Figure figure = report::make_figure(spec, {records, series, guessed}, out);
-  std::cout << figure.svg.string() << '\n' << figure.pdf.string() << '\n';
-  return 1;
+  return report::make_plot(spec, records, series, out);
 }
 
 int run(const Options& options) {
-  if (!options.kind.empty()) report::find_figure(options.kind);
+  if (!options.kind.empty()) report::find_plot_kind(options.kind);
   const Study study = load_study(options.study, options.preset);
   const Store store(options.results);
   const report::ReportInput input = report::stored_results({study}, store);
@@ -102,16 +94,22 @@ int run(const Options& options) {
     throw InputError("none of the " + std::to_string(result.planned) + " cases of study '" +
                      study.name + "' is in " + options.results +
                      " as this build would run them; taut run makes them");
-  const std::vector<Record> inferred = inferred_records(study, store);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path(options.results) / "figures" /
                                 (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                           : std::filesystem::path(options.out);
-  int drawn = 0;
+  const std::vector<PlotSpec> specs = wanted(options, study);
+  for (const PlotSpec& spec : specs) {
+    report::find_plot_kind(spec.kind);
+    for (const std::string& name : {spec.x, spec.y})
+      if (!name.empty()) report::check_value_name(name, result.records);
+  }
+  std::vector<std::string> files;
   try {
-    for (const FigureSpec& spec : wanted(options, study))
+    for (const PlotSpec& spec : specs)
       for (const report::SceneInfo& scene : input.scenes) try {
-          drawn += draw(spec, result, inferred, scene.name, store, out);
+          const report::PlotFiles plot = draw(spec, result, scene.name, store, out);
+          for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
         } catch (const InputError& error) {
           std::cerr << scene.name << ": " << error.what() << '\n';
         }
@@ -119,27 +117,30 @@ int run(const Options& options) {
     std::cerr << error.what() << '\n';
     return kEnvironment;
   }
-  return drawn > 0 ? kPass : kNothing;
+  print_files(files, options.json);
+  return files.empty() ? kNothing : kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   std::string kinds;
-  for (const report::FigureEntry* entry : report::figures())
-    kinds += (kinds.empty() ? "" : ", ") + std::string(entry->name);
-  arguments.option("STUDY", options->study, "Name or path of a study that was run").required();
-  arguments.option("--preset", options->preset, "The preset under which it was run");
-  arguments.option("--kind", options->kind,
-                   "One of: " + kinds + " (default: what the study asks for)");
-  arguments.option("--x", options->x,
-                   "Value on x: dt, iterations, projections or a metric's value");
-  arguments.option("--y", options->y, "Value on y, such as stretch.rms");
-  arguments.option("--title", options->title, "Title above the figure");
-  arguments.option("--results", options->results,
-                   "Results folder (default: " + options->results + ")");
-  arguments.option(
+  std::vector<std::string> names;
+  for (const report::PlotKind& kind : report::plot_kinds())
+    names.emplace_back(kind.name), kinds += (kinds.empty() ? "" : ", ") + names.back();
+  app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
+  app.add_option("--preset", options->preset, "The preset under which it was run");
+  app.add_option("--kind", options->kind,
+                 "One of: " + kinds + " (default: what the study asks for)")
+      ->check(known("kind of plot", names));
+  app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
+  app.add_option("--y", options->y, "Value on y, such as stretch.rms");
+  app.add_option("--title", options->title, "Title above the figure");
+  app.add_option("--results", options->results,
+                 "Results folder (default: " + options->results + ")");
+  app.add_option(
       "--out", options->out,
       "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
+  add_json(app, options->json, "The names of the files");
   return [options] { return run(*options); };
 }
 
@@ -147,6 +148,7 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::plot
 
 TAUT_VERB(plot) = {.name = "plot",
+                   .group = VerbGroup::studies,
                    .summary = "Draws the figures of a study: SVG, PDF, gnuplot script and CSV",
                    .example =
                        "taut plot iterations --preset quick\n  taut plot time-steps --kind "

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <csignal>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -12,8 +12,9 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/film/takes.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/render/media.hpp"
-#include "experiments/report/comparison.hpp"
+#include "experiments/report/rivals.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -28,34 +29,27 @@ constexpr std::size_t kMostPanels = 4;
 struct Film {
   std::string scene, summary;
   TakeRequest request;
-  std::vector<std::string> labels;  ///< of the contenders, in the order of the request's solvers
+  std::vector<std::string> labels;  ///< of the solvers, in the order of the request's
+  std::vector<std::string> keys;    ///< of their cases; empty if no study ran them
   std::vector<std::pair<std::string, std::string>> refused;  ///< solver, why
   double speed = 1;
   bool studied = true;
 };
 
-/// The case of this contender that pictures show: the quoted sweeps, dt nearest to 1/64 s.
-const Record* shown_case(const report::Contender& contender, const std::string& scene, int sweeps) {
-  const Record* best = nullptr;
-  const auto distance = [](const Record& r) { return std::abs(std::log(r.dt * 64)); };
-  for (const Record& r : contender.records) {
-    if (r.scene != scene || !report::quoted_at(r, sweeps)) continue;
-    if (!best || distance(r) < distance(*best)) best = &r;
-  }
-  return best;
-}
-
-Film studied_film(const report::Comparison& facts, const std::string& scene) {
-  Film film{.scene = scene};
-  for (const report::Contender& contender : facts.contenders) {
-    const Record* one = shown_case(contender, scene, facts.sweeps);
+/// The cases that are quoted: pictures show what sentences speak of.
+Film studied_film(const report::Rivals& rivals, const report::QuotedScene& quoted) {
+  Film film{.scene = quoted.question.scene};
+  for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
+    const Record* one = quoted.cases[i];
     if (!one || film.request.solvers.size() == kMostPanels) continue;
     if (one->status.kind == Status::Kind::unsupported) {
-      film.refused.emplace_back(contender.solver, one->status.reason);
+      film.refused.emplace_back(one->solver, one->status.reason);
       continue;
     }
     film.request.scene = one->spec.scene, film.request.overrides = one->spec.overrides;
     film.request.solvers.push_back(one->spec.solver);
+    film.labels.push_back(rivals.all[i].label);
+    film.keys.push_back(one->key);
   }
   return film;
 }
@@ -70,39 +64,39 @@ double watchable_speed(const Scene& scene) {
   return 0.125;
 }
 
-Film other_film(const report::Comparison& facts, const std::string& name) {
+Film other_film(const report::Rivals& rivals, const std::string& name) {
   const Scene scene = load_scene(find_scene(name));
   Film film{.scene = scene.name, .summary = scene.summary, .studied = false};
   film.speed = watchable_speed(scene);
   film.request.scene = name;
   if (scene.duration() > kSeconds)
     film.request.overrides.push_back("time.duration=" + std::to_string(kSeconds));
-  for (const report::Contender& contender : facts.contenders) {
+  for (const report::Rival& rival : rivals.all) {
     const auto quoted = std::ranges::find_if(
-        contender.records, [&](const Record& r) { return report::quoted_at(r, facts.sweeps); });
-    if (quoted == contender.records.end() || film.request.solvers.size() == kMostPanels) continue;
-    const SolverChoice choice = parse_solver(quoted->spec.solver);
+        rival.cases, [&](const Record* r) { return rivals.work.admits(report::work_of(*r)); });
+    if (quoted == rival.cases.end() || film.request.solvers.size() == kMostPanels) continue;
+    const SolverChoice choice = parse_solver((*quoted)->spec.solver);
     std::string why;
     for (const std::string& reason : choice.entry->unsupported(scene, choice.params))
       why += (why.empty() ? "" : "; ") + reason;
     if (!why.empty()) {
-      film.refused.emplace_back(contender.solver, why);
+      film.refused.emplace_back(rival.solver, why);
       continue;
     }
-    film.request.solvers.push_back(quoted->spec.solver);
-    film.labels.push_back(contender.label);
+    film.request.solvers.push_back((*quoted)->spec.solver);
+    film.labels.push_back(rival.label);
   }
   return film;
 }
 
 std::vector<Film> all_films(const report::ReportInput& input,
                             const std::vector<std::string>& others) {
-  const report::Comparison facts = report::compare(input);
+  const report::Rivals rivals = report::rivals_of(input);
   std::vector<Film> films;
-  for (const report::SceneInfo& scene : input.scenes)
-    films.push_back(studied_film(facts, scene.name));
+  for (const report::QuotedScene& quoted : rivals.scenes)
+    films.push_back(studied_film(rivals, quoted));
   for (const std::string& name : others) {
-    Film film = other_film(facts, name);
+    Film film = other_film(rivals, name);
     if (std::ranges::find(films, film.scene, &Film::scene) == films.end())
       films.push_back(std::move(film));
   }
@@ -145,12 +139,37 @@ std::string solver_name(const Take& take) {
   return solver.substr(0, solver.find(':'));
 }
 
-report::Clip clip_of(const TakeSet& set, const Media& media) {
+/// A value over time of each run, from its positions alone; empty if the scene has no such thing.
+std::vector<report::TimeSeries> watched(const Film& film, const TakeSet& set,
+                                        const std::string& metric, const std::string& value) {
+  std::vector<report::TimeSeries> all;
+  const auto entry = std::ranges::find(metrics(), metric, &MetricEntry::name);
+  if (entry == metrics().end()) return all;
+  const auto spec = std::ranges::find((*entry)->values, value, &ValueSpec::name);
+  const auto index = static_cast<std::size_t>(spec - (*entry)->values.begin());
+  for (std::size_t k = 0; k < set.takes.size(); ++k) {
+    const std::unique_ptr<Metric> watch = (*entry)->make(set.scene);
+    if (!watch) return {};
+    report::TimeSeries series{film.scene, solver_name(set.takes[k]), film.labels[k], value, {}, {}};
+    int step = 0;
+    for (const TrajectoryReader::Frame& frame : set.takes[k].trajectory.frames) {
+      const Moment moment{step++, frame.t, frame.state};
+      watch->observe(moment);
+      series.t.push_back(frame.t);
+      series.y.push_back(watch->now(moment)[index]);
+    }
+    all.push_back(std::move(series));
+  }
+  return all;
+}
+
+report::Clip clip_of(const Film& film, const TakeSet& set, const Media& media) {
   report::Clip clip;
   std::string who;
   for (std::size_t k = 0; k < set.takes.size(); ++k) {
     const Take& take = set.takes[k];
-    clip.panels.emplace_back(solver_name(take), take.settings);
+    clip.panels.push_back(
+        {solver_name(take), take.settings, film.keys.empty() ? "" : film.keys[k]});
     who += (k > 0 ? " and " : "") + take.title + " (" + take.settings + ")";
   }
   clip.alt = set.scene.name + ": " + who + (set.takes.size() > 1 ? " side by side" : "") +
@@ -173,7 +192,7 @@ Shot shoot(const Film& film) {
   const TakeSet set = make_takes(film.request, [](const std::string&) {});
   const Media media = render_media(set.scene, set.takes, options_of(film, set.takes.size()));
   Shot shot{{.scene = film.scene,
-             .clips = {clip_of(set, media)},
+             .clips = {clip_of(film, set, media)},
              .duration = media.t.back(),
              .speed = film.speed,
              .bar = bar_of(media.scale),
@@ -192,6 +211,9 @@ Shot shoot(const Film& film) {
   for (std::size_t k = 0; !film.studied && k < set.takes.size(); ++k)
     shot.series.push_back({film.scene, solver_name(set.takes[k]), film.labels[k], "stretch.rms",
                            media.t, media.rms_strain[k]});
+  if (!film.studied)
+    std::ranges::move(watched(film, set, "penetration", "penetration.max"),
+                      std::back_inserter(shot.series));
   return shot;
 }
 
@@ -199,7 +221,6 @@ Shot shoot(const Film& film) {
 
 void film_scenes(report::ReportInput& input, const std::vector<std::string>& others,
                  const std::function<void(const std::string&)>& say) {
-  std::signal(SIGPIPE, SIG_IGN);
   const std::vector<Film> films = all_films(input, others);
   std::vector<std::optional<Shot>> shots(films.size());
   std::atomic<std::size_t> next{0};

@@ -1,9 +1,5 @@
 #include "experiments/film/takes.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdio>
 #include <memory>
 
 #include "core/io/scene_io.hpp"
@@ -12,6 +8,8 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/palette.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut {
 
@@ -44,68 +42,39 @@ std::string caption_settings(const std::string& solver) try {
   return readable_settings(solver);
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
-/// A folder of this process's own, gone with it.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "taut_takes_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw InputError("cannot make a folder in " + name);
-    folder_ = name;
-  }
-  ~Scratch() {
-    std::error_code error;
-    fs::remove_all(folder_, error);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  fs::path file(std::size_t k) const { return folder_ / (std::to_string(k) + ".traj"); }
-
- private:
-  fs::path folder_;
-};
-
 /// `taut case` in a process of its own: what crashes or hangs there costs one panel, and Bullet's
 /// float build gets the program that it needs.
 class CaseProcess {
  public:
   CaseProcess(const TakeRequest& request, const SolverChoice& choice, const fs::path& trajectory)
-      : trajectory_(trajectory) {
-    const std::string program(choice.entry->program ? choice.entry->program(choice.params) : "");
-    std::string command = "exec timeout 600 " + quoted(sibling_program(program).string()) +
-                          " case " + quoted(request.scene) + " " + quoted(choice.canonical());
-    for (const std::string& value : request.overrides) command += " --set " + quoted(value);
-    command += " --json --trajectory " + quoted(trajectory.string());
-    pipe_ = popen(command.c_str(), "r");
-  }
-  ~CaseProcess() {
-    if (pipe_) pclose(pipe_);
-  }
-  CaseProcess(const CaseProcess&) = delete;
-  CaseProcess& operator=(const CaseProcess&) = delete;
+      : trajectory_(trajectory),
+        process_(command(request, choice, trajectory),
+                 {.output = ProcessOptions::Stream::piped,
+                  .errors = ProcessOptions::Stream::inherited}) {}
 
   /// Waits; gives how the case ended.
   Status finish() {
-    std::string json;
-    char piece[4096];
-    while (const std::size_t got = pipe_ ? std::fread(piece, 1, sizeof piece, pipe_) : 0)
-      json.append(piece, got);
-    const int ended = pipe_ ? pclose(pipe_) : -1;
-    pipe_ = nullptr;
-    if (ended == 0) return record_from_json(json, "taut case").status;
-    if (WIFEXITED(ended) && WEXITSTATUS(ended) == 124) return {Status::Kind::timeout, "600 s"};
+    const std::string json = process_.read_all(kSeconds);
+    const auto end = process_.wait(0.1);
+    if (end && end->good()) return record_from_json(json, "taut case").status;
+    if (!end) return {Status::Kind::timeout, "600 s"};
     return {Status::Kind::crash, "the case's process ended early"};
   }
   const fs::path& trajectory() const { return trajectory_; }
 
  private:
+  static constexpr double kSeconds = 600;
+  static std::vector<std::string> command(const TakeRequest& request, const SolverChoice& choice,
+                                          const fs::path& trajectory) {
+    const std::string program(choice.entry->program ? choice.entry->program(choice.params) : "");
+    std::vector<std::string> words{sibling_program(program), "case", request.scene,
+                                   choice.canonical()};
+    for (const std::string& value : request.overrides) words.insert(words.end(), {"--set", value});
+    words.insert(words.end(), {"--json", "--trajectory", trajectory});
+    return words;
+  }
   fs::path trajectory_;
-  FILE* pipe_ = nullptr;
+  Process process_;
 };
 
 Take make_take(const Scene& scene, const SolverChoice& choice, CaseProcess& process) {
@@ -150,7 +119,8 @@ TakeSet make_takes(const TakeRequest& request, const std::function<void(const st
   std::vector<std::unique_ptr<CaseProcess>> processes;
   for (std::size_t k = 0; k < choices.size(); ++k) {
     say("running " + choices[k].brief() + " on " + set.scene.name);
-    processes.push_back(std::make_unique<CaseProcess>(request, choices[k], scratch.file(k)));
+    processes.push_back(std::make_unique<CaseProcess>(
+        request, choices[k], scratch.path() / (std::to_string(k) + ".traj")));
   }
   for (std::size_t k = 0; k < choices.size(); ++k) {
     Take& take = set.takes.emplace_back(make_take(set.scene, choices[k], *processes[k]));

@@ -5,11 +5,11 @@ namespace taut::metric::area {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"area.rms", "1", "area strain A/A0 - 1 of the faces, RMS over faces and the last second",
+    {"area.rms", kShare, "area strain A/A0 - 1 of the faces, RMS over faces and the last second",
      true},
-    {"area.max", "1", "largest growth of a face in the last second", true},
-    {"area.loss", "1", "largest loss of area of a face in the last second (1: collapsed)", true},
-    {"area.total", "1", "area strain of the whole cloth, mean over the last second", true},
+    {"area.max", kShare, "largest growth of a face in the last second", true},
+    {"area.loss", kShare, "largest loss of area of a face in the last second (1: collapsed)", true},
+    {"area.total", kSignedShare, "area strain of the whole cloth, mean over the last second", true},
 };
 
 double area(const Triangle& t, const std::vector<Vec3>& x) {

@@ -5,10 +5,11 @@ namespace taut::metric::drift {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"drift.max", "m",
+    {"drift.max", kLength,
      "largest distance of the centre of mass from its start over the run (pinned vertices "
-     "included)"},
-    {"drift.mean", "m", "its distance from its start, mean over the last second", true},
+     "included)",
+     false, Window::run},
+    {"drift.mean", kLength, "its distance from its start, mean over the last second", true},
 };
 
 class Drift final : public Metric {

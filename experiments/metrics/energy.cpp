@@ -5,12 +5,13 @@ namespace taut::metric::energy {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"energy.mean", "1",
+    {"energy.mean", kNumber,
      "(kinetic + potential energy)/(m g L), potential energy 0 at the start, mean over the last "
      "second; L is the diagonal of the rest shape's bounding box",
      true},
-    {"energy.kinetic", "1", "its kinetic part, mean over the last second", true},
-    {"energy.peak", "1", "largest (kinetic + potential energy)/(m g L) over the run"},
+    {"energy.kinetic", kNumber, "its kinetic part, mean over the last second", true},
+    {"energy.peak", kNumber, "largest (kinetic + potential energy)/(m g L) over the run", false,
+     Window::run},
 };
 
 class Energy final : public Metric {

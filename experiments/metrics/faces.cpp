@@ -6,21 +6,22 @@ namespace taut::metric::faces {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"face.max", "m",
+    {"face.max", kLength,
      "largest depth of a point of a face below the surface of a ball or box, thickness not "
      "counted, in the last second",
      true},
-    {"face.peak", "m", "the same over the run"},
-    {"face.geometry", "m",
+    {"face.peak", kLength, "the same over the run", false, Window::run,
+     "peak penetration of faces"},
+    {"face.geometry", kLength,
      "the part of a face's depth in a ball that is geometry: how deep it would be if its corners "
      "lay exactly at the scene's thickness, l^2/(4R) for a right triangle with legs l; largest in "
      "the last second",
      true},
-    {"face.excess", "m",
+    {"face.excess", kLength,
      "largest depth of a face below a ball's surface beyond its geometric part, in the last second",
      true},
-    {"face.ball", "m", "face.max of the balls alone"},
-    {"face.box", "m", "face.max of the boxes alone"},
+    {"face.ball", kLength, "face.max of the balls alone"},
+    {"face.box", kLength, "face.max of the boxes alone"},
 };
 
 class Faces final : public Metric {

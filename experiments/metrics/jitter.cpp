@@ -6,9 +6,9 @@ namespace taut::metric::jitter {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"jitter.rms", "m/s", "speed of the free vertices, RMS over vertices and the last second",
+    {"jitter.rms", kSpeed, "speed of the free vertices, RMS over vertices and the last second",
      true},
-    {"jitter.max", "m/s", "largest speed of a free vertex in the last second", true},
+    {"jitter.max", kSpeed, "largest speed of a free vertex in the last second", true},
 };
 
 class Jitter final : public Metric {

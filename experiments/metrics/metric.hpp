@@ -18,12 +18,36 @@ struct Moment {
   const State& state;
 };
 
+/// In which unit a value is stored, and how people are shown it: `shown = scale * stored`.
+struct Unit {
+  std::string_view si;     ///< "1" if dimensionless
+  std::string_view shown;  ///< "%", "mm", ...
+  double scale = 1;
+  bool logarithmic = true;  ///< which axis suits it
+};
+inline constexpr Unit kNumber{"1", ""}, kCount{"1", "", 1, false}, kShare{"1", "%", 100},
+    kSignedShare{"1", "%", 100, false}, kLength{"m", "mm", 1e3},
+    kSignedLength{"m", "mm", 1e3, false}, kTime{"s", "s", 1, false}, kSpeed{"m/s", "m/s"},
+    kAcceleration{"m/s^2", "m/s\u00B2"};
+
+/// Of which part of a run a value speaks.
+enum class Window { last_second, run, end, none };
+/// "last second", "whole run", "end of the run", "".
+constexpr std::string_view to_string(Window w) {
+  return w == Window::last_second ? "last second"
+         : w == Window::run       ? "whole run"
+         : w == Window::end       ? "end of the run"
+                                  : "";
+}
+
 /// A number that a metric yields.
 struct ValueSpec {
-  std::string_view name;   ///< "stretch.rms"; unique over all metrics
-  std::string_view unit;   ///< "1" if dimensionless
+  std::string_view name;  ///< "stretch.rms"; unique over all metrics
+  Unit unit;
   std::string_view help;   ///< its definition, one sentence
   bool in_series = false;  ///< also meaningful at each moment: recorded over time as well
+  Window window = Window::last_second;
+  std::string_view title = "";  ///< a few words; "": made from the name
 };
 
 /// Watches one run. `observe` sees every step boundary in order, the start included, and must be
@@ -33,6 +57,9 @@ class Metric {
  public:
   virtual ~Metric() = default;
   virtual void observe(const Moment&) = 0;
+  /// The ends of the substeps between two boundaries, in order: the moment's step is the one that
+  /// they lead to. Only called if `follows_path`.
+  virtual void observe_within(const Moment&) {}
   virtual std::vector<double> finish() = 0;
   /// The values of this very moment, for series; same order, NaN where `in_series` is false.
   virtual std::vector<double> now(const Moment&) const = 0;
@@ -46,6 +73,7 @@ struct MetricEntry {
   std::span<const ValueSpec> values;
   /// nullptr if the scene lacks what is measured (penetration without colliders).
   std::unique_ptr<Metric> (*make)(const Scene&);
+  bool follows_path = false;  ///< needs the path between step boundaries: see observe_within
 };
 
 /// All metrics of this program, sorted by name (generated; see cmake/registry.cmake).

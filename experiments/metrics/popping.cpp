@@ -6,10 +6,11 @@ namespace taut::metric::popping {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"popping.max", "m/s^2",
+    {"popping.max", kAcceleration,
      "max(0, |x_n - 2 x_(n-1) + x_(n-2)|/dt^2 - g) of the free vertices, largest in the last "
      "second"},
-    {"popping.peak", "m/s^2", "the same, largest over the run; an impact counts, as 1/dt"},
+    {"popping.peak", kAcceleration, "the same, largest over the run; an impact counts, as 1/dt",
+     false, Window::run},
 };
 
 class Popping final : public Metric {

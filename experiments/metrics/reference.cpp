@@ -11,19 +11,24 @@ namespace taut::metric::reference {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"reference.rms", "m",
+    {"reference.rms", kLength,
      "distance of the free vertices from the static reference, RMS over vertices and the last "
      "second",
-     true},
-    {"reference.max", "m",
-     "largest distance of a free vertex from the static reference, in the last second", true},
-    {"reference.motion", "m",
+     true, Window::last_second, "distance from the reference (RMS)"},
+    {"reference.max", kLength,
+     "largest distance of a free vertex from the static reference, in the last second", true,
+     Window::last_second, "largest distance from the reference"},
+    {"reference.motion", kLength,
      "distance of the free vertices from the dynamic reference, RMS over vertices, at its moment "
-     "(0.5 s)"},
-    {"reference.floor", "m", "the static reference's own error, by self-convergence"},
-    {"reference.strain", "1",
-     "largest strain |d - r|/r of a structural or shear link in the static reference itself"},
-    {"reference.motion_floor", "m", "the dynamic reference's own error, by self-convergence"},
+     "(0.5 s)",
+     false, Window::end, "distance from the reference in motion (RMS)"},
+    {"reference.floor", kLength, "the static reference's own error, by self-convergence", false,
+     Window::none},
+    {"reference.strain", kShare,
+     "largest strain |d - r|/r of a structural or shear link in the static reference itself", false,
+     Window::none},
+    {"reference.motion_floor", kLength, "the dynamic reference's own error, by self-convergence",
+     false, Window::none},
 };
 
 class Distance final : public Metric {

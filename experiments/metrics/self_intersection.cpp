@@ -6,10 +6,14 @@ namespace taut::metric::self_intersection {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"self.crossings", "1", "pairs of faces that cross and share no vertex, at the end", true},
-    {"self.crossings.max", "1", "the same, largest of ten moments of the last second"},
-    {"self.crossings.peak", "1", "the same, largest of those and twenty moments of the run"},
-    {"self.gap", "m",
+    {"self.crossings", kCount,
+     "pairs of faces that share no vertex and cross or coincide (nearer than 1 % of the radius: "
+     "layers that lie in one plane cross nowhere), at the end",
+     true, Window::end, "crossing faces"},
+    {"self.crossings.max", kCount, "the same, largest of ten moments of the last second"},
+    {"self.crossings.peak", kCount, "the same, largest of those and twenty moments of the run",
+     false, Window::run},
+    {"self.gap", kSignedLength,
      "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
      "overlap of the particles' balls, worst of ten moments of the last second",
      true},
@@ -27,7 +31,7 @@ class SelfIntersection final : public Metric {
   void observe(const Moment& m) override {
     const bool at_end = end_.samples(m.step);
     if (!at_end && m.step % std::max(1, steps_ / 20) != 0) return;
-    const auto count = static_cast<double>(crossings(faces_, m.state.x).size());
+    const double count = pairs(m.state.x);
     count_.add(m.step, at_end, count);
     if (m.step == steps_) final_ = count;
     if (at_end) overlap_.add(m.step, true, -least_gap(m.state.x, rest_, radius_));
@@ -36,11 +40,14 @@ class SelfIntersection final : public Metric {
     return {final_, count_.max(), count_.peak(), 0 - overlap_.max()};
   }
   std::vector<double> now(const Moment& m) const override {
-    return {static_cast<double>(crossings(faces_, m.state.x).size()), Summary::kNone,
-            Summary::kNone, least_gap(m.state.x, rest_, radius_)};
+    return {pairs(m.state.x), Summary::kNone, Summary::kNone, least_gap(m.state.x, rest_, radius_)};
   }
 
  private:
+  double pairs(const std::vector<Vec3>& x) const {
+    return static_cast<double>(crossings(faces_, x).size() +
+                               coincidences(faces_, x, 0.01 * radius_).size());
+  }
   std::vector<Triangle> faces_;
   std::vector<Vec3> rest_;
   double radius_;
@@ -56,7 +63,7 @@ class SelfIntersection final : public Metric {
 TAUT_METRIC(self_intersection) = {
     .name = "self_intersection",
     .summary = "Whether the cloth passes through itself",
-    .source = "triangle pairs by orientation tests",
+    .source = "triangle pairs by orientation tests and by distance",
     .values = taut::metric::self_intersection::kValues,
     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
       if (!scene.self_collision) return nullptr;

@@ -6,9 +6,10 @@ namespace taut::metric::settle {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"settle.time", "s",
+    {"settle.time", kTime,
      "last time at which the RMS speed of the free vertices exceeds 1e-3 sqrt(g L); the duration "
-     "if it still does at the end; L is the diagonal of the rest shape's bounding box"},
+     "if it still does at the end; L is the diagonal of the rest shape's bounding box",
+     false, Window::run},
 };
 
 class Settle final : public Metric {

@@ -5,14 +5,14 @@ namespace taut::metric::slip {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"slip.error", "m/s^2",
+    {"slip.error", kAcceleration,
      "distance of the centre of mass's acceleration along the plane from what Coulomb's law makes "
      "of the normal force that acted, mean over the last second"},
-    {"slip.error.peak", "m/s^2", "the same, largest over the run"},
-    {"slip.distance", "m",
+    {"slip.error.peak", kAcceleration, "the same, largest over the run", false, Window::run},
+    {"slip.distance", kLength,
      "how far the centre of mass is along the plane from where a block would be that felt the same "
      "normal forces, at the end",
-     true},
+     true, Window::end, "distance from Coulomb's law"},
 };
 
 /// The cloth against one plane, as a whole: what its threads do to each other cancels, so that

@@ -8,12 +8,14 @@ namespace taut::metric::tunnelling {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"tunnelling.count", "1",
+    {"tunnelling.count", kCount,
      "free vertices that end on the other side of a ball or box: in through one side and out "
-     "through the opposite one, even within one step",
-     true},
-    {"tunnelling.share", "1", "the same as a share of the free vertices"},
-    {"tunnelling.events", "1", "passages through a ball or box over the run, returns included"},
+     "through the opposite one, even within one substep; their path is straight from substep to "
+     "substep",
+     true, Window::end, "vertices on the other side"},
+    {"tunnelling.share", kShare, "the same as a share of the free vertices", false, Window::end},
+    {"tunnelling.events", kCount, "passages through a ball or box over the run, returns included",
+     false, Window::run, "passages through a collider"},
 };
 
 /// Where a straight path enters and leaves a solid, as outward unit normals.
@@ -132,6 +134,7 @@ class Tunnelling final : public Metric {
       if (!std::holds_alternative<Plane>(c.shape)) watches_.emplace_back(c, free_.size());
   }
 
+  void observe_within(const Moment& m) override { observe(m); }
   void observe(const Moment& m) override {
     for (Watch& watch : watches_) {
       watch.place(m.t);
@@ -180,4 +183,5 @@ TAUT_METRIC(tunnelling) = {
           taut::free_vertices(scene).empty())
         return nullptr;
       return std::make_unique<taut::metric::tunnelling::Tunnelling>(scene);
-    }};
+    },
+    .follows_path = true};

@@ -4,9 +4,9 @@
 
 #include <cassert>
 #include <cstring>
-#include <fstream>
 
 #include "core/model/input_error.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut {
 
@@ -67,18 +67,6 @@ Image read_png(const std::filesystem::path& path) {
   Image image(static_cast<int>(png.width), static_cast<int>(png.height));
   std::memcpy(&image.at(0, 0), pixels.data(), pixels.size() * sizeof(Rgb8));
   return image;
-}
-
-void write_file(const std::filesystem::path& path, const std::string& bytes) {
-  const std::filesystem::path temporary = path.string() + ".tmp";
-  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  std::error_code error;
-  if (out) std::filesystem::rename(temporary, path, error);
-  if (out && !error) return;
-  std::filesystem::remove(temporary, error);
-  throw InputError({{path.string(), 0, 0, "cannot write: " + std::string(std::strerror(errno))}});
 }
 
 }  // namespace taut

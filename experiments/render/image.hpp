@@ -53,7 +53,4 @@ std::string png_bytes(const Image&);
 void write_png(const std::filesystem::path&, const Image&);  ///< throws InputError
 Image read_png(const std::filesystem::path&);                ///< throws InputError
 
-/// Writes a file under a temporary name and renames it; throws InputError.
-void write_file(const std::filesystem::path&, const std::string& bytes);
-
 }  // namespace taut

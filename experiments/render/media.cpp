@@ -1,14 +1,11 @@
 #include "experiments/render/media.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "experiments/render/figure.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut {
 
@@ -110,14 +107,6 @@ std::size_t most_telling(const Media& media, const Scene& scene, const std::vect
   return peak(place, kPlace * extent(scene)).value_or(media.t.size() * 2 / 3);
 }
 
-std::string read_and_remove(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  std::error_code error;
-  std::filesystem::remove(path, error);
-  return bytes;
-}
-
 std::string strip(const Studio& studio, const MediaOptions& options, const Media& media) {
   constexpr std::size_t kMoments = 5;
   Image picture(options.width, options.height * static_cast<int>(kMoments));
@@ -180,15 +169,14 @@ Media render_media(const Scene& scene, const std::vector<Take>& takes, const Med
     media.strip_png = strip(studio, options, media);
     return media;
   }
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() /
-      ("taut_media_" + std::to_string(getpid()) + "_" + std::to_string(gettid()) + ".mp4");
+  const Scratch scratch;
+  const std::filesystem::path file = scratch.path() / "film.mp4";
   VideoWriter video(file, {options.width, options.height, media.rate, options.crf});
   for (std::size_t k = 0; k < media.t.size(); ++k) {
     if (!video.write(k == poster ? poster_image : side_by_side(studio, options, media.t[k]))) break;
     if (progress) progress(static_cast<int>(k) + 1, static_cast<int>(media.t.size()));
   }
-  if (video.finish().empty()) media.mp4 = read_and_remove(file);
+  if (video.finish().empty()) media.mp4 = read_text(file);
   if (media.mp4.empty()) media.strip_png = strip(studio, options, media);
   return media;
 }

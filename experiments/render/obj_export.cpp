@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-#include "core/model/input_error.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut {
 
@@ -39,10 +39,7 @@ std::string connectivity(const Scene& scene) {
 int export_obj(const Scene& scene, const Take& take, const std::filesystem::path& folder,
                const std::string& prefix, int stride,
                const std::function<void(int, int)>& progress) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InputError({{folder.string(), 0, 0, "cannot make the folder: " + error.message()}});
+  make_folder(folder);
   const std::string shared = connectivity(scene);
   const auto& frames = take.trajectory.frames;
   const int total = (static_cast<int>(frames.size()) + stride - 1) / stride;

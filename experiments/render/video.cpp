@@ -1,40 +1,38 @@
 #include "experiments/render/video.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <cassert>
 #include <cmath>
-#include <csignal>
-#include <fstream>
-#include <iterator>
-#include <numeric>
+
+#include "core/model/input_error.hpp"
 
 namespace taut {
 
 namespace {
 
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
+std::vector<std::string> words(std::initializer_list<std::vector<std::string>> parts) {
+  std::vector<std::string> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
-std::string raw_input(int width, int height) {
-  return "exec ffmpeg -nostdin -v error -y -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) +
-         "x" + std::to_string(height);
+std::vector<std::string> raw_input(int width, int height) {
+  return {"ffmpeg",
+          "-nostdin",
+          "-v",
+          "error",
+          "-y",
+          "-f",
+          "rawvideo",
+          "-pix_fmt",
+          "rgb24",
+          "-s",
+          std::to_string(width) + "x" + std::to_string(height)};
 }
 
-bool put(FILE* pipe, const Image& image) {
+bool put(Process& process, const Image& image) {
   const auto& pixels = image.pixels();
-  return std::fwrite(pixels.data(), sizeof(Rgb8), pixels.size(), pipe) == pixels.size();
-}
-
-/// Says what the exit status of a shell command means.
-std::string reason(int status) {
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) return "ffmpeg is not installed";
-  return "ffmpeg failed";
+  return process.write(
+      {reinterpret_cast<const char*>(pixels.data()), pixels.size() * sizeof(Rgb8)});
 }
 
 }  // namespace
@@ -53,63 +51,62 @@ FrameRate frame_rate(double seconds) {
 }
 
 VideoWriter::VideoWriter(const std::filesystem::path& mp4, const Options& options)
-    : path_(mp4), temporary_(mp4.string() + ".tmp.mp4"), options_(options) {
+    : path_(mp4), temporary_(mp4.string() + ".tmp.mp4"), options_(options), tie_(temporary_) {
   assert(options.width % 2 == 0 && options.height % 2 == 0);
-  old_handler_ = std::signal(SIGPIPE, SIG_IGN);  // a missing ffmpeg is a failed write, not death
-  const std::string command =
-      raw_input(options.width, options.height) + " -framerate " +
-      std::to_string(options.rate.numerator) + "/" + std::to_string(options.rate.denominator) +
-      " -i - -vf scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,"
-      "format=yuv420p -c:v libx264 -preset medium -tune animation -threads 1 -g 12 -bf 2 -crf " +
-      std::to_string(options.crf) +
-      " -colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv"
-      " -movflags +faststart -map_metadata -1 -fflags +bitexact -flags:v +bitexact " +
-      quoted(temporary_.string()) + " 2>/dev/null";
-  pipe_ = popen(command.c_str(), "w");
+  const std::string rate =
+      std::to_string(options.rate.numerator) + "/" + std::to_string(options.rate.denominator);
+  try {
+    ffmpeg_.emplace(
+        words({raw_input(options.width, options.height),
+               {"-framerate", rate, "-i", "-"},
+               {"-vf",
+                "scale=out_color_matrix=bt709:out_range=tv:"
+                "flags=accurate_rnd+full_chroma_int,format=yuv420p"},
+               {"-c:v", "libx264", "-preset", "medium", "-tune", "animation", "-threads", "1"},
+               {"-g", "12", "-bf", "2", "-crf", std::to_string(options.crf)},
+               {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"},
+               {"-color_range", "tv", "-movflags", "+faststart", "-map_metadata", "-1"},
+               {"-fflags", "+bitexact", "-flags:v", "+bitexact", "file:" + temporary_.string()}}),
+        ProcessOptions{.input = ProcessOptions::Stream::piped});
+  } catch (const InputError& error) {
+    failure_ = on_path("ffmpeg") ? error.what() : "ffmpeg is not installed";
+  }
 }
 
 VideoWriter::~VideoWriter() {
-  if (pipe_) finish();
+  if (ffmpeg_) finish();
 }
 
 bool VideoWriter::write(const Image& image) {
   assert(image.width() == options_.width && image.height() == options_.height);
-  return pipe_ && put(pipe_, image);
+  return ffmpeg_ && put(*ffmpeg_, image);
 }
 
 std::string VideoWriter::finish() {
-  std::string why = pipe_ ? reason(pclose(pipe_)) : "no process for ffmpeg";
-  pipe_ = nullptr;
-  std::signal(SIGPIPE, old_handler_);
+  if (ffmpeg_) {
+    ffmpeg_->close_input();
+    if (!ffmpeg_->wait()->good()) failure_ = "ffmpeg failed";
+    ffmpeg_.reset();
+  }
   std::error_code error;
-  if (why.empty()) std::filesystem::rename(temporary_, path_, error);
-  if (error) why = "cannot write " + path_.string() + ": " + error.message();
-  if (!why.empty()) std::filesystem::remove(temporary_, error);
-  return why;
+  if (failure_.empty()) std::filesystem::rename(temporary_, path_, error);
+  if (error) failure_ = "cannot write " + path_.string() + ": " + error.message();
+  if (!failure_.empty()) std::filesystem::remove(temporary_, error);
+  return failure_;
 }
 
-std::string jpeg_bytes(const Image& image) {
-  char name[] = "/tmp/taut_jpeg_XXXXXX";
-  const int file = mkstemp(name);
-  if (file < 0) return "";
-  const auto old_handler = std::signal(SIGPIPE, SIG_IGN);
-  const std::string command =
-      raw_input(image.width(), image.height()) +
-      " -i - -frames:v 1 -q:v 3 -fflags +bitexact -flags:v +bitexact -f mjpeg " + name +
-      " 2>/dev/null";
-  FILE* pipe = popen(command.c_str(), "w");
-  const bool written = pipe && put(pipe, image);
-  const bool good = pipe && pclose(pipe) == 0 && written;
-  std::signal(SIGPIPE, old_handler);
-  std::ifstream in(name, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  close(file);
-  std::filesystem::remove(name);
-  return good ? bytes : "";
-}
-
-bool have_ffmpeg() {
-  return std::system("command -v ffmpeg >/dev/null 2>&1") == 0;  // NOLINT: a constant command
+std::string jpeg_bytes(const Image& image) try {
+  using Stream = ProcessOptions::Stream;
+  Process ffmpeg(words({raw_input(image.width(), image.height()),
+                        {"-i", "-", "-frames:v", "1", "-q:v", "3", "-fflags", "+bitexact"},
+                        {"-flags:v", "+bitexact", "-f", "mjpeg", "-"}}),
+                 {.input = Stream::piped, .output = Stream::piped});
+  const bool written = put(ffmpeg, image);
+  ffmpeg.close_input();
+  std::string bytes = ffmpeg.read_all();
+  return written && ffmpeg.wait()->good() ? bytes : "";
+} catch (const InputError&) {
+  return "";
 }
 
 }  // namespace taut

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "experiments/render/image.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut {
 
@@ -38,13 +39,12 @@ class VideoWriter {
  private:
   std::filesystem::path path_, temporary_;
   Options options_;
-  FILE* pipe_ = nullptr;
-  void (*old_handler_)(int) = nullptr;
+  EndsWithProgram tie_;  ///< of the temporary file
+  std::string failure_;
+  std::optional<Process> ffmpeg_;
 };
 
 /// The frame as JPEG by ffmpeg; "" without it.
 std::string jpeg_bytes(const Image&);
-
-bool have_ffmpeg();
 
 }  // namespace taut

@@ -6,8 +6,9 @@
 #include <map>
 #include <set>
 
-#include "experiments/report/axis.hpp"
 #include "experiments/report/palette.hpp"
+#include "experiments/report/quantity.hpp"
+#include "experiments/report/rivals.hpp"
 
 namespace taut::report {
 
@@ -21,6 +22,7 @@ constexpr const char* kKnobs[] = {
 
 std::string knob_label(const Record& record, std::span<const Record> records) {
   std::string text;
+  bool work = false;
   for (const char* knob : kKnobs) {
     const auto at = record.params.find(knob);
     if (at == record.params.end()) continue;
@@ -29,10 +31,13 @@ std::string knob_label(const Record& record, std::span<const Record> records) {
              r.params.at(knob) != at->second;
     });
     if (!varies || at->second == "off") continue;
-    const bool count = std::string_view(knob) == "iterations" && !text.empty();
-    text += (text.empty() ? "" : count ? " × " : ", ") + (at->second == "on" ? knob : at->second);
+    if (knob == std::string_view("substeps") || knob == std::string_view("iterations"))
+      work = true;
+    else
+      text += ", " + (at->second == "on" ? knob : at->second);
   }
-  return text;
+  if (work) return work_of(record).text() + text;
+  return text.empty() ? "" : text.substr(2);
 }
 
 namespace {

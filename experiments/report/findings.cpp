@@ -4,7 +4,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/format.hpp"
-#include "experiments/report/gnuplot.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {
@@ -54,13 +54,15 @@ TruthRow row_of(const Json& truth, const Json& finding) {
   return row;
 }
 
+/// Nothing if there is no such file or another program wrote it. Throws InputError if it is
+/// damaged.
 std::optional<Json> document(const std::filesystem::path& file, const std::string& schema,
                              std::string_view program) {
   if (!std::filesystem::exists(file)) return std::nullopt;
-  Json json = try_parse_json(read_file(file));
-  if (json.is_discarded() || json.value("schema", "") != schema)
-    throw InputError(file.string() + ": not a file of schema " + schema + "; remove it");
-  if (json.value("program", "") != program) return std::nullopt;
+  Json json = parse_json_of(read_text(file), file.string());
+  const JsonReader root(json, file.string());
+  root.require_schema(schema);
+  if (root.at("program").text() != program) return std::nullopt;
   return json;
 }
 
@@ -77,7 +79,7 @@ std::optional<Truths> stored_truths(const std::filesystem::path& results,
       const Json* nearest = nullptr;
       std::vector<TruthRow> apart;
       for (const Json& finding : truth.at("findings")) {
-        ++truths.findings;
+        ++truths.findings, ++truths.verdicts[finding.at("verdict").get<std::string>()];
         if (finding.at("verdict") != "passed")
           apart.push_back(row_of(truth, finding));
         else if (!nearest || strain_of(finding) > strain_of(*nearest))

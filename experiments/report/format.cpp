@@ -73,16 +73,7 @@ std::string significant(double value, int digits) {
   return (value < 0 ? "−" : "") + text;
 }
 
-std::string tick_text(double value, int digits) {
-  const double exponent = value > 0 ? std::log10(value) : 0;
-  const auto whole = static_cast<int>(std::lround(exponent));
-  if (std::abs(exponent - whole) > 1e-9 || std::abs(whole) < 4) return significant(value, digits);
-  return power_of_ten(whole);
-}
-
 std::string exact(double value) { return std::isnan(value) ? "" : shortest(value); }
-
-std::string ratio(double value) { return significant(value, 2); }
 
 std::string typeset(std::string_view plain) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSigns{{{"^2", "²"},
@@ -154,6 +145,8 @@ std::string csv_field(std::string_view text) {
   std::string line(text);
   std::ranges::replace_if(
       line, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  if (!line.empty() && std::string_view("=+-@").find(line.front()) != std::string_view::npos)
+    line.insert(0, "'");
   if (line.find_first_of(",\"") == std::string::npos) return line;
   std::string out = "\"";
   for (const char c : line) out += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -208,6 +201,13 @@ std::string slug(std::string_view text) {
   }
   while (!out.empty() && (out.back() == '-' || out.back() == '.')) out.pop_back();
   return out.empty() ? "x" : out;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
 }
 
 }  // namespace taut::report

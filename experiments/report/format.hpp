@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace taut::report {
 
@@ -15,21 +16,21 @@ std::string fixed(double value, int decimals);
 int decimals_for(double width);
 /// Every bit, shortest form: for data files. NaN gives "".
 std::string exact(double value);
-/// A number beside an axis: powers of ten from 10⁴ on as such, all else by significant().
-std::string tick_text(double value, int digits);
-/// A ratio for prose: "3.3", "12", "150".
-std::string ratio(double value);
-
 /// Plain text with the signs that a keyboard lacks: "dt^2 >= 2e-5, mu x 2" ->
 /// "dt² ≥ 2×10⁻⁵, μ × 2".
 std::string typeset(std::string_view);
 
-std::string escape_html(std::string_view);  ///< & < > " '; control characters become U+FFFD
+/// For a page: & < > " ' escaped; control characters become U+FFFD.
+std::string escape_html(std::string_view);
 std::string csv_field(
-    std::string_view);  ///< quoted if it must be; one line always, as gnuplot wants
+    std::string_view);  ///< quoted if it must be; one line always, as gnuplot wants; what begins
+                        ///< with = + - @ gets a ' in front: a spreadsheet would run it
 std::string gnuplot_string(std::string_view);  ///< a literal that no text can leave; one line
 std::string base64(std::string_view bytes);
 /// Letters, digits, '-' and '.' only: safe as a file name and as an HTML id.
 std::string slug(std::string_view);
+
+/// "ball, box and plane"
+std::string joined(const std::vector<std::string>& names);
 
 }  // namespace taut::report

@@ -1,17 +1,9 @@
 #include "experiments/report/gnuplot.hpp"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
-
+#include "core/model/input_error.hpp"
 #include "experiments/report/format.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut::report {
 
@@ -20,69 +12,31 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path temporary(const fs::path& path) {
-  return path.parent_path() / ("." + path.filename().string() + "." + std::to_string(getpid()));
+  return path.parent_path() / ("." + path.filename().string() + "." + unique_suffix());
 }
 
-/// Starts `program -e commands script` in the script's folder; gives its exit code and what it
-/// said.
-std::pair<int, std::string> spawn_gnuplot(const std::string& program, const fs::path& script,
-                                          std::string commands) {
-  const fs::path log = temporary(script);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  const std::string folder = script.has_parent_path() ? script.parent_path().string() : ".";
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  std::string name = program, option = "-e", file = script.filename().string();
-  std::array<char*, 5> argv{name.data(), option.data(), commands.data(), file.data(), nullptr};
-  pid_t child = 0;
-  const int failed = posix_spawnp(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  int state = 0;
-  while (failed == 0 && waitpid(child, &state, 0) < 0 && errno == EINTR) {
-  }
-  std::string said;
-  std::error_code ignored;
-  if (fs::exists(log, ignored)) said = read_file(log);
-  fs::remove(log, ignored);
-  if (failed != 0 || (WIFEXITED(state) && WEXITSTATUS(state) == 127))
-    throw PlotError(program + " cannot be started (" +
-                    std::strerror(failed != 0 ? failed : ENOENT) +
-                    "): install the Debian package gnuplot-nox to get figures");
-  return {WIFEXITED(state) ? WEXITSTATUS(state) : -1, said};
+/// Runs `program -e commands script` in the script's folder; gives its exit code and what it said.
+std::pair<int, std::string> run_program(const std::string& program, const fs::path& script,
+                                        const std::string& commands) try {
+  Process process({program, "-e", commands, script.filename()},
+                  {.errors = ProcessOptions::Stream::piped, .folder = script.parent_path()});
+  const std::string said = process.read_all();
+  return {process.wait()->exit_code, said};
+} catch (const InputError& error) {
+  throw PlotError(std::string(error.what()) +
+                  ": install the Debian package gnuplot-nox to get figures");
 }
 
 }  // namespace
-
-void write_file(const fs::path& path, const std::string& bytes) {
-  const fs::path temp = temporary(path);
-  {
-    std::ofstream out(temp, std::ios::binary);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!out.flush())
-      throw std::runtime_error("cannot write " + path.string() + ": " + std::strerror(errno));
-  }
-  fs::rename(temp, path);
-}
-
-std::string read_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) throw std::runtime_error("cannot read " + path.string() + ": " + std::strerror(errno));
-  return std::move(text).str();
-}
 
 void run_gnuplot(const fs::path& script, const std::string& terminal, const fs::path& out,
                  const std::string& program) {
   const fs::path absolute = fs::absolute(script);
   const fs::path temp = temporary(fs::absolute(out));
+  const EndsWithProgram tie(temp);
   const auto [code, said] =
-      spawn_gnuplot(program, absolute,
-                    "set terminal " + terminal + "; set output " + gnuplot_string(temp.string()));
+      run_program(program, absolute,
+                  "set terminal " + terminal + "; set output " + gnuplot_string(temp.string()));
   std::error_code missing;
   const auto size = fs::file_size(temp, missing);
   if (code == 0 && !missing && size > 0) {

@@ -12,13 +12,6 @@ class PlotError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes `bytes` under a temporary name in the same folder and renames it: nobody ever sees half a
-/// file. Throws std::runtime_error with path and reason.
-void write_file(const std::filesystem::path&, const std::string& bytes);
-
-/// The whole file. Throws std::runtime_error with path and reason.
-std::string read_file(const std::filesystem::path&);
-
 /// Runs `script` with its folder as working directory; the picture goes to `out` by way of a
 /// temporary name, and only if gnuplot succeeded and wrote something. `terminal` is the argument of
 /// "set terminal"; `program` is looked up in PATH. Throws PlotError.

@@ -7,10 +7,20 @@
 #include <vector>
 
 #include "experiments/case/record.hpp"
-#include "experiments/report/figures.hpp"
 #include "experiments/timing/bench.hpp"
 
 namespace taut::report {
+
+/// A value of one case over simulated time.
+struct TimeSeries {
+  std::string scene;
+  std::string solver;     ///< the entry's name
+  std::string label;      ///< "Jakobsen, 8 sweeps"
+  std::string value;      ///< "stretch.rms"
+  std::vector<double> t;  ///< s
+  std::vector<double> y;  ///< SI; NaN: no value at this moment
+  std::string key = {};   ///< of the case; "": it is not stored
+};
 
 /// A study that was run, or as much of it as there is.
 struct StudyResult {
@@ -21,12 +31,11 @@ struct StudyResult {
   std::map<std::string, double> slopes;  ///< by scene: the theory's exponent of stretch over sweeps
 };
 
-/// A study over two settings, run along the borders between outcomes.
+/// A study over two settings: how its cases end.
 struct MapResult {
   std::string study, question;
   std::string x, y;  ///< names that value_of() knows
   std::vector<Record> records;
-  std::vector<Record> inferred;  ///< were not run: their neighbours say how they end
 };
 
 struct SolverInfo {
@@ -46,8 +55,12 @@ struct Clip {
   std::string poster;  ///< picture shown before a video plays and in print; may be empty
   std::string poster_type = "image/png";  ///< or "image/jpeg"
   std::string alt;                        ///< what is to be seen, for those who cannot see it
-  /// Who is in it, from left to right: solver's name and its settings.
-  std::vector<std::pair<std::string, std::string>> panels;
+  /// Who is in it, from left to right.
+  struct Panel {
+    std::string solver, settings;
+    std::string key = {};  ///< of the case; "": no study ran it
+  };
+  std::vector<Panel> panels;
 };
 
 /// The colour bar of a scene's pictures, which the page draws itself.
@@ -98,6 +111,7 @@ struct TruthRow {
 /// What `taut verify` found.
 struct Truths {
   int truths = 0, findings = 0;
+  std::map<std::string, int> verdicts;  ///< findings by verdict
   std::vector<TruthRow> rows;
 };
 
@@ -113,8 +127,9 @@ struct Regressions {
 /// Everything that a report is made of. Empty parts become a line that says which command makes
 /// them.
 struct ReportInput {
-  std::string title;    ///< "": from the solvers' names
-  std::string command;  ///< the command line that made it all
+  std::string question = {};  ///< that heads the page; "": none
+  std::string title;          ///< "": from the solvers' names
+  std::string command;        ///< the command line that made it all
   std::vector<std::pair<std::string, std::string>> provenance;  ///< "compiler" -> "g++ 12.2.0"
   std::vector<SolverInfo> solvers;
   std::vector<SceneInfo> scenes;
@@ -125,6 +140,8 @@ struct ReportInput {
   std::optional<BenchSession> bench;       ///< what accuracy costs; nullopt: not timed
   std::optional<Truths> truths;            ///< nullopt: not run
   std::optional<Regressions> regressions;  ///< nullopt: not checked
+  /// Inputs that could not be understood, and why: they are left out and said so.
+  std::vector<std::pair<std::string, std::string>> left_out = {};
 };
 
 /// The value under which timing puts its result into a record [s per step].

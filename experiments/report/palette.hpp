@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -8,8 +7,7 @@
 
 namespace taut::report {
 
-/// A colour of the light theme (paper, figures) with its twin of the dark theme. In the report it
-/// is the CSS variable --name, so that one picture serves both themes.
+/// A colour of the light theme (paper, figures) with its twin of the dark theme.
 struct Colour {
   std::string_view name;
   std::string_view light;  ///< "#0B6BCB"
@@ -20,32 +18,24 @@ struct Colour {
 /// that colour-blind readers, greyscale prints and coinciding lines lose nothing.
 struct SolverStyle {
   Colour colour;
-  int marker = 7;              ///< gnuplot point type, filled
-  int hollow = 6;              ///< the same shape, not filled
-  double marker_size = 1;      ///< relative to the figure's
-  std::string_view dash = "";  ///< gnuplot dash pattern; "": solid
+  std::string_view shape;      ///< of its marker: "circle"
+  int marker = 7;              ///< the same as gnuplot's point type, filled
+  std::string_view dash = "";  ///< lengths of strokes and gaps: "9 4"; "": solid
 };
 
-/// The same for a name in every figure, whatever else is drawn beside it. `variant` counts the
-/// settings of one solver that share a figure: same hue and marker, another dash.
-SolverStyle solver_style(std::string_view solver, int variant = 0);
+/// The same for a name in every figure, whatever else is drawn beside it.
+SolverStyle solver_style(std::string_view solver);
 
 /// What people call a solver: "jakobsen" -> "Jakobsen", "bullet" -> "Bullet".
 std::string solver_title(std::string_view solver);
 
-/// How a status is drawn in maps, and the glyph that stands for it on curves.
+/// How a status is drawn in maps, and the glyph that stands for it everywhere.
 struct StatusStyle {
   Colour colour;
-  std::string_view glyph;  ///< "" for ok
+  std::string_view glyph;  ///< one character
   std::string_view help;   ///< a few words for the legend
   Colour ink;              ///< the glyph's colour on `colour`
 };
 StatusStyle status_style(Status::Kind);
-
-/// Neutral colours: ink, muted, axis, grid, stair, page.
-Colour neutral(std::string_view name);
-
-/// All colours, for style sheets and for the translation of figures into CSS variables.
-std::span<const Colour> colours();
 
 }  // namespace taut::report

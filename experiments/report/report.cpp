@@ -1,127 +1,46 @@
 #include "experiments/report/report.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
+#include <stdexcept>
 
-#include "core/model/input_error.hpp"
-#include "experiments/report/assets.hpp"
-#include "experiments/report/gnuplot.hpp"
-#include "experiments/report/html.hpp"
-#include "experiments/report/section.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/model.hpp"
+#include "experiments/report/page.hpp"
 
 namespace taut::report {
 
-namespace fs = std::filesystem;
-
 namespace {
 
-/// A folder for gnuplot's files that goes away with the report.
-class Scratch {
- public:
-  Scratch() {
-    std::string pattern = (fs::temp_directory_path() / "taut-report-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw std::runtime_error("cannot make a folder in " + fs::temp_directory_path().string());
-    path_ = pattern;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-std::string title_text(const ReportInput& input, const Comparison& facts) {
-  if (!input.title.empty()) return input.title;
-  std::string title;
-  for (const Contender& c : facts.contenders)
-    title += (title.empty() ? "" : " vs ") + solver_title(c.solver);
-  return title;
+/// JSON inside a script element: no text can close the element or open a comment.
+std::string for_script(const std::string& json) {
+  std::string out;
+  out.reserve(json.size());
+  for (const char c : json) out += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return out;
 }
 
-/// Nothing may be fetched; the page's own style, script and embedded media are all there is.
-constexpr std::string_view kPolicy =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; "
-    "media-src data: blob:; base-uri 'none'; form-action 'none'";
-
-std::string head(const std::string& title) {
-  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-         "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
-         std::string(kPolicy) +
-         "\">\n<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>" +
-         escape_html(title) + " – taut report</title>\n<style>\n" + theme_css() + report_css +
-         "</style></head>\n<body>" + svg_markers() +
-         "<a class=\"skip\" href=\"#main\">Skip to the results</a>\n";
-}
-
-std::string scene_part(Page& page, const std::string& scene,
-                       const std::vector<const SectionEntry*>& parts) {
-  std::string inner;
-  for (const SectionEntry* part : parts)
-    if (part->per_scene) inner += part->render(page, scene);
-  if (inner.empty()) return "";
-  std::string summary;
-  for (const SceneInfo& info : page.input().scenes)
-    if (info.name == scene) summary = info.summary;
-  const std::string id = "scene-" + slug(scene);
-  return "<section class=\"scene\" id=\"" + id + "\" aria-labelledby=\"" + id + "-h\"><h3 id=\"" +
-         id + "-h\">" + escape_html(solver_title(scene)) + "</h3><p class=\"lead\">" +
-         escape_html(summary) + "</p><div class=\"cards\">" + inner + "</div></section>\n";
-}
-
-std::string scenes_part(Page& page, const std::vector<const SectionEntry*>& parts) {
-  std::string links, all;
-  for (const std::string& scene : page.scenes()) {
-    const std::string part = scene_part(page, scene, parts);
-    if (part.empty()) continue;
-    all += part;
-    links += "<a href=\"#scene-" + slug(scene) + "\">" + escape_html(scene) + "</a>";
-  }
-  std::set<Status::Kind> kinds;
-  for (const StudyResult& study : page.input().studies)
-    for (const Record& r : study.records) kinds.insert(r.status.kind);
-  return "<section id=\"scenes\"><h2>Scene by scene</h2><p class=\"lead\">How cases ended: " +
-         status_legend(kinds, true) +
-         "</p><p class=\"lead\">On curves a failed case is its glyph above the plot, an exact zero "
-         "a triangle on the "
-         "floor.</p><nav class=\"jump\" "
-         "aria-label=\"Scenes\">" +
-         links + "</nav>" + all + "</section>\n";
+std::string_view page_file(std::string_view name) {
+  const auto at = std::ranges::find(page_files(), name, &PageFile::name);
+  if (at == page_files().end()) throw std::logic_error("no page file " + std::string(name));
+  return at->text;
 }
 
 }  // namespace
 
 std::string make_report(const ReportInput& input) {
-  if (std::ranges::all_of(input.studies, [](const auto& s) { return s.records.empty(); }))
-    throw InputError("there is no result of this build to report; `taut run` makes some");
-  const Scratch scratch;
-  Page page(input, scratch.path());
-  std::vector<const SectionEntry*> parts(sections().begin(), sections().end());
-  std::ranges::stable_sort(parts, {}, &SectionEntry::order);
-  std::string html = head(title_text(input, page.facts()));
-  bool scenes_done = false;
-  for (const SectionEntry* part : parts) {
-    if (!part->per_scene) {
-      html += part->render(page, "");
-    } else if (!scenes_done) {
-      html += scenes_part(page, parts);
-      scenes_done = true;
-    }
+  const std::string model = for_script(make_model(input));
+  const std::string title = escape_html(report_title(input));
+  const std::string_view page = page_file("index.html");
+  std::string html;
+  for (std::size_t at = 0; at < page.size();) {
+    const std::size_t open = page.find("{{", at), close = page.find("}}", open);
+    html += page.substr(at, open - at);
+    if (open == std::string_view::npos) break;
+    const std::string_view name = page.substr(open + 2, close - open - 2);
+    html += name == "model" ? model : name == "title" ? title : page_file(name);
+    at = close + 2;
   }
-  return html + "</main>\n<script>\n" + report_js + "</script></body></html>\n";
-}
-
-fs::path write_report(const ReportInput& input, const fs::path& path) {
-  const std::string html = make_report(input);
-  if (path.has_parent_path()) fs::create_directories(path.parent_path());
-  write_file(path, html);
-  return path;
+  return html;
 }
 
 }  // namespace taut::report

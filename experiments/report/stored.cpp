@@ -5,12 +5,11 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/axis.hpp"
-#include "experiments/report/comparison.hpp"
 #include "experiments/report/curves.hpp"
-#include "experiments/report/gnuplot.hpp"
 #include "experiments/report/palette.hpp"
-#include "experiments/study/map.hpp"
+#include "experiments/report/quantity.hpp"
+#include "experiments/report/rivals.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::report {
 
@@ -18,7 +17,7 @@ namespace {
 
 TimeSeries column(const Series& table, const Record& record, const std::string& label,
                   const std::string& value) {
-  TimeSeries series{record.scene, record.solver, label, value, {}, {}};
+  TimeSeries series{record.scene, record.solver, label, value, {}, {}, record.key};
   const auto index = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(table.columns, name) - table.columns.begin());
   };
@@ -31,19 +30,21 @@ TimeSeries column(const Series& table, const Record& record, const std::string& 
   return series;
 }
 
-/// Stretch over time of one scene: each contender at the quoted sweeps.
-std::vector<TimeSeries> series_of(const std::string& scene, const Comparison& facts,
+/// What a scene shows over time: its own quantities, and stretch.
+constexpr const char* kShown[] = {"stretch.rms", "penetration.max", "tunnelling.count",
+                                  "slip.distance"};
+
+/// Values over time of the quoted cases of a scene.
+std::vector<TimeSeries> series_of(const QuotedScene& quoted, const Rivals& rivals,
                                   const Store& store) {
   std::vector<TimeSeries> all;
-  for (const Contender& contender : facts.contenders) {
-    std::vector<Record> here;
-    for (const Record& r : contender.records)
-      if (r.scene == scene && quoted_at(r, facts.sweeps)) here.push_back(r);
-    for (const Record& r : most_common(here, "dt", 1.0 / 64).records) {
-      TimeSeries series = column(store.series(r.key), r, contender.label, "stretch.rms");
-      if (series.t.size() < 2) continue;
-      all.push_back(std::move(series));
-      break;
+  for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
+    if (!quoted.cases[i]) continue;
+    const Record& r = *quoted.cases[i];
+    const Series table = store.series(r.key);
+    for (const char* value : kShown) {
+      TimeSeries series = column(table, r, rivals.all[i].label, value);
+      if (series.t.size() > 1) all.push_back(std::move(series));
     }
   }
   return all;
@@ -63,7 +64,7 @@ void add_costs(const BenchSession& bench, std::vector<Record>& records) {
 std::optional<BenchSession> stored_bench(const Store& store, const std::string& study) {
   const std::filesystem::path file = bench_file(store.root(), study);
   if (!std::filesystem::exists(file)) return std::nullopt;
-  BenchSession bench = bench_from_json(read_file(file), file.string());
+  BenchSession bench = bench_from_json(read_text(file), file.string());
   CaseMaker maker;
   for (SceneBench& scene : bench.scenes)
     std::erase_if(scene.cases, [&](const BenchedCase& c) {
@@ -91,17 +92,13 @@ std::vector<MapResult> stored_maps(const std::vector<Study>& studies, const Stor
   std::vector<MapResult> maps;
   for (const Study& study : studies) {
     const auto plot = std::ranges::find(study.plots, "stability", &Plot::kind);
-    if (plot == study.plots.end() || study.sweeps.size() != 2) continue;
+    if (plot == study.plots.end() || study.axes.size() != 2) continue;
     const auto axis = [&](const char* name, const char* otherwise) {
       const auto option = plot->options.find(name);
       return option == plot->options.end() ? std::string(otherwise) : option->second;
     };
-    MapResult map{study.name,
-                  study.question,
-                  axis("x", "dt"),
-                  axis("y", "iterations"),
-                  collect(study, store).records,
-                  inferred_records(study, store)};
+    MapResult map{study.name, study.question, axis("x", "dt"), axis("y", "iterations"),
+                  collect(study, store).records};
     if (!map.records.empty()) maps.push_back(std::move(map));
   }
   return maps;
@@ -122,10 +119,17 @@ std::vector<TimeSeries> stored_series(std::span<const Record> records, const std
 ReportInput stored_results(const std::vector<Study>& studies, const Store& store) {
   ReportInput input;
   std::set<std::string> seen;
-  input.bench = stored_bench(store, "trade");
+  // A study's own bench before that of the main job.
+  std::vector<std::string> benched;
+  if (studies.size() == 1) benched.push_back(studies.front().name);
+  benched.emplace_back("trade");
+  for (const std::string& name : benched) try {
+      if (!input.bench) input.bench = stored_bench(store, name);
+    } catch (const InputError& error) {
+      input.left_out.emplace_back(bench_file(store.root(), name).string(), error.what());
+    }
   for (const Study& study : studies) {
     StudyRecords known = collect(study, store);
-    if (const auto bench = stored_bench(store, study.name)) add_costs(*bench, known.records);
     if (input.bench) add_costs(*input.bench, known.records);
     StudyResult result{
         study.name, study.question, std::move(known.records), known.cases.size(), {}};
@@ -137,9 +141,9 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
       if (const auto slope = theory_slope(*one.scene)) result.slopes[one.scene->name] = *slope;
     input.studies.push_back(std::move(result));
   }
-  const Comparison facts = compare(input);
-  for (const SceneInfo& scene : input.scenes)
-    for (TimeSeries& series : series_of(scene.name, facts, store))
+  const Rivals rivals = rivals_of(input);
+  for (const QuotedScene& quoted : rivals.scenes)
+    for (TimeSeries& series : series_of(quoted, rivals, store))
       input.series.push_back(std::move(series));
   return input;
 }

@@ -2,13 +2,8 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -28,32 +23,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kSeriesRows = 120;
-constexpr rlim_t kFileBytes = rlim_t{256} << 20;  ///< a case that prints without end fills no disk
-
-std::string reason_for(const char* what) {
-  throw InputError(std::string("cannot start a case: ") + what + ": " + std::strerror(errno));
-}
-
-/// Between fork and exec: system calls only.
-void restrict_child(const Limits& limits, pid_t parent, int out) {
-  setpgid(0, 0);  // Ctrl-C reaches the parent alone, which ends its cases
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);
-  const auto limit = [](auto what, rlim_t most) {
-    const rlimit both{most, most + (what == RLIMIT_CPU ? 1 : 0)};  // SIGXCPU first, then SIGKILL
-    setrlimit(what, &both);
-  };
-#ifndef __SANITIZE_ADDRESS__  // its shadow alone is terabytes of address space
-  limit(RLIMIT_AS, limits.bytes);
-#else
-  static_cast<void>(limits);
-#endif
-  limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
-  limit(RLIMIT_FSIZE, kFileBytes);
-  limit(RLIMIT_CORE, 0);
-  const int null = open("/dev/null", O_RDWR);
-  dup2(null, STDIN_FILENO), dup2(null, STDOUT_FILENO), dup2(out, STDERR_FILENO);
-}
+constexpr std::size_t kFileBytes = std::size_t{256}
+                                   << 20;  ///< a case that prints without end fills no disk
 
 std::string last_line(const fs::path& file) {
   std::ifstream in(file);
@@ -61,6 +32,23 @@ std::string last_line(const fs::path& file) {
   while (std::getline(in, line))
     if (!line.empty()) last = line.substr(0, 300);
   return last;
+}
+
+std::vector<std::string> command(const Case& one, const fs::path& folder) {
+  const auto program_of = one.choice.entry->program;
+  const std::string program(program_of ? program_of(one.choice.params) : "");
+  std::vector<std::string> words{sibling_program(program), "case",   one.spec.scene,
+                                 one.spec.solver,          "--into", fs::absolute(folder)};
+  for (const std::string& text : one.spec.overrides) words.insert(words.end(), {"--set", text});
+  return words;
+}
+
+/// What the case wrote; its address is what this process says, never what the case claims.
+Record record_in(const fs::path& file, const Case& one) {
+  Record record = record_from_json(read_text(file), file.filename());
+  if (record.key != one.key)
+    throw InputError("case.json: the record belongs to another case: " + record.key);
+  return record;
 }
 
 std::string signal_name(int signal) {
@@ -86,7 +74,7 @@ Heartbeat::Heartbeat(const fs::path& path) {
 Heartbeat::~Heartbeat() { munmap(const_cast<int*>(step_), sizeof(int)); }
 
 int Heartbeat::last(const fs::path& path) {
-  int step = -1;
+  int step = kCannotWrite;
   std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(&step), sizeof step);
   return step;
 }
@@ -96,51 +84,20 @@ IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limit
       folder_(std::move(folder)),
       deadline_(std::chrono::steady_clock::now() +
                 std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                    std::chrono::duration<double>(5 * limits.seconds))) {
-  const auto program_of = case_.choice.entry->program;
-  program_ = sibling_program(std::string(program_of ? program_of(case_.choice.params) : ""));
-  std::vector<std::string> words{program_.string(), "case",   case_.spec.scene,
-                                 case_.spec.solver, "--into", folder_};
-  for (const std::string& text : case_.spec.overrides) words.insert(words.end(), {"--set", text});
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-
-  const int out =
-      open((folder_ / "stderr.txt").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (out < 0) reason_for((folder_ / "stderr.txt").c_str());
-  const pid_t parent = getpid();
-  pid_ = fork();
-  if (pid_ == 0) {
-    restrict_child(limits, parent, out);
-    execv(program_.c_str(), argv.data());
-    _exit(127);
-  }
-  close(out);
-  if (pid_ < 0) reason_for("fork");
-  fd_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
-  if (fd_ < 0) reason_for("pidfd_open");
-}
-
-IsolatedCase::~IsolatedCase() {
-  if (pid_ > 0) {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
-  if (fd_ >= 0) close(fd_);
-}
+                    std::chrono::duration<double>(5 * limits.seconds))),
+      bytes_(limits.bytes),
+      process_(command(case_, folder_), {.errors_file = folder_ / "stderr.txt",
+                                         .limits = {.cpu_seconds = limits.seconds,
+                                                    .address_space = limits.bytes,
+                                                    .file_bytes = kFileBytes}}) {}
 
 std::optional<Record> IsolatedCase::poll() {
-  int wait_status = 0;
-  bool timed_out = false;
-  if (waitpid(pid_, &wait_status, WNOHANG) == 0) {
+  std::optional<ProcessEnd> end = process_.poll();
+  if (!end) {
     if (std::chrono::steady_clock::now() < deadline_) return {};
-    kill(pid_, SIGKILL);
-    waitpid(pid_, &wait_status, 0);
-    timed_out = true;
+    end = process_.wait(0);
   }
-  pid_ = -1;
-  Record record = record_of(wait_status, timed_out);
+  Record record = record_of(end);
   std::error_code ignored;
   fs::remove(folder_ / "heartbeat", ignored);
   if (fs::file_size(folder_ / "stderr.txt", ignored) == 0)
@@ -149,39 +106,35 @@ std::optional<Record> IsolatedCase::poll() {
   return record;
 }
 
-Record IsolatedCase::record_of(int wait_status, bool timed_out) const {
+Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   using Kind = Status::Kind;
-  const int step = Heartbeat::last(folder_ / "heartbeat");
+  const int beat = Heartbeat::last(folder_ / "heartbeat"), step = std::max(beat, -1);
   const std::string said = last_line(folder_ / "stderr.txt");
   const auto failed = [&](Kind kind, const std::string& reason) {
     return unfinished(case_, {kind, reason, step, -1});
   };
-  if (timed_out) return failed(Kind::timeout, "wall time");
-  if (WIFSIGNALED(wait_status)) {
-    const int signal = WTERMSIG(wait_status);
-    if (signal == SIGXCPU) return failed(Kind::timeout, "CPU time");
-    if (signal == SIGKILL) return failed(Kind::oom, "killed by the system");
-    return failed(Kind::crash, signal_name(signal) + (said.empty() ? "" : ": " + said));
-  }
-  switch (WEXITSTATUS(wait_status)) {
+  if (!end) return failed(Kind::timeout, "wall time");
+  // What is no property of the case leaves no record: it would be taken for the case's result.
+  if (end->exit_code == kCannotWrite && beat == Heartbeat::kCannotWrite)
+    throw InputError(said.empty() ? folder_.string() + ": cannot write: " + std::strerror(ENOSPC)
+                                  : said);  // on a full disk its words are lost too
+  if (end->signal == SIGXCPU) return failed(Kind::timeout, "CPU time");
+  if (end->signal == SIGKILL) return failed(Kind::oom, "killed by the system");
+  if (end->signal != 0)
+    return failed(Kind::crash, signal_name(end->signal) + (said.empty() ? "" : ": " + said));
+  switch (end->exit_code) {
     case 0:
       try {
-        return record_from_json(read_text(folder_ / "case.json"), "case.json");
+        return record_in(folder_ / "case.json", case_);
       } catch (const InputError& error) {
         return failed(Kind::error, error.what());
       }
     case kOutOfMemory:
-      return failed(Kind::oom, "out of memory");
-    // What is no property of the case leaves no record: it would be taken for the case's result.
-    case kCannotWrite:  // on a full disk its words are lost too
-      throw InputError(said.empty() ? folder_.string() + ": cannot write: " + std::strerror(ENOSPC)
-                                    : said);
-    case 127:
-      throw InputError(program_.string() + ": cannot be executed" +
-                       (said.empty() ? "; was it removed while the study ran?" : ": " + said));
+      return failed(Kind::oom, "more than the limit of " + std::to_string(bytes_ >> 20) +
+                                   " MB (taut run --memory raises it)");
     default:
       return failed(Kind::error,
-                    said.empty() ? "exit code " + std::to_string(WEXITSTATUS(wait_status)) : said);
+                    said.empty() ? "exit code " + std::to_string(end->exit_code) : said);
   }
 }
 
@@ -203,6 +156,7 @@ int run_into(const Case& one, const fs::path& folder) try {
     write_durably(folder / "series.csv", to_csv(run.series));
     write_durably(folder / "case.json", to_json(run.record, 1) + "\n");
   });
+  if (!written) heartbeat->beat(Heartbeat::kCannotWrite);
   return written ? 0 : kCannotWrite;
 } catch (const std::bad_alloc&) {
   return kOutOfMemory;

@@ -6,6 +6,7 @@
 
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut {
 
@@ -17,8 +18,8 @@ struct Limits {
 
 /// Exit code by which a case says that it ran out of memory.
 inline constexpr int kOutOfMemory = 77;
-/// Exit code by which a case says that its folder cannot be written: the campaign ends, for a full
-/// disk is no property of the case that meets it.
+/// Exit code by which a case says, with its heartbeat, that its folder cannot be written: the
+/// campaign ends, for a full disk is no property of the case that meets it.
 inline constexpr int kCannotWrite = 74;
 
 /// The step that a case has reached, in a file that outlives it: 4 bytes, mapped, so that reporting
@@ -30,7 +31,8 @@ class Heartbeat {
   Heartbeat(const Heartbeat&) = delete;
   Heartbeat& operator=(const Heartbeat&) = delete;
   void beat(int step) { *step_ = step; }
-  /// What the file says; -1: nothing yet.
+  static constexpr int kCannotWrite = -2;  ///< instead of a step: the folder cannot be written
+  /// What the file says; -1: nothing yet; kCannotWrite if there is no such file.
   static int last(const std::filesystem::path&);
 
  private:
@@ -44,12 +46,9 @@ class IsolatedCase {
  public:
   /// Starts it; its files and what it says go into `folder`. Throws InputError if it cannot start.
   IsolatedCase(const Case&, std::filesystem::path folder, const Limits&);
-  ~IsolatedCase();  ///< kills it if it still runs
-  IsolatedCase(const IsolatedCase&) = delete;
-  IsolatedCase& operator=(const IsolatedCase&) = delete;
 
   /// Ready for reading when the process has ended.
-  int descriptor() const { return fd_; }
+  int descriptor() const { return process_.descriptor(); }
   std::chrono::steady_clock::time_point deadline() const { return deadline_; }
   /// Its record once it has ended or its time is up (it is killed then); until then nothing.
   /// Throws InputError if it could not write what it found.
@@ -58,12 +57,13 @@ class IsolatedCase {
   const Case& of() const { return case_; }
 
  private:
-  Record record_of(int wait_status, bool timed_out) const;
+  /// `end`: nothing if its time was up.
+  Record record_of(const std::optional<ProcessEnd>& end) const;
   Case case_;
-  std::filesystem::path folder_, program_;
+  std::filesystem::path folder_;
   std::chrono::steady_clock::time_point deadline_;
-  int pid_ = -1;
-  int fd_ = -1;
+  std::size_t bytes_;
+  Process process_;
 };
 
 /// The child's side: runs the case in this process and leaves case.json, series.csv and its

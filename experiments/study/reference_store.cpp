@@ -1,8 +1,5 @@
 #include "experiments/study/reference_store.hpp"
 
-#include <fstream>
-
-#include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -35,30 +32,26 @@ void write_reference(const Reference& reference, const std::filesystem::path& fo
     text += (i == 0 ? "\n  " : ",\n  ") + to_text(Json{x.x(), x.y(), x.z()});
   }
   text += "\n ]\n}\n";
-  std::filesystem::create_directories(folder);
-  const std::filesystem::path path = folder / file_name(reference);
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) throw InputError("cannot write '" + path.string() + "'");
+  make_folder(folder);
+  write_file(folder / file_name(reference), text);
 }
 
 Reference read_reference(const std::filesystem::path& path) {
-  try {
-    const Json json = parse_json(read_text(path));
-    if (json.at("schema") != kSchema) throw InputError(path.string() + ": unknown schema");
-    Reference reference{json.at("scene"),
-                        json.at("digest"),
-                        json.at("kind"),
-                        json.at("t"),
-                        json.at("derivation"),
-                        json.at("floor_m"),
+  return read_json(read_text(path), path.string(), [](const JsonReader& j) {
+    j.require_schema(kSchema);
+    Reference reference{j.at("scene").text(),
+                        j.at("digest").text(),
+                        j.at("kind").text(),
+                        j.at("t").number(),
+                        j.at("derivation").text(),
+                        j.at("floor_m").number(),
                         {}};
-    for (const Json& x : json.at("x"))
-      reference.x.emplace_back(x.at(0).get<double>(), x.at(1).get<double>(), x.at(2).get<double>());
+    for (const JsonReader& vertex : j.at("x").items()) {
+      const std::vector<JsonReader> x = vertex.items(3);
+      reference.x.emplace_back(x[0].number(), x[1].number(), x[2].number());
+    }
     return reference;
-  } catch (const Json::exception& error) {
-    throw InputError(path.string() + ": not a reference: " + error.what());
-  }
+  });
 }
 
 std::string reference_digest(const Scene& scene, const std::string& kind) {

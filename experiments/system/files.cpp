@@ -4,10 +4,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <random>
 
 #include "core/model/input_error.hpp"
@@ -25,9 +25,12 @@ namespace {
 /// A file descriptor that closes itself.
 class File {
  public:
-  File(const fs::path& path, int flags) : path_(path), fd_(open(path.c_str(), flags, 0666)) {
-    if (fd_ < 0) fail(path_, "open");
+  /// Errors name `shown`.
+  File(const fs::path& path, int flags, const fs::path& shown)
+      : shown_(shown), fd_(open(path.c_str(), flags, 0666)) {
+    if (fd_ < 0) fail(shown_, flags & O_DIRECTORY ? "open" : "write");
   }
+  File(const fs::path& path, int flags) : File(path, flags, path) {}
   ~File() { close(fd_); }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
@@ -36,31 +39,77 @@ class File {
     while (!text.empty()) {
       const ssize_t written = ::write(fd_, text.data(), text.size());
       if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail(path_, "write");
+      if (written < 0) fail(shown_, "write");
       text.remove_prefix(static_cast<std::size_t>(written));
     }
   }
   void sync() {
-    if (fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail(path_, "write");
+    if (fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail(shown_, "write");
   }
 
  private:
-  fs::path path_;
+  fs::path shown_;
   int fd_;
 };
 
-}  // namespace
-
-std::string read_text(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(path.string() + ": cannot read");
-  return {std::istreambuf_iterator<char>(in), {}};
+std::string random_digits() {
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "%08x", static_cast<unsigned>(std::random_device{}()));
+  return digits;
 }
 
-void write_durably(const fs::path& path, std::string_view text) {
-  File file(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
-  file.write_all(text);
-  file.sync();
+void replace_file(const fs::path& path, std::string_view bytes, bool durable) {
+  std::error_code error;
+  const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
+  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) {
+    File(target, O_WRONLY | O_CLOEXEC).write_all(bytes);
+    return;
+  }
+  const fs::path beside =
+      target.parent_path() / ("." + target.filename().string() + "." + random_digits());
+  const EndsWithProgram tie(beside);
+  try {
+    File file(beside, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, path);
+    file.write_all(bytes);
+    if (durable) file.sync();
+    if (std::rename(beside.c_str(), target.c_str()) != 0) fail(path, "write");
+  } catch (const InputError&) {
+    unlink(beside.c_str());
+    throw;
+  }
+  if (durable) sync_folder(target.has_parent_path() ? target.parent_path() : ".");
+}
+
+fs::path new_scratch_folder() {
+  std::error_code error;
+  fs::path folder = fs::temp_directory_path(error);
+  if (error) folder = "/tmp";
+  std::string name = fs::absolute(folder) / "taut.XXXXXX";
+  if (!mkdtemp(name.data())) fail(folder, "make a folder there");
+  return name;
+}
+
+}  // namespace
+
+Scratch::Scratch() : path_(new_scratch_folder()), tie_(path_) {}
+
+Scratch::~Scratch() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+void write_file(const fs::path& path, std::string_view bytes) { replace_file(path, bytes, false); }
+
+void write_durably(const fs::path& path, std::string_view bytes) {
+  replace_file(path, bytes, true);
+}
+
+void test_writable(const fs::path& path) {
+  if (fs::is_directory(path)) throw InputError(path.string() + " is a folder; name a file in it");
+  if (path.has_parent_path()) make_folder(path.parent_path());
+  const fs::path probe = path.string() + "." + unique_suffix();
+  write_durably(probe, "");
+  fs::remove(probe);
 }
 
 void append_line(const fs::path& path, std::string_view line) {
@@ -78,9 +127,7 @@ void make_folder(const fs::path& path) {
 std::string unique_suffix() {
   char host[256] = "host";
   gethostname(host, sizeof host - 1);
-  char digits[16];
-  std::snprintf(digits, sizeof digits, "%08x", static_cast<unsigned>(std::random_device{}()));
-  return std::string(host) + "." + std::to_string(getpid()) + "." + digits;
+  return std::string(host) + "." + std::to_string(getpid()) + "." + random_digits();
 }
 
 std::string utc_stamp() {

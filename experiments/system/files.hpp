@@ -4,14 +4,22 @@
 #include <string>
 #include <string_view>
 
+#include "core/io/text_file.hpp"
+#include "experiments/system/signals.hpp"
+
 namespace taut {
 
-/// Everything in a file; throws InputError if it cannot be read.
-std::string read_text(const std::filesystem::path&);
+/// Writes a file beside the old one and renames it: nobody ever sees half of it, and the old one
+/// stays if this fails. A device or a pipe is written to as it is. Throws InputError with the
+/// system's reason (read-only, full, no such folder).
+void write_file(const std::filesystem::path&, std::string_view bytes);
 
-/// Writes a whole file and waits until it is on the disk. Throws InputError with the system's
-/// reason (read-only, full, no such folder).
-void write_durably(const std::filesystem::path&, std::string_view text);
+/// The same; returns when it is on the disk, its name included.
+void write_durably(const std::filesystem::path&, std::string_view bytes);
+
+/// Whether a file can be written there: makes its folder and tries, before anything costs time.
+/// Leaves nothing behind. Throws InputError with the reason.
+void test_writable(const std::filesystem::path&);
 
 /// Appends a line in one write. Throws as write_durably.
 void append_line(const std::filesystem::path&, std::string_view line);
@@ -21,6 +29,21 @@ void sync_folder(const std::filesystem::path&);
 
 /// Creates the folder and its parents; throws InputError with the system's reason.
 void make_folder(const std::filesystem::path&);
+
+/// A folder below $TMPDIR with a name that nobody foresees; it goes with this object or, at a
+/// signal, with the program.
+class Scratch {
+ public:
+  Scratch();  ///< throws InputError
+  ~Scratch();
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  EndsWithProgram tie_;
+};
 
 /// "<host>.<pid>.<8 hex digits>": a name that no other process gives.
 std::string unique_suffix();

@@ -58,6 +58,24 @@ void free_fall(Ledger& ledger) {
                (probe.x(0) - (kThrow + kGravity * (0.5 + 1.0 / 128))).norm(), 1e-4);
 }
 
+/// In float, x + (x - x') is a whole number of units in the last place of x, so that every step
+/// adds gravity's g dt^2 rounded to such units: not noise, but another gravity in each binade.
+void float_gravity(Ledger& ledger) {
+  const std::string solver = "jakobsen:substeps=1,order=mesh,precision=float";
+  Scene s = bare::scene({Vec3(0, -4.5, 0), Vec3(1, -4.5, 0)}, {1, 1}, {});
+  s.gravity = kGravity;
+  s.dt = 1.0 / 1024;
+  if (!claims(ledger, solver, s)) return;
+  const int n = 800;
+  Probe probe(s, solver);
+  probe.step(n);
+  const double unit = 0x1p-21;  // of coordinates from 4 m to 8 m
+  const double step = kG * s.dt * s.dt, fallen = n * (n + 1) / 2.0;
+  ledger.deviates(solver, "way fallen in 800 steps of 1/1024 s from 4.5 m off the origin", "m",
+                  -4.5 - probe.x(0).y(), fallen * step, fallen * std::round(step / unit) * unit,
+                  1e-12, "g dt^2 = 19.6 units in the last place of the coordinates counts as 20");
+}
+
 void damping(Ledger& ledger) {
   for (const std::string& solver : verlet_like()) {
     Scene s = thrown();
@@ -235,3 +253,12 @@ TAUT_TRUTH(wind_tilt) = {
     .statement = "a strip hung by its top edge in steady wind is a plane: tan(tilt) = wind/weight",
     .source = "balance of moments of every row, masses lumped by area",
     .check = taut::wind_tilt};
+
+TAUT_TRUTH(float_gravity) = {
+    .name = "float-gravity",
+    .section = 3,
+    .row = 9,
+    .statement =
+        "in float a step adds g dt^2 rounded to units in the last place of the coordinates",
+    .source = "x - x' is exact (Sterbenz 1974), so only the sum is rounded",
+    .check = taut::float_gravity};

@@ -83,8 +83,9 @@ class Browser:
             self.events.append(self.receive())
 
     def open(self, path):
+        """A file, or an address."""
         self.events.clear()
-        self.call("Page.navigate", url="file://" + os.path.abspath(path))
+        self.call("Page.navigate", url=path if ":" in path else "file://" + os.path.abspath(path))
         self.wait("Page.loadEventFired")
 
     def run(self, script):
@@ -102,6 +103,27 @@ class Browser:
         shot = self.call("Page.captureScreenshot", captureBeyondViewport=True)
         with open(path, "wb") as file:
             file.write(base64.b64decode(shot["data"]))
+
+    def settle(self):
+        """Waits until layout, observers and events of the last action are done."""
+        self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30))))")
+
+    def press(self, *keys):
+        """Keys one after the other, as a keyboard sends them."""
+        for key in keys:
+            text = {"Enter": "\r", " ": " "}.get(key, key if len(key) == 1 else None)
+            code = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Tab": 9, "Enter": 13, "Escape": 27,
+                    " ": 32, "End": 35, "Home": 36}.get(key, 0)
+            self.call("Input.dispatchKeyEvent", type="keyDown", key=key, windowsVirtualKeyCode=code,
+                      **({"text": text} if text else {}))
+            self.call("Input.dispatchKeyEvent", type="keyUp", key=key, windowsVirtualKeyCode=code)
+        self.settle()
+
+    def media(self, kind="", **features):
+        """Emulates a medium ("print") and features such as prefers_color_scheme="dark"."""
+        self.call("Emulation.setEmulatedMedia", media=kind,
+                  features=[{"name": k.replace("_", "-"), "value": v} for k, v in features.items()])
+        self.settle()
 
     def pdf(self, path):
         with open(path, "wb") as file:

@@ -78,16 +78,74 @@ TEST(BulletContact, OnAPlaneTheClothRestsAtThicknessPlusTheFallOfOneStep) {
     }
 }
 
-TEST(BulletContact, AnInclineHoldsTheClothIfFrictionDoesAndAtTheSameDistance) {
-  const double slope = std::numbers::pi / 6;
+/// The law of bullet_ref/README.md for a vertex alone on a slope [rad], in its own words: ways in
+/// one substep along the slope and out of it, the height above the distance at which contact
+/// begins.
+struct LawOfFriction {
+  double slope, mu, hardness;
+  int passes;
+  double h;  ///< s
+  double height = 0, along = 0;
+  double way_out = 0, way_along = 0;  ///< of the last substep [m]
+  void substep() {
+    way_out -= 9.81 * std::cos(slope) * h * h, way_along += 9.81 * std::sin(slope) * h * h;
+    const double depth = -(height + way_out);
+    if (depth > 0) {
+      const double kept = std::abs(way_along) < mu * std::abs(way_out) ? 0 : 1 - mu;
+      for (int pass = 0; pass < passes && way_out <= 1e-16; ++pass)
+        way_along *= kept, way_out = -hardness * (height + way_out);
+    }
+    height += way_out, along += way_along;
+  }
+};
+
+/// How far the middle of a sheet slides down a slope in one second [m].
+double slide(double slope, double mu, const std::string& bullet, double start_height,
+             Range* range) {
   const Vec3 normal(std::sin(slope), std::cos(slope), 0);
   const auto [u, v] = axes(normal);
-  const Scene scene =
-      sheet_above({.shape = Plane{normal, -2}, .friction = 1}, -1.97 * normal, u, v);
-  const Range d = settle(scene, "bullet:iterations=10");
-  const double rest = kThickness + 9.81 * std::cos(slope) * scene.dt * scene.dt;
-  EXPECT_NEAR(d.least, rest, 1e-4);
-  EXPECT_NEAR(d.most, rest, 1e-4);
+  const Vec3 start = (kThickness + start_height) * normal;
+  Scene scene = sheet_above({.shape = Plane{normal, 0}, .friction = mu}, start, u, v);
+  scene.dt = 1.0 / 64, scene.steps = 64;
+  const SolverChoice choice = parse_solver(bullet);
+  const auto solver = choice.entry->make(scene, choice.params);
+  solver->load(scene.start);
+  for (int n = 0; n < scene.steps; ++n) solver->step(n * scene.dt, scene.dt);
+  State state;
+  solver->store(state);
+  if (range) *range = distances(*solver, scene, scene.duration());
+  return (state.x[60] - scene.start.x[60]).dot(Vec3(std::cos(slope), -std::sin(slope), 0));
+}
+
+TEST(BulletFriction, IsTheLawThatTheReadmeStates) {
+  const double slope = 17 * std::numbers::pi / 180, h = 1.0 / 64;
+  for (const double mu : {0.0, 0.1, 0.3, 0.32, 0.335, 0.345, 0.35, 0.7, 1.0})
+    for (const double hardness : {0.05, 0.1, 0.3, 1.0})
+      for (const int passes : {1, 3}) {
+        // Away from ties, which rounding decides: at 0 a hard contact lands on the surface, and the
+        // others come to rest just touching it, but not within 64 steps.
+        const double start = hardness == 0.1 ? 0 : 0.3 * 9.81 * h * h;
+        LawOfFriction law{slope, mu, hardness, passes, h, start};
+        for (int n = 0; n < 64; ++n) law.substep();
+        const std::string bullet =
+            "bullet:hardness=" + std::to_string(hardness) + ",iterations=" + std::to_string(passes);
+        EXPECT_NEAR(slide(slope, mu, bullet, start, nullptr), law.along, 1e-8)
+            << bullet << ", mu " << mu;
+      }
+}
+
+// tan(17 degrees) = 0.306: Coulomb's law holds the sheet from there on, Bullet's from
+// tan/(1 - hardness) = 0.3397 on if it lies at the distance at which contact begins.
+TEST(BulletFriction, HoldsAboveATangentThatHardnessRaises) {
+  const double slope = 17 * std::numbers::pi / 180;
+  const double threshold = std::tan(slope) / (1 - 0.1);
+  EXPECT_GT(slide(slope, 0.99 * threshold, "bullet", 0, nullptr), 0.05);
+  Range d{};
+  EXPECT_NEAR(slide(slope, 1.01 * threshold, "bullet", 0, &d), 0, 1e-9);
+  const double rest = kThickness + 9.81 * std::cos(slope) / 64 / 64;
+  EXPECT_NEAR(d.least, rest, 1e-5);
+  EXPECT_NEAR(d.most, rest, 1e-5);
+  EXPECT_GT(slide(slope, 1, "bullet:hardness=1", 0.001, nullptr), 0.05) << "it hops down";
 }
 
 TEST(BulletContact, AMovingPlaneCarriesTheCloth) {

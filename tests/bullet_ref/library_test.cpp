@@ -53,6 +53,17 @@ std::vector<std::filesystem::path> scene_files() {
   return files;
 }
 
+TEST(BulletLibrary, TakesMostOfTheShippedScenes) {
+  for (const char* name : kSolvers) {
+    const SolverChoice choice = parse_solver(name + (":precision=" + kPrecision));
+    const auto files = scene_files();
+    const auto taken = std::ranges::count_if(files, [&](const auto& file) {
+      return choice.entry->unsupported(load_scene(file), choice.params).empty();
+    });
+    EXPECT_GE(taken, 10) << name << " of " << files.size();
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Bullet, ShippedScene, testing::ValuesIn(scene_files()),
                          [](const auto& file) {
                            std::string name = file.param.stem().string();

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace taut {
@@ -63,6 +65,56 @@ TEST(BulletReadBack, SoDoesTheDeformableBody) {
   const Scene scene = everything();
   EXPECT_EQ(differences(scene, read_back(*bullet(scene, "bullet-deformable")), 1e-13),
             std::vector<std::string>{});
+}
+
+TEST(BulletReadBack, WithoutFacesItHoldsAllElse) {
+  const Scene scene = everything();
+  Scene held = read_back(*bullet(scene, "bullet:faces=off"));
+  EXPECT_EQ(held.mesh.triangles.size(), 0u);
+  held.mesh.triangles = scene.mesh.triangles;
+  EXPECT_EQ(differences(scene, held, 1e-13), std::vector<std::string>{});
+}
+
+/// The links that each vertex belongs to, in order.
+std::vector<std::vector<std::array<int, 2>>> links_of_vertices(const Scene& scene) {
+  std::vector<std::vector<std::array<int, 2>>> lists(scene.mesh.rest.size());
+  for (const Link& link : scene.links)
+    for (const int end : {link.a, link.b})
+      lists[static_cast<std::size_t>(end)].push_back({link.a, link.b});
+  return lists;
+}
+
+int waiting(const Scene& scene) {
+  int count = 0;
+  for (std::size_t i = 1; i < scene.links.size(); ++i) {
+    const Link &p = scene.links[i - 1], &q = scene.links[i];
+    count += q.a == p.a || q.a == p.b || q.b == p.a || q.b == p.b;
+  }
+  return count;
+}
+
+TEST(BulletReadBack, ReorderedItHoldsTheSameLinksInTheSameOrderAtEveryVertex) {
+  const Scene scene = everything();
+  const auto solver = bullet(scene, "bullet:reorder=on");
+  Scene held = read_back(*solver);
+  EXPECT_EQ(links_of_vertices(held), links_of_vertices(scene));
+  EXPECT_LT(waiting(held), waiting(scene) / 10);
+  const SolverChoice choice = parse_solver("bullet:reorder=on");
+  std::string said;
+  for (const auto& [name, text] : choice.entry->resolved_settings(scene, choice.params))
+    if (name == "link order") said = text;
+  EXPECT_NE(said.find(" " + std::to_string(waiting(held)) + " of "), std::string::npos) << said;
+  EXPECT_NE(said.find("(" + std::to_string(waiting(scene)) + " in the"), std::string::npos) << said;
+  std::vector<std::string> passes;
+  for (const PassCost& cost : solver->step_cost()) passes.push_back(cost.pass);
+  EXPECT_EQ(std::ranges::count(passes, "links, reordered"), 1);
+  const auto by_ends = [](const Link& p, const Link& q) {
+    return std::pair(p.a, p.b) < std::pair(q.a, q.b);
+  };
+  Scene sorted = scene;
+  std::ranges::sort(sorted.links, by_ends);
+  std::ranges::sort(held.links, by_ends);
+  EXPECT_EQ(differences(sorted, held, 1e-13), std::vector<std::string>{});
 }
 
 TEST(BulletReadBack, SubstepsChangeTheTimeStepByRoundingToBinary32) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "experiments/case/run_case.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut {
@@ -104,6 +105,41 @@ TEST(VerdictBorders, ASwingThatDecaysAsTheorySaysIsSettled) {
     verdict.finish();
     EXPECT_EQ(verdict.status().kind, rate > 1 ? Status::Kind::ok : Status::Kind::unsettled) << rate;
   }
+}
+
+// A weightless spring, stretched by 4 % and let go: Verlet bounds its swing below dt = 2/w, to
+// 1/sqrt(1 - (w dt/2)^2) of the stretch, and lets it grow above. What it may swing out to is in
+// what the start stores.
+TEST(StoredEnergy, AStretchedSpringExplodesAboveTheStabilityLimitAndNotBelow) {
+  constexpr double kMass = 0.1, kStiffness = 20;  // kg, N/m
+  Scene scene = hanging_sheet(1, 2, {true, false, false}, Lumping::equal);
+  scene.mesh.mass.assign(2, kMass);
+  scene.gravity.setZero();
+  scene.start.x[1] = scene.start.x[0] + 1.04 * (scene.start.x[1] - scene.start.x[0]);
+  const double limit = 2 / std::sqrt(kStiffness / kMass);
+  const auto status = [&](double share) {
+    scene.dt = share * limit;
+    scene.steps = 400;
+    return run_case(scene, parse_solver("mass-spring:structural=20,substeps=1,precision=double"))
+        .record.status;
+  };
+  for (const double share : {0.5, 0.8, 0.85, 0.95, 0.99, 0.997})
+    EXPECT_EQ(status(share).kind, Status::Kind::ok) << share;
+  for (const double share : {1.001, 1.01, 1.1}) {
+    EXPECT_EQ(status(share).kind, Status::Kind::exploded) << share;
+    EXPECT_EQ(status(share).reason, "energy") << share;
+  }
+}
+
+TEST(StoredEnergy, IsThatOfTheStiffestSpringThatAStepCanHold) {
+  Scene scene = hanging_sheet(1, 2, {true, false, false}, Lumping::equal);
+  scene.gravity.setZero();
+  const double before = EnergyBudget(scene).available(scene.dt);
+  scene.start.x[1] *= 1.04;
+  // (2n + 1)^2 of m (2/dt)^2 e^2/2 after n = 1 step, and (e/dt)^2 m/2 for a projection's jump.
+  const double e = 0.04 * scene.links[0].rest, m = scene.mesh.mass[1];
+  EXPECT_NEAR(EnergyBudget(scene).available(scene.dt) - before,
+              (9 * 4 + 1) * m / 2 * e * e / scene.dt / scene.dt, 1e-9);
 }
 
 }  // namespace

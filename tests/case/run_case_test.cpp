@@ -74,6 +74,7 @@ TEST(DivergenceDetector, NotANumberIsAnExplosionAtItsStepAndVertex) {
   EXPECT_EQ(run.record.status.step, 7);
   EXPECT_EQ(run.record.status.vertex, 5);
   EXPECT_NEAR(run.last.x[1].y(), -0.006, 1e-12) << "the last sound state is that after step 6";
+  EXPECT_GT(run.record.values.size(), 10u);
   for (const auto& [name, value] : run.record.values) EXPECT_TRUE(std::isnan(value)) << name;
 }
 
@@ -109,7 +110,7 @@ TEST(DivergenceDetector, LegitimateStrainIsNoExplosion) {
       for (const char* projection : {"exact", "sqrt-free"}) {
         const Status status = verdict_on(
             chain(links, dt), listing("iterations=1,projection=") + std::string(projection));
-        EXPECT_NE(status.kind, Status::Kind::exploded)
+        EXPECT_TRUE(status.kind == Status::Kind::ok || status.kind == Status::Kind::unsettled)
             << links << " links, dt " << dt << ", " << projection << ": " << status.reason
             << " at step " << status.step;
       }

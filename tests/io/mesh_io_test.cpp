@@ -173,6 +173,7 @@ TEST(MeshFromObj, TheShippedDiscIsTurnedScaledAndMoved) {
   EXPECT_NEAR(mass, 0.2 * 3.14159, 0.002);  // a circle of 1 m less what its 48 chords cut off
   const Scene upright = load_scene(
       disc, {"cloth.rotation={ axis = [1, 0, 0], angle = 90 }", "cloth.start_inside=\"resolve\""});
+  EXPECT_EQ(upright.mesh.size(), 217);
   for (const Vec3& x : upright.mesh.rest) EXPECT_NEAR(x.z(), 0, 1e-15);
   EXPECT_THROW(load_scene(disc, {"cloth.size=[1, 1]"}), InputError);
   EXPECT_THROW(load_scene(disc, {"cloth.pins=[\"top\"]"}), InputError);

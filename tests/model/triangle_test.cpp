@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "core/model/crossings.hpp"
@@ -171,6 +172,50 @@ TEST(Crossings, LeastGapIsThatOfAllPairs) {
     for (std::size_t b = 0; b < a; ++b)
       brute = std::min(brute, (x[a] - x[b]).norm() - std::min(0.3, (rest[a] - rest[b]).norm()));
   EXPECT_DOUBLE_EQ(least_gap(x, rest, 0.15), brute);
+}
+
+TEST(Triangle, DistancesBeatSubdivisionAndAreZeroWhereTheyTouch) {
+  Random random(7);
+  for (int k = 0; k < 60; ++k) {
+    Corners s = random.corners(1), t = random.corners(1);
+    for (Vec3& p : t) p.z() += 1.5;
+    if (k % 3 == 0) t[1] = t[0] + (s[1] - s[0]);  // parallel edges
+    if (cross(s, t)) continue;
+    const double brute = -brute_force_max(
+        s, [&](const Vec3& p) { return -(closest_point(t, p).position - p).norm(); });
+    EXPECT_LE(distance(s, t), brute + 1e-12);
+    EXPECT_NEAR(distance(s, t), brute, 3.5 / 120);
+    EXPECT_DOUBLE_EQ(distance(s, t), distance(t, s));
+  }
+  const Corners flat{Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, 3, 0)};
+  const auto beside = [&](double x) {  // a star with flat: edges cross, no corner is inside
+    return Corners{Vec3(x - 1, 1, 0), Vec3(x + 4, 1.1, 0), Vec3(x + 4, 1, 0)};
+  };
+  EXPECT_NEAR(distance(flat, beside(0)), 0, 1e-15);
+  EXPECT_NEAR(distance(flat, beside(5)), std::sqrt(2.0), 1e-12);
+}
+
+TEST(Crossings, CoincidencesAreThosePairsThatAreNearAndDoNotCross) {
+  Random random(8);
+  const Mesh mesh = make_sheet({.nu = 7, .nv = 7, .width = 1, .height = 1, .mass = 1});
+  std::vector<Vec3> x = mesh.rest;
+  for (Vec3& p : x) p += random.point(0.3);
+  const auto& faces = mesh.triangles;
+  const auto corners = [&](const Triangle& t) {
+    return Corners{x[static_cast<std::size_t>(t[0])], x[static_cast<std::size_t>(t[1])],
+                   x[static_cast<std::size_t>(t[2])]};
+  };
+  std::vector<std::array<int, 2>> brute;
+  for (std::size_t s = 0; s < faces.size(); ++s)
+    for (std::size_t t = s + 1; t < faces.size(); ++t) {
+      const bool neighbours =
+          std::ranges::any_of(faces[s], [&](int i) { return std::ranges::count(faces[t], i) > 0; });
+      const Corners p = corners(faces[s]), q = corners(faces[t]);
+      if (!neighbours && !cross(p, q) && distance(p, q) < 0.02)
+        brute.push_back({static_cast<int>(s), static_cast<int>(t)});
+    }
+  EXPECT_GT(brute.size(), 10u);
+  EXPECT_EQ(coincidences(faces, x, 0.02), brute);
 }
 
 }  // namespace

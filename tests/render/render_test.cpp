@@ -95,6 +95,7 @@ TEST(Studio, MaterialSpaceIsExact) {
   options.range = 0.05;
   const Studio studio(scene, takes, options);
   const Image flat = studio.material_space(0, 0.5, 40);
+  ASSERT_EQ(flat.pixels().size(), 40u * 40u);
   for (const Rgb8 pixel : flat.pixels()) EXPECT_EQ(pixel, studio.scale().colour(0.02));
 }
 

@@ -52,7 +52,7 @@ TEST(FrameRateTest, IsExactForFractionsOfASecond) {
 }
 
 TEST_F(VideoTest, ADecodedFrameMatchesItsStill) {
-  if (!have_ffmpeg()) GTEST_SKIP() << "no ffmpeg";
+  if (!on_path("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
   const Scene scene = test::sheet_over_ball(17);
   const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
   const PageLayout layout(640, 360, 2);
@@ -82,7 +82,7 @@ TEST_F(VideoTest, ADecodedFrameMatchesItsStill) {
 }
 
 TEST_F(VideoTest, MediaHasAVideoForEveryMomentTheSameBytesAgain) {
-  if (!have_ffmpeg()) GTEST_SKIP() << "no ffmpeg";
+  if (!on_path("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
   const Scene scene = test::sheet_over_ball(17);
   const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
   int told = 0;

@@ -10,23 +10,27 @@ rules='
 core/model               | core/model/
 core/io                  | core/(model|io)/
 core/solver              | core/(model|solver)/
+core/solver/simd         | core/solver/simd/
+core/solver/layout       | core/(model|solver/(simd|layout))/
+core/solver/constraints  | core/(model/|solver/((simd|layout|constraints)/|thread_pool))
+core/solver/contact      | core/(model|solver/(simd|layout|contact))/
 core/reference           | core/(model|reference)/
 bullet_ref               | (core/model|bullet_ref)/
-experiments/system       | (core/model|experiments/system)/
+experiments/system       | (core/(model|io)|experiments/system)/
 experiments/metrics      | (core/model|experiments/metrics)/
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
 experiments/timing       | (core/model|experiments/(system|case|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|baseline))/
 experiments/truths       | (core/(model|reference)|experiments/(metrics|case|truths))/
-experiments/render       | (core/(model|io)|experiments/(case|render))/
+experiments/render       | (core/(model|io)|experiments/(system|case|render))/
 experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
-experiments/bench        | (core/(model|io|solver)|experiments/(system|timing|bench))/
-experiments/film         | (core/(model|io)|experiments/(system|case|render|report|film))/
+experiments/bench        | (core/(model|io|solver|reference)|experiments/(system|timing|bench))/
+experiments/film         | (core/(model|io)|experiments/(system|metrics|case|render|report|film))/
 '
 # what is included | files that may include it
 owners='
-BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/.*\.cpp
+BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/(.*\.cpp|bullet_solver\.hpp)
 toml\+\+                | ^core/io/document\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
@@ -89,12 +93,16 @@ self_test() {
     fi
     rm "$copy/$file"
   done <<'PLANTED'
-core/model/planted.cpp|"core/solver/pass.hpp"
+core/model/planted.cpp|"core/solver/layout/particles.hpp"
 core/solver/planted.hpp|"experiments/case/record.hpp"
-bullet_ref/planted.cpp|"core/solver/pass.hpp"
-experiments/metrics/planted.cpp|"core/solver/pass.hpp"
+bullet_ref/planted.cpp|"core/solver/layout/particles.hpp"
+experiments/metrics/planted.cpp|"core/solver/layout/particles.hpp"
 experiments/case/planted.cpp|"bullet_ref/read_back.hpp"
-experiments/report/planted.cpp|"core/solver/distance.hpp"
+core/solver/simd/planted.hpp|"core/solver/layout/particles.hpp"
+core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
+core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
+core/solver/contact/planted.cpp|"core/solver/constraints/relaxation.hpp"
+experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
 core/solver/planted.cpp|<BulletSoftBody/btSoftBody.h>
 bullet_ref/planted.hpp|<BulletSoftBody/btSoftBody.h>
 core/model/planted.hpp|<toml++/toml.h>

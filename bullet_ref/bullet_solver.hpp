@@ -1,0 +1,105 @@
+#pragma once
+
+#include <BulletSoftBody/btSoftBody.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bullet_ref/cloth.hpp"
+#include "bullet_ref/read_back.hpp"
+#include "bullet_ref/rigid_colliders.hpp"
+#include "core/model/solver.hpp"
+
+class btDiscreteDynamicsWorld;
+
+namespace taut {
+
+/// What both of Bullet's cloths are: the scene's cloth and colliders in a world of Bullet's, which
+/// the derived class owns, advanced by substeps. Only the .cpp files of this folder include this.
+class BulletSolver : public Solver, public HoldsScene {
+ public:
+  void step(double t, double dt) final;
+  std::vector<PassCost> step_cost() const final;
+
+ protected:
+  /// Builds colliders and cloth, which the derived class adds to its world. Reads the parameters
+  /// "substeps" and "voxel".
+  BulletSolver(const Scene&, const Params&, btDiscreteDynamicsWorld&, btSoftBodyWorldInfo&,
+               const ClothOptions&);
+
+  /// Advances [from, to] by stepSimulation(h_, 0): with its default arguments it steps by 1/60 s.
+  virtual void substep(double from, double to) = 0;
+  /// What solves the links and contacts in one step.
+  virtual std::vector<PassCost> solve_cost() const = 0;
+  /// Bytes that exist for the wind besides the scene's triangles.
+  virtual std::size_t wind_bytes() const { return 0; }
+
+  /// What the body and the colliders hold, and what Bullet has no place for, so that the adapter
+  /// applies it at each substep: motions of pins and wind. Damping is the derived class's.
+  Scene held_scene(RestLength) const;
+
+  btSoftBody::Node& node(std::size_t i) { return body_->m_nodes[static_cast<int>(i)]; }
+  const btSoftBody::Node& node(std::size_t i) const { return body_->m_nodes[static_cast<int>(i)]; }
+
+  Scene scene_;
+  double margin_;
+  int substeps_;
+  btScalar h_;  ///< s, of a substep
+  RigidColliders colliders_;
+  std::unique_ptr<btSoftBody> body_;
+};
+
+/// What the entries of both solvers share.
+namespace bullet_ref {
+
+inline constexpr ParamSpec kSubsteps = {
+    .name = "substeps",
+    .kind = ParamSpec::Kind::integer,
+    .default_value = "1",
+    .min = 1,
+    .max = 1e6,
+    .help = "each step is this many calls of stepSimulation(dt / substeps)"};
+inline constexpr ParamSpec kPrecision = {.name = "precision",
+                                         .kind = ParamSpec::Kind::choice,
+                                         .default_value = "double",
+                                         .choices = "float|double",
+                                         .help = "which build of Bullet; float runs in taut-f32"};
+inline constexpr ParamSpec kMargin = {
+    .name = "margin",
+    .kind = ParamSpec::Kind::real,
+    .unit = "m",
+    .default_value = "0",
+    .min = 0,
+    .max = 1,
+    .help = "collision margin on top of the scene's thickness (Bullet's default: 0.25)"};
+inline constexpr ParamSpec kVoxel = {
+    .name = "voxel",
+    .kind = ParamSpec::Kind::real,
+    .unit = "m",
+    .default_value = "0.05",
+    .min = 1e-3,
+    .max = 10,
+    .help =
+        "grid spacing of the colliders' distance fields (Bullet's default: 0.25, in the "
+        "deformable world 0.005)"};
+
+/// One substep [s]: dt / substeps rounded to binary32, for btSoftRigidDynamicsWorld casts its time
+/// step to float even in the double build.
+float substep_length(const Scene&, const Params&);
+
+/// The program that runs the parameter "precision".
+std::string_view program(const Params&);
+/// Throws InputError if that is not this one.
+void require_program(const std::string& solver, const Params&);
+
+/// Reasons and lines of the fairness panel that hold for both.
+std::vector<std::string> unsupported(const Scene&, const Params&);
+ResolvedSettings library_settings(const Scene&, const Params&);
+ResolvedSettings contact_settings(const Scene&, const Params&, const std::string& default_voxel);
+
+/// "%.6g"
+std::string short_text(double);
+
+}  // namespace bullet_ref
+}  // namespace taut

@@ -1,0 +1,275 @@
+#include "experiments/report/charts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/palette.hpp"
+#include "experiments/report/rivals.hpp"
+#include "experiments/timing/trade.hpp"
+
+namespace taut::report {
+
+namespace {
+
+/// The study with most distinct values of `setting` on a scene, cut to that scene; empty if none
+/// has two. Only records with a value of `needs` make a study count.
+std::vector<Record> swept(const ReportInput& input, const std::string& scene,
+                          const std::string& setting, const std::string& needs,
+                          std::string* study_name = nullptr) {
+  std::vector<Record> best;
+  std::size_t most = 1;
+  for (const StudyResult& study : input.studies) {
+    std::vector<Record> here;
+    std::set<double> values;
+    bool any = needs.empty();
+    for (const Record& r : study.records) {
+      const double value = value_of(r, setting);
+      if (r.scene != scene || !std::isfinite(value)) continue;
+      any = any || std::isfinite(value_of(r, needs));
+      values.insert(value);
+      here.push_back(r);
+    }
+    if (!any || values.size() <= most) continue;
+    most = values.size(), best = std::move(here);
+    if (study_name) *study_name = study.name;
+  }
+  return best;
+}
+
+bool is_setting(const std::string& name) {
+  return name == "iterations" || name == "dt" || name == "substeps" || name == "vertices";
+}
+
+std::string held_text(const std::string& setting, double value) {
+  const Quantity q = quantity(setting);
+  return q.unit.empty() ? q.text(value, 3) + " " + q.title : q.title + " " + q.text(value, 3);
+}
+
+/// The record without its two swept settings, so that all cells of a map share the others.
+Record without(Record r, const std::string& x, const std::string& y) {
+  for (const std::string& swept : {x, y}) {
+    if (swept == "dt") r.dt = 1;
+    r.params.erase(swept);
+    const std::string key = swept == "vertices" ? "cloth.grid" : swept == "dt" ? "time.dt" : swept;
+    std::erase_if(r.spec.overrides,
+                  [&](const std::string& text) { return text.starts_with(key + "="); });
+  }
+  return r;
+}
+
+/// Points into records that live as long as the input: copies of a slice do not.
+struct Scope {
+  const ReportInput& input;
+  const Record* find(const Record& r) const {
+    for (const StudyResult& study : input.studies)
+      for (const Record& own : study.records)
+        if (own.key == r.key && own.id == r.id) return &own;
+    return nullptr;
+  }
+};
+
+}  // namespace
+
+bool failed(const Point& p) { return !completed(*p.record); }
+
+Chart make_chart(std::string kind, std::span<const Record> records, const std::string& x,
+                 const std::string& y, const std::string& along) {
+  Chart chart{.id = {},
+              .scene = {},
+              .kind = std::move(kind),
+              .title = {},
+              .x = quantity(x),
+              .y = quantity(y),
+              .along = along,
+              .curves = make_curves(records, x, y, along),
+              .cost = {}};
+  bool any = false;
+  std::set<double> values;
+  for (Curve& curve : chart.curves) {
+    std::erase_if(curve.points, [](const Point& p) { return !p.measured() && !failed(p); });
+    for (const Point& p : curve.points) {
+      any = any || p.measured();
+      if (std::isfinite(p.x)) values.insert(p.x);
+    }
+    // A line through settings that differ in two knobs would join what nobody tries in a row.
+    std::set<int> substeps, sweeps;
+    for (const Point& p : curve.points) {
+      substeps.insert(work_of(*p.record).substeps), sweeps.insert(work_of(*p.record).sweeps);
+      if (p.name.find(',') != std::string::npos) chart.join = false;
+    }
+    if (along == "setting" && substeps.size() > 1 && sweeps.size() > 1) chart.join = false;
+  }
+  std::erase_if(chart.curves, [](const Curve& c) { return c.points.empty(); });
+  if (!any) throw InputError("no case has both '" + x + "' and '" + y + "'");
+  if (is_setting(x)) chart.ticks.assign(values.begin(), values.end());
+  return chart;
+}
+
+double theory_factor(const Chart& chart) {
+  double factor = std::numeric_limits<double>::infinity();
+  if (chart.slope)
+    for (const Curve& curve : chart.curves)
+      for (const Point& p : curve.points)
+        if (p.measured() && p.x > 0 && p.y > 0)
+          factor = std::min(factor, p.y / std::pow(p.x, *chart.slope));
+  return std::isfinite(factor) ? 0.6 * factor : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::vector<Point> pareto_front(const Chart& chart) {
+  std::vector<Point> points, front;
+  std::vector<Offer> offers;
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points) {
+      if (!p.measured()) continue;
+      points.push_back(p);
+      offers.push_back({curve.solver, "", {p.x, p.x, p.x}, p.y, false});
+    }
+  for (const std::size_t i : pareto_front(offers)) front.push_back(points[i]);
+  return front;
+}
+
+std::vector<StatusMap> make_maps(std::span<const Record> records, const std::string& scene,
+                                 const std::string& x, const std::string& y) {
+  std::vector<const Record*> all;
+  std::vector<Record> flat;
+  for (const Record& r : records)
+    if (r.scene == scene && std::isfinite(value_of(r, x)) && std::isfinite(value_of(r, y)))
+      all.push_back(&r), flat.push_back(without(r, x, y));
+  std::vector<StatusMap> maps;
+  for (const Curve& curve : make_curves(flat, x, y, x)) {
+    StatusMap map{.scene = {},
+                  .solver = curve.solver,
+                  .label = curve.label,
+                  .study = {},
+                  .x = quantity(x),
+                  .y = quantity(y),
+                  .columns = {},
+                  .rows = {},
+                  .cells = {}};
+    std::vector<const Record*> own;
+    std::set<double> columns, rows;
+    for (const Point& p : curve.points) {
+      own.push_back(all[static_cast<std::size_t>(p.record - flat.data())]);
+      columns.insert(value_of(*own.back(), x)), rows.insert(value_of(*own.back(), y));
+    }
+    map.columns.assign(columns.begin(), columns.end()), map.rows.assign(rows.begin(), rows.end());
+    const auto index = [](const std::vector<double>& values, double value) {
+      return static_cast<std::size_t>(std::ranges::lower_bound(values, value) - values.begin());
+    };
+    std::map<std::pair<std::size_t, std::size_t>, StatusMap::Cell> cells;
+    for (const Record* r : own) {
+      const std::size_t column = index(map.columns, value_of(*r, x)),
+                        row = index(map.rows, value_of(*r, y));
+      const auto [at, fresh] = cells.try_emplace({row, column});
+      if (!fresh && at->second.record->status.kind >= r->status.kind) continue;
+      at->second = {column, row, r};
+    }
+    for (const auto& [at, cell] : cells) map.cells.push_back(cell);
+    map.scene = scene;
+    maps.push_back(std::move(map));
+  }
+  if (maps.empty()) throw InputError("no case has both '" + x + "' and '" + y + "'");
+  return maps;
+}
+
+std::string tick_of(const Quantity& q, double si) {
+  const double shown = si * q.scale;
+  const bool whole = std::abs(shown - std::round(shown)) < 1e-6 * shown && shown < 99999.5;
+  return whole ? exact(std::round(shown)) : significant(shown, 2);
+}
+
+std::vector<Chart> scene_charts(const ReportInput& input, const std::string& scene) {
+  std::vector<Chart> charts;
+  const Scope scope{input};
+  const auto add = [&](const std::string& id, const std::string& kind, const std::string& x,
+                       const std::string& y, const std::string& along, const std::string& held,
+                       double preferred, const std::string& title, const std::string& caption) {
+    const std::string over = along == "setting" ? "iterations" : along;
+    Slice slice = most_common(swept(input, scene, over, y), held, preferred);
+    try {
+      Chart chart = make_chart(kind, slice.records, x, y, along);
+      for (Curve& curve : chart.curves)
+        for (Point& p : curve.points) p.record = scope.find(*p.record);
+      chart.id = scene + "-" + id, chart.scene = scene, chart.title = title,
+      chart.caption = caption;
+      if (std::isfinite(slice.value)) chart.held = held_text(held, slice.value);
+      charts.push_back(std::move(chart));
+      return true;
+    } catch (const InputError&) {
+      return false;  // nothing to draw
+    }
+  };
+  const auto over = [](const std::string& y, const std::string& x) {
+    return quantity(y).title + " over " + (x == "dt" ? "the time step" : quantity(x).title);
+  };
+  const double step = 1.0 / 64;
+  if (add("convergence", "convergence", "iterations", "stretch.rms", "iterations", "dt", step,
+          over("stretch.rms", "iterations"), "Last second."))
+    for (const StudyResult& study : input.studies)
+      if (const auto at = study.slopes.find(scene); at != study.slopes.end())
+        charts.back().slope = at->second;
+  add("reference", "convergence", "iterations", "reference.rms", "iterations", "dt", step,
+      over("reference.rms", "iterations"),
+      "The reference is the static equilibrium of the same cloth, found without any of these "
+      "solvers.");
+  const bool timed =
+      std::ranges::any_of(swept(input, scene, "iterations", "stretch.rms"),
+                          [](const Record& r) { return std::isfinite(value_of(r, kCpuValue)); });
+  const std::string work = timed ? kCpuValue : "projections";
+  if (add("work", "work-precision", work, "stretch.rms", "setting", "dt", step,
+          over("stretch.rms", work), "Down and left is better."))
+    charts.back().front = true;
+  for (const auto& [y, id] : {std::pair<std::string, std::string>{"penetration.peak", "vertices"},
+                              {"face.peak", "faces"},
+                              {"tunnelling.events", "passages"},
+                              {"slip.distance", "slip"}}) {
+    add(id, "contact", "iterations", y, "iterations", "dt", step, over(y, "iterations"),
+        y.ends_with(".peak") ? "Peak over the whole run." : "");
+    add(id + "-dt", "contact", "dt", y, "dt", "iterations", 16, over(y, "dt"),
+        y.ends_with(".peak") ? "Peak over the whole run." : "");
+  }
+  return charts;
+}
+
+std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& scene) {
+  std::vector<StatusMap> maps;
+  const auto add = [&](const std::string& study, std::span<const Record> records,
+                       const std::string& x, const std::string& y) {
+    try {
+      for (StatusMap& map : make_maps(records, scene, x, y)) {
+        if (map.columns.size() < 2 || map.rows.size() < 2) continue;
+        map.study = study;
+        maps.push_back(std::move(map));
+      }
+    } catch (const InputError&) {
+      return;  // this study has no such settings
+    }
+  };
+  for (const StudyResult& study : input.studies) {
+    std::set<double> sweeps, steps;
+    for (const Record& r : study.records)
+      if (r.scene == scene) sweeps.insert(value_of(r, "iterations")), steps.insert(r.dt);
+    if (steps.size() >= 3 && sweeps.size() >= 3) add(study.name, study.records, "dt", "iterations");
+  }
+  for (const MapResult& map : input.maps) add(map.study, map.records, map.x, map.y);
+  return maps;
+}
+
+Chart cost_chart(const SceneBench& scene, std::span<const Record> records) {
+  Chart chart = make_chart("cost", records, "cpu.per_second", "stretch.rms", "setting");
+  chart.id = scene.scene + "-cost", chart.scene = scene.scene;
+  chart.title = chart.y.title + " over " + chart.x.title;
+  chart.caption =
+      "Down and left is better. Two runs of identical code: " + fixed(scene.control.low, 2) +
+      " to " + fixed(scene.control.high, 2) + ".";
+  chart.front = true;
+  for (const BenchedCase& c : scene.cases)
+    if (c.sound()) chart.cost[c.record.key] = c.cost();
+  return chart;
+}
+
+}  // namespace taut::report

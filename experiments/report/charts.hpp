@@ -1,0 +1,71 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiments/report/curves.hpp"
+#include "experiments/report/input.hpp"
+#include "experiments/report/quantity.hpp"
+#include "experiments/timing/statistics.hpp"
+
+namespace taut::report {
+
+/// Curves over two quantities, in SI units: what a page or a plot draws.
+struct Chart {
+  std::string id, scene, kind, title;
+  std::string caption = {}, held = {};  ///< "time step 15.6 ms"
+  Quantity x, y;
+  std::string along = {};  ///< the setting that orders a curve
+  std::vector<Curve> curves = {};
+  std::vector<TimeSeries> series = {};  ///< instead of curves: values over time
+  std::vector<double> ticks = {};       ///< of x: the values of a swept setting, SI, ascending
+  bool join = true;                     ///< the points of a curve by a line
+  std::optional<double> slope = {};     ///< the theory's exponent
+  std::optional<double> floor = {};     ///< the reference's own error
+  bool front = false;                   ///< with the Pareto front
+  std::map<std::string, Interval> cost = {};  ///< by case key: the interval of x
+};
+
+/// The curves of y over x for these records. "setting" as `along` frees every accuracy knob.
+/// Throws InputError if no record has both, or only failures have x.
+Chart make_chart(std::string kind, std::span<const Record>, const std::string& x,
+                 const std::string& y, const std::string& along);
+
+/// Whether the point has no value to be drawn: it failed.
+bool failed(const Point&);
+
+/// c of a theory line y = c x^slope below the lowest curve; NaN: there is none.
+double theory_factor(const Chart&);
+
+/// The measured points that no other beats in both x and y, by ascending x.
+std::vector<Point> pareto_front(const Chart&);
+
+/// How cases of one solver end over two settings.
+struct StatusMap {
+  std::string scene, solver, label, study;
+  Quantity x, y;
+  std::vector<double> columns, rows;  ///< SI, ascending
+  struct Cell {
+    std::size_t column = 0, row = 0;
+    const Record* record = nullptr;
+  };
+  std::vector<Cell> cells;
+};
+/// One for each solver and choice on this scene; of two cases in one cell the worse. Throws
+/// InputError if no case has both settings. Points into the records.
+std::vector<StatusMap> make_maps(std::span<const Record>, const std::string& scene,
+                                 const std::string& x, const std::string& y);
+
+/// "1", "4.2", "33": a setting's value in its shown unit, for the edge of a map.
+std::string tick_of(const Quantity&, double si);
+
+/// Everything drawn of a scene that a study ran, in the order in which to show it.
+std::vector<Chart> scene_charts(const ReportInput&, const std::string& scene);
+std::vector<StatusMap> scene_maps(const ReportInput&, const std::string& scene);
+/// Error over cost of a bench. `records` must outlive it.
+Chart cost_chart(const SceneBench&, std::span<const Record> records);
+
+}  // namespace taut::report

@@ -1,0 +1,161 @@
+#include "experiments/report/claim.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "experiments/report/format.hpp"
+
+namespace taut::report {
+
+namespace {
+
+constexpr double kTolerance = kAlike - 1;
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+/// What not every solver has, with the value that leaves it off.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kExtras{
+    {{"tethers", "off"}, {"levels", "1"}, {"omega", "1"}, {"threads", "1"}}};
+
+Evidence::Seen seen_of(const Record& r, const std::string& label) {
+  return {.scene = r.scene,
+          .solver = r.solver,
+          .label = label,
+          .setting = r.spec.solver,
+          .key = r.key,
+          .text = "",
+          .value = kNothing,
+          .interval = {},
+          .status = r.status.kind};
+}
+
+}  // namespace
+
+std::string_view to_string(Sure sure) {
+  constexpr std::array<std::string_view, 4> kWords{"clear", "likely", "too noisy", "single run"};
+  return kWords[static_cast<std::size_t>(sure)];
+}
+
+std::string_view meaning(Sure sure) {
+  constexpr std::array<std::string_view, 4> kMeanings{
+      "the whole 95 % interval is further from 1 than 5 % and than identical code differed from "
+      "itself, which was less than 5 %",
+      "the 95 % interval excludes 1, and its middle is further from 1 than 5 % and than identical "
+      "code differed from itself",
+      "identical code differed from itself by more than the difference",
+      "computed, not timed: the same build gives the same bits on every run, so there is no "
+      "spread"};
+  return kMeanings[static_cast<std::size_t>(sure)];
+}
+
+std::string_view to_string(ClaimKind kind) {
+  constexpr std::array<std::string_view, 3> kWords{"headline", "tile", "note"};
+  return kWords[static_cast<std::size_t>(kind)];
+}
+
+std::optional<double> Evidence::look(const std::string& label, const Record& r) {
+  Seen seen = seen_of(r, label);
+  const double value = value_of(r, quantity_.name);
+  if (completed(r) && std::isfinite(value)) seen.value = value;
+  const bool has = std::isfinite(seen.value);
+  seen.text = has ? quantity_.text(value)
+                  : std::string(completed(r) ? "no value" : to_string(r.status.kind));
+  seen_.push_back(std::move(seen));
+  return has ? std::optional(value) : std::nullopt;
+}
+
+void Evidence::look(const BenchedCase& c, const std::string& label) {
+  Seen seen = seen_of(c.record, label);
+  seen.n = c.timing.samples.size();
+  if (c.sound()) {
+    seen.interval = c.cost();
+    if (quantity_.name == "cpu.per_step")
+      for (double* end : {&seen.interval->low, &seen.interval->mid, &seen.interval->high})
+        *end *= c.record.dt;
+    seen.value = seen.interval->mid;
+    seen.text = quantity_.text(seen.value);
+  } else {
+    seen.text = c.timing.failure.empty() ? to_string(c.record.status.kind) : c.timing.failure;
+  }
+  seen_.push_back(std::move(seen));
+}
+
+void Evidence::leave_out(const std::string& sentence) {
+  left_out_ += (left_out_.empty() ? "" : " ") + sentence;
+}
+
+Claim::Claim(std::string name, ClaimKind what, std::string of, std::string text, Sure how,
+             std::vector<Evidence> evidence)
+    : id(std::move(name)),
+      kind(what),
+      about(std::move(of)),
+      sentence(std::move(text)),
+      sure(how),
+      basis(std::move(evidence)) {
+  if (basis.empty() || std::ranges::any_of(basis, [](const auto& e) { return e.seen().empty(); }))
+    throw std::logic_error("a claim without its basis: " + sentence);
+}
+
+Claim& Claim::emphasise(const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    if (!part.empty() && sentence.find(part) != std::string::npos) strong_.push_back(part);
+  return *this;
+}
+
+Claim Claim::tile(std::string heading, std::string what, std::vector<Bar> bars) const {
+  Claim tile("tile-" + id, ClaimKind::tile, about, std::move(what), sure, basis);
+  tile.heading_ = std::move(heading);
+  tile.bars_ = std::move(bars);
+  return tile;
+}
+
+double strayed(const Interval& control) {
+  return std::expm1(std::max(std::abs(std::log(control.low)), std::abs(std::log(control.high))));
+}
+
+std::optional<Sure> judge_ratio(const Interval& ratio, const Interval& control) {
+  const double noise = strayed(control), change = std::abs(std::log(ratio.mid));
+  if (change <= std::log1p(kTolerance)) return {};
+  if (change <= std::log1p(noise)) return Sure::too_noisy;
+  if (ratio.contains(1)) return {};
+  const double nearest = std::log(ratio.mid < 1 ? ratio.high : ratio.low);
+  const bool clear = std::abs(nearest) > std::log1p(std::max(kTolerance, noise)) &&
+                     (nearest < 0) == (ratio.mid < 1) && noise <= kTolerance;
+  return clear ? Sure::clear : Sure::likely;
+}
+
+Interval geometric_mean(const std::vector<Interval>& ratios) {
+  double mid = 0, below = 0, above = 0;
+  for (const Interval& r : ratios) {
+    mid += std::log(r.mid);
+    below += std::pow(std::log(r.mid / r.low), 2);
+    above += std::pow(std::log(r.high / r.mid), 2);
+  }
+  const auto n = static_cast<double>(ratios.size());
+  return {std::exp((mid - std::sqrt(below)) / n), std::exp(mid / n),
+          std::exp((mid + std::sqrt(above)) / n)};
+}
+
+double geometric_mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += std::log(v);
+  return std::exp(sum / static_cast<double>(values.size()));
+}
+
+std::string share_text(double ratio) {
+  return ratio <= 0.55 ? "1/" + significant(1 / ratio, 2) : fixed(100 * ratio, 0) + "\u00A0%";
+}
+
+std::vector<std::string> extras(const Record& r, const std::map<std::string, std::string>& others) {
+  std::vector<std::string> used;
+  for (const auto& [knob, off] : kExtras) {
+    const auto at = r.params.find(std::string(knob));
+    if (at != r.params.end() && at->second != off && !others.contains(at->first))
+      used.emplace_back(knob);
+  }
+  return used;
+}
+
+}  // namespace taut::report

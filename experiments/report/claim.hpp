@@ -1,0 +1,130 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/report/quantity.hpp"
+#include "experiments/report/rivals.hpp"
+#include "experiments/timing/bench.hpp"
+
+namespace taut::report {
+
+/// How sure a comparison is.
+enum class Sure {
+  clear,      ///< the whole interval is beyond the tolerance and beyond what identical code showed
+  likely,     ///< the interval excludes 1 and its middle is beyond both
+  too_noisy,  ///< identical code differed from itself by more
+  single_run  ///< computed, not timed: the same bits on every run, no spread known
+};
+std::string_view to_string(Sure);
+/// What the word means, one sentence.
+std::string_view meaning(Sure);
+
+/// Values of one quantity that a claim rests on. Looking at a case is the only way to get its value
+/// here, and every case that was looked at is counted by its status, whether it has a value or not.
+class Evidence {
+ public:
+  /// `metric`: a name that quantity() knows; it says of which part of the run the values speak.
+  /// `rule`: what was done with them.
+  Evidence(const std::string& metric, std::string rule)
+      : quantity_(report::quantity(metric)), rule_(std::move(rule)) {}
+
+  /// The case's value; nothing if the case did not complete or the value has no meaning there.
+  std::optional<double> look(const std::string& label, const Record&);
+  /// The same of a measured cost; `show` is the interval with its unit.
+  void look(const BenchedCase&, const std::string& label);
+  /// Why something did not go in: a sentence.
+  void leave_out(const std::string& sentence);
+
+  /// One case as it was seen.
+  struct Seen {
+    std::string scene, solver, label, setting, key, text;
+    double value = 0;  ///< NaN: none
+    std::optional<Interval> interval;
+    std::size_t n = 1;
+    Status::Kind status = Status::Kind::ok;
+  };
+  const std::vector<Seen>& seen() const { return seen_; }
+  const Quantity& quantity() const { return quantity_; }
+  const std::string& rule() const { return rule_; }
+  const std::string& left_out() const { return left_out_; }
+
+ private:
+  Quantity quantity_;
+  std::string rule_, left_out_;
+  std::vector<Seen> seen_;
+};
+
+enum class ClaimKind { headline, tile, note };
+std::string_view to_string(ClaimKind);
+
+/// A bar of a tile.
+struct Bar {
+  std::string solver, label;
+  std::optional<double> value;  ///< SI; nothing: none
+  std::optional<Interval> interval;
+  std::string text;
+};
+
+/// A comparison in words. There is no other way to put one on the page, and none without the values
+/// that it rests on.
+class Claim {
+ public:
+  /// `about`: "all", a scene, "cost", "only", "failures". Throws std::logic_error without evidence
+  /// or with evidence that looked at no case.
+  Claim(std::string id, ClaimKind, std::string about, std::string sentence, Sure,
+        std::vector<Evidence>);
+
+  const std::string id;
+  const ClaimKind kind;
+  const std::string about, sentence;
+  const Sure sure;
+  const std::vector<Evidence> basis;
+
+  /// Parts of the sentence to emphasise; what is not in it is left out.
+  Claim& emphasise(const std::vector<std::string>&);
+  const std::vector<std::string>& strong() const { return strong_; }
+
+  /// The claim as a tile on the same basis: a heading, a bar for each solver (of the first
+  /// evidence's quantity) and what the bars are. Each bar's text is in the claim's sentence.
+  Claim tile(std::string heading, std::string what, std::vector<Bar>) const;
+  const std::string& heading() const { return heading_; }
+  const std::vector<Bar>& bars() const { return bars_; }
+
+ private:
+  std::vector<std::string> strong_;
+  std::string heading_;
+  std::vector<Bar> bars_;
+};
+
+/// A ratio of costs below which nobody says "less", and what counts as no stretch at all: without a
+/// floor one scene in free fall (1e-17 against 1e-13) would decide every mean.
+inline constexpr double kAlike = 1.05;
+inline constexpr double kNoStretch = 1e-3;
+
+/// The error whose price heads the page.
+inline constexpr const char* kPricedMetric = "stretch.rms";
+inline constexpr double kPricedError = 0.01;
+
+/// Stretch, penetration, largest stable time step and failures, over all scenes and scene by scene.
+std::vector<Claim> physics_claims(const Rivals&);
+/// What the priced error costs, with the same work, each at its best, and with what only one has.
+/// Empty without a bench.
+std::vector<Claim> cost_claims(const ReportInput&, const Rivals&);
+
+/// How sure a ratio is, given the ratio of identical code to itself; nothing: no difference that
+/// can be told.
+std::optional<Sure> judge_ratio(const Interval& ratio, const Interval& control);
+/// How far identical code differed from itself, as a share: 0.03 for an interval 0.98 to 1.03.
+double strayed(const Interval& control);
+/// Geometric mean of independent ratios: their errors add as squares of logarithms.
+Interval geometric_mean(const std::vector<Interval>&);
+double geometric_mean(const std::vector<double>&);
+/// "1/11" or "71 %" of what is compared with; below 1.
+std::string share_text(double ratio);
+/// Knobs that this case uses and that a solver with these parameters does not have ("tethers").
+std::vector<std::string> extras(const Record&, const std::map<std::string, std::string>& others);
+
+}  // namespace taut::report

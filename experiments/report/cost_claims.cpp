@@ -1,0 +1,310 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "experiments/report/claim.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/palette.hpp"
+
+namespace taut::report {
+
+namespace {
+
+/// A ratio of costs on one scene, of two cases.
+struct SceneRatio {
+  std::string scene;
+  Interval ratio;  ///< cost of ours over that of theirs
+  Interval control;
+  const BenchedCase *ours = nullptr, *theirs = nullptr;
+};
+
+/// Two solvers by whose costs a claim is made.
+struct Pair {
+  std::string first, other;              ///< entries' names
+  std::string first_label, other_label;  ///< "Jakobsen"
+};
+
+using Admits = std::function<bool(const BenchedCase&)>;
+
+std::map<std::string, std::string> params_of(const SceneBench& scene, const std::string& solver) {
+  for (const BenchedCase& c : scene.cases)
+    if (c.record.solver == solver) return c.record.params;
+  return {};
+}
+
+/// Only what both have: no knob that the other one lacks.
+Admits shared_knobs(const SceneBench& scene, const Pair& pair) {
+  const auto ours = params_of(scene, pair.first), theirs = params_of(scene, pair.other);
+  return [ours, theirs, pair](const BenchedCase& c) {
+    return extras(c.record, c.record.solver == pair.first ? theirs : ours).empty();
+  };
+}
+
+/// The cheapest admitted case of `solver` that reaches the error; nothing: none does.
+std::optional<std::size_t> cheapest(const SceneBench& scene, const std::string& solver,
+                                    const Admits& admits) {
+  std::vector<Offer> offers = scene.offers(kPricedMetric);
+  for (std::size_t i = 0; i < offers.size(); ++i)
+    if (!admits(scene.cases[i])) offers[i].failed = true;
+  return cheapest_within(offers, solver, kPricedError);
+}
+
+bool timed(const SceneBench& scene, const std::string& solver) {
+  return std::ranges::any_of(scene.cases,
+                             [&](const BenchedCase& c) { return c.record.solver == solver; });
+}
+
+void look_at(Evidence& evidence, const SceneBench& scene, const Pair& pair, const Admits& admits) {
+  for (const BenchedCase& c : scene.cases)
+    if (admits(c) && (c.record.solver == pair.first || c.record.solver == pair.other))
+      evidence.look(c, c.record.solver == pair.first ? pair.first_label : pair.other_label);
+}
+
+std::string interval_text(const Interval& r) {
+  return "95\u00A0% interval " + share_text(r.low) + " to " + share_text(r.high);
+}
+
+Interval inverse(const Interval& r) { return {1 / r.high, 1 / r.mid, 1 / r.low}; }
+
+std::string clause(const std::string& opening, const std::vector<std::string>& scenes) {
+  return scenes.empty() ? "" : " " + opening + joined(scenes) + ".";
+}
+
+/// "Two runs of identical code differed by up to 3 %."
+std::string noise_text(double noise) {
+  return " Two runs of identical code differed by up to " + significant(100 * noise, 2) +
+         "\u00A0%.";
+}
+
+/// The mean over scenes, who is cheaper where, and how sure all that is.
+struct Verdicts {
+  std::string text;
+  Sure sure = Sure::clear;
+  std::string strong;  ///< the factor
+};
+
+Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
+  std::vector<std::string> ours, theirs, even, noisy, names;
+  std::vector<Interval> all;
+  Verdicts verdicts;
+  double noise = 0;
+  const auto sure = [&](Sure s) { verdicts.sure = std::max(verdicts.sure, s); };
+  for (const SceneRatio& r : ratios) {
+    all.push_back(r.ratio), names.push_back(r.scene);
+    noise = std::max(noise, strayed(r.control));
+    const auto judged = judge_ratio(r.ratio, r.control);
+    if (judged) sure(*judged);
+    (!judged                      ? even
+     : *judged == Sure::too_noisy ? noisy
+     : r.ratio.mid < 1            ? ours
+                                  : theirs)
+        .push_back(r.scene);
+  }
+  const Interval mean = geometric_mean(all), control{1 / (1 + noise), 1, 1 + noise};
+  const auto judged = judge_ratio(mean, control);
+  const std::string over = "; geometric mean over " + joined(names) + ")";
+  if (judged && *judged != Sure::too_noisy) {
+    sure(*judged);
+    const bool less = mean.mid < 1;
+    const Interval share = less ? mean : inverse(mean);
+    verdicts.strong = share_text(share.mid) + " of the CPU time";
+    verdicts.text = (less ? pair.first_label : pair.other_label) + " uses " + verdicts.strong +
+                    " of " + (less ? pair.other_label : pair.first_label) + " (" +
+                    interval_text(share) + over + ".";
+  } else {
+    if (judged) sure(*judged);
+    verdicts.text = std::string(judged ? "too noisy to judge" : "no difference that can be told") +
+                    " (" + pair.first_label + " over " + pair.other_label + " " +
+                    fixed(mean.mid, 2) + ", 95\u00A0% interval " + fixed(mean.low, 2) + " to " +
+                    fixed(mean.high, 2) + over + ".";
+  }
+  verdicts.text += clause("Less with " + pair.first_label + " on ", ours) +
+                   clause("Less with " + pair.other_label + " on ", theirs) +
+                   clause("No difference that can be told on ", even) +
+                   clause("Too noisy to judge on ", noisy) + noise_text(noise);
+  return verdicts;
+}
+
+/// The priced error, each at the cheapest setting tried with what both have.
+void claim_price(const BenchSession& bench, const Pair& pair, bool with_tile,
+                 std::vector<Claim>& claims) {
+  const Quantity q = quantity(kPricedMetric);
+  const std::string level = q.text(kPricedError, 1) + " " + q.title;
+  Evidence evidence("cpu.per_second", "cheapest case that reaches " + level +
+                                          "; geometric mean of the interleaved ratios over scenes");
+  std::vector<SceneRatio> ratios;
+  std::vector<std::string> only_first, only_other, neither, absent;
+  for (const SceneBench& scene : bench.scenes) {
+    if (!timed(scene, pair.first)) continue;
+    if (!timed(scene, pair.other)) {
+      absent.push_back(scene.scene);
+      continue;
+    }
+    const Admits shared = shared_knobs(scene, pair);
+    look_at(evidence, scene, pair, shared);
+    const auto ours = cheapest(scene, pair.first, shared);
+    const auto theirs = cheapest(scene, pair.other, shared);
+    if (ours && theirs)
+      ratios.push_back({scene.scene, *scene.ratio(*ours, *theirs), scene.control,
+                        &scene.cases[*ours], &scene.cases[*theirs]});
+    else
+      (ours ? only_first : theirs ? only_other : neither).push_back(scene.scene);
+  }
+  if (evidence.seen().empty()) return;
+  const std::string opening = "For " + level +
+                              " in the last second, each at the cheapest setting tried with what "
+                              "both have: ";
+  const std::string rest = clause("Reached by no setting tried of " + pair.other_label +
+                                      ", but by " + pair.first_label + ", on ",
+                                  only_first) +
+                           clause("Reached by no setting tried of " + pair.first_label +
+                                      ", but by " + pair.other_label + ", on ",
+                                  only_other) +
+                           clause("Reached by no setting tried on ", neither) +
+                           clause("Not timed with " + pair.other_label + " on ", absent);
+  const std::string id = "cost-" + pair.other;
+  if (ratios.empty()) {
+    claims.emplace_back(id, ClaimKind::headline, "cost",
+                        opening + "no scene where both reach it." + rest, Sure::clear,
+                        std::vector{evidence});
+    return;
+  }
+  const Verdicts verdicts = judge_all(ratios, pair);
+  std::vector<Interval> costs[2];
+  std::vector<std::string> names;
+  for (const SceneRatio& r : ratios)
+    costs[0].push_back(r.ours->cost()), costs[1].push_back(r.theirs->cost()),
+        names.push_back(r.scene);
+  std::vector<Bar> bars;
+  std::vector<std::string> parts;
+  const Quantity cpu = quantity("cpu.per_second");
+  for (const std::size_t k : {0U, 1U}) {
+    const Interval mean = geometric_mean(costs[k]);
+    const std::string& label = k == 0 ? pair.first_label : pair.other_label;
+    bars.push_back({k == 0 ? pair.first : pair.other, label, mean.mid, mean, cpu.text(mean.mid)});
+    parts.push_back(label + " " + cpu.text(mean.mid));
+  }
+  Claim claim(
+      id, ClaimKind::headline, "cost",
+      opening + verdicts.text + rest + " CPU time per simulated second: " + joined(parts) + ".",
+      verdicts.sure, {evidence});
+  claims.push_back(claim.emphasise({verdicts.strong}));
+  if (with_tile)
+    claims.push_back(claim.tile("CPU time for " + level,
+                                "Per simulated second, each at the cheapest setting tried with "
+                                "what both have, geometric mean over " +
+                                    joined(names) + ".",
+                                bars));
+}
+
+/// A step of the same substeps and sweeps.
+void claim_same_work(const BenchSession& bench, const Pair& pair, std::vector<Claim>& claims) {
+  Evidence evidence("cpu.per_step",
+                    "cheapest case of each solver at the same substeps and sweeps; geometric mean "
+                    "over these, then over scenes");
+  std::vector<SceneRatio> means;
+  std::set<Work> works;
+  for (const SceneBench& scene : bench.scenes) {
+    const Admits shared = shared_knobs(scene, pair);
+    std::map<Work, std::pair<std::optional<std::size_t>, std::optional<std::size_t>>> cheapest;
+    for (std::size_t i = 0; i < scene.cases.size(); ++i) {
+      const BenchedCase& c = scene.cases[i];
+      const Work work = work_of(c.record);
+      if (!c.sound() || !shared(c) || work.sweeps < 0 || work.substeps < 0) continue;
+      if (c.record.solver != pair.first && c.record.solver != pair.other) continue;
+      auto& at = c.record.solver == pair.first ? cheapest[work].first : cheapest[work].second;
+      if (!at || c.cost().mid < scene.cases[*at].cost().mid) at = i;
+    }
+    std::vector<Interval> ratios;
+    for (const auto& [work, both] : cheapest) {
+      if (!both.first || !both.second) continue;
+      const BenchedCase &ours = scene.cases[*both.first], &theirs = scene.cases[*both.second];
+      if (ours.record.dt != theirs.record.dt) continue;
+      evidence.look(ours, pair.first_label), evidence.look(theirs, pair.other_label);
+      ratios.push_back(*scene.ratio(*both.first, *both.second));
+      works.insert(work);
+    }
+    if (!ratios.empty())
+      means.push_back({scene.scene, geometric_mean(ratios), scene.control, nullptr, nullptr});
+  }
+  if (means.empty()) return;
+  std::vector<std::string> names;
+  for (const Work& work : works) names.push_back(work.text());
+  const Verdicts verdicts = judge_all(means, pair);
+  Claim claim("work-" + pair.other, ClaimKind::note, "cost",
+              "For a step of the same substeps × sweeps (" + joined(names) + "): " + verdicts.text,
+              verdicts.sure, {evidence});
+  claims.push_back(claim.emphasise({verdicts.strong}));
+}
+
+/// What a solver gains by a knob that the other one lacks, said apart.
+void claim_extras(const BenchSession& bench, const Pair& pair, std::vector<Claim>& claims) {
+  const Quantity q = quantity(kPricedMetric), cpu = quantity("cpu.per_second");
+  Evidence evidence("cpu.per_second", "cheapest case that reaches the level, with and without");
+  std::vector<std::string> clauses;
+  std::set<std::string> knobs;
+  Sure sure = Sure::clear;
+  double noise = 0;
+  for (const SceneBench& scene : bench.scenes) {
+    if (!timed(scene, pair.other)) continue;
+    const auto theirs = params_of(scene, pair.other);
+    const Admits shared = shared_knobs(scene, pair);
+    const auto used = [&](const BenchedCase& c) { return extras(c.record, theirs); };
+    const auto with = cheapest(scene, pair.first, [&](const auto& c) { return !used(c).empty(); });
+    const auto without = cheapest(scene, pair.first, shared);
+    if (!with) continue;
+    for (const std::string& knob : used(scene.cases[*with])) knobs.insert(knob);
+    evidence.look(scene.cases[*with], pair.first_label + " with");
+    std::string text = "on " + scene.scene + " " + cpu.text(scene.cases[*with].cost().mid);
+    if (without) {
+      evidence.look(scene.cases[*without], pair.first_label + " without");
+      const Interval ratio = *scene.ratio(*with, *without);
+      const auto judged = judge_ratio(ratio, scene.control);
+      noise = std::max(noise, strayed(scene.control));
+      if (judged) sure = std::max(sure, *judged);
+      const bool told = judged && *judged != Sure::too_noisy;
+      const std::string than = told && ratio.mid > 1 ? ", more than" : ", the same as";
+      text += told && ratio.mid < 1 ? ", " + share_text(ratio.mid) + " of" : than;
+      text += std::string(" without") + (judged && !told ? " as far as the noise lets tell" : "");
+    } else {
+      text += ", without it not reached by the settings tried";
+    }
+    clauses.push_back(text);
+  }
+  if (clauses.empty()) return;
+  std::string text;
+  for (const std::string& one : clauses) text += (text.empty() ? "" : "; ") + one;
+  claims.emplace_back(
+      "only-" + pair.first + "-" + pair.other, ClaimKind::note, "only",
+      "With " + joined({knobs.begin(), knobs.end()}) + ", which " + pair.other_label +
+          " does not have, " + pair.first_label + " reaches " + q.text(kPricedError, 1) + " " +
+          q.title + " for this CPU time per simulated second: " + text + "." + noise_text(noise),
+      sure, std::vector{evidence});
+}
+
+}  // namespace
+
+std::vector<Claim> cost_claims(const ReportInput& input, const Rivals& rivals) {
+  std::vector<Claim> claims;
+  if (!input.bench) return claims;
+  std::vector<std::string> names;
+  for (const SceneBench& scene : input.bench->scenes)
+    for (const std::string& solver : solvers_of(scene))
+      if (std::ranges::find(names, solver) == names.end()) names.push_back(solver);
+  const std::string first = rivals.all.empty() || !std::ranges::count(names, rivals.all[0].solver)
+                                ? names.front()
+                                : rivals.all[0].solver;
+  const auto label = [&](const std::string& solver) { return solver_title(solver); };
+  for (const std::string& other : names) {
+    if (other == first) continue;
+    const Pair pair{first, other, label(first), label(other)};
+    claim_price(*input.bench, pair, names.size() == 2, claims);
+    claim_same_work(*input.bench, pair, claims);
+    claim_extras(*input.bench, pair, claims);
+    claim_extras(*input.bench, {other, first, label(other), label(first)}, claims);
+  }
+  return claims;
+}
+
+}  // namespace taut::report

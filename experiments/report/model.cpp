@@ -1,0 +1,562 @@
+#include "experiments/report/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/baseline/baseline.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/model_parts.hpp"
+#include "experiments/report/palette.hpp"
+
+namespace taut::report {
+
+References::References(const ReportInput& input) {
+  const auto add = [&](const Record& r, const std::string& study) {
+    auto& studies = studies_[r.key];
+    if (studies.empty()) cases_.push_back(&r);
+    studies.insert(study);
+  };
+  // Of a case that several know, the first is kept: studies have its cost, where it was timed.
+  for (const StudyResult& study : input.studies)
+    for (const Record& r : study.records) add(r, study.name);
+  for (const MapResult& map : input.maps)
+    for (const Record& r : map.records) add(r, map.study);
+  if (input.bench)
+    for (const SceneBench& scene : input.bench->scenes)
+      for (const BenchedCase& c : scene.cases) add(c.record, input.bench->study);
+  std::set<std::string> brief;
+  for (bool again = true; again; length_ += again ? 4 : 0) {
+    brief.clear();
+    again = false;
+    for (const auto& [key, studies] : studies_)
+      again = again || (!brief.insert(key.substr(0, length_)).second && length_ < key.size());
+  }
+}
+
+std::string References::key(const std::string& key) const {
+  return studies_.contains(key) ? key.substr(0, length_) : "";
+}
+
+const Quantity& References::use(const std::string& name) {
+  const auto at = quantities_.find(name);
+  return at != quantities_.end() ? at->second
+                                 : quantities_.emplace(name, quantity(name)).first->second;
+}
+
+Json json_of(const Claim& claim, References& refs) {
+  Json one{{"id", claim.id},
+           {"kind", to_string(claim.kind)},
+           {"about", claim.about},
+           {"sentence", claim.sentence},
+           {"sure", to_string(claim.sure)}};
+  add_if(one, "strong", claim.strong());
+  add_if(one, "heading", claim.heading());
+  for (const Bar& bar : claim.bars()) {
+    Json at{{"solver", bar.solver},
+            {"label", bar.label},
+            {"value", bar.value ? json_number(*bar.value) : Json()},
+            {"text", bar.text}};
+    if (bar.interval) at["low"] = bar.interval->low, at["high"] = bar.interval->high;
+    one["bars"].push_back(std::move(at));
+  }
+  if (!claim.bars().empty()) one["metric"] = claim.basis.front().quantity().name;
+  for (const Evidence& evidence : claim.basis) {
+    const Quantity& q = refs.use(evidence.quantity().name);
+    Json basis{{"metric", q.name},
+               {"window", q.window.empty() ? "whole run" : q.window},
+               {"rule", evidence.rule()}};
+    std::set<std::string> scenes, cases;
+    std::map<std::string, std::set<std::string>> settings;
+    std::map<std::string, std::map<std::string, int>> statuses;
+    for (const Evidence::Seen& seen : evidence.seen()) {
+      scenes.insert(seen.scene), cases.insert(refs.key(seen.key));
+      settings[seen.label].insert(seen.setting);
+      ++statuses[seen.label][std::string(to_string(seen.status))];
+      Json value{{"scene", seen.scene}, {"solver", seen.solver},
+                 {"label", seen.label}, {"value", json_number(seen.value)},
+                 {"n", seen.n},         {"status", to_string(seen.status)},
+                 {"text", seen.text}};
+      add_if(value, "case", refs.key(seen.key));
+      if (seen.interval) value["low"] = seen.interval->low, value["high"] = seen.interval->high;
+      basis["values"].push_back(std::move(value));
+    }
+    basis["scenes"] = scenes, basis["statuses"] = statuses, basis["cases"] = cases;
+    for (const auto& [label, texts] : settings)
+      basis["settings"].push_back({{"solver", label},
+                                   {"text", texts.size() == 1 ? *texts.begin()
+                                                              : std::to_string(texts.size()) +
+                                                                    " settings: see its cases"}});
+    add_if(basis, "left_out", evidence.left_out());
+    one["basis"].push_back(std::move(basis));
+  }
+  return one;
+}
+
+namespace {
+
+Json json_of(const Colour& colour) { return {{"light", colour.light}, {"dark", colour.dark}}; }
+
+/// What a case's parameters are besides its work, where they are not the defaults.
+std::string brief_of(const Record& r) {
+  std::string text = work_of(r).text();
+  try {
+    const SolverChoice choice = parse_solver(r.spec.solver);
+    for (const ParamSpec& spec : choice.params.specs()) {
+      const std::string_view value = choice.params.value(spec.name);
+      if (spec.name != "iterations" && spec.name != "substeps" && value != spec.default_value)
+        text += ", " + std::string(spec.name) + "=" + std::string(value);
+    }
+  } catch (const InputError&) {
+    // a solver that this program does not have: its text says all
+  }
+  return text;
+}
+
+Json json_of_case(const Record& r, const BenchedCase* timed, References& refs) {
+  CaseSpec spec = r.spec;
+  if (spec.scene.find('/') != std::string::npos)
+    spec.scene = std::filesystem::absolute(spec.scene).lexically_normal().string();
+  Json one{{"key", refs.key(r)},
+           {"id", r.id},
+           {"scene", r.scene},
+           {"solver", r.solver},
+           {"settings", r.spec.solver},
+           {"brief", brief_of(r)},
+           {"studies", refs.studies_of(r)},
+           {"dt", r.dt},
+           {"steps", r.steps},
+           {"vertices", r.vertices},
+           {"links", r.links},
+           {"projections", r.projections},
+           {"status", to_string(r.status.kind)}};
+  add_if(one, "reason", r.status.reason);
+  if (r.status.step >= 0) one["step"] = r.status.step;
+  if (r.status.vertex >= 0) one["vertex"] = r.status.vertex;
+  one["values"] = Json::object();
+  for (const auto& [name, value] : r.values)
+    if (std::isfinite(value)) one["values"][name] = value, refs.use(name);
+  if (timed && timed->sound()) {
+    const Interval second = timed->cost();
+    const Interval step{second.low * r.dt, second.mid * r.dt, second.high * r.dt};
+    const std::size_t n = timed->timing.samples.size();
+    one["cost"] = {{"cpu.per_second", json_interval(second, n)},
+                   {"cpu.per_step", json_interval(step, n)}};
+  }
+  add_if(one, "overrides", r.spec.overrides);
+  one["command"] = reproduce(spec);
+  return one;
+}
+
+/// "1, 2, 4" or "1 to 256 (9 values)".
+std::string range_of(const std::set<double>& values, const Quantity& q) {
+  if (values.empty()) return "–";
+  const auto one = [&](double v) { return tick_of(q, v); };
+  const std::string unit = q.unit.empty() ? "" : "\u00A0" + q.unit;
+  if (values.size() > 3)
+    return one(*values.begin()) + " to " + one(*values.rbegin()) + unit + " (" +
+           std::to_string(values.size()) + " values)";
+  std::string out;
+  for (const double v : values) out += (out.empty() ? "" : ", ") + one(v);
+  return out + unit;
+}
+
+Json facts_of(const ReportInput& input, const std::string& scene) {
+  std::map<std::string, std::set<double>> seen;
+  std::size_t cases = 0;
+  for (const StudyResult& study : input.studies)
+    for (const Record& r : study.records) {
+      if (r.scene != scene) continue;
+      ++cases;
+      for (const char* name : {"vertices", "links", "dt", "substeps", "iterations"})
+        if (const double value = value_of(r, name); std::isfinite(value)) seen[name].insert(value);
+      seen["t"].insert(std::round(r.steps * r.dt * 100) / 100);
+    }
+  Json facts;
+  for (const auto& [name, values] : seen) {
+    const Quantity q = quantity(name);
+    facts.push_back({{"name", q.title}, {"value", range_of(values, q)}});
+  }
+  facts.push_back({{"name", "cases"}, {"value", std::to_string(cases)}});
+  return facts;
+}
+
+std::vector<std::string> limits(const ReportInput& input) {
+  std::vector<std::string> points;
+  if (input.bench)
+    points.push_back("Cost elsewhere: times were measured on one machine (" + input.bench->machine +
+                     "), with the settings that were tried; a finer search may find cheaper ones "
+                     "(taut advise).");
+  else
+    points.emplace_back(
+        "Cost in time: equal sweeps are equal work, not equal time; taut bench measures CPU time.");
+  points.emplace_back(
+      "Real cloth: every error here is a distance from the constraints, from a reference or from a "
+      "closed form, not from a measured fabric.");
+  points.emplace_back(
+      "What the engines are good at elsewhere: Bullet's collision shapes, rigid-body coupling and "
+      "material parameters are outside these scenes.");
+  points.emplace_back(
+      "Visual quality: less stretch is not always better looking; damping and relaxation change "
+      "motion as well as error.");
+  points.emplace_back(
+      "Other machines: results repeat bit for bit on one build; a Bullet built otherwise or "
+      "another "
+      "kind of processor may change the last digits.");
+  std::size_t records = 0, planned = 0;
+  for (const StudyResult& study : input.studies)
+    records += study.records.size(), planned += std::max(study.planned, study.records.size());
+  if (records < planned)
+    points.push_back("The " + std::to_string(planned - records) +
+                     " planned cases that have not been run.");
+  return points;
+}
+
+/// The whole model, part by part.
+class Builder {
+ public:
+  explicit Builder(const ReportInput& input)
+      : input_(input), rivals_(rivals_of(input)), refs_(input) {
+    for (const Claim& claim : physics_claims(rivals_)) claims_.push_back(claim);
+    for (const Claim& claim : cost_claims(input, rivals_)) claims_.push_back(claim);
+  }
+
+  Json build() {
+    Json scenes = Json::array();
+    for (const QuotedScene& quoted : rivals_.scenes) scenes.push_back(scene(quoted));
+    std::size_t filmed = 0;
+    for (const SceneMedia& media : input_.media)
+      if (!rivals_.quoted(media.scene)) scenes.push_back(filmed_scene(media)), ++filmed;
+    Json cost;
+    if (input_.bench) {
+      cost = json_of_cost(*input_.bench, refs_, charts_, tables_);
+      for (const Claim& claim : claims_)
+        if ((claim.about == "cost" || claim.about == "only") && claim.kind != ClaimKind::tile)
+          cost["claims"].push_back(claim.id);
+    }
+    Json claims;
+    for (const Claim& claim : claims_) claims.push_back(with_film(claim));
+    Json cases;
+    std::map<std::string, const BenchedCase*> timed;
+    if (input_.bench)
+      for (const SceneBench& scene : input_.bench->scenes)
+        for (const BenchedCase& c : scene.cases) timed[c.record.key] = &c;
+    for (const Record* r : refs_.cases()) {
+      Json one = json_of_case(*r, timed[r->key], refs_);
+      if (const auto film = film_of_.find(refs_.key(*r)); film != film_of_.end())
+        one["film"] = film->second;
+      cases.push_back(std::move(one));
+    }
+    for (const char* name : {"iterations", "substeps", "dt", "t", "projections"}) refs_.use(name);
+    Json model{{"schema", "taut-report/1"},
+               {"meta", meta(cases.size())},
+               {"solvers", solvers()},
+               {"statuses", statuses()},
+               {"metrics", metrics()}};
+    add_if(model, "claims", std::move(claims));
+    add_if(model, "scenes", std::move(scenes));
+    add_if(model, "charts", std::move(charts_));
+    add_if(model, "maps", std::move(maps_));
+    add_if(model, "films", std::move(films_));
+    add_if(model, "tables", std::move(tables_));
+    add_if(model, "cost", std::move(cost));
+    add_if(model, "truths", truths());
+    add_if(model, "regressions", regressions());
+    model["method"] = method();
+    add_if(model, "missing", missing());
+    for (const auto& [file, why] : input_.left_out)
+      model["left_out"].push_back({{"file", file}, {"why", why}});
+    add_if(model, "cases", std::move(cases));
+    return model;
+  }
+
+ private:
+  Json meta(std::size_t cases) const {
+    Json one{{"title", report_title(input_)}};
+    add_if(one, "question", input_.question);
+    one["build"] = Json::object();
+    for (const auto& [what, value] : input_.provenance)
+      if (what == "program" || what == "toolchain")
+        one["build"][what] = value;
+      else
+        one[what] = value;
+    if (input_.bench) one["machine"] = input_.bench->machine;
+    add_if(one, "command", input_.command);
+    std::size_t planned = 0;
+    for (const StudyResult& study : input_.studies)
+      planned += std::max(study.planned, study.records.size()) - study.records.size();
+    one["cases"] = cases, one["planned"] = cases + planned;
+    for (const Sure sure : {Sure::clear, Sure::likely, Sure::too_noisy, Sure::single_run})
+      one["policy"][std::string(to_string(sure))] = meaning(sure);
+    return one;
+  }
+
+  Json solvers() const {
+    Json all;
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& solver) {
+      if (std::ranges::find(names, solver) == names.end()) names.push_back(solver);
+    };
+    for (const Rival& rival : rivals_.all) add(rival.solver);
+    for (const Record* r : refs_.cases()) add(r->solver);
+    for (const SceneMedia& media : input_.media)
+      for (const auto& [solver, why] : media.refused) add(solver);
+    for (const std::string& solver : names) {
+      const SolverStyle style = solver_style(solver);
+      Json one{{"id", solver},
+               {"title", solver_title(solver)},
+               {"colour", json_of(style.colour)},
+               {"marker", style.shape},
+               {"dash", style.dash}};
+      for (const SolverInfo& info : input_.solvers) {
+        if (info.name != solver) continue;
+        one["summary"] = info.summary, one["source"] = info.source;
+        for (const auto& [reason, scenes] : info.unsupported)
+          one["unsupported"].push_back({{"reason", reason}, {"scenes", scenes}});
+      }
+      std::string settings;
+      for (const Rival& rival : rivals_.all)
+        if (rival.solver == solver)
+          for (const auto& [key, value] : rival.cases.front()->params)
+            if (key != "iterations" && key != "substeps")
+              settings += (settings.empty() ? "" : ", ") + key + "=" + value;
+      one["settings"] = settings;
+      all.push_back(std::move(one));
+    }
+    return all;
+  }
+
+  Json statuses() const {
+    std::set<Status::Kind> kinds{Status::Kind::ok};
+    for (const Record* r : refs_.cases()) kinds.insert(r->status.kind);
+    Json all;
+    for (const Status::Kind kind : kinds) {
+      const StatusStyle style = status_style(kind);
+      const std::string_view name = to_string(kind);
+      all.push_back({{"id", name},
+                     {"title", name},
+                     {"glyph", style.glyph},
+                     {"help", style.help},
+                     {"failed", kind != Status::Kind::ok && kind != Status::Kind::unsettled},
+                     {"colour", json_of(style.colour)},
+                     {"ink", json_of(style.ink)}});
+    }
+    return all;
+  }
+
+  Json metrics() const {
+    Json all = Json::object();
+    for (const auto& [name, q] : refs_.quantities())
+      all[name] = {{"title", q.title},
+                   {"help", q.help},
+                   {"unit", q.unit},
+                   {"scale", q.scale},
+                   {"axis", q.logarithmic ? "log" : "linear"},
+                   {"window", q.window},
+                   {"better", q.help.empty() ? "" : "less"}};
+    return all;
+  }
+
+  Json scene(const QuotedScene& quoted) {
+    const std::string& name = quoted.question.scene;
+    Json one{{"id", name}, {"title", solver_title(name)}, {"summary", ""}, {"studied", true}};
+    for (const SceneInfo& info : input_.scenes)
+      if (info.name == name) one["summary"] = info.summary;
+    for (const Claim& claim : claims_)
+      if (claim.about == name) one["claims"].push_back(claim.id);
+    for (const SceneMedia& media : input_.media)
+      if (media.scene == name) add_media(one, media);
+    for (Chart& chart : scene_charts(input_, name)) {
+      one["charts"].push_back(chart.id);
+      charts_.push_back(json_of(chart, refs_));
+    }
+    if (!one.contains("films")) add_series(one, name);
+    std::map<std::string, int> names;
+    for (const StatusMap& map : scene_maps(input_, name)) {
+      std::string id = name + "-" + map.study + "-" + map.solver;
+      if (const int n = names[id]++; n > 0) id += "-" + std::to_string(n + 1);
+      one["maps"].push_back(id);
+      maps_.push_back(json_of(map, id, refs_));
+    }
+    for (const auto& [solver, cases] : rivals_.by_solver)
+      for (const Record* r : cases)
+        if (r->scene == name) {
+          Json& count = one["statuses"][solver][std::string(to_string(r->status.kind))];
+          count = count.is_null() ? 1 : count.get<int>() + 1;
+        }
+    one["facts"] = facts_of(input_, name);
+    std::set<std::pair<std::string, std::string>> refusals;
+    for (const auto& [solver, cases] : rivals_.by_solver)
+      for (const Record* r : cases)
+        if (r->scene == name && r->status.kind == Status::Kind::unsupported)
+          refusals.insert({solver, r->status.reason});
+    for (const auto& [solver, reason] : refusals)
+      one["refusals"].push_back({{"solver", solver}, {"reason", reason}});
+    add_if(one, "fairness", json_of_fairness(quoted, rivals_, refs_));
+    return one;
+  }
+
+  Json filmed_scene(const SceneMedia& media) {
+    Json one{{"id", media.scene},
+             {"title", solver_title(media.scene)},
+             {"summary", media.summary},
+             {"studied", false}};
+    add_media(one, media);
+    for (const auto& [solver, reason] : media.refused)
+      one["refusals"].push_back({{"solver", solver}, {"reason", reason}});
+    return one;
+  }
+
+  void add_media(Json& scene, const SceneMedia& media) {
+    for (Json& film : json_of(media, input_, refs_, budget_)) {
+      if (film.contains("material")) {
+        scene["material"] = film["material"];
+        film.erase("material");
+      }
+      const std::string id = film["id"];
+      scene["films"].push_back(id);
+      std::set<std::string>& cases = film_cases_[media.scene];
+      for (const Json& panel : film["panels"]) {
+        const std::string key = panel.value("case", "");
+        cases.insert(key);
+        if (!key.empty()) film_of_.emplace(key, id);
+      }
+      films_.push_back(std::move(film));
+    }
+  }
+
+  /// Values over time of a scene without a film, whose tracks they would be.
+  void add_series(Json& scene, const std::string& name) {
+    std::map<std::string, Chart> charts;
+    for (const TimeSeries& series : input_.series) {
+      if (series.scene != name) continue;
+      Chart chart{.id = name + "-over-time-" + slug(series.value),
+                  .scene = name,
+                  .kind = "series",
+                  .title = quantity(series.value).title + " over time",
+                  .x = quantity("t"),
+                  .y = quantity(series.value),
+                  .cost = {}};
+      chart.y.logarithmic = false;
+      charts.try_emplace(series.value, std::move(chart)).first->second.series.push_back(series);
+    }
+    for (const auto& [value, chart] : charts) {
+      scene["charts"].push_back(chart.id);
+      charts_.push_back(json_of(chart, refs_));
+    }
+  }
+
+  /// The claim, and whether a film shows just what it speaks of.
+  Json with_film(const Claim& claim) {
+    Json one = json_of(claim, refs_);
+    std::set<std::string> looked_at, scenes;
+    for (const Json& basis : one["basis"]) {
+      for (const Json& key : basis["cases"]) looked_at.insert(key.get<std::string>());
+      for (const Json& scene : basis["scenes"]) scenes.insert(scene.get<std::string>());
+    }
+    // A claim over many settings is of none in particular.
+    const bool of_one_setting = claim.id.starts_with("stretch") || claim.id.starts_with("depth") ||
+                                claim.id.starts_with("tile-stretch") ||
+                                claim.id.starts_with("tile-depth");
+    bool filmed = false;
+    for (const std::string& scene : scenes)
+      if (const auto film = film_cases_.find(scene); film != film_cases_.end()) {
+        filmed = true;
+        if (of_one_setting && std::ranges::includes(looked_at, film->second) &&
+            !one.contains("film"))
+          one["film"] = "film-" + scene;
+      }
+    if (filmed && !one.contains("film") && claim.about != "failures")
+      one["film_note"] = "The films show " + rivals_.work.text() + ", not these settings.";
+    return one;
+  }
+
+  Json truths() const {
+    if (!input_.truths) return {};
+    const Truths& t = *input_.truths;
+    Json one{{"truths", t.truths}, {"findings", t.findings}, {"verdicts", t.verdicts}};
+    for (const TruthRow& row : t.rows) {
+      Json at{{"section", row.section},
+              {"statement", typeset(row.statement)},
+              {"source", typeset(row.source)},
+              {"subject", row.subject},
+              {"expected", typeset(row.expected)},
+              {"measured", typeset(row.measured)},
+              {"verdict", row.verdict}};
+      add_if(at, "why", typeset(row.why));
+      one["rows"].push_back(std::move(at));
+    }
+    return one;
+  }
+
+  Json regressions() const {
+    if (!input_.regressions) return {};
+    Json one{{"cases", input_.regressions->cases}, {"values", input_.regressions->values}};
+    for (const auto& [study, id, change] : input_.regressions->rows)
+      one["rows"].push_back({{"study", study}, {"case", id}, {"change", change}});
+    return one;
+  }
+
+  Json method() const {
+    Json one{{"studies", Json::array()}};
+    const std::string unequal = rivals_.unequal_work();
+    for (const StudyResult& study : input_.studies) {
+      Json at{{"name", study.name},
+              {"question", study.question},
+              {"cases", study.records.size()},
+              {"planned", std::max(study.planned, study.records.size())}};
+      add_if(at, "unequal", unequal);
+      one["studies"].push_back(std::move(at));
+    }
+    for (const auto& [what, value] : input_.provenance)
+      one["facts"].push_back({{"name", what}, {"value", value}});
+    one["limits"] = limits(input_);
+    return one;
+  }
+
+  Json missing() const {
+    Json all;
+    const auto add = [&](const char* section, const char* text, const std::string& command) {
+      all.push_back({{"section", section}, {"text", text}, {"command", command}});
+    };
+    if (!input_.bench)
+      add("cost", "No cost was measured.",
+          "taut bench " + (input_.studies.size() == 1 ? input_.studies.front().name
+                                                      : std::string("trade --preset quick")));
+    if (!input_.truths)
+      add("truths", "Closed forms and published numbers were not evaluated by this build.",
+          "taut verify --out results/runs/verify.json");
+    if (!input_.regressions)
+      add("regressions", "Not compared with the committed baselines by this build.",
+          "taut check --record");
+    return all;
+  }
+
+  const ReportInput& input_;
+  Rivals rivals_;
+  References refs_;
+  std::vector<Claim> claims_;
+  Json charts_, maps_, films_, tables_;
+  std::map<std::string, std::set<std::string>> film_cases_;  ///< by scene
+  std::map<std::string, std::string> film_of_;               ///< by short key of the case
+  std::size_t budget_ = 6'000'000;                           ///< bytes of pictures in a page
+};
+
+}  // namespace
+
+std::string report_title(const ReportInput& input) {
+  if (!input.title.empty()) return input.title;
+  std::vector<std::string> names;
+  for (const Rival& rival : rivals_of(input).all) names.push_back(solver_title(rival.solver));
+  return joined(names);
+}
+
+std::string make_model(const ReportInput& input, int indent) {
+  if (std::ranges::all_of(input.studies, [](const auto& s) { return s.records.empty(); }))
+    throw InputError("there is no result of this build to report; `taut run` makes some");
+  return to_text(Builder(input).build(), indent);
+}
+
+}  // namespace taut::report

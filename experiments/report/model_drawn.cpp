@@ -1,0 +1,436 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/model_parts.hpp"
+#include "experiments/report/palette.hpp"
+
+namespace taut::report {
+
+namespace {
+
+Json json_of_axis(const Quantity& q, const std::vector<double>& ticks) {
+  Json axis{{"metric", q.name},
+            {"title", q.title},
+            {"unit", q.unit},
+            {"scale", q.scale},
+            {"axis", q.logarithmic ? "log" : "linear"}};
+  if (ticks.empty()) return axis;
+  axis["values"] = ticks;
+  for (const double value : ticks) axis["texts"].push_back(tick_of(q, value));
+  return axis;
+}
+
+Json json_of(const Point& p, const Chart& chart, const References& refs) {
+  const bool none = failed(p);
+  Json point{{"x", json_number(p.x)},
+             {"y", none ? Json() : json_number(p.y)},
+             {"status", to_string(p.record->status.kind)},
+             {"case", refs.key(*p.record)},
+             {"failed", none},
+             {"zero", !none && p.y == 0}};
+  if (const auto cost = chart.cost.find(p.record->key); cost != chart.cost.end())
+    point["x_low"] = cost->second.low, point["x_high"] = cost->second.high;
+  add_if(point, "name", p.name.empty() ? work_of(*p.record).text() : p.name);
+  return point;
+}
+
+/// Times and values of a series.
+Json json_of(const TimeSeries& series, const References& refs) {
+  Json one{{"solver", series.solver}, {"label", series.label}, {"t", series.t}};
+  for (const double y : series.y) one["y"].push_back(json_number(y));
+  add_if(one, "case", refs.key(series.key));
+  return one;
+}
+
+Json json_of_tracks(const std::string& scene, double until, const ReportInput& input,
+                    References& refs) {
+  std::map<std::string, Json> by_value;
+  for (const TimeSeries& series : input.series) {
+    if (series.scene != scene) continue;
+    TimeSeries cut = series;
+    const auto end = std::ranges::upper_bound(cut.t, until + 1e-9) - cut.t.begin();
+    cut.t.resize(static_cast<std::size_t>(end)), cut.y.resize(static_cast<std::size_t>(end));
+    if (cut.t.size() > 1) by_value[series.value].push_back(json_of(cut, refs));
+  }
+  Json tracks;
+  // The scene's own quantity before stretch, which every scene has.
+  for (const bool own : {true, false})
+    for (auto& [value, series] : by_value)
+      if (own != value.starts_with("stretch."))
+        tracks.push_back({{"metric", value}, {"title", refs.use(value).title}, {"series", series}});
+  return tracks;
+}
+
+Json json_of(const MaterialRow& row, const Quantity& strain) {
+  Json one{{"solver", row.solver}};
+  for (const MaterialRow::Moment& m : row.moments)
+    one["moments"].push_back({{"t", m.t},
+                              {"rms", m.rms},
+                              {"text", strain.text(m.rms)},
+                              {"image", "data:image/png;base64," + base64(m.png)}});
+  return one;
+}
+
+Json json_of(const ColourBar& bar) {
+  Json one{{"title", bar.title}, {"stops", bar.stops}};
+  for (const auto& [at, text] : bar.ticks) one["ticks"].push_back({{"at", at}, {"text", text}});
+  return one;
+}
+
+}  // namespace
+
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json json_interval(const Interval& i, std::size_t n) {
+  return {{"low", json_number(i.low)},
+          {"mid", json_number(i.mid)},
+          {"high", json_number(i.high)},
+          {"n", n}};
+}
+
+void add_if(Json& object, const char* name, Json value) {
+  const bool blank = value.is_string() && value.get_ref<const std::string&>().empty();
+  if (!blank && !value.is_null() && !(value.is_structured() && value.empty()))
+    object[name] = std::move(value);
+}
+
+Json json_of(const Chart& chart, References& refs) {
+  Json one{{"id", chart.id},
+           {"scene", chart.scene},
+           {"kind", chart.kind},
+           {"title", chart.title},
+           {"caption", chart.caption},
+           {"x", json_of_axis(refs.use(chart.x.name), chart.ticks)},
+           {"y", json_of_axis(refs.use(chart.y.name), {})}};
+  add_if(one, "held", chart.held);
+  bool zeros = true;
+  std::map<std::string, int> variants;
+  for (const Curve& curve : chart.curves) {
+    Json series{{"solver", curve.solver},
+                {"label", curve.label},
+                {"variant", variants[curve.solver]++},
+                {"join", chart.join}};
+    for (const Point& p : curve.points) {
+      series["points"].push_back(json_of(p, chart, refs));
+      zeros = zeros && (failed(p) || p.y == 0);
+    }
+    one["series"].push_back(std::move(series));
+    const auto& points = curve.points;
+    if (chart.kind != "convergence") continue;
+    const double slope = fitted_slope(curve, points[points.size() / 2].x);
+    if (std::isfinite(slope))
+      one["fits"].push_back({{"solver", curve.solver}, {"label", curve.label}, {"slope", slope}});
+  }
+  for (const TimeSeries& series : chart.series) one["series"].push_back(json_of(series, refs));
+  if (const double factor = theory_factor(chart); std::isfinite(factor))
+    one["theory"] = {{"slope", *chart.slope},
+                     {"factor", factor},
+                     {"text", "theory: slope " + significant(*chart.slope, 2)}};
+  if (chart.floor) one["floor"] = {{"y", *chart.floor}, {"text", "the reference's own error"}};
+  if (chart.front)
+    for (const Point& p : pareto_front(chart))
+      one["front"].push_back({{"x", p.x}, {"y", p.y}, {"case", refs.key(*p.record)}});
+  if (zeros && !chart.curves.empty()) one["zeros"] = true;
+  return one;
+}
+
+Json json_of(const StatusMap& map, const std::string& id, References& refs) {
+  Json one{{"id", id},
+           {"scene", map.scene},
+           {"solver", map.solver},
+           {"label", map.label},
+           {"title", "How cases end over " + map.x.title + " and " + map.y.title},
+           {"study", map.study},
+           {"x", json_of_axis(refs.use(map.x.name), map.columns)},
+           {"y", json_of_axis(refs.use(map.y.name), map.rows)}};
+  std::map<Status::Kind, int> counts;
+  for (const StatusMap::Cell& cell : map.cells) {
+    const Status& status = cell.record->status;
+    Json at{{"column", cell.column},
+            {"row", cell.row},
+            {"status", to_string(status.kind)},
+            {"case", refs.key(*cell.record)}};
+    add_if(at, "reason", status.reason);
+    ++counts[status.kind];
+    one["cells"].push_back(std::move(at));
+  }
+  one["run"] = one["all"] = map.cells.size();
+  for (const auto& [kind, n] : counts) one["counts"][std::string(to_string(kind))] = n;
+  return one;
+}
+
+Json json_of(const SceneMedia& media, const ReportInput& input, References& refs,
+             std::size_t& budget) {
+  Json films;
+  for (std::size_t k = 0; k < media.clips.size(); ++k) {
+    const Clip& clip = media.clips[k];
+    Json film{{"id", "film-" + media.scene + (k > 0 ? "-" + std::to_string(k + 1) : "")},
+              {"scene", media.scene},
+              {"type", clip.type}};
+    const std::size_t weight = (clip.bytes.size() + clip.poster.size()) * 4 / 3;
+    if (weight > budget) {
+      film["left_out"] = "The page would become too large: taut render " + media.scene;
+    } else {
+      budget -= weight;
+      film["src"] = "data:" + clip.type + ";base64," + base64(clip.bytes);
+      if (!clip.poster.empty())
+        film["poster"] = "data:" + clip.poster_type + ";base64," + base64(clip.poster);
+    }
+    film["poster_t"] = media.poster, film["duration"] = media.duration;
+    film["frame"] = media.frame, film["speed"] = media.speed;
+    film["alt"] = clip.alt;
+    std::string caption;
+    for (const Clip::Panel& panel : clip.panels) {
+      Json one{{"solver", panel.solver}, {"settings", panel.settings}};
+      add_if(one, "case", refs.key(panel.key));
+      film["panels"].push_back(std::move(one));
+      caption += (caption.empty() ? "" : "; ") + solver_title(panel.solver) + ": " + panel.settings;
+    }
+    film["caption"] = caption;
+    if (!media.bar.stops.empty()) film["bar"] = json_of(media.bar);
+    add_if(film, "tracks", json_of_tracks(media.scene, media.duration, input, refs));
+    films.push_back(std::move(film));
+  }
+  if (!media.material.empty() && !films.is_null()) {
+    Json rows;
+    for (const MaterialRow& row : media.material) {
+      std::size_t weight = 0;
+      for (const MaterialRow::Moment& m : row.moments) weight += m.png.size() * 4 / 3;
+      if (weight > budget) continue;
+      budget -= weight;
+      rows.push_back(json_of(row, quantity("stretch.rms")));
+    }
+    if (!rows.is_null())
+      films.front()["material"] = {{"aspect", media.aspect}, {"rows", std::move(rows)}};
+  }
+  return films;
+}
+
+Json json_of_fairness(const QuotedScene& quoted, const Rivals& rivals, const References& refs) {
+  Json panel{{"caption", "Settings each solver used for this scene"}};
+  std::vector<const Record*> cases;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
+    const Record* r = quoted.cases[i];
+    if (!r) continue;
+    cases.push_back(r);
+    panel["columns"].push_back({{"solver", r->solver},
+                                {"case", refs.key(*r)},
+                                {"text", rivals.all[i].label + " " + work_of(*r).text()}});
+    for (const auto& [name, value] : r->resolved_settings)
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
+  if (cases.empty()) return {};
+  const auto row = [&](const std::string& name, const auto& cell) {
+    std::vector<std::string> values;
+    for (const Record* r : cases) values.push_back(typeset(cell(*r)));
+    // A dash says that the solver has no such setting, not that it differs; what follows the same
+    // beginning is a remark.
+    const std::string& first = values.front();
+    const bool same = std::ranges::all_of(values, [&](const std::string& v) {
+      return v == "–" || first == "–" || v.starts_with(first) || first.starts_with(v);
+    });
+    panel["rows"].push_back({{"name", name}, {"values", values}, {"differs", !same}});
+  };
+  for (const std::string& name : names)
+    row(name, [&](const Record& r) {
+      const auto at =
+          std::ranges::find(r.resolved_settings, name, [](const auto& e) { return e.first; });
+      return at == r.resolved_settings.end() ? std::string("–") : at->second;
+    });
+  row("passes of a step, in order", [](const Record& r) {
+    std::string passes;
+    for (const PassCost& pass : r.step_cost)
+      passes += (passes.empty() ? "" : ", ") + pass.pass +
+                (pass.repeats > 1 ? " × " + std::to_string(pass.repeats) : "");
+    return passes;
+  });
+  row("work: constraint projections per step",
+      [](const Record& r) { return std::to_string(r.projections); });
+  return panel;
+}
+
+namespace {
+
+std::string span_text(const Interval& i, const Quantity& q) {
+  const int decimals = decimals_for((i.high - i.low) * q.scale);
+  const auto number = [&](double v) { return fixed(v * q.scale, decimals); };
+  return number(i.mid) + "\u00A0" + q.unit + " (" + number(i.low) + "–" + number(i.high) + ")";
+}
+
+/// Settings of one solver on one scene that a table speaks of.
+struct CostScene {
+  const SceneBench& bench;
+  const std::vector<Record>& records;
+  References& refs;
+
+  std::string setting(std::size_t at) const {
+    const std::string label = knob_label(bench.cases[at].record, records);
+    return label.empty() ? work_of(bench.cases[at].record).text() : label;
+  }
+  Json cell(std::size_t at, const std::string& text) const {
+    const BenchedCase& c = bench.cases[at];
+    const Interval cost = c.cost();
+    return {{"text", text},
+            {"value", cost.mid},
+            {"low", cost.low},
+            {"high", cost.high},
+            {"case", refs.key(c.record)}};
+  }
+  /// "not reached by the settings tried (at best 0.12 %)".
+  std::string never(const std::string& solver) const {
+    const std::vector<Offer> offers = bench.offers(kPricedMetric);
+    const auto nearest = best_within(offers, solver, std::numeric_limits<double>::infinity());
+    return nearest ? "not reached by the settings tried (at best " +
+                         quantity(kPricedMetric).text(offers[*nearest].error) + ")"
+                   : "no case completed";
+  }
+};
+
+/// How a solver's cheapest compares with the cheapest of all.
+void add_ratio(Json& cell, const Interval& times, const Interval& control) {
+  const auto sure = judge_ratio(times, control);
+  const int decimals = decimals_for(times.high - times.low);
+  cell["note"] = fixed(times.mid, decimals) + " × the cheapest (" + fixed(times.low, decimals) +
+                 "–" + fixed(times.high, decimals) + ")" +
+                 (!sure                      ? ", no difference that can be told"
+                  : *sure == Sure::too_noisy ? ", too noisy to judge"
+                                             : "");
+  if (sure) cell["sure"] = to_string(*sure);
+}
+
+Json levels_table(const CostScene& scene) {
+  const Quantity q = quantity(kPricedMetric), cpu = quantity("cpu.per_second");
+  Json table{{"id", "cost-levels-" + scene.bench.scene},
+             {"title", "Cost of an error"},
+             {"caption",
+              "CPU time per simulated second, its 95 % interval, and the setting; "
+              "every setting tried."},
+             {"columns", Json::array()}};
+  table["columns"].push_back({{"title", "to reach"}, {"metric", kPricedMetric}});
+  for (const std::string& solver : solvers_of(scene.bench))
+    table["columns"].push_back({{"title", solver_title(solver)}, {"metric", cpu.name}});
+  for (const double level : kErrorLevels) {
+    Json row = Json::array();
+    row.push_back({{"text", q.text(level, 1)}, {"value", level}});
+    for (const Reached& r : equal_error(scene.bench, kPricedMetric, level)) {
+      if (!r.at) {
+        row.push_back(scene.never(r.solver));
+        continue;
+      }
+      Json cell = scene.cell(
+          *r.at, span_text(scene.bench.cases[*r.at].cost(), cpu) + ", " + scene.setting(*r.at));
+      if (r.times && r.times->mid > 1) add_ratio(cell, *r.times, scene.bench.control);
+      row.push_back(std::move(cell));
+    }
+    table["rows"].push_back(std::move(row));
+  }
+  return table;
+}
+
+constexpr double kFrame = 1.0 / 60;  ///< s; budgets are CPU time within it
+
+Json budgets_table(const CostScene& scene) {
+  const Quantity q = quantity(kPricedMetric), ms{"", "", "ms", 1e3 * kFrame};
+  Json table{{"id", "cost-budgets-" + scene.bench.scene},
+             {"title", "Error within a budget"},
+             {"caption",
+              "The least error within a budget of CPU time per frame of 1/60 s, what it "
+              "costs and with which setting."},
+             {"columns", Json::array()}};
+  table["columns"].push_back({{"title", "within, per frame"}});
+  const std::vector<Offer> offers = scene.bench.offers(kPricedMetric);
+  for (const std::string& solver : solvers_of(scene.bench))
+    table["columns"].push_back({{"title", solver_title(solver)}, {"metric", kPricedMetric}});
+  for (const double budget : kFrameBudgets) {
+    Json row = Json::array();
+    row.push_back({{"text", significant(1e3 * budget, 2) + "\u00A0ms"}, {"value", budget}});
+    for (const std::string& solver : solvers_of(scene.bench)) {
+      const auto at = best_within(offers, solver, budget / kFrame);
+      if (!at) {
+        row.push_back("nothing that cheap");
+        continue;
+      }
+      row.push_back({{"text", q.text(offers[*at].error) + " for " +
+                                  span_text(offers[*at].cost, ms) + ", " + scene.setting(*at)},
+                     {"value", offers[*at].error},
+                     {"case", scene.refs.key(scene.bench.cases[*at].record)}});
+    }
+    table["rows"].push_back(std::move(row));
+  }
+  return table;
+}
+
+/// Who is cheapest for the priced error, by how much, and how to ask again.
+Json answer_row(const CostScene& scene) {
+  const SceneBench& bench = scene.bench;
+  std::string again = "taut advise " + bench.scene + " --error 1%";
+  if (!bench.cases.empty())
+    for (const std::string& value : bench.cases.front().record.spec.overrides)
+      again += " --set '" + value + "'";
+  const auto best = cheapest_within(bench.offers(kPricedMetric), "", kPricedError);
+  if (!best) return {bench.scene, "not reached by the settings tried", "–", "–", again};
+  const BenchedCase& c = bench.cases[*best];
+  std::string others;
+  for (const Reached& r : equal_error(bench, kPricedMetric, kPricedError)) {
+    if (r.at == best) continue;
+    others += (others.empty() ? "" : "; ") + solver_title(r.solver) + " ";
+    if (!r.at || !r.times) {
+      others += scene.never(r.solver);
+      continue;
+    }
+    Json cell;
+    add_ratio(cell, *r.times, bench.control);
+    others += cell["note"].get<std::string>() + " with " + scene.setting(*r.at);
+  }
+  return {bench.scene, solver_title(c.record.solver) + " " + scene.setting(*best),
+          scene.cell(*best, span_text(c.cost(), quantity("cpu.per_second"))),
+          others.empty() ? "no other solver can run this scene" : others, again};
+}
+
+}  // namespace
+
+Json json_of_cost(const BenchSession& session, References& refs, Json& charts, Json& tables) {
+  Json cost{{"machine", session.machine}};
+  Json answers{{"id", "cost-answers"},
+               {"title", "Cheapest setting for " + quantity(kPricedMetric).text(kPricedError, 1) +
+                             " " + quantity(kPricedMetric).title},
+               {"columns", Json::array()}};
+  for (const char* title :
+       {"scene", "cheapest setting", "CPU time per simulated second", "the others", "ask again"})
+    answers["columns"].push_back({{"title", title}});
+  refs.use("cpu.per_second"), refs.use("cpu.per_step");
+  for (const SceneBench& bench : session.scenes) {
+    const std::vector<Record> records = BenchSession{"", "", {bench}}.records();
+    const CostScene scene{bench, records, refs};
+    Json one{
+        {"scene", bench.scene},
+        {"control", json_interval(bench.control,
+                                  bench.cases.empty() ? 0 : bench.cases[0].timing.samples.size())},
+        {"noisy", strayed(bench.control) > kAlike - 1},
+        {"noise", "timing noise: two runs of identical code differed by up to " +
+                      significant(100 * strayed(bench.control), 2) + "\u00A0%"}};
+    try {
+      const Chart chart = cost_chart(bench, records);
+      charts.push_back(json_of(chart, refs));
+      one["charts"].push_back(chart.id);
+    } catch (const InputError&) {
+      // nothing completed: the tables say so
+    }
+    for (Json& table : std::vector{levels_table(scene), budgets_table(scene)}) {
+      one["tables"].push_back(table["id"]);
+      tables.push_back(std::move(table));
+    }
+    answers["rows"].push_back(answer_row(scene));
+    cost["scenes"].push_back(std::move(one));
+  }
+  cost["tables"].push_back("cost-answers");
+  tables.push_back(std::move(answers));
+  return cost;
+}
+
+}  // namespace taut::report

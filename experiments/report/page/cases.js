@@ -1,0 +1,157 @@
+'use strict';
+// The table of all cases: sorted, filtered, taken away as CSV; and the dialog of one case.
+
+/** Columns: `value` sorts and goes into the CSV (SI), `text` is shown. */
+const caseColumns = (() => {
+  const plain = (name, title, value, cell) => ({name, title, value, cell: cell ?? ((c) => short(value(c) ?? '', 60))});
+  const measured = (name, value) => ({name, title: titled(metric(name)), help: metric(name).help, numeric: true, value,
+    scale: metric(name).scale, cell: (c) => number(value(c) === undefined ? NaN : value(c) * metric(name).scale)});
+  const used = (name) => model.cases.some((c) => Number.isFinite(c.values[name]));
+  return [
+    {...plain('case', 'case', (c) => c.key, (c) => caseLink(c.key, c.key)), head: true},
+    plain('scene', 'scene', (c) => c.scene), plain('solver', 'solver', (c) => c.solver, (c) => named(c.solver)),
+    plain('brief', 'setting', (c) => c.brief), measured('dt', (c) => c.dt),
+    plain('status', 'status', (c) => c.status, (c) => [glyphBox(c.status), ' ', statusOf(c.status).title]),
+    ...Object.keys(model.metrics).filter(used).map((name) => measured(name, (c) => c.values[name])),
+    ...(model.cases.some((c) => c.cost) ? [measured('cpu.per_second', (c) => c.cost?.['cpu.per_second']?.mid)] : []),
+    measured('projections', (c) => c.projections),
+    plain('studies', 'studies', (c) => c.studies.join(' ')), plain('reason', 'reason', (c) => c.reason),
+    plain('settings', 'all settings', (c) => c.settings),
+  ];
+})();
+
+/** A filter: words that the case must have, and conditions such as "dt<=5" in the units shown. */
+function caseFilter(text) {
+  const tests = text.toLowerCase().split(/\s+/).filter(Boolean).map((word) => {
+    const [, name, sign, limit] = word.match(/^([\w.]+)(<=|>=|<|>)(.+)$/) ?? [];
+    const column = caseColumns.find((c) => c.numeric && c.name.toLowerCase() === name);
+    if (!column || !Number.isFinite(Number(limit))) return ({words}) => words.includes(word);
+    const compare = {'<': (a, b) => a < b, '>': (a, b) => a > b, '<=': (a, b) => a <= b, '>=': (a, b) => a >= b}[sign];
+    return ({entry}) => Number.isFinite(column.value(entry)) && compare(column.value(entry) * column.scale, Number(limit));
+  });
+  return (row) => tests.every((test) => test(row));
+}
+
+const caseRows = model.cases.map((entry) => ({entry,
+  words: [entry.key, entry.id, entry.brief, entry.status, entry.reason, ...entry.studies].join(' ').toLowerCase()}));
+
+/** The cases that the reader's choices leave, in the order chosen. */
+function chosenCases() {
+  const [name, down] = [state.get('sort').replace(/^-/, ''), state.get('sort').startsWith('-')];
+  const column = caseColumns.find((c) => c.name === name), passes = caseFilter(state.get('find'));
+  const rows = caseRows.filter((row) => passes(row) && !isOff(row.entry.solver) &&
+    (!state.get('in') || row.entry.scene === state.get('in')) &&
+    (!state.get('ended') || row.entry.status === state.get('ended')) &&
+    (!state.get('study') || row.entry.studies.includes(state.get('study')))).map((row) => row.entry);
+  if (!column) return rows;
+  const missing = (v) => v === undefined || v === null || Number.isNaN(v);
+  return rows.sort((a, b) => {
+    const [u, v] = [column.value(a), column.value(b)];
+    if (missing(u) || missing(v)) return missing(u) - missing(v);
+    return (down ? -1 : 1) * (column.numeric ? u - v : String(u).localeCompare(String(v), 'en', {numeric: true}));
+  });
+}
+
+function casesCsv(rows) {
+  const head = caseColumns.map((c) => csvField(c.name)).concat('command');
+  return [head, ...rows.map((row) => caseColumns.map((c) => csvField(c.value(row))).concat(csvField(row.command)))]
+      .map((fields) => fields.join(',')).join('\r\n') + '\r\n';
+}
+
+const rowsAtFirst = 100;
+
+function casesSection() {
+  const body = el('tbody'), said = el('p', {className: 'note', role: 'status'});
+  const choose = (name, title, values) => values.length < 2 ? null : el('label', {}, title + ' ',
+    el('select', {name, onchange: (event) => state.set({[name]: event.target.value}, false)}, el('option', {value: ''}, 'all'),
+       values.map((value) => el('option', {value}, short(value, 40)))));
+  const find = el('input', {type: 'search', name: 'find', placeholder: 'words, or dt<=5', autocomplete: 'off',
+                            oninput: () => state.set({find: find.value}, false)});
+  const heads = caseColumns.map((column) => el('th', {scope: 'col', className: column.numeric ? 'numeric' : ''},
+    el('button', {type: 'button', title: column.help ?? '', onclick: () => {
+      const now = state.get('sort');
+      state.set({sort: now === column.name ? '-' + column.name : now === '-' + column.name ? '' : column.name}, false);
+    }}, short(column.title, 48))));
+  const table = el('table', {}, el('caption', {className: 'hidden'}, 'All cases'), el('thead', {}, el('tr', {}, heads)), body);
+  const more = el('button', {type: 'button'});
+  const save = el('a', {className: 'button', href: '#cases', download: 'cases.csv'}, 'download what is shown (CSV, SI units)');
+  let rows = [];
+  const row = (entry) => el('tr', {}, caseColumns.map((column) => el(column.head ? 'th' : 'td',
+    {scope: column.head ? 'row' : undefined, className: column.numeric ? 'numeric' : ''}, column.cell(entry))));
+  const fill = (upTo) => {
+    body.replaceChildren(...rows.slice(0, upTo).map(row));
+    more.hidden = rows.length <= upTo;
+    more.textContent = `show all ${rows.length}`;
+  };
+  more.onclick = () => fill(Infinity);
+  save.onclick = () => {
+    save.href = 'data:text/csv;charset=utf-8,' + encodeURIComponent(casesCsv(rows));
+  };
+  const selects = [choose('in', 'scene', [...new Set(model.cases.map((c) => c.scene))]),
+    choose('ended', 'status', [...new Set(model.cases.map((c) => c.status))]),
+    choose('study', 'study', [...new Set(model.cases.flatMap((c) => c.studies))])];
+  let last = null;
+  state.watch(() => {
+    const asked = JSON.stringify(['find', 'in', 'ended', 'study', 'sort'].map(state.get).concat(state.params().getAll('off')));
+    if (asked === last) return;
+    last = asked;
+    rows = chosenCases();
+    fill(rowsAtFirst);
+    said.textContent = `${rows.length} of ${count(model.cases.length, 'case')}: ` +
+      d3.nest().key((c) => c.status).rollup((group) => group.length).entries(rows)
+          .map(({key, value}) => `${value} ${statusOf(key).title}`).join(', ');
+    if (document.activeElement !== find) find.value = state.get('find');
+    for (const select of selects.filter(Boolean)) select.lastChild.value = state.get(select.lastChild.name);
+    caseColumns.forEach(({name}, i) => heads[i].setAttribute('aria-sort',
+      {[name]: 'ascending', ['-' + name]: 'descending'}[state.get('sort')] ?? 'none'));
+  });
+  return el('section', {id: 'cases'}, el('h2', {}, 'All cases'),
+    el('div', {className: 'filters'}, el('label', {}, 'find ', find), selects, save), said,
+    el('div', {className: 'card scroll tall', tabIndex: 0, role: 'region', 'aria-label': 'Table of cases'}, table), more,
+    el('p', {className: 'print-only'}, 'The table of all cases is on the screen; it is too wide for paper.'));
+}
+
+/** The dialog of one case: how it ended, its settings, its values, its film, and the command that runs it again. */
+function fillCase(dialog, entry) {
+  const status = statusOf(entry.status), film = films.get(entry.film);
+  const close = () => state.set({case: ''});
+  const cost = entry.cost?.['cpu.per_second'];
+  const values = Object.entries(entry.values).map(([name, value]) =>
+    el('tr', {}, el('th', {scope: 'row', title: metric(name).help}, metric(name).title), el('td', {}, shown(value, metric(name), 4)),
+       el('td', {}, metric(name).window)));
+  if (cost) values.push(el('tr', {}, el('th', {scope: 'row'}, metric('cpu.per_second').title),
+    el('td', {}, `${shown(cost.mid, metric('cpu.per_second'), 4)} (${interval(cost.low, cost.high, metric('cpu.per_second'))})`),
+    el('td', {}, `95 %, n = ${cost.n}`)));
+  const [, settings = ''] = entry.settings.match(/^[^:]*:(.*)$/s) ?? [];
+  const facts = [['status', [glyphBox(entry.status), ` ${status.title}${entry.reason ? `: ${entry.reason}` : ''}`,
+      entry.step >= 0 && `, step ${entry.step}`, entry.vertex >= 0 && `, vertex ${entry.vertex}`]],
+    ['time step', [shown(entry.dt, metric('dt'), 4)]], ['steps', [entry.steps]],
+    ['cloth', [`${count(entry.vertices, 'vertex', 'vertices')}, ${count(entry.links, 'link')}`]],
+    ['work', [`${entry.projections} projections per step`]],
+    ...settings.split(',').filter(Boolean).map((part) => part.split(/=(.*)/s)).map(([name, value]) => [name, [value ?? '']]),
+    ['studies', [entry.studies.join(', ')]], ['case', [el('code', {}, entry.id)]]];
+  dialog.setAttribute('aria-labelledby', 'case-title');
+  dialog.replaceChildren(
+    el('header', {}, el('h2', {id: 'case-title'}, named(entry.solver), ` ${short(entry.brief, 80)} on ${short(entry.scene, 60)}`),
+       el('button', {type: 'button', onclick: close, 'aria-label': 'close the case'}, 'close')),
+    el('div', {className: 'columns'},
+      el('dl', {className: 'facts'}, facts.map(([name, text]) => [el('dt', {}, short(name, 60)), el('dd', {}, text)])),
+      values.length ? el('table', {}, el('caption', {className: 'hidden'}, 'Values'), el('thead', {}, el('tr', {},
+        ['value', 'measured', 'window'].map((text) => el('th', {scope: 'col'}, text)))), el('tbody', {}, values))
+        : el('p', {}, 'It has no values.')),
+    film ? el('p', {}, choice({scene: film.scene, at: 'film', case: ''}, {}, 'see its film')) : el('p', {className: 'note'}, 'No film shows this case.'),
+    el('p', {}, 'This runs it again, from any folder:'), command(entry.command));
+}
+
+function watchCase() {
+  const dialog = document.getElementById('case');
+  dialog.addEventListener('close', () => { if (state.get('case')) state.set({case: ''}); });
+  dialog.addEventListener('click', (event) => { if (event.target === dialog) dialog.close(); });
+  state.watch(() => {
+    const entry = cases.get(state.get('case'));
+    if (!entry) return dialog.open && dialog.close();
+    fillCase(dialog, entry);
+    if (!dialog.open) dialog.showModal();
+    return undefined;
+  });
+}

@@ -1,0 +1,259 @@
+'use strict';
+// Charts of points over a setting or a cost: lines, error bars, failed cases above the plot, zeros on the axis.
+
+const pentagon = {draw(context, size) {
+  const r = Math.sqrt(size / 2.378);
+  for (let i = 0; i < 5; ++i) {
+    const a = (2 * Math.PI * i) / 5 - Math.PI / 2;
+    context[i ? 'lineTo' : 'moveTo'](r * Math.cos(a), r * Math.sin(a));
+  }
+  context.closePath();
+}};
+const triangleDown = {draw(context, size) {
+  const r = Math.sqrt(size / (3 * Math.sqrt(3)));
+  context.moveTo(0, 2 * r);
+  context.lineTo(-Math.sqrt(3) * r, -r);
+  context.lineTo(Math.sqrt(3) * r, -r);
+  context.closePath();
+}};
+const markers = {circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle,
+                 'triangle-down': triangleDown, diamond: d3.symbolDiamond, pentagon};
+const markerPath = (name, size) => d3.symbol().type(markers[name] ?? d3.symbolCircle).size(size)();
+/** Dashes of a solver's further settings. */
+const variantDashes = ['', '7 4', '2 3', '10 3 2 3', '16 4', '4 2', '10 3 2 3 2 3', '2 6'];
+const dashOf = (series) => series.variant ? variantDashes[series.variant % variantDashes.length] : solverOf(series.solver).dash;
+
+/** Pixels: of a chart, above and below its plot, and of a row of failed cases. */
+const box = {height: 250, top: 10, bottom: 22, row: 13};
+
+/** A scale over shown values: logarithmic over the positive ones or linear, with a little air. */
+function scaleOf(kind, values, range) {
+  const usable = values.filter((v) => Number.isFinite(v) && (kind !== 'log' || v > 0));
+  let [low, high] = usable.length ? d3.extent(usable) : kind === 'log' ? [0.1, 1] : [0, 1];
+  if (kind === 'log') {
+    const air = Math.max((high / low) ** 0.05, 1.12);
+    return d3.scaleLog().domain([low / air, high * air]).range(range);
+  }
+  if (low >= 0 && low < 0.5 * high) low = 0;
+  const air = (high - low || Math.abs(high) || 1) * 0.05;
+  return d3.scaleLinear().domain([low === 0 ? 0 : low - air, high + air]).range(range);
+}
+
+/** Ticks that can be read: the values of a swept setting, or 1, 2 and 5 of each power of ten as far as they fit. */
+function ticksOf(scale, axis, kind, wanted) {
+  const [low, high] = scale.domain(), inside = (v) => v >= low && v <= high;
+  if (axis.values) return axis.values.map((v) => v * axis.scale).filter(inside);
+  if (kind !== 'log') return scale.ticks(wanted);
+  const decades = Math.log10(high / low);
+  if (decades < 0.7) return d3.ticks(low, high, wanted);
+  const factors = decades > 0.7 * wanted ? [1] : decades > 1.6 ? [1, 3] : [1, 2, 5];
+  return d3.range(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)) + 1)
+      .flatMap((power) => factors.map((f) => f * 10 ** power)).filter(inside);
+}
+
+/** Takes away texts that would lie on one kept before them or on an obstacle; measured, not estimated. */
+function thin(texts, obstacles = []) {
+  const taken = obstacles.map((node) => node.getBoundingClientRect());
+  for (const text of texts) {
+    const box = text.getBoundingClientRect();
+    if (taken.some((t) => box.left < t.right + 2 && box.right > t.left - 2 && box.top < t.bottom && box.bottom > t.top))
+      text.remove();
+    else taken.push(box);
+  }
+}
+
+function pointLines(spec, series, point) {
+  const {x, y} = spec, spread = interval(point.low, point.high, y), costs = interval(point.x_low, point.x_high, x);
+  const value = point.y === null || point.y === undefined ? 'no value' :
+    `${shown(point.y, y, 4)}${spread && ` (95 %: ${spread})`}`;
+  return [`${series.label}${point.name ? `, ${point.name}` : ''}`, `${y.title}: ${value}`,
+          `${x.title}: ${shown(point.x, x, 4)}${costs && ` (95 %: ${costs})`}`,
+          ...caseLines(point.status, undefined, point.case)];
+}
+
+/** Charts that are on the page: they are drawn again when the page is printed. */
+const drawn = new Set();
+
+/** A swatch of the key: a stretch of the line with its marker. */
+function swatch(series) {
+  const svg = d3.create('svg').attr('class', 'swatch').attr('viewBox', '0 0 30 12').attr('aria-hidden', 'true');
+  svg.append('line').attr('x2', 30).attr('y1', 6).attr('y2', 6).attr('stroke-width', 2)
+      .style('stroke', series.colour ?? solverColour(series.solver)).attr('stroke-dasharray', series.dash ?? dashOf(series));
+  if (series.solver)
+    svg.append('path').attr('transform', 'translate(15,6)').attr('d', markerPath(solverOf(series.solver).marker, 45))
+        .style('fill', solverColour(series.solver));
+  return svg.node();
+}
+
+/** The key: series, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
+function chartKey(spec, kind) {
+  const points = spec.series.flatMap((s) => s.points), grey = (dash) => swatch({colour: 'var(--muted)', dash});
+  const failed = [...new Set(points.filter((p) => p.failed).map((p) => p.status))].map(statusOf);
+  const unfinished = [...new Set(points.filter((p) => !p.failed && p.status !== 'ok').map((p) => p.status))].map(statusOf);
+  const entry = (sign, text, order) => el('li', {'data-s': order}, sign, el('span', {}, text));
+  return el('ul', {className: 'key'},
+    spec.series.map((s) => entry(swatch(s), short(s.label, 60), solverOf(s.solver).order)),
+    spec.theory && entry(grey('4 3'), spec.theory.text),
+    spec.floor && entry(grey('1 3'), spec.floor.text),
+    spec.front && entry(grey(''), 'no setting is better in both'),
+    failed.map((s) => entry(el('b', {}, s.glyph), `above the plot: ${s.title}`)),
+    kind === 'log' && points.some((p) => p.zero) && entry(el('b', {}, '▲'), 'on the axis: exactly zero'),
+    kind === 'log' && points.some((p) => p.y < 0) && entry(el('b', {}, '!'),
+      `${points.filter((p) => p.y < 0).length} below zero: linear scale only`),
+    unfinished.length > 0 && entry(el('b', {}, '○'), `hollow: ${unfinished.map((s) => s.title).join(', ')}`));
+}
+
+/** The figure of a chart. It is drawn when it gets a width, and again when that changes. */
+function chartFigure(spec) {
+  const points = spec.series.flatMap((s) => s.points);
+  const heading = el('h4', {}, short(spec.title, 120));
+  const note = el('p', {className: 'note'}, [spec.held, spec.caption].filter(Boolean).join('; '));
+  if (points.length && points.every((p) => p.zero))
+    return el('figure', {className: 'card chart flat', id: `chart-${spec.id}`}, el('figcaption', {}, heading, note),
+              el('p', {}, `Every value is exactly zero (${count(points.length, 'case')}).`));
+  const view = {kind: spec.y.axis, transform: d3.zoomIdentity, clip: `clip-${drawn.size}`};
+  const plot = el('div', {className: 'plot'}), key = el('div'), bar = el('div', {className: 'tools'});
+  const svg = d3.select(plot).append('svg').attr('role', 'group').attr('aria-label', short(`${spec.title}: points`, 160));
+  const reset = rove(plot, '.point');
+  const draw = (width) => {
+    if (!width) return;
+    const active = document.activeElement?.dataset?.place;
+    drawChart(svg, spec, view, width);
+    if (svg.node().contains(document.activeElement) || active !== undefined)
+      svg.node().querySelector(`[data-place="${active}"]`)?.focus();
+    reset();
+  };
+  const again = () => draw(plot.clientWidth);
+  const zoom = d3.zoom().scaleExtent([1, 40])
+      .filter(() => {
+        const {type, ctrlKey, touches} = d3.event;
+        return type === 'wheel' ? ctrlKey : touches ? touches.length > 1 : view.transform.k > 1 && type !== 'dblclick';
+      })
+      .on('zoom', () => { view.transform = d3.event.transform; again(); });
+  svg.call(zoom).style('touch-action', 'pan-x pan-y');
+  const tool = (text, label, act) => el('button', {type: 'button', title: label, 'aria-label': label, onclick: act}, text);
+  bar.append(tool('+', 'Zoom in', () => svg.call(zoom.scaleBy, 1.6)), tool('−', 'Zoom out', () => svg.call(zoom.scaleBy, 1 / 1.6)),
+             tool('⟲', 'Whole range', () => svg.call(zoom.transform, d3.zoomIdentity)));
+  const keyOf = () => key.replaceChildren(chartKey(spec, view.kind));
+  if (points.some((p) => p.y > 0)) {
+    const other = () => view.kind === 'log' ? 'linear' : 'log';
+    const flip = tool(other(), 'Vertical scale: ' + other(), () => {
+      view.kind = other();
+      flip.textContent = other();
+      flip.title = 'Vertical scale: ' + other();
+      flip.setAttribute('aria-label', flip.title);
+      keyOf();
+      again();
+    });
+    bar.append(flip);
+  }
+  keyOf();
+  new ResizeObserver(() => { if (!document.body.classList.contains('printing')) again(); }).observe(plot);
+  drawn.add({plot, draw, zoom, svg});
+  return el('figure', {className: 'card chart', id: `chart-${spec.id}`}, el('figcaption', {}, heading, bar, note), key,
+            el('div', {className: 'y-title'}, titled(spec.y)), plot, el('div', {className: 'x-title'}, titled(spec.x)),
+            claimList(all(spec.claims, claims)));
+}
+
+function drawChart(svg, spec, view, width) {
+  const flat = spec.series.flatMap((s) => s.points), {x, y} = spec;
+  const failing = spec.series.filter((s) => s.points.some((p) => p.failed));
+  const strip = failing.length ? failing.length * box.row + 6 : 0;
+  const floor = view.kind === 'log' && flat.some((p) => p.zero) ? 12 : 0;
+  const [yLow, yHigh] = [box.height - box.bottom - floor, box.top + strip];
+  const base = scaleOf(view.kind, flat.filter((p) => !p.failed && p.y !== null)
+      .flatMap((p) => [p.y, p.low, p.high].filter((v) => v !== null && v !== undefined)).map((v) => v * y.scale), [yLow, yHigh]);
+  const ys = view.transform.rescaleY(base);
+  svg.attr('viewBox', `0 0 ${width} ${box.height}`).attr('width', width).attr('height', box.height).selectAll('*').remove();
+  const axisY = svg.append('g').attr('class', 'axis y');
+  axisY.call(d3.axisLeft(ys).tickValues(ticksOf(ys, {...y, values: undefined}, view.kind, 5)).tickFormat((v) => number(v)).tickSize(0)
+      .tickPadding(6));
+  const left = Math.ceil(axisY.node().getBBox().width) + 4, right = 12;
+  axisY.attr('transform', `translate(${left},0)`);
+  const xs = view.transform.rescaleX(scaleOf(x.axis, flat.flatMap((p) => [p.x, p.x_low, p.x_high])
+      .filter((v) => v !== null && v !== undefined).map((v) => v * x.scale), [left + 8, width - right]));
+  axisY.selectAll('.tick line').attr('x2', width - left - right);
+  const axisX = svg.append('g').attr('class', 'axis x').attr('transform', `translate(0,${box.height - box.bottom})`);
+  axisX.call(d3.axisBottom(xs).tickValues(ticksOf(xs, x, x.axis, width / 90)).tickFormat((v) => number(v)).tickSize(4).tickPadding(4));
+  axisX.select('.domain').attr('d', `M${left},0H${width - right}`);
+  thin(axisX.selectAll('text').nodes());
+  svg.append('clipPath').attr('id', view.clip).append('rect').attr('x', left).attr('y', yHigh - 4)
+      .attr('width', Math.max(0, width - left - right + 6)).attr('height', Math.max(0, yLow - yHigh + 8));
+  const area = svg.append('g').attr('clip-path', `url(#${view.clip})`);
+  const px = (v) => xs(v * x.scale), py = (v) => ys(v * y.scale);
+  const usable = (p) => !p.failed && typeof p.y === 'number' && (view.kind !== 'log' || p.y > 0);
+  const line = d3.line().defined(usable).x((p) => px(p.x)).y((p) => py(p.y));
+  if (spec.front)
+    area.append('path').attr('class', 'front').attr('d', d3.line().x((p) => px(p.x)).y((p) => py(p.y)).curve(d3.curveStepAfter)(spec.front.filter(usable)));
+  if (spec.theory && (view.kind === 'log') === (x.axis === 'log')) {
+    const ends = xs.domain().map((v) => v / x.scale);
+    area.append('path').attr('class', 'theory')
+        .attr('d', d3.line()(ends.map((v) => [px(v), py(spec.theory.factor * v ** spec.theory.slope)])));
+  }
+  if (spec.floor) area.append('path').attr('class', 'floor').attr('d', `M${left},${py(spec.floor.y)}H${width - right}`);
+  const inside = (v) => v >= left && v <= width - right + 1;
+  spec.series.forEach((s, order) => {
+    const solver = solverOf(s.solver), colour = solverColour(s.solver), dodge = (order - (spec.series.length - 1) / 2) * 7;
+    const lines = area.append('g').attr('data-s', solver.order).style('stroke', colour).style('fill', 'none');
+    if (s.join) lines.append('path').attr('class', 'line').attr('stroke-dasharray', dashOf(s)).attr('d', line(s.points));
+    lines.append('path').attr('class', 'error').attr('d', s.points.filter(usable).map((p) => errorBar(p, px, py, view.kind)).join(''));
+    const group = svg.append('g').attr('data-s', solver.order).style('color', colour);
+    s.points.forEach((p, i) => {
+      const floored = p.zero && view.kind === 'log';
+      if (!p.failed && !floored && !usable(p)) return;
+      const cx = px(p.x) + (floored ? dodge : 0);
+      const cy = p.failed ? box.top + 4 + failing.indexOf(s) * box.row : floored ? box.height - box.bottom - 5 : py(p.y);
+      if (!inside(cx) || (!p.failed && !floored && (cy < yHigh - 4 || cy > yLow + 4))) return;
+      drawPoint(group, {spec, series: s, point: p, place: `${order}-${i}`, order, cx, cy, floored});
+    });
+  });
+  nameBest(svg, spec);
+}
+
+/** Vertical and horizontal bars over the 95 % intervals, with caps. */
+function errorBar(p, px, py, kind) {
+  const cx = px(p.x), cy = py(p.y), cap = 3;
+  let d = '';
+  if (typeof p.low === 'number' && typeof p.high === 'number') {
+    const low = kind === 'log' && p.low <= 0 ? py(p.y) + 400 : py(p.low), high = py(p.high);
+    d += `M${cx},${low}V${high}M${cx - cap},${low}h${2 * cap}M${cx - cap},${high}h${2 * cap}`;
+  }
+  if (typeof p.x_low === 'number' && typeof p.x_high === 'number')
+    d += `M${px(p.x_low)},${cy}H${px(p.x_high)}M${px(p.x_low)},${cy - cap}v${2 * cap}M${px(p.x_high)},${cy - cap}v${2 * cap}`;
+  return d;
+}
+
+function drawPoint(group, {spec, series, point, place, order, cx, cy, floored}) {
+  const known = cases.has(point.case);
+  const g = group.append('g').attr('class', 'point').attr('transform', `translate(${cx},${cy})`)
+      .attr('role', known ? 'button' : 'img').attr('tabindex', -1).attr('data-group', order).attr('data-place', place);
+  g.append('circle').attr('class', 'reach').attr('r', 9);
+  if (point.failed) {
+    g.append('text').attr('class', 'glyph').attr('dy', '0.35em').text(statusOf(point.status).glyph);
+  } else {
+    g.append('path').attr('class', floored ? 'zero' : 'dot')
+        .attr('d', floored ? markerPath('triangle', 50) : markerPath(solverOf(series.solver).marker, 52))
+        .classed('hollow', point.status !== 'ok');
+    if (point.name && !floored) g.append('text').attr('class', 'name').attr('x', 7).attr('y', -6).text(point.name);
+  }
+  describe(g.node(), pointLines(spec, series, point));
+  if (!known) return;
+  const open = () => state.set({case: point.case});
+  g.on('click', open).on('keydown', () => {
+    if (d3.event.key !== 'Enter' && d3.event.key !== ' ') return;
+    d3.event.preventDefault();
+    open();
+  });
+}
+
+/** The names of the points on the front, as many as find room; the others say theirs at the pointer. */
+function nameBest(svg, spec) {
+  const texts = svg.selectAll('.point .name').nodes();
+  if (!spec.front) return texts.forEach((text) => text.remove());
+  const best = new Set(spec.front.map((p) => p.case));
+  const owner = (text) => { const [s, i] = text.parentNode.dataset.place.split('-'); return spec.series[s].points[i].case; };
+  const frame = svg.node().getBoundingClientRect();
+  const fits = (text) => best.has(owner(text)) && text.getBoundingClientRect().right <= frame.right;
+  for (const text of texts.filter((text) => !fits(text))) text.remove();
+  thin(texts.filter((text) => text.isConnected), [...svg.selectAll('.dot').nodes(), ...svg.selectAll('.axis text').nodes()]);
+}

@@ -1,0 +1,174 @@
+'use strict';
+// Films of a scene with their quantities over time beside them. Times are seconds of simulated time.
+
+/** A data URI as a blob: it may be played while the page may ask for nothing from a network. */
+function blobUrl(uri) {
+  const [head, body] = uri.split(',', 2);
+  return URL.createObjectURL(new Blob([Uint8Array.from(atob(body), (c) => c.charCodeAt(0))], {type: head.slice(5).split(';')[0]}));
+}
+
+const seconds = (t) => t.toFixed(2) + '\u00A0s';
+
+/** Lines over time with a cursor and the values at it; `seek` is told where the reader points. */
+function timeChart(track, seek, until) {
+  const quantity = metric(track.metric), key = el('ul', {className: 'key'}), plot = el('div', {className: 'plot time'});
+  const outputs = track.series.map((s) => {
+    const output = el('output', {});
+    key.append(el('li', {'data-s': solverOf(s.solver).order}, swatch(s), el('span', {}, short(s.label, 60)), output));
+    return output;
+  });
+  const svg = d3.select(plot).append('svg').attr('role', 'img').attr('aria-label', short(`${track.title} over time`, 160));
+  const span = until ?? d3.max(track.series, (s) => s.t[s.t.length - 1]), h = 154, foot = 26;
+  let xs = null, cursor = null, time = 0;
+  const draw = (width) => {
+    if (!width) return;
+    svg.attr('viewBox', `0 0 ${width} ${h}`).attr('width', width).attr('height', h).selectAll('*').remove();
+    const values = track.series.flatMap((s) => s.y).filter((v) => v !== null).map((v) => v * quantity.scale);
+    const ys = scaleOf('linear', values.length ? [0, ...values] : [], [h - foot, 8]);
+    const axis = svg.append('g').attr('class', 'axis y')
+        .call(d3.axisLeft(ys).tickValues(ys.ticks(4)).tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
+    const left = Math.ceil(axis.node().getBBox().width) + 4;
+    axis.attr('transform', `translate(${left},0)`).selectAll('.tick line').attr('x2', width - left - 12);
+    xs = d3.scaleLinear([0, span], [left, width - 12]);
+    svg.append('g').attr('class', 'axis x').attr('transform', `translate(0,${h - foot})`)
+        .call(d3.axisBottom(xs).ticks(width / 80).tickSize(4).tickPadding(7).tickFormat((v) => number(v) + ' s'));
+    thin(svg.selectAll('.axis.x text').nodes());
+    for (const s of track.series)
+      svg.append('path').attr('class', 'line').attr('data-s', solverOf(s.solver).order).attr('stroke-dasharray', dashOf(s))
+          .style('stroke', solverColour(s.solver))
+          .attr('d', d3.line().defined((v, i) => v !== null && s.t[i] <= span).x((v, i) => xs(s.t[i]))
+              .y((v) => ys(v * quantity.scale))(s.y));
+    cursor = svg.append('path').attr('class', 'cursor');
+    show(time);
+  };
+  const show = (t) => {
+    time = t;
+    if (cursor) cursor.attr('d', `M${xs(Math.min(t, span))},6V${h - foot}`);
+    track.series.forEach((s, i) => {
+      const at = Math.max(0, d3.bisectRight(s.t, t + 1e-9) - 1);
+      outputs[i].textContent = shown(s.y[at], quantity);
+    });
+  };
+  const point = (event) => {
+    if (event.buttons & 1) seek(Math.max(0, Math.min(span, xs.invert(d3.clientPoint(svg.node(), event)[0]))));
+  };
+  svg.node().addEventListener('pointerdown', point);
+  svg.node().addEventListener('pointermove', point);
+  new ResizeObserver(() => { if (!document.body.classList.contains('printing')) draw(plot.clientWidth); }).observe(plot);
+  drawn.add({plot, draw});
+  show(0);
+  return {node: el('figure', {className: 'track'}, el('figcaption', {}, el('h4', {}, titled({...quantity, title: track.title || quantity.title})),
+                   quantity.window && el('span', {className: 'note'}, ' over time')), key, plot), show, span};
+}
+
+/** A chart over time without a film: its slider moves the cursor. */
+function seriesFigure(spec) {
+  const track = {metric: spec.y.metric, title: spec.title, series: spec.series};
+  const seek = (t) => { slider.value = t; line.show(t); };
+  const slider = el('input', {type: 'range', min: 0, step: 'any', 'aria-label': `Time in ${short(spec.title, 60)} [s]`,
+                              oninput: () => line.show(Number(slider.value))});
+  const line = timeChart(track, seek);
+  slider.max = line.span;
+  seek(line.span);
+  return el('div', {className: 'card chart', id: `chart-${spec.id}`}, line.node, slider, el('p', {className: 'note'}, spec.caption));
+}
+
+function colourBar(bar) {
+  return el('div', {className: 'colour-bar', role: 'img', 'aria-label': `Colours: ${bar.title}, ${bar.ticks.map((t) => t.text).join(', ')}`},
+    el('span', {}, bar.title), el('i', {style: `background:linear-gradient(90deg,${bar.stops.filter((s) => /^#[0-9a-f]{6}$/i.test(s)).join(',')})`}),
+    el('div', {className: 'ticks'}, bar.ticks.map((t) => el('span', {style: `left:${100 * t.at}%`}, t.text))));
+}
+
+function panels(film) {
+  return el('div', {className: 'panels'}, film.panels.map(({solver, settings, case: key}) =>
+    el('div', {}, named(solver), el('small', {}, caseLink(key, short(settings, 120))))));
+}
+
+/** All films of a scene in one player: the first one leads, the others follow it. */
+function player(scene, list) {
+  const playable = list.filter((film) => film.src), lead = playable.find((film) => film.type.startsWith('video/'));
+  const pictures = playable.map((film) => {
+    const size = {alt: film.alt, className: 'picture'};
+    if (!film.type.startsWith('video/')) return el('img', {...size, src: film.src});
+    return el('video', {className: 'picture', poster: film.poster, muted: true, playsInline: true, preload: 'none', 'aria-label': film.alt});
+  });
+  const videos = pictures.filter((p) => p.tagName === 'VIDEO');
+  const tracks = playable.flatMap((film) => film.tracks ?? []).map((track) => timeChart(track, (t) => seek(t), lead?.duration));
+  let time = lead?.poster_t ?? playable[0]?.poster_t ?? 0, touched = false;
+  const label = el('span', {}, 'play'), clock = el('output', {className: 'clock'}, seconds(time));
+  const slider = el('input', {type: 'range', min: 0, 'aria-label': `Time of the film of ${short(scene.title)} [s]`,
+    oninput: () => seek(Number(slider.value))});
+  const show = () => {
+    clock.textContent = seconds(time);
+    slider.value = time;
+    for (const track of tracks) track.show(time);
+  };
+  const load = () => videos.forEach((video, i) => {
+    const film = playable.filter((f) => f.type.startsWith('video/'))[i];
+    if (video.src || !film) return;
+    video.addEventListener('loadedmetadata', () => place(video));
+    video.src = blobUrl(film.src);
+  });
+  /** A frame is sought a little after its beginning: rounding must not show the one before. */
+  const place = (video) => {
+    if (video.readyState) video.currentTime = Math.min(video.duration, (time + (time > 0 ? lead.frame / 8 : 0)) / lead.speed);
+  };
+  const pause = () => {
+    for (const video of videos) video.pause();
+    label.textContent = 'play';
+    box.classList.remove('playing');
+  };
+  const seek = (t) => {
+    if (!lead) { time = t; return show(); }
+    load();
+    pause();
+    touched = true;
+    time = Math.max(0, Math.min(lead.duration, t));
+    videos.forEach(place);
+    show();
+  };
+  const follow = () => {
+    if (videos[0].paused) return;
+    time = videos[0].currentTime * lead.speed;
+    for (const video of videos)
+      if (Math.abs(video.currentTime - videos[0].currentTime) > 2 * lead.frame / lead.speed) video.currentTime = videos[0].currentTime;
+    show();
+    requestAnimationFrame(follow);
+  };
+  const toggle = () => {
+    if (!videos[0].paused) return pause();
+    if (!touched || time >= lead.duration - lead.frame) seek(0);
+    load();
+    touched = true;
+    Promise.all(videos.map((video) => video.play())).then(() => requestAnimationFrame(follow)).catch(pause);
+    label.textContent = 'pause';
+    box.classList.add('playing');
+  };
+  const step = (by) => seek((Math.round(time / lead.frame) + by) * lead.frame);
+  const button = (text, name, act) => el('button', {type: 'button', 'aria-label': name, onclick: act}, text);
+  const box = el('div', {className: 'card player', 'data-at': 'film', tabIndex: lead ? 0 : undefined, role: 'group',
+                         'aria-label': `Film of ${short(scene.title)}`},
+    el('div', {className: 'stage'},
+      el('div', {className: 'pictures'}, playable.map((film, i) => el('div', {className: 'film'}, panels(film), pictures[i]))),
+      playable[0]?.bar && colourBar(playable[0].bar),
+      lead && el('div', {className: 'controls'}, el('button', {type: 'button', className: 'play', onclick: toggle}, label),
+        button('◂', 'One frame back', () => step(-1)), button('▸', 'One frame forward', () => step(1)), slider, clock,
+        el('span', {className: 'hint'}, `${lead.speed < 1 ? `${number(lead.speed, 2)} of real time · ` : ''}space, ← →`))),
+    el('div', {className: 'beside'}, tracks.map((track) => track.node),
+      list.map((film) => el('p', {className: 'note'}, film.left_out ?? film.caption))));
+  if (lead) {
+    slider.max = lead.duration;
+    slider.step = lead.frame;
+    for (const video of videos) video.onclick = () => { box.focus({preventScroll: true}); toggle(); };
+    videos[0].addEventListener('ended', pause);
+    box.addEventListener('keydown', (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest('button, a, input')) return;
+      const act = {' ': toggle, ArrowLeft: () => step(-1), ArrowRight: () => step(1)}[event.key];
+      if (!act) return;
+      event.preventDefault();
+      act();
+    });
+  }
+  show();
+  return box;
+}

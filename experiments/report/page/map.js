@@ -1,0 +1,61 @@
+'use strict';
+// Stability maps: how cases end over two settings, as a table with a glyph in every cell.
+
+/** Statuses with their glyphs, as far as `used` has them. */
+function statusKey(used, extra) {
+  return el('ul', {className: 'key'}, model.statuses.filter(({id}) => used.has(id)).map((status) =>
+    el('li', {title: status.help}, glyphBox(status.id), el('span', {}, `${status.title}${status.help ? `: ${status.help}` : ''}`))),
+    extra);
+}
+
+/** A glyph on its colour. */
+function glyphBox(id) {
+  const i = statusIndex(id);
+  return el('span', {className: 'glyph-box', style: `background:var(--c${i});color:var(--i${i})`}, statusOf(id).glyph);
+}
+
+function mapCell(map, cell, row, column) {
+  if (!cell) return el('td', {}, el('span', {className: 'absent', 'aria-label': 'left out by the study'}, '·'));
+  const i = statusIndex(cell.status), known = cases.has(cell.case);
+  const button = el('button', {type: 'button', className: cell.inferred ? 'cell inferred' : 'cell', tabIndex: -1,
+    'data-group': row, style: `--c:var(--c${i});--i:var(--i${i})`}, statusOf(cell.status).glyph);
+  if (known) button.onclick = () => state.set({case: cell.case});
+  else button.setAttribute('aria-disabled', true);
+  const settings = `${map.x.title} ${shown(map.x.values[column], map.x, 4)}, ${map.y.title} ${shown(map.y.values[row], map.y, 4)}`;
+  describe(button, [`${map.label}: ${settings}`,
+    ...(cell.inferred ? [`status: ${statusOf(cell.status).title} (not run, inferred from its neighbours)`]
+                      : caseLines(cell.status, cell.reason, cell.case))]);
+  return el('td', {}, button);
+}
+
+function mapFigure(map) {
+  const at = new Map(map.cells.map((cell) => [`${cell.row} ${cell.column}`, cell]));
+  const texts = (axis) => axis.texts ?? axis.values.map((v) => number(v * axis.scale));
+  const rows = d3.range(map.y.values.length).reverse();
+  const table = el('table', {className: 'map'},
+    el('caption', {}, `${map.run} of ${map.all} cells were run`),
+    el('thead', {}, el('tr', {}, el('th', {scope: 'col', className: 'corner'}, `${titled(map.y)} ↑`),
+      texts(map.x).map((text) => el('th', {scope: 'col'}, text)))),
+    el('tbody', {}, rows.map((row) => el('tr', {}, el('th', {scope: 'row'}, texts(map.y)[row]),
+      map.x.values.map((_, column) => mapCell(map, at.get(`${row} ${column}`), row, column))))));
+  const box = el('div', {className: 'scroll'}, table);
+  rove(table, '.cell');
+  return el('figure', {className: 'card chart', id: `map-${map.id}`, 'data-s': solverOf(map.solver).order},
+            el('figcaption', {}, el('h4', {}, named(map.solver)), el('p', {className: 'note'},
+              solverOf(map.solver).title === map.label ? '' : map.label)),
+            box, el('div', {className: 'x-title'}, `${titled(map.x)} →`));
+}
+
+/** All maps of a scene: those of one study stand side by side under their question. */
+function mapsOf(scene) {
+  const shown = all(scene.maps, maps);
+  if (!shown.length) return null;
+  const used = new Set(shown.flatMap((map) => map.cells.map((cell) => cell.status)));
+  const inferred = shown.some((map) => map.cells.some((cell) => cell.inferred));
+  return el('section', {className: 'part'}, el('h3', {}, 'Stability'),
+    statusKey(used, inferred && el('li', {}, el('span', {className: 'glyph-box sample inferred'}, '✓'),
+      el('span', {}, 'dashed: not run, inferred from its neighbours'))),
+    d3.nest().key((map) => map.study + '\n' + map.title).entries(shown).map(({values}) => [
+      el('h4', {}, short(values[0].title, 140), ' ', el('small', {}, `study ${short(values[0].study, 40)}`)),
+      el('div', {className: 'grid'}, values.map(mapFigure))]));
+}

@@ -1,0 +1,412 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "experiments/report/claim.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/palette.hpp"
+
+namespace taut::report {
+
+namespace {
+
+constexpr const char* kStretch = "stretch.rms";
+constexpr const char* kVertexDepth = "penetration.peak";
+constexpr const char* kFaceDepth = "face.peak";
+constexpr const char* kPassages = "tunnelling.events";
+
+/// A map needs at least this many time steps, over at least this range, to have a largest one.
+constexpr std::size_t kLeastSteps = 3;
+constexpr double kLeastRange = 4;
+
+std::string at_work(const Rivals& rivals) {
+  const Work& work = rivals.work;
+  const bool both = work.substeps >= 0 && work.sweeps >= 0;
+  return " at " + work.text() + (both ? " (substeps × sweeps)" : "");
+}
+
+std::string dt_text(double dt) { return quantity("dt").text(dt, 3); }
+
+/// ", time step 15.6 ms": of these scenes, if it is one for all.
+std::string at_step(const Rivals& rivals, const std::vector<std::string>& scenes) {
+  std::set<double> steps;
+  for (const std::string& scene : scenes) steps.insert(rivals.quoted(scene)->question.dt);
+  if (steps.size() == 1) return ", time step " + dt_text(*steps.begin());
+  return ", time steps " + dt_text(*steps.begin()) + " to " + dt_text(*steps.rbegin());
+}
+
+/// Why a quoted case has no value: "exploded", "was not run like this".
+std::string why_none(const Record* r) {
+  if (!r) return "was not run like this";
+  if (completed(*r)) return "has no value";
+  return "ended as " + std::string(to_string(r->status.kind));
+}
+
+/// What all rivals have on a scene, or why not.
+struct SceneValues {
+  std::string scene;
+  std::vector<std::optional<double>> values;  ///< of each rival
+  std::string lacking;                        ///< "box (Bullet ended as exploded)"; "": nothing
+  bool any = false;                           ///< somebody has a value
+};
+
+std::vector<SceneValues> look_at_all(const Rivals& rivals, Evidence& evidence) {
+  std::vector<SceneValues> all;
+  for (const QuotedScene& quoted : rivals.scenes) {
+    SceneValues here{.scene = quoted.question.scene, .values = {}, .lacking = {}};
+    std::string why;
+    for (std::size_t i = 0; i < rivals.all.size(); ++i) {
+      const Record* r = quoted.cases[i];
+      here.values.push_back(r ? evidence.look(rivals.all[i].label, *r) : std::nullopt);
+      here.any = here.any || here.values.back();
+      if (!here.values.back())
+        why += (why.empty() ? "" : ", ") + rivals.all[i].label + " " + why_none(r);
+    }
+    if (!why.empty()) here.lacking = here.scene + " (" + why + ")";
+    all.push_back(std::move(here));
+  }
+  return all;
+}
+
+std::string sentence_if(const std::string& opening, const std::vector<std::string>& names) {
+  return names.empty() ? "" : opening + joined(names) + ".";
+}
+
+/// Who has least of it on which scenes.
+std::string winners(const Rivals& rivals, const std::vector<SceneValues>& common) {
+  std::vector<std::vector<std::string>> least(rivals.all.size());
+  std::vector<std::string> alike;
+  for (const SceneValues& here : common) {
+    std::vector<double> v;
+    for (const auto& value : here.values) v.push_back(std::max(*value, kNoStretch));
+    const auto best = static_cast<std::size_t>(std::ranges::min_element(v) - v.begin());
+    std::vector<double> sorted = v;
+    std::ranges::sort(sorted);
+    if (sorted[1] < kAlike * sorted[0])
+      alike.push_back(here.scene);
+    else
+      least[best].push_back(here.scene);
+  }
+  std::string text;
+  const std::string word = rivals.all.size() > 2 ? " Least" : " Less";
+  for (std::size_t i = 0; i < rivals.all.size(); ++i)
+    text += sentence_if(word + " with " + rivals.all[i].label + " on ", least[i]);
+  return text + sentence_if(rivals.all.size() > 2 ? " The two least within 5\u00A0% on "
+                                                  : " Within 5\u00A0% of each other on ",
+                            alike);
+}
+
+void claim_stretch(const Rivals& rivals, std::vector<Claim>& claims) {
+  const Quantity q = quantity(kStretch);
+  Evidence evidence(kStretch, "geometric mean over scenes; less than " + q.text(kNoStretch, 1) +
+                                  " counts as " + q.text(kNoStretch, 1));
+  std::vector<SceneValues> common;
+  std::vector<std::string> names, nothing, lacking;
+  for (const SceneValues& here : look_at_all(rivals, evidence)) {
+    if (!here.lacking.empty()) {
+      lacking.push_back(here.lacking);
+    } else if (std::ranges::all_of(here.values, [](const auto& v) { return *v < kNoStretch; })) {
+      nothing.push_back(here.scene);
+    } else {
+      common.push_back(here);
+      names.push_back(here.scene);
+    }
+  }
+  if (evidence.seen().empty()) return;
+  const std::string opening = "RMS stretch in the last second" + at_work(rivals);
+  const std::string rest =
+      sentence_if(" Below " + q.text(kNoStretch, 1) + " with all on ", nothing) +
+      sentence_if(" Left out: ", lacking);
+  if (!lacking.empty()) evidence.leave_out("Left out: " + joined(lacking) + ".");
+  if (common.empty()) {
+    claims.emplace_back("stretch", ClaimKind::headline, "all",
+                        opening + ": no scene has a value above that of every solver." + rest,
+                        Sure::single_run, std::vector{evidence});
+    return;
+  }
+  std::vector<Bar> bars;
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < rivals.all.size(); ++i) {
+    std::vector<double> values;
+    for (const SceneValues& here : common) values.push_back(std::max(*here.values[i], kNoStretch));
+    const double mean = geometric_mean(values);
+    bars.push_back({rivals.all[i].solver, rivals.all[i].label, mean, {}, q.text(mean)});
+    parts.push_back(q.text(mean) + " with " + rivals.all[i].label);
+  }
+  Claim claim("stretch", ClaimKind::headline, "all",
+              opening + at_step(rivals, names) + ", geometric mean over " + joined(names) + ": " +
+                  joined(parts) + "." + (bars.size() > 1 ? winners(rivals, common) : "") + rest,
+              Sure::single_run, {evidence});
+  claims.push_back(claim.emphasise(parts));
+  claims.push_back(claim.tile("RMS stretch, last second",
+                              "Geometric mean over " + joined(names) + at_work(rivals) + ".",
+                              bars));
+}
+
+/// The largest of one rival over scenes on which all have the value.
+struct Deepest {
+  double value = -1;  ///< m; < 0: none
+  std::string scene;
+};
+
+void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
+  const std::size_t n = rivals.all.size();
+  std::vector<Evidence> basis;
+  std::vector<Deepest> deepest[2]{std::vector<Deepest>(n), std::vector<Deepest>(n)};
+  std::vector<double> passages(n);
+  std::set<std::string> counted;
+  std::vector<std::string> names, lacking;
+  bool passages_known = false;
+  for (const char* metric : {kVertexDepth, kFaceDepth, kPassages}) {
+    const bool sum = metric == kPassages;
+    Evidence evidence(metric, sum ? "sum over scenes" : "largest over scenes");
+    Evidence all_of_it = evidence;  // scenes without colliders are no evidence
+    for (const SceneValues& here : look_at_all(rivals, all_of_it)) {
+      if (!here.any) continue;
+      const QuotedScene& quoted = *rivals.quoted(here.scene);
+      for (std::size_t i = 0; i < n; ++i)
+        if (quoted.cases[i]) evidence.look(rivals.all[i].label, *quoted.cases[i]);
+      if (!here.lacking.empty()) {
+        // A case that failed lacks all three: it is said once.
+        const bool only_here = here.lacking.find("has no value") != std::string::npos;
+        const std::string what = (only_here ? quantity(metric).title + " on " : "") + here.lacking;
+        if (std::ranges::find(lacking, what) == lacking.end()) lacking.push_back(what);
+        continue;
+      }
+      if (counted.insert(here.scene).second) names.push_back(here.scene);
+      for (std::size_t i = 0; i < n; ++i) {
+        if (sum) passages[i] += *here.values[i], passages_known = true;
+        Deepest& d = deepest[metric == kFaceDepth][i];
+        if (!sum && *here.values[i] > d.value) d = {*here.values[i], here.scene};
+      }
+    }
+    if (!evidence.seen().empty()) basis.push_back(std::move(evidence));
+  }
+  if (basis.empty()) return;
+  const std::string rest = sentence_if(" Left out: ", lacking);
+  if (!lacking.empty()) basis.front().leave_out("Left out: " + joined(lacking) + ".");
+  const std::string opening = "Peak penetration over the whole run" + at_work(rivals);
+  if (names.empty()) {
+    claims.emplace_back("depth", ClaimKind::headline, "all",
+                        opening + ": no scene has a value of every solver." + rest,
+                        Sure::single_run, basis);
+    return;
+  }
+  const Quantity q = quantity(kVertexDepth);
+  std::string text;
+  std::vector<Bar> bars;
+  for (std::size_t i = 0; i < n; ++i) {
+    text += (i > 0 ? "; " : "") + rivals.all[i].label;
+    const char* where[] = {" at a vertex", " at a face"};
+    Bar bar{rivals.all[i].solver, rivals.all[i].label, {}, {}, ""};
+    bool said = false;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Deepest& d = deepest[k][i];
+      if (d.value < 0) continue;
+      const std::string one =
+          q.text(d.value) + where[k] + (d.value > 0 ? " (" + d.scene + ")" : "");
+      text += (said ? " and " : " ") + one, said = true;
+      if (d.value >= bar.value.value_or(0))
+        bar.value = d.value, bar.text = q.text(d.value) + where[k];
+    }
+    bars.push_back(std::move(bar));
+  }
+  if (deepest[1].front().value < 0) text += "; faces were not measured";
+  if (passages_known) {
+    text += "; passages of vertices through a collider:";
+    for (std::size_t i = 0; i < n; ++i)
+      text += (i > 0 ? ", " : " ") + rivals.all[i].label + " " + exact(passages[i]);
+  }
+  const Claim claim(
+      "depth", ClaimKind::headline, "all",
+      opening + at_step(rivals, names) + ", deepest of " + joined(names) + ": " + text + "." + rest,
+      Sure::single_run, basis);
+  claims.push_back(claim);
+  claims.push_back(claim.tile("Peak penetration, vertices and faces",
+                              "Whole run, deepest of " + joined(names) + at_work(rivals) + ".",
+                              bars));
+}
+
+/// A case as it is asked of every solver, the time step apart.
+using Column = std::pair<std::vector<std::string>, Work>;
+
+/// Which time steps every rival tried in which columns on one scene, and how each case ended.
+struct StepMap {
+  std::set<double> steps;
+  std::set<Work> works;
+  std::vector<std::map<double, std::vector<const Record*>>> cases;  ///< [rival][time step]
+};
+
+StepMap step_map(const std::vector<const Rival*>& rivals, const std::string& scene) {
+  std::vector<std::map<std::pair<double, Column>, const Record*>> tried(rivals.size());
+  for (std::size_t i = 0; i < rivals.size(); ++i)
+    for (const Record* r : rivals[i]->cases)
+      if (r->scene == scene)
+        tried[i].try_emplace({r->dt, {question_of(*r).overrides, work_of(*r)}}, r);
+  StepMap map;
+  map.cases.resize(rivals.size());
+  std::map<Column, std::set<double>> columns;
+  for (const auto& [at, record] : tried.front())
+    if (std::ranges::all_of(tried, [&](const auto& own) { return own.contains(at); }))
+      columns[at.second].insert(at.first);
+  for (const auto& [column, steps] : columns) {
+    if (steps.size() < kLeastSteps || *steps.rbegin() < kLeastRange * *steps.begin()) continue;
+    map.works.insert(column.second);
+    for (const double dt : steps) {
+      map.steps.insert(dt);
+      for (std::size_t i = 0; i < rivals.size(); ++i)
+        map.cases[i][dt].push_back(tried[i].at({dt, column}));
+    }
+  }
+  return map;
+}
+
+/// The largest step up to which (itself included) every case completed; 0: the smallest failed.
+double largest_stable(const std::map<double, std::vector<const Record*>>& cases) {
+  double largest = 0;
+  for (const auto& [dt, records] : cases) {
+    if (!std::ranges::all_of(records, [](const Record* r) { return completed(*r); })) break;
+    largest = dt;
+  }
+  return largest;
+}
+
+void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
+  std::vector<const Rival*> with_sweeps;
+  for (const Rival& rival : rivals.all)
+    if (std::ranges::any_of(rival.cases, [](const Record* r) { return work_of(*r).sweeps > 0; }))
+      with_sweeps.push_back(&rival);
+  if (with_sweeps.empty()) return;
+  Evidence evidence("dt",
+                    "largest time step up to which every case completed, over all the work "
+                    "that every solver tried");
+  std::vector<std::pair<std::string, std::vector<std::string>>> clauses;  // with their scenes
+  std::vector<std::vector<double>> found(with_sweeps.size());
+  bool limited = false, none = false;
+  for (const QuotedScene& quoted : rivals.scenes) {
+    const std::string& scene = quoted.question.scene;
+    const StepMap map = step_map(with_sweeps, scene);
+    if (map.steps.size() < kLeastSteps) continue;
+    std::vector<std::string> works, parts;
+    for (const Work& work : map.works) works.push_back(work.text());
+    for (std::size_t i = 0; i < with_sweeps.size(); ++i) {
+      for (const auto& [dt, records] : map.cases[i])
+        for (const Record* r : records) evidence.look(with_sweeps[i]->label, *r);
+      const double largest = largest_stable(map.cases[i]);
+      const bool all = largest == *map.steps.rbegin();
+      limited = limited || !all, none = none || largest == 0;
+      found[i].push_back(largest);
+      parts.push_back(
+          with_sweeps[i]->label + " " +
+          (largest == 0 ? "none" : dt_text(largest) + (all ? " (the largest tried)" : "")));
+    }
+    const std::string clause = " (" + dt_text(*map.steps.begin()) + " to " +
+                               dt_text(*map.steps.rbegin()) + " tried, each at " + joined(works) +
+                               ") " + joined(parts);
+    const auto same = std::ranges::find(clauses, clause, [](const auto& c) { return c.first; });
+    if (same == clauses.end())
+      clauses.push_back({clause, {scene}});
+    else
+      same->second.push_back(scene);
+  }
+  if (clauses.empty()) return;
+  std::string text;
+  for (const auto& [clause, scenes] : clauses)
+    text += (text.empty() ? "on " : "; on ") + joined(scenes) + clause;
+  std::vector<Bar> bars;
+  std::vector<std::string> means;
+  for (std::size_t i = 0; i < with_sweeps.size() && !none; ++i) {
+    const double mean = geometric_mean(found[i]);
+    bars.push_back({with_sweeps[i]->solver, with_sweeps[i]->label, mean, {}, dt_text(mean)});
+    means.push_back(with_sweeps[i]->label + " " + dt_text(mean));
+  }
+  if (clauses.size() > 1 && !none) text += "; geometric mean over these scenes " + joined(means);
+  const Claim claim("step", ClaimKind::headline, "all",
+                    "Largest time step up to which every case completed: " + text + ".",
+                    Sure::single_run, {evidence});
+  claims.push_back(claim);
+  if (!none)
+    claims.push_back(claim.tile(
+        limited ? "Largest stable time step" : "No time step that was tried failed",
+        "Up to which every case completed, at all the work that every solver tried.", bars));
+}
+
+void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
+  Evidence evidence("steps", "count of cases by status, all studies, all settings");
+  std::vector<std::string> parts, refused;
+  for (const Rival& rival : rivals.all) {
+    const std::vector<const Record*>& cases = rivals.by_solver.at(rival.solver);
+    std::map<std::string, int> failed;
+    int failures = 0, unsupported = 0;
+    const std::string name = solver_title(rival.solver);
+    for (const Record* r : cases) {
+      evidence.look(name, *r);
+      if (r->status.kind == Status::Kind::unsupported) ++unsupported;
+      if (completed(*r) || r->status.kind == Status::Kind::unsupported) continue;
+      ++failures, ++failed[std::string(to_string(r->status.kind))];
+    }
+    std::string kinds;
+    for (const auto& [kind, count] : failed)
+      kinds += (kinds.empty() ? " (" : ", ") + std::to_string(count) + " " + kind;
+    parts.push_back(name + " " + (failures == 0 ? "none" : std::to_string(failures)) + " of " +
+                    std::to_string(cases.size()) + kinds + (kinds.empty() ? "" : ")"));
+    if (unsupported > 0) refused.push_back(name + " " + std::to_string(unsupported));
+  }
+  if (evidence.seen().empty()) return;
+  claims.emplace_back(
+      "failures", ClaimKind::headline, "failures",
+      "Cases that failed: " + joined(parts) + "." + sentence_if(" Not supported: ", refused),
+      Sure::single_run, std::vector{evidence});
+}
+
+/// One scene, values side by side, failures by name.
+void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Claim>& claims) {
+  const std::string& scene = quoted.question.scene;
+  const std::string at = " at " + rivals.work.text() + ", time step " + dt_text(quoted.question.dt);
+  const auto side_by_side = [&](const std::string& id, const std::string& opening,
+                                const std::vector<std::pair<const char*, std::string>>& metrics) {
+    std::vector<Evidence> basis;
+    std::vector<std::string> parts(rivals.all.size());
+    bool any = false;
+    for (const auto& [metric, suffix] : metrics) {
+      const Quantity q = quantity(metric);
+      Evidence evidence(metric, "values side by side");
+      bool here = false;
+      for (std::size_t i = 0; i < rivals.all.size(); ++i) {
+        if (!quoted.cases[i]) continue;
+        const auto value = evidence.look(rivals.all[i].label, *quoted.cases[i]);
+        if (value) parts[i] += (parts[i].empty() ? " " : ", ") + q.text(*value) + suffix;
+        here = here || value;
+      }
+      any = any || here;
+      if (here) basis.push_back(std::move(evidence));
+    }
+    if (!any) return;
+    std::string text;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      text += (i > 0 ? "; " : "") + rivals.all[i].label +
+              (parts[i].empty() ? " " + why_none(quoted.cases[i]) : parts[i]);
+    claims.emplace_back(id + "-" + scene, ClaimKind::note, scene, opening + at + ": " + text + ".",
+                        Sure::single_run, basis);
+  };
+  side_by_side("stretch", "RMS stretch in the last second", {{kStretch, ""}});
+  side_by_side("depth", "Peak penetration over the whole run",
+               {{kVertexDepth, " at a vertex"},
+                {kFaceDepth, " at a face"},
+                {kPassages, " passages of vertices through a collider"}});
+}
+
+}  // namespace
+
+std::vector<Claim> physics_claims(const Rivals& rivals) {
+  std::vector<Claim> claims;
+  if (rivals.all.empty()) return claims;
+  claim_stretch(rivals, claims);
+  claim_depth(rivals, claims);
+  claim_step(rivals, claims);
+  claim_failures(rivals, claims);
+  for (const QuotedScene& quoted : rivals.scenes) claim_scene(rivals, quoted, claims);
+  return claims;
+}
+
+}  // namespace taut::report

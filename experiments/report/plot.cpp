@@ -1,0 +1,303 @@
+#include "experiments/report/plot.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/format.hpp"
+#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/palette.hpp"
+#include "experiments/report/rivals.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::report {
+
+namespace {
+
+constexpr std::array kKinds{
+    PlotKind{"error-iterations",
+             "An error over sweeps per substep, with the theory's slope where it has one",
+             "iterations", "stretch.rms", "iterations"},
+    PlotKind{"penetration", "Depth inside the colliders over sweeps or the time step, whole run",
+             "iterations", "penetration.peak", "iterations"},
+    PlotKind{"scaling", "A cost or an error over the number of vertices", "vertices",
+             "cpu.per_step", "vertices"},
+    PlotKind{"series", "A value over simulated time", "t", "stretch.rms", "t"},
+    PlotKind{"stability", "How cases end over two settings: a mark for each outcome", "dt",
+             "iterations", "dt"},
+    PlotKind{"work-precision", "An error over what it cost, with the Pareto front", "projections",
+             "stretch.rms", "setting"},
+};
+
+std::string colour_of(std::string_view solver) {
+  return std::string(solver_style(solver).colour.light);
+}
+
+/// A dash pattern for gnuplot: "9 4" -> "(9,4)"; the variants of one solver get others.
+std::string dash_of(std::string_view solver, int variant) {
+  constexpr std::array<std::string_view, 5> kVariants{"7 4", "2 3", "10 3 2 3", "16 4", "4 2"};
+  std::string dash(variant == 0 ? solver_style(solver).dash
+                                : kVariants[static_cast<std::size_t>(variant - 1) % 5]);
+  if (dash.empty()) return "solid";
+  std::ranges::replace(dash, ' ', ',');
+  return "(" + dash + ")";
+}
+
+/// One plot: rows of the CSV, and the commands that draw them. Titles and labels reach the script
+/// by gnuplot_string() alone.
+struct Sheet {
+  std::string csv, settings, plot;
+
+  void draw(const std::string& what) { plot += (plot.empty() ? "plot " : ", \\\n  ") + what; }
+};
+
+/// Rows whose first column is this curve and whose status is, or is not, a failure.
+std::string only(std::size_t curve, bool failures, const char* x, const char* y) {
+  return "'@CSV@' skip 1 using (column(1) == " + std::to_string(curve) + " && strcol(10) eq '" +
+         (failures ? "yes" : "no") + "' ? " + x + " : NaN):" + y;
+}
+
+std::string axis_commands(const char* axis, const Quantity& q, bool logarithmic) {
+  const std::string name(axis);
+  return "set " + name + "label " + gnuplot_string(q.label()) + "\n" +
+         (logarithmic ? "set logscale " + name + "\nset format " + name + " '%g'\n" : "");
+}
+
+/// Whether every value can stand on a logarithmic axis but exact zeros, which lie on its floor.
+bool any_positive(const Chart& chart, bool of_y) {
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points)
+      if (p.measured() && (of_y ? p.y : p.x) > 0) return true;
+  return false;
+}
+
+Sheet curves_sheet(const Chart& chart, const std::string& title) {
+  Sheet sheet;
+  const bool log_x = chart.x.logarithmic && any_positive(chart, false),
+             log_y = chart.y.logarithmic && any_positive(chart, true);
+  double low = INFINITY, high = -INFINITY, left = INFINITY, right = -INFINITY;
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points) {
+      if (std::isfinite(p.x) && (!log_x || p.x > 0))
+        left = std::min(left, p.x * chart.x.scale), right = std::max(right, p.x * chart.x.scale);
+      if (!p.measured() || (log_y && !(p.y > 0))) continue;
+      low = std::min(low, p.y * chart.y.scale), high = std::max(high, p.y * chart.y.scale);
+    }
+  const double floor = log_y ? low / 3 : std::min(0.0, low);
+  const double top = log_y ? high * 3 : high + 0.12 * (high - floor + (high == floor ? 1 : 0));
+  sheet.settings = "set title " + gnuplot_string(title) + "\n" +
+                   axis_commands("x", chart.x, log_x) + axis_commands("y", chart.y, log_y) +
+                   "set yrange [" + exact(floor) + ":" + exact(top) + "]\n";
+  if (!chart.ticks.empty() && chart.ticks.size() <= 12 && log_x) {
+    std::string ticks;
+    for (const double tick : chart.ticks)
+      ticks += (ticks.empty() ? "" : ", ") + gnuplot_string(tick_of(chart.x, tick)) + " " +
+               exact(tick * chart.x.scale);
+    sheet.settings += "set xtics (" + ticks + ")\n";
+  }
+  sheet.csv = "curve,solver,label,x,x_low,x_high,y,status,reason,failed,setting,case\n";
+  std::map<std::string, int> variants;
+  for (std::size_t i = 0; i < chart.curves.size(); ++i) {
+    const Curve& curve = chart.curves[i];
+    bool failures = false, zeros = false, bars = false;
+    for (const Point& p : curve.points) {
+      const Record& r = *p.record;
+      const auto cost = chart.cost.find(r.key);
+      const bool none = failed(p);
+      failures = failures || none, zeros = zeros || (!none && p.y == 0);
+      bars = bars || cost != chart.cost.end();
+      sheet.csv +=
+          std::to_string(i) + "," + csv_field(curve.solver) + "," + csv_field(curve.label) + "," +
+          exact(p.x) + "," +
+          (cost == chart.cost.end() ? std::string(",")
+                                    : exact(cost->second.low) + "," + exact(cost->second.high)) +
+          "," + (none ? "" : exact(p.y)) + "," + std::string(to_string(r.status.kind)) + "," +
+          csv_field(r.status.reason) + "," + (none ? "yes" : "no") + "," +
+          csv_field(work_of(r).text()) + "," + csv_field(r.id) + "\n";
+    }
+    const std::string scale_x = exact(chart.x.scale), scale_y = exact(chart.y.scale);
+    const std::string x = "column(4)*" + scale_x;
+    const std::string look = " lc rgb '" + colour_of(curve.solver) + "' dt " +
+                             dash_of(curve.solver, variants[curve.solver]++) + " pt " +
+                             std::to_string(solver_style(curve.solver).marker);
+    const std::string y =
+        log_y ? "(column(7) > 0 ? column(7)*" + scale_y + " : NaN)" : "(column(7)*" + scale_y + ")";
+    sheet.draw(only(i, false, x.c_str(), y.c_str()) +
+               (chart.join ? " with linespoints" : " with points") + look + " title " +
+               gnuplot_string(curve.label));
+    if (bars)
+      sheet.draw(only(i, false, x.c_str(), y.c_str()) + ":(column(5)*" + scale_x + "):(column(6)*" +
+                 scale_x + ") with xerrorbars pt 0 lc rgb '" + colour_of(curve.solver) +
+                 "' notitle");
+    if (failures)
+      sheet.draw(only(i, true, x.c_str(), ("(" + exact(top) + ")").c_str()) +
+                 " with points pt 2 ps 1.2 lw 2 lc rgb '" + colour_of(curve.solver) + "' title " +
+                 gnuplot_string(curve.label + ": failed"));
+    if (zeros && log_y)
+      sheet.draw(
+          only(i, false, x.c_str(), ("(column(7) == 0 ? " + exact(floor) + " : NaN)").c_str()) +
+          " with points pt 10 ps 1.2 lc rgb '" + colour_of(curve.solver) + "' title " +
+          gnuplot_string(curve.label + ": exactly zero"));
+  }
+  if (const double factor = theory_factor(chart); std::isfinite(factor) && left < right)
+    sheet.draw("[" + exact(left) + ":" + exact(right) + "] " + exact(factor * chart.y.scale) +
+               "*(x/" + exact(chart.x.scale) + ")**" + exact(*chart.slope) +
+               " with lines dt (4,4) lc rgb '#5B6472' title 'theory: slope " + exact(*chart.slope) +
+               "'");
+  if (chart.front) {
+    std::string steps;
+    for (const Point& p : pareto_front(chart))
+      steps += exact(p.x * chart.x.scale) + " " + exact(p.y * chart.y.scale) + "\n";
+    sheet.settings += "$front << EOD\n" + steps + "EOD\n";
+    sheet.draw("$front using 1:2 with steps lc rgb '#9BA5B3' title 'Pareto front'");
+  }
+  return sheet;
+}
+
+Sheet series_sheet(std::span<const TimeSeries> all, const std::string& value,
+                   const std::string& title) {
+  Sheet sheet;
+  const Quantity x = quantity("t"), y = quantity(value);
+  sheet.settings = "set title " + gnuplot_string(title) + "\n" + axis_commands("x", x, false) +
+                   axis_commands("y", y, false);
+  sheet.csv = "curve,solver,label,x,x_low,x_high,y,status,reason,failed,setting,case\n";
+  std::map<std::string, int> variants;
+  std::size_t i = 0;
+  for (const TimeSeries& series : all) {
+    if (series.value != value) continue;
+    for (std::size_t k = 0; k < series.t.size(); ++k)
+      sheet.csv += std::to_string(i) + "," + csv_field(series.solver) + "," +
+                   csv_field(series.label) + "," + exact(series.t[k]) + ",,," + exact(series.y[k]) +
+                   ",ok,,no,," + csv_field(series.key) + "\n";
+    sheet.draw(only(i++, false, "column(4)", ("(column(7)*" + exact(y.scale) + ")").c_str()) +
+               " with lines lw 1.5 lc rgb '" + colour_of(series.solver) + "' dt " +
+               dash_of(series.solver, variants[series.solver]++) + " title " +
+               gnuplot_string(series.label));
+  }
+  if (i == 0) throw InputError("no series of '" + value + "' was recorded");
+  return sheet;
+}
+
+Sheet map_sheet(const std::vector<StatusMap>& maps, const std::string& title) {
+  Sheet sheet;
+  const StatusMap& first = maps.front();
+  sheet.csv = "curve,solver,label,x,y,column,row,status,reason,case\n";
+  std::set<Status::Kind> kinds;
+  sheet.settings = "set multiplot layout 1," + std::to_string(maps.size()) + " title " +
+                   gnuplot_string(title) + "\nset xlabel " + gnuplot_string(first.x.label()) +
+                   "\nset ylabel " + gnuplot_string(first.y.label()) + "\n";
+  for (const StatusMap& map : maps)
+    for (const StatusMap::Cell& cell : map.cells) kinds.insert(cell.record->status.kind);
+  std::size_t i = 0;
+  for (const StatusMap& map : maps) {
+    for (const StatusMap::Cell& cell : map.cells)
+      sheet.csv += std::to_string(i) + "," + csv_field(map.solver) + "," + csv_field(map.label) +
+                   "," + exact(map.columns[cell.column]) + "," + exact(map.rows[cell.row]) + "," +
+                   std::to_string(cell.column) + "," + std::to_string(cell.row) + "," +
+                   std::string(to_string(cell.record->status.kind)) + "," +
+                   csv_field(cell.record->status.reason) + "," + csv_field(cell.record->id) + "\n";
+    const auto ticks = [](const char* axis, const Quantity& q, const std::vector<double>& values) {
+      std::string list;
+      for (std::size_t k = 0; k < values.size(); ++k)
+        list +=
+            (k > 0 ? ", " : "") + gnuplot_string(tick_of(q, values[k])) + " " + std::to_string(k);
+      return "set " + std::string(axis) + "tics (" + list + ")\nset " + axis +
+             "range [-0.5:" + exact(static_cast<double>(values.size()) - 0.5) + "]\n";
+    };
+    std::string panel;
+    for (const Status::Kind kind : kinds) {
+      const StatusStyle style = status_style(kind);
+      const std::string name(to_string(kind));
+      const std::string cells = "'@CSV@' skip 1 using (column(1) == " + std::to_string(i) +
+                                " && strcol(8) eq '" + name + "' ? column(6) : NaN):7:";
+      panel += (panel.empty() ? "plot " : ", \\\n  ") + cells +
+               "(strcol(10) eq 'yes' ? 0.45 : 0.25):(strcol(10) eq 'yes' ? 0.45 : 0.25) with "
+               "boxxyerror fs solid 1 noborder lc rgb '" +
+               std::string(style.colour.light) + "' title '" + name + "', \\\n  " + cells + "(" +
+               gnuplot_string(style.glyph) + ") with labels tc rgb '" +
+               std::string(style.ink.light) + "' notitle";
+    }
+    sheet.plot += "set title " + gnuplot_string(map.label) + "\n" + ticks("x", map.x, map.columns) +
+                  ticks("y", map.y, map.rows) + panel + "\n";
+    ++i;
+  }
+  sheet.plot += "unset multiplot\n";
+  return sheet;
+}
+
+std::string script(const PlotSpec& spec, const Sheet& sheet, const std::string& stem) {
+  std::string text = "# " + spec.kind + ": " + spec.y + " over " + spec.x +
+                     "\n# Again: gnuplot -e \"set terminal svg noenhanced; set output '" + stem +
+                     ".svg'\" " + stem +
+                     ".gp\n"
+                     "set encoding utf8\nset datafile separator ','\nset key tmargin "
+                     "center horizontal\nset offsets graph 0.04, graph 0.04, 0, 0\nset grid lc rgb "
+                     "'#E5E7EB'\nset border 3\nset tics nomirror\n" +
+                     sheet.settings + sheet.plot + "\n";
+  for (std::size_t at; (at = text.find("@CSV@")) != std::string::npos;)
+    text.replace(at, 5, stem + ".csv");
+  return text;
+}
+
+}  // namespace
+
+std::span<const PlotKind> plot_kinds() { return kKinds; }
+
+const PlotKind& find_plot_kind(std::string_view name) {
+  std::vector<std::string> names;
+  for (const PlotKind& kind : kKinds) {
+    if (kind.name == name) return kind;
+    names.emplace_back(kind.name);
+  }
+  throw InputError("unknown kind of plot '" + std::string(name) + "'" +
+                   suggestion(std::string(name), names));
+}
+
+void check_value_name(const std::string& name, std::span<const Record> records) {
+  std::vector<std::string> known = quantity_names();
+  known.emplace_back("setting");
+  for (const Record& r : records) {
+    if (std::isfinite(value_of(r, name))) return;
+    for (const auto& [param, value] : r.params) known.push_back(param);
+  }
+  if (std::ranges::find(known, name) == known.end())
+    throw InputError("unknown value '" + name + "'" + suggestion(name, known) +
+                     " (`taut list metrics`)");
+}
+
+PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
+                    std::span<const TimeSeries> series, const std::filesystem::path& folder) {
+  const PlotKind& kind = find_plot_kind(spec.kind);
+  if (spec.x.empty()) spec.x = kind.x;
+  if (spec.y.empty()) spec.y = kind.y;
+  if (spec.along.empty())
+    spec.along =
+        spec.x == "dt" || spec.x == "substeps" || spec.x == "vertices" ? spec.x : kind.along;
+  for (const std::string& name : {spec.x, spec.y}) check_value_name(name, records);
+  if (spec.file.empty()) spec.file = slug(spec.kind + "-" + spec.y + "-over-" + spec.x);
+  Sheet sheet;
+  if (spec.kind == "series") {
+    sheet = series_sheet(series, spec.y, spec.title);
+  } else if (spec.kind == "stability") {
+    if (records.empty()) throw InputError("there is no case to draw");
+    sheet = map_sheet(make_maps(records, records.front().scene, spec.x, spec.y), spec.title);
+  } else {
+    Chart chart = make_chart(spec.kind, records, spec.x, spec.y, spec.along);
+    chart.slope = spec.slope, chart.front = spec.kind == "work-precision";
+    sheet = curves_sheet(chart, spec.title);
+  }
+  make_folder(folder);
+  const auto path = [&](const char* extension) { return folder / (spec.file + extension); };
+  const PlotFiles files{path(".svg"), path(".pdf"), path(".gp"), path(".csv")};
+  write_file(files.csv, sheet.csv);
+  write_file(files.gp, script(spec, sheet, spec.file));
+  run_gnuplot(files.gp, "svg noenhanced size 760,520 font 'sans-serif,13' background '#ffffff'",
+              files.svg);
+  run_gnuplot(files.gp, "pdfcairo noenhanced size 7.6in,5.2in font 'sans,13' fontscale 0.72",
+              files.pdf);
+  return files;
+}
+
+}  // namespace taut::report

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <compare>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/report/input.hpp"
+
+namespace taut::report {
+
+/// It ran to its end: only then have its values a meaning.
+bool completed(const Record&);
+
+/// Work of a step; -1 where the solver has no such setting.
+struct Work {
+  int substeps = -1, sweeps = -1;
+  auto operator<=>(const Work&) const = default;
+  /// A case of `other` work is of this work as far as its solver has a say.
+  bool admits(const Work& other) const;
+  std::string text() const;  ///< "1 × 16": substeps × sweeps
+};
+Work work_of(const Record&);
+
+/// What a case is asked, apart from the solver: scene, its settings and the time step.
+struct Question {
+  std::string scene;
+  std::vector<std::string> overrides;  ///< without that of the time step, sorted
+  double dt = 0;                       ///< s
+  auto operator<=>(const Question&) const = default;
+};
+Question question_of(const Record&);
+
+/// One solver with the settings under which it is compared: of several choices the one with most
+/// cases, so that its name means one thing in every sentence.
+struct Rival {
+  std::string solver;
+  std::string label;  ///< "Bullet", or "Bullet float" if other choices were run too
+  std::vector<const Record*> cases;
+};
+
+/// The cases of which single values are quoted: the same question and the same work for all.
+struct QuotedScene {
+  Question question;
+  std::vector<const Record*> cases;  ///< of each rival; nullptr: was not run like this
+};
+
+/// Who is compared, and at which work single values are quoted. Points into the input.
+struct Rivals {
+  std::vector<Rival> all;           ///< in the order of first appearance, ours first
+  Work work;                        ///< that most of them share, near 1 × 16
+  std::vector<QuotedScene> scenes;  ///< every scene that a study ran
+
+  const QuotedScene* quoted(const std::string& scene) const;
+  /// Every case of every solver and choice, each once.
+  std::map<std::string, std::vector<const Record*>> by_solver;
+  /// In what these solvers do unequal work although their sweeps are the same; "": in nothing.
+  std::string unequal_work() const;
+};
+Rivals rivals_of(const ReportInput&);
+
+}  // namespace taut::report

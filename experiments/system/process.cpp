@@ -1,0 +1,268 @@
+#include "experiments/system/process.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+
+#include "core/model/input_error.hpp"
+
+namespace taut {
+
+namespace {
+
+using Stream = ProcessOptions::Stream;
+
+/// A descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  ~Descriptor() {
+    if (fd_ >= 0) close(fd_);
+  }
+  int get() const { return fd_; }
+  int release() { return std::exchange(fd_, -1); }
+
+ private:
+  int fd_;
+};
+
+[[noreturn]] void fail_start(const std::string& program, int error) {
+  throw InputError(program + ": cannot be executed: " + std::strerror(error));
+}
+
+/// This process's ends of the child's streams, and the child's.
+struct Pipes {
+  Descriptor input, child_input, output, child_output, failed, child_failed;
+
+  Pipes(const std::string& program, const ProcessOptions& options) {
+    int ends[2];
+    if (options.input == Stream::piped) {  // a socket: writing to it raises no SIGPIPE
+      if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail_start(program, errno);
+      input = Descriptor(ends[0]), child_input = Descriptor(ends[1]);
+    }
+    if (options.output == Stream::piped || options.errors == Stream::piped) {
+      if (pipe2(ends, O_CLOEXEC) != 0) fail_start(program, errno);
+      output = Descriptor(ends[0]), child_output = Descriptor(ends[1]);
+    }
+    if (pipe2(ends, O_CLOEXEC) != 0) fail_start(program, errno);
+    failed = Descriptor(ends[0]), child_failed = Descriptor(ends[1]);
+  }
+};
+
+/// Everything here runs between fork and exec: system calls only.
+[[noreturn]] void become(char* const* argv, const ProcessOptions& options, const Pipes& pipes,
+                         int errors_file, pid_t parent) {
+  const auto give_up = [&] {
+    const int error = errno;
+    [[maybe_unused]] const auto written = write(pipes.child_failed.get(), &error, sizeof error);
+    _exit(127);
+  };
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  setsid();
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);
+  const auto limit = [](auto what, double most, rlim_t grace) {
+    if (most <= 0) return;
+    const auto soft = static_cast<rlim_t>(std::ceil(most));
+    const rlimit both{soft, soft + grace};
+    setrlimit(what, &both);
+  };
+#ifndef __SANITIZE_ADDRESS__  // its shadow alone is terabytes of address space
+  limit(RLIMIT_AS, static_cast<double>(options.limits.address_space), 0);
+#endif
+  limit(RLIMIT_CPU, options.limits.cpu_seconds, 1);
+  limit(RLIMIT_FSIZE, static_cast<double>(options.limits.file_bytes), 0);
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
+  const auto connect = [&](Stream stream, int pipe, int as) {
+    if (stream != Stream::inherited) dup2(stream == Stream::piped ? pipe : null, as);
+  };
+  connect(options.input, pipes.child_input.get(), STDIN_FILENO);
+  connect(options.output, pipes.child_output.get(), STDOUT_FILENO);
+  connect(options.errors, pipes.child_output.get(), STDERR_FILENO);
+  if (errors_file >= 0) dup2(errors_file, STDERR_FILENO);
+  if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) give_up();
+  execvp(argv[0], argv);
+  give_up();
+}
+
+int milliseconds_until(std::chrono::steady_clock::time_point end, double seconds) {
+  if (seconds < 0) return -1;
+  const std::chrono::duration<double> left = end - std::chrono::steady_clock::now();
+  return std::max(0, static_cast<int>(std::ceil(1e3 * left.count())));
+}
+
+std::chrono::steady_clock::time_point in_seconds(double seconds) {
+  return std::chrono::steady_clock::now() +
+         std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+             std::chrono::duration<double>(std::max(0.0, seconds)));
+}
+
+}  // namespace
+
+Process::Process(std::vector<std::string> words, const ProcessOptions& options) {
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  Pipes pipes(words.front(), options);
+  Descriptor errors_file;
+  if (!options.errors_file.empty()) {
+    errors_file = Descriptor(
+        open(options.errors_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+    if (errors_file.get() < 0)
+      throw InputError(options.errors_file.string() + ": cannot write: " + std::strerror(errno));
+  }
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // no handler of ours may run in the child
+  const pid_t parent = getpid();
+  pid_ = fork();
+  if (pid_ == 0) become(argv.data(), options, pipes, errors_file.get(), parent);
+  const int fork_error = errno;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (pid_ < 0) fail_start(words.front(), fork_error);
+
+  tie_ = std::make_unique<EndsWithProgram>(pid_);
+  descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
+  pipes.child_failed = Descriptor();
+  int error = descriptor_ < 0 ? errno : 0;
+  ssize_t got = 0;
+  while (error == 0 && (got = read(pipes.failed.get(), &error, sizeof error)) < 0 && errno == EINTR)
+    error = 0;
+  input_ = pipes.input.release(), output_ = pipes.output.release();
+  if (error == 0) return;
+  stop();
+  fail_start(words.front(), error);
+}
+
+Process::~Process() { stop(); }
+
+void Process::stop() {
+  if (!end_) {
+    kill(pid_, SIGKILL);
+    reap();
+  }
+  for (int* fd : {&descriptor_, &input_, &output_})
+    if (*fd >= 0) close(std::exchange(*fd, -1));
+}
+
+ProcessEnd Process::reap() {
+  siginfo_t info{};  // it is not waited for yet, so that no other group can have its number
+  while (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
+  }
+  kill(-pid_, SIGKILL);
+  int status = 0;
+  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  }
+  tie_.reset();
+  end_ = WIFEXITED(status) ? ProcessEnd{WEXITSTATUS(status), 0} : ProcessEnd{-1, WTERMSIG(status)};
+  return *end_;
+}
+
+std::optional<ProcessEnd> Process::poll() {
+  if (end_) return end_;
+  siginfo_t info{};
+  if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+      info.si_pid == 0)
+    return {};
+  return reap();
+}
+
+std::optional<ProcessEnd> Process::wait(double seconds) {
+  const auto end = in_seconds(seconds);
+  pollfd ended{descriptor_, POLLIN, 0};
+  while (!end_ && ::poll(&ended, 1, milliseconds_until(end, seconds)) < 0 && errno == EINTR) {
+  }
+  if (poll()) return end_;
+  kill(pid_, SIGKILL);
+  reap();
+  return {};
+}
+
+bool Process::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = send(input_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
+  return true;
+}
+
+void Process::close_input() {
+  if (input_ >= 0) close(std::exchange(input_, -1));
+}
+
+bool Process::read_more(double seconds) {
+  const auto end = in_seconds(seconds);
+  for (;;) {
+    pollfd ready[] = {{output_, POLLIN, 0}, {end_ ? -1 : descriptor_, POLLIN, 0}};
+    const int count = ::poll(ready, 2, end_ ? 0 : milliseconds_until(end, seconds));
+    if (count < 0 && errno == EINTR) continue;
+    if (ready[0].revents != 0) {
+      char piece[65536];
+      const ssize_t got = read(output_, piece, sizeof piece);
+      if (got < 0 && errno == EINTR) continue;
+      if (got > 0) buffer_.append(piece, static_cast<std::size_t>(got));
+      return got > 0;
+    }
+    if (count <= 0) return false;
+    poll();  // it has ended: what else holds its pipe ends too, and what it left is read
+  }
+}
+
+bool Process::read_line(std::string& line, double seconds) {
+  std::size_t end;
+  while ((end = buffer_.find('\n')) == buffer_.npos)
+    if (!read_more(seconds)) return false;
+  line = buffer_.substr(0, end);
+  buffer_.erase(0, end + 1);
+  return true;
+}
+
+std::string Process::read_all(double seconds) {
+  const auto end = in_seconds(seconds);
+  while (read_more(seconds < 0 ? -1 : milliseconds_until(end, seconds) / 1e3)) {
+  }
+  return std::exchange(buffer_, {});
+}
+
+bool on_path(const std::string& program) {
+  std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+std::string shell_word(const std::string& text) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-=:,./+@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == text.npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace taut

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/system/signals.hpp"
+
+namespace taut {
+
+/// What a process may use; 0: as much as this one.
+struct ProcessLimits {
+  double cpu_seconds = 0;         ///< SIGXCPU, and SIGKILL a second later
+  std::size_t address_space = 0;  ///< bytes
+  std::size_t file_bytes = 0;     ///< of each file that it writes
+};
+
+struct ProcessOptions {
+  enum class Stream { none, inherited, piped };
+  Stream input = Stream::none, output = Stream::none;
+  Stream errors = Stream::none;       ///< piped: into the pipe of the output
+  std::filesystem::path errors_file;  ///< standard error is appended to it
+  std::filesystem::path folder;       ///< where it runs; empty: where this one does
+  ProcessLimits limits;
+};
+
+/// How a process ended.
+struct ProcessEnd {
+  int exit_code = -1;  ///< -1: a signal ended it
+  int signal = 0;
+  bool good() const { return exit_code == 0; }
+};
+
+/// A program that this one started, in a session and a process group of its own: Ctrl-C reaches
+/// this process alone, and all members of the group die with the first of them and with this
+/// process, however it ends (kill -9 of this one spares only what that program started itself).
+class Process {
+ public:
+  /// words[0] is a path or the name of a program in PATH. Throws InputError with the system's
+  /// reason if it cannot be started.
+  explicit Process(std::vector<std::string> words, const ProcessOptions& = {});
+  ~Process();  ///< kills what still runs
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  /// Ready for reading when it has ended.
+  int descriptor() const { return descriptor_; }
+  /// How it ended; nothing while it runs.
+  std::optional<ProcessEnd> poll();
+  /// Waits for its end. Nothing: it still ran after so many seconds (< 0: no limit) and was killed.
+  std::optional<ProcessEnd> wait(double seconds = -1);
+
+  /// To its standard input; false once it no longer reads (never a SIGPIPE).
+  bool write(std::string_view bytes);
+  void close_input();
+  /// A line of its output without the line feed; false: it ended first, or so many seconds passed
+  /// without more of it (< 0: no limit).
+  bool read_line(std::string&, double seconds = -1);
+  /// Its output to the end; what came by then if that takes longer than so many seconds (< 0: no
+  /// limit).
+  std::string read_all(double seconds = -1);
+
+ private:
+  /// More output into buffer_; false: there is no more, or none until the time is up.
+  bool read_more(double seconds);
+  ProcessEnd reap();
+  void stop();
+
+  pid_t pid_ = -1;
+  int descriptor_ = -1, input_ = -1, output_ = -1;
+  std::optional<ProcessEnd> end_;
+  std::unique_ptr<EndsWithProgram> tie_;
+  std::string buffer_;
+};
+
+/// Whether a folder of $PATH has the program.
+bool on_path(const std::string& program);
+
+/// A word of a POSIX shell command, quoted if it needs to be.
+std::string shell_word(const std::string&);
+
+}  // namespace taut

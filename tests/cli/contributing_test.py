@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""CONTRIBUTING.md means what it says: its code is built into taut-toy, its solver gives what ours gives, its scene and
+study run.
+
+Usage: contributing_test.py BUILD; `contributing_test.py --extract FOLDER` writes the code that CMake then builds."""
+
+import csv
+import json
+import pathlib
+import re
+import sys
+
+DOCUMENT = pathlib.Path(__file__).resolve().parents[2] / "CONTRIBUTING.md"
+
+
+def blocks(language, mark):
+    """file name -> text, of the code blocks whose first line names their file"""
+    found = re.findall(rf"```{language}\n{mark} (\S+)\n(.*?)```", DOCUMENT.read_text(), re.DOTALL)
+    return {pathlib.Path(path).name: text for path, text in found}
+
+
+if sys.argv[1:2] == ["--extract"]:
+    folder = pathlib.Path(sys.argv[2])
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in blocks("cpp", "//").items():
+        if not (folder / name).exists() or (folder / name).read_text() != text:
+            (folder / name).write_text(text)
+    sys.exit()
+
+from command_line import CommandLine, main  # noqa: E402
+
+
+class Contributing(CommandLine):
+    def end_of(self, scene, solver):
+        self.taut("case", scene, solver, "--duration", 1, "--final-state", "end.csv", program="taut-toy")
+        rows = csv.DictReader((self.folder / "end.csv").read_text().splitlines())
+        return [float(row[key]) for row in rows for key in ("x", "y", "z", "vx", "vy", "vz")]
+
+    def test_the_toy_solver_gives_what_ours_gives(self):
+        toy = self.end_of("hang", "toy:iterations=16")
+        ours = self.end_of("hang", "jakobsen:substeps=1,order=mesh,projection=exact,precision=double,iterations=16")
+        self.assertEqual(len(toy), 6 * 32 * 32)
+        self.assertLess(max(abs(a - b) for a, b in zip(toy, ours, strict=True)), 1e-9)
+        other = self.end_of("hang", "toy:iterations=8")
+        self.assertGreater(max(abs(a - b) for a, b in zip(toy, other, strict=True)), 1e-3)
+
+    def test_the_toy_solver_says_what_it_does_not_do(self):
+        record = json.loads(self.taut("case", "ball", "toy", "--json", program="taut-toy").out)
+        self.assertEqual(record["status"]["kind"], "unsupported")
+
+    def test_the_scene_and_the_study_run(self):
+        files = blocks("toml", "#")
+        self.assertEqual(sorted(files), ["mine.toml", "sweeps.toml"])
+        for name, text in files.items():
+            (self.folder / name).write_text(text)
+        self.taut("run", "./sweeps.toml", program="taut-toy")
+        self.assertEqual([record["status"]["kind"] for record in self.records()], ["ok"] * 6)
+
+
+if __name__ == "__main__":
+    main()

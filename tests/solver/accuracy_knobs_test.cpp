@@ -1,0 +1,58 @@
+// What solvers say of their accuracy knobs, held against what they accept.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/model/solver.hpp"
+
+namespace taut {
+namespace {
+
+std::vector<std::string> parts_of(std::string_view list) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end != list.npos && !list.empty(); begin = end + 1) {
+    end = list.find('|', begin);
+    parts.emplace_back(list.substr(begin, end - begin));
+  }
+  return parts;
+}
+
+TEST(AccuracyKnobs, AreParametersAndTheirValuesAreAccepted) {
+  for (const SolverEntry* entry : solvers()) {
+    const std::string name(entry->name);
+    const AccuracyKnobs& knobs = entry->knobs;
+    EXPECT_FALSE(knobs.substeps.empty()) << name;
+    EXPECT_NE(knobs.sweeps.empty(), knobs.stiffness.parameters.empty())
+        << name << ": one of the two is what substeps are weighed against";
+    for (const std::string_view number : {knobs.substeps, knobs.sweeps})
+      if (!number.empty())
+        EXPECT_EQ(parse_solver(name + ":" + std::string(number) + "=64").params.integer(number),
+                  64);
+    std::vector<AccuracyKnobs::Ladder> ladders(knobs.alternatives.begin(),
+                                               knobs.alternatives.end());
+    ladders.push_back(knobs.stiffness);
+    for (const auto& [parameters, values] : ladders) {
+      EXPECT_EQ(parameters.empty(), values.empty()) << name;
+      for (const std::string& parameter : parts_of(parameters))
+        for (const std::string& value : parts_of(values))
+          EXPECT_EQ(parse_solver(name + ":" + parameter + "=" + value).params.value(parameter),
+                    value);
+    }
+  }
+}
+
+TEST(AccuracyKnobs, StiffnessesRiseFromTheDefault) {
+  for (const SolverEntry* entry : solvers())
+    for (const std::string& parameter : parts_of(entry->knobs.stiffness.parameters)) {
+      const std::vector<std::string> values = parts_of(entry->knobs.stiffness.values);
+      EXPECT_EQ(values.front(), parse_solver(std::string(entry->name)).params.value(parameter));
+      EXPECT_TRUE(
+          std::ranges::is_sorted(values, {}, [](const std::string& v) { return std::stod(v); }));
+    }
+}
+
+}  // namespace
+}  // namespace taut
