@@ -90,8 +90,6 @@ Record record_of(const JsonReader& j) {
   return r;
 }
 
-}  // namespace
-
 bool completed(const Status& status) {
   return status.kind == Status::Kind::ok || status.kind == Status::Kind::unsettled;
 }

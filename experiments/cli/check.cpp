@@ -80,7 +80,7 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
 std::string_view unit_of(const std::string& value) {
   for (const MetricEntry* metric : metrics())
     for (const ValueSpec& spec : metric->values)
-      if (spec.name == value) return spec.unit;
+      if (spec.name == value) return spec.unit.si;
   return "";
 }
 

@@ -9,7 +9,6 @@
 #include "experiments/report/format.hpp"
 #include "experiments/report/palette.hpp"
 #include "experiments/report/rivals.hpp"
-#include "experiments/timing/trade.hpp"
 
 namespace taut::report {
 
@@ -121,14 +120,12 @@ double theory_factor(const Chart& chart) {
 
 std::vector<Point> pareto_front(const Chart& chart) {
   std::vector<Point> points, front;
-  std::vector<Offer> offers;
   for (const Curve& curve : chart.curves)
-    for (const Point& p : curve.points) {
-      if (!p.measured()) continue;
-      points.push_back(p);
-      offers.push_back({curve.solver, "", {p.x, p.x, p.x}, p.y, false});
-    }
-  for (const std::size_t i : pareto_front(offers)) front.push_back(points[i]);
+    for (const Point& p : curve.points)
+      if (p.measured()) points.push_back(p);
+  std::ranges::sort(points, {}, [](const Point& p) { return std::pair(p.x, p.y); });
+  for (const Point& p : points)
+    if (front.empty() || p.y < front.back().y) front.push_back(p);
   return front;
 }
 
@@ -268,7 +265,7 @@ Chart cost_chart(const SceneBench& scene, std::span<const Record> records) {
       " to " + fixed(scene.control.high, 2) + ".";
   chart.front = true;
   for (const BenchedCase& c : scene.cases)
-    if (c.sound()) chart.cost[c.record.key] = c.cost();
+    if (c.stable()) chart.cost[c.record.key] = c.cost();
   return chart;
 }
 

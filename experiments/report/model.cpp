@@ -138,7 +138,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, References& refs) {
   one["values"] = Json::object();
   for (const auto& [name, value] : r.values)
     if (std::isfinite(value)) one["values"][name] = value, refs.use(name);
-  if (timed && timed->sound()) {
+  if (timed && timed->stable()) {
     const Interval second = timed->cost();
     const Interval step{second.low * r.dt, second.mid * r.dt, second.high * r.dt};
     const std::size_t n = timed->timing.samples.size();
