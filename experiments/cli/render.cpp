@@ -5,10 +5,10 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/film/takes.hpp"
-#include "experiments/render/figure.hpp"
-#include "experiments/render/obj_export.hpp"
-#include "experiments/render/video.hpp"
+#include "experiments/film/recorded_runs.hpp"
+#include "experiments/render/image/video.hpp"
+#include "experiments/render/picture/figure.hpp"
+#include "experiments/render/picture/obj_export.hpp"
 
 namespace taut::verb::render {
 
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  TakeRequest what;
+  RunRequest what;
   std::vector<std::string> at;
   std::string duration, dt, view = "three-quarter", colour = "strain", exported, out;
   std::string size, quality;
@@ -40,10 +40,11 @@ RenderQuality parse_quality(const std::string& name) {
   return RenderQuality::still();
 }
 
-StudioOptions look_of(const Options& options, const std::string& quality, int width, int height) {
-  StudioOptions look;
+SceneRendererOptions look_of(const Options& options, const std::string& quality, int width,
+                             int height) {
+  SceneRendererOptions look;
   look.width = width, look.height = height;
-  look.theme = options.dark ? StageTheme::dark() : StageTheme::paper();
+  look.theme = options.dark ? Theme::dark() : Theme::paper();
   look.quality = parse_quality(options.quality.empty() ? quality : options.quality);
   look.view = parse_view(options.view);
   look.quantity = parse_quantity(options.colour);
@@ -56,14 +57,14 @@ StudioOptions look_of(const Options& options, const std::string& quality, int wi
 using Files = std::vector<std::string>;
 
 /// Files of several moments get the time into their names: ball-t0.50.png.
-Files draw_stills(const Options& options, const TakeSet& set, const std::vector<double>& times,
+Files draw_stills(const Options& options, const RunSet& set, const std::vector<double>& times,
                   const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1920x1080" : options.size);
-  const PageLayout layout(width, height, static_cast<int>(set.takes.size()));
-  StudioOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
+  const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
+  SceneRendererOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
   look.frame = Frame::beside_inset();
   look.from = times.front(), look.to = times.back();
-  const Studio studio(set.scene, set.takes, look);
+  const SceneRenderer renderer(set.scene, set.runs, look);
   const Countdown countdown("still");
   Files files;
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -72,36 +73,36 @@ Files draw_stills(const Options& options, const TakeSet& set, const std::vector<
     std::snprintf(suffix, sizeof suffix, "-t%.2f", times[k]);
     if (times.size() > 1)
       file.replace_filename(out.stem().string() + suffix + out.extension().string());
-    write_png(file, compose(studio, layout, times[k]));
+    write_png(file, compose(renderer, layout, times[k]));
     countdown(k + 1, times.size());
     files.push_back(file.string());
   }
   return files;
 }
 
-Files draw_sheet(const Options& options, const TakeSet& set, const std::vector<double>& times,
+Files draw_sheet(const Options& options, const RunSet& set, const std::vector<double>& times,
                  const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "480x400" : options.size);
-  StudioOptions look = look_of(options, "video", width, height);
+  SceneRendererOptions look = look_of(options, "video", width, height);
   look.from = times.front(), look.to = times.back();
-  const Studio studio(set.scene, set.takes, look);
-  write_png(out, compose_sheet(studio, times));
+  const SceneRenderer renderer(set.scene, set.runs, look);
+  write_png(out, compose_sheet(renderer, times));
   return {out.string()};
 }
 
 /// Without ffmpeg: the last frame as a poster and five moments as a strip.
-Files draw_video(const Options& options, const TakeSet& set, const fs::path& out) {
+Files draw_video(const Options& options, const RunSet& set, const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
-  const PageLayout layout(width, height, static_cast<int>(set.takes.size()));
-  StudioOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
+  const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
+  SceneRendererOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
   look.frame = Frame::beside_inset();
-  const Studio studio(set.scene, set.takes, look);
+  const SceneRenderer renderer(set.scene, set.runs, look);
   const double dt = set.scene.dt;
   const int stride = std::max(1, static_cast<int>(1 / (30 * dt) + 0.5));
   const int frames = set.scene.steps / stride + 1;
   VideoWriter video(out, {width, height, frame_rate(stride * dt), 22});
   const Countdown countdown("frame");
-  for (int k = 0; k < frames && video.write(compose(studio, layout, k * stride * dt)); ++k)
+  for (int k = 0; k < frames && video.write(compose(renderer, layout, k * stride * dt)); ++k)
     countdown(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(frames));
   const std::string why = video.finish();
   if (why.empty()) return {out.string()};
@@ -109,21 +110,21 @@ Files draw_video(const Options& options, const TakeSet& set, const fs::path& out
   fs::path poster = out, strip = out;
   poster.replace_extension(".png");
   strip.replace_filename(out.stem().string() + "-strip.png");
-  write_png(poster, compose(studio, layout, set.scene.duration()));
+  write_png(poster, compose(renderer, layout, set.scene.duration()));
   Image five(width, 5 * height);
   for (int k = 0; k < 5; ++k)
-    five.paste(compose(studio, layout, set.scene.duration() * k / 4), 0, k * height);
+    five.paste(compose(renderer, layout, set.scene.duration() * k / 4), 0, k * height);
   write_png(strip, five);
   return {poster.string(), strip.string()};
 }
 
-Files export_frames(const TakeSet& set, const fs::path& folder) {
+Files export_frames(const RunSet& set, const fs::path& folder) {
   const int stride = std::max(1, static_cast<int>(1 / (30 * set.scene.dt) + 0.5));
-  for (std::size_t k = 0; k < set.takes.size(); ++k) {
-    const std::string& solver = set.takes[k].trajectory.header.solver;
+  for (std::size_t k = 0; k < set.runs.size(); ++k) {
+    const std::string& solver = set.runs[k].trajectory.header.solver;
     const std::string prefix =
         set.scene.name + "_" + std::to_string(k + 1) + "_" + solver.substr(0, solver.find(':'));
-    export_obj(set.scene, set.takes[k], folder, prefix, stride, Countdown("file"));
+    export_obj(set.scene, set.runs[k], folder, prefix, stride, Countdown("file"));
   }
   return {folder.string()};
 }
@@ -165,8 +166,8 @@ int run(Options options) {
     options.what.overrides.push_back("time.duration=" + std::to_string(times.back() + 1e-4));
   parse_view(options.view), parse_quantity(options.colour);
   if (!options.size.empty()) parse_size(options.size);
-  const TakeSet set =
-      make_takes(options.what, [](const std::string& text) { std::cerr << text << '\n'; });
+  const RunSet set =
+      record_runs(options.what, [](const std::string& text) { std::cerr << text << '\n'; });
   if (!times.empty() && times.back() > set.scene.duration() + set.scene.dt)
     throw InputError("--at " + options.at.back() + " is after the end: see --duration");
   const fs::path out = output(options, set.scene.name);
@@ -210,7 +211,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--size", o->size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
   app.add_option("--quality", o->quality, "draft, video or still")
       ->check(CLI::IsMember({"draft", "video", "still"}));
-  app.add_flag("--dark", o->dark, "The dark stage of the report");
+  app.add_flag("--dark", o->dark, "The dark background of the report");
   app.add_option("-o,--out", o->out, "File (.png, .mp4) or, for --export, folder");
   add_json(app, o->json, "The names of the files");
   return [o] { return run(*o); };

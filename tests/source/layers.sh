@@ -23,7 +23,9 @@ experiments/study        | (core/(model|io|reference)|experiments/(system|metric
 experiments/timing       | (core/model|experiments/(system|case|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|baseline))/
 experiments/truths       | (core/(model|reference)|experiments/(metrics|case|truths))/
-experiments/render       | (core/(model|io)|experiments/(system|case|render))/
+experiments/render/image | (core/model|experiments/(system|render/image))/
+experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
+experiments/render/picture | (core/(model|io)|experiments/(system|case|render))/
 experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
 experiments/bench        | (core/(model|io|solver|reference)|experiments/(system|timing|bench))/
 experiments/film         | (core/(model|io)|experiments/(system|metrics|case|render|report|film))/
@@ -103,6 +105,8 @@ core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
 core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
 core/solver/contact/planted.cpp|"core/solver/constraints/relaxation.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
+experiments/render/image/planted.cpp|"experiments/render/opengl/camera.hpp"
+experiments/render/opengl/planted.cpp|"experiments/render/picture/figure.hpp"
 core/solver/planted.cpp|<BulletSoftBody/btSoftBody.h>
 bullet_ref/planted.hpp|<BulletSoftBody/btSoftBody.h>
 core/model/planted.hpp|<toml++/toml.h>
