@@ -94,7 +94,7 @@ colour = "red"
                           "'iteratons'; did you mean 'iterations'?", "bad.toml:9:1: unknown key 'colour' in [[plot]]"])
         plot = '[[plot]]\nkind = "error-iteration"\ny = "stretch.rmss"\n'
         self.refuse("run", self.study(rest=plot),
-                    says=["unknown kind of figure 'error-iteration'; did you mean 'error-iterations'?",
+                    says=["unknown kind of plot 'error-iteration'; did you mean 'error-iterations'?",
                           "unknown value 'stretch.rmss' for y; did you mean 'stretch.rms'?"])
         nothing = self.taut("run", self.study(rest='exclude = [{ solver = "jakobsen" }]\n'), expect=4)
         self.assertIn("no case", nothing.err)
@@ -117,13 +117,13 @@ class Verbs(CommandLine):
         self.assertIn("2 cases at other values are not drawn", drawn.err)
         self.assertIn("dt = ", (self.folder / drawn.out.split()[0]).read_text())
         series = self.taut("plot", study, "--kind", "series", "--y", "stretch.rms")
-        self.assertIn("Jakobsen 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
+        self.assertIn("Jakobsen 5 × 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
 
     def test_targets_that_cannot_be_written_are_refused_before_the_work(self):
         study = self.study()
         self.taut("run", study)
         (self.folder / "file").write_text("")
-        self.assertIn("name the page", self.taut("report", study, "-o", ".", expect=2).err)
+        self.assertIn("is a folder; name a file in it", self.taut("report", study, "-o", ".", expect=2).err)
         for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"],
                       ["figures", "-o", "file"]]:
             self.assertIn("file", self.taut(*words, expect=2).err)
