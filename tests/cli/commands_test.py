@@ -129,13 +129,13 @@ class Verbs(CommandLine):
         self.assertIn("2 cases at other values are not drawn", drawn.err)
         self.assertIn("dt = ", (self.folder / drawn.out.split()[0]).read_text())
         series = self.taut("plot", study, "--kind", "series", "--y", "stretch.rms")
-        self.assertIn("Jakobsen 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
+        self.assertIn("Jakobsen 5 × 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
 
     def test_targets_that_cannot_be_written_are_refused_before_the_work(self):
         study = self.study()
         self.taut("run", study)
         (self.folder / "file").write_text("")
-        self.assertIn("name the page", self.taut("report", study, "-o", ".", expect=2).err)
+        self.assertIn("is a folder; name a file in it", self.taut("report", study, "-o", ".", expect=2).err)
         for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"]]:
             self.assertIn("file", self.taut(*words, expect=2).err)
         self.assertIn("taut run", self.taut("plot", study, "--results", "nowhere", expect=2).err)
