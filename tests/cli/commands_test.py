@@ -135,7 +135,7 @@ class Verbs(CommandLine):
         study = self.study()
         self.taut("run", study)
         (self.folder / "file").write_text("")
-        self.assertIn("name a file in it", self.taut("report", study, "-o", ".", expect=2).err)
+        self.assertIn("is a folder; name a file in it", self.taut("report", study, "-o", ".", expect=2).err)
         for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"]]:
             self.assertIn("file", self.taut(*words, expect=2).err)
         self.assertIn("taut run", self.taut("plot", study, "--results", "nowhere", expect=2).err)
