@@ -29,8 +29,9 @@ constexpr std::size_t kMostPanels = 4;
 struct Film {
   std::string scene, summary;
   RunRequest request;
-  std::vector<std::string> labels;  ///< of the solvers, in the order of the request's
-  std::vector<std::string> keys;    ///< of their cases; empty if no study ran them
+  std::vector<std::string> labels;    ///< of the solvers, in the order of the request's
+  std::vector<std::string> settings;  ///< "1 × 16, order=mesh"
+  std::vector<std::string> keys;      ///< of their cases; empty if no study ran them
   std::vector<std::pair<std::string, std::string>> refused;  ///< solver, why
   double speed = 1;
   bool studied = true;
@@ -49,6 +50,7 @@ Film studied_film(const report::Rivals& rivals, const report::QuotedScene& quote
     film.request.scene = one->spec.scene, film.request.overrides = one->spec.overrides;
     film.request.solvers.push_back(one->spec.solver);
     film.labels.push_back(rivals.all[i].label);
+    film.settings.push_back(report::brief_settings(one->spec.solver, report::work_of(*one)));
     film.keys.push_back(one->key);
   }
   return film;
@@ -84,6 +86,8 @@ Film other_film(const report::Rivals& rivals, const std::string& name) {
       continue;
     }
     film.request.solvers.push_back((*quoted)->spec.solver);
+    film.settings.push_back(
+        report::brief_settings((*quoted)->spec.solver, report::work_of(**quoted)));
     film.labels.push_back(rival.label);
   }
   return film;
@@ -168,7 +172,8 @@ report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
   std::string who;
   for (std::size_t k = 0; k < set.runs.size(); ++k) {
     const RecordedRun& run = set.runs[k];
-    clip.panels.push_back({solver_name(run), run.settings, film.keys.empty() ? "" : film.keys[k]});
+    clip.panels.push_back(
+        {solver_name(run), film.settings[k], film.keys.empty() ? "" : film.keys[k]});
     who += (k > 0 ? " and " : "") + run.title + " (" + run.settings + ")";
   }
   clip.alt = set.scene.name + ": " + who + (set.runs.size() > 1 ? " side by side" : "") +

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "core/model/input_error.hpp"
-#include "core/model/solver.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/report/format.hpp"
 #include "experiments/report/model_parts.hpp"
@@ -99,22 +98,6 @@ namespace {
 
 Json json_of(const Colour& colour) { return {{"light", colour.light}, {"dark", colour.dark}}; }
 
-/// What a case's parameters are besides its work, where they are not the defaults.
-std::string brief_of(const Record& r) {
-  std::string text = work_of(r).text();
-  try {
-    const SolverChoice choice = parse_solver(r.spec.solver);
-    for (const ParamSpec& spec : choice.params.specs()) {
-      const std::string_view value = choice.params.value(spec.name);
-      if (spec.name != "iterations" && spec.name != "substeps" && value != spec.default_value)
-        text += ", " + std::string(spec.name) + "=" + std::string(value);
-    }
-  } catch (const InputError&) {
-    // a solver that this program does not have: its text says all
-  }
-  return text;
-}
-
 Json json_of_case(const Record& r, const BenchedCase* timed, References& refs) {
   CaseSpec spec = r.spec;
   if (spec.scene.find('/') != std::string::npos)
@@ -124,7 +107,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, References& refs) {
            {"scene", r.scene},
            {"solver", r.solver},
            {"settings", r.spec.solver},
-           {"brief", brief_of(r)},
+           {"brief", brief_settings(r.spec.solver, work_of(r))},
            {"studies", refs.studies_of(r)},
            {"dt", r.dt},
            {"steps", r.steps},
@@ -469,7 +452,7 @@ class Builder {
           one["film"] = "film-" + scene;
       }
     if (filmed && !one.contains("film") && claim.about != "failures")
-      one["film_note"] = "The films show " + rivals_.work.text() + ", not these settings.";
+      one["film_note"] = "The films show other settings.";
     return one;
   }
 
@@ -525,6 +508,9 @@ class Builder {
       add("cost", "No cost was measured.",
           "taut bench " + (input_.studies.size() == 1 ? input_.studies.front().name
                                                       : std::string("trade --preset quick")));
+    if (input_.media.empty())
+      add("films", "No pictures were rendered.",
+          "taut render " + rivals_.scenes.front().question.scene + " --video");
     if (!input_.truths)
       add("truths", "Closed forms and published numbers were not evaluated by this build.",
           "taut verify --out results/runs/verify.json");

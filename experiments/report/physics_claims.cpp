@@ -21,8 +21,9 @@ constexpr double kLeastRange = 4;
 
 std::string at_work(const Rivals& rivals) {
   const Work& work = rivals.work;
-  const bool both = work.substeps >= 0 && work.sweeps >= 0;
-  return " at " + work.text() + (both ? " (substeps × sweeps)" : "");
+  if (work.substeps >= 0 && work.sweeps >= 0) return " at " + work.text() + " (substeps × sweeps)";
+  if (work.sweeps < 0 || rivals.unequal_work().empty()) return " at " + work.text();
+  return " at " + work.text() + " a substep (unequal work, " + rivals.unequal_work() + ")";
 }
 
 std::string dt_text(double dt) { return quantity("dt").text(dt, 3); }
@@ -362,7 +363,7 @@ void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
 /// One scene, values side by side, failures by name.
 void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Claim>& claims) {
   const std::string& scene = quoted.question.scene;
-  const std::string at = " at " + rivals.work.text() + ", time step " + dt_text(quoted.question.dt);
+  const std::string at = at_work(rivals) + ", time step " + dt_text(quoted.question.dt);
   const auto side_by_side = [&](const std::string& id, const std::string& opening,
                                 const std::vector<std::pair<const char*, std::string>>& metrics) {
     std::vector<Evidence> basis;

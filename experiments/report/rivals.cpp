@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/report/palette.hpp"
 #include "experiments/report/quantity.hpp"
 
@@ -37,18 +40,20 @@ Rival choose(const std::string& solver, const std::vector<const Record*>& cases)
   return rival;
 }
 
-/// The work that most rivals did, near 1 × 16; those without sweeps have no say.
+/// The work that most rivals did, near 1 × 16, or the sweeps alone where more of them share those;
+/// rivals without sweeps have no say.
 Work common_work(const std::vector<Rival>& rivals) {
   std::map<Work, int> counts;
   for (const Rival& rival : rivals) {
     std::set<Work> own;
     for (const Record* r : rival.cases)
-      if (const Work work = work_of(*r); work.sweeps > 0) own.insert(work);
+      if (const Work work = work_of(*r); work.sweeps > 0) own.insert({work, {-1, work.sweeps}});
     for (const Work& work : own) ++counts[work];
   }
   const auto rank = [](const std::pair<const Work, int>& c) {
-    return std::pair(c.second, -std::abs(std::log(c.first.sweeps / 16.0)) -
-                                   std::log(std::max(1, c.first.substeps)));
+    return std::tuple(
+        c.second, c.first.substeps > 0,
+        -std::abs(std::log(c.first.sweeps / 16.0)) - std::log(std::max(1, c.first.substeps)));
   };
   const auto best = std::ranges::max_element(counts, {}, rank);
   return best == counts.end() ? Work{} : best->first;
@@ -99,6 +104,21 @@ Work work_of(const Record& r) {
   return {number("substeps"), number("iterations")};
 }
 
+std::string brief_settings(const std::string& solver, const Work& work) {
+  std::string text = work.text();
+  try {
+    const SolverChoice choice = parse_solver(solver);
+    for (const ParamSpec& spec : choice.params.specs()) {
+      const std::string_view value = choice.params.value(spec.name);
+      if (spec.name != "iterations" && spec.name != "substeps" && value != spec.default_value)
+        text += ", " + std::string(spec.name) + "=" + std::string(value);
+    }
+  } catch (const InputError&) {
+    // its text says all
+  }
+  return text;
+}
+
 Question question_of(const Record& r) {
   Question question{r.scene, r.spec.overrides, r.dt};
   std::erase_if(question.overrides, [](const auto& text) { return text.starts_with("time.dt="); });
@@ -122,10 +142,10 @@ std::string Rivals::unequal_work() const {
   for (const auto& [label, own] : substeps) {
     kinds.insert(own);
     std::string numbers;
-    for (const int n : own) numbers += (numbers.empty() ? "" : ", ") + std::to_string(n);
-    text += (text.empty() ? "" : "; ") + label + " " + numbers;
+    for (const int n : own) numbers += (numbers.empty() ? "" : "/") + std::to_string(n);
+    text += (text.empty() ? "" : ", ") + label + " " + numbers;
   }
-  return kinds.size() < 2 ? "" : "substeps differ: " + text;
+  return kinds.size() < 2 ? "" : text + " substeps";
 }
 
 Rivals rivals_of(const ReportInput& input) {

@@ -22,6 +22,10 @@ struct Work {
 };
 Work work_of(const Record&);
 
+/// "1 × 16, order=mesh": the work of "jakobsen:substeps=1,iterations=16,...", and what else is not
+/// the default; only the work for a solver that this program does not have.
+std::string brief_settings(const std::string& solver, const Work&);
+
 /// What a case is asked, apart from the solver: scene, its settings and the time step.
 struct Question {
   std::string scene;

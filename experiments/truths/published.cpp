@@ -115,7 +115,7 @@ void tetrahedron(Ledger& ledger) {
 }
 
 void three_sweeps(Ledger& ledger) {
-  // "3 iterations suffice": by how much, on the sheet that the report shows.
+  // "3 iterations suffice": by how much, on the sheet that Vasilovici shows.
   for (const std::string& solver : {jakobsen(3, "sqrt-free"), bullet(3)}) {
     Scene s = bare::sheet(16, 16, {.shear = true});
     s.pins = {0, 15};
@@ -172,5 +172,5 @@ TAUT_TRUTH(three_sweeps) = {.name = "three-sweeps",
                             .section = 8,
                             .row = 5,
                             .statement = "three sweeps suffice for a good result",
-                            .source = "the report, section 4.1",
+                            .source = "Vasilovici, Cloth Simulation Report, section 4.1",
                             .check = taut::three_sweeps};

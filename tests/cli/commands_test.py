@@ -106,7 +106,7 @@ colour = "red"
                           "'iteratons'; did you mean 'iterations'?", "bad.toml:9:1: unknown key 'colour' in [[plot]]"])
         plot = '[[plot]]\nkind = "error-iteration"\ny = "stretch.rmss"\n'
         self.refuse("run", self.study(rest=plot),
-                    says=["unknown kind of figure 'error-iteration'; did you mean 'error-iterations'?",
+                    says=["unknown kind of plot 'error-iteration'; did you mean 'error-iterations'?",
                           "unknown value 'stretch.rmss' for y; did you mean 'stretch.rms'?"])
         nothing = self.taut("run", self.study(rest='exclude = [{ solver = "jakobsen" }]\n'), expect=4)
         self.assertIn("no case", nothing.err)
@@ -129,17 +129,17 @@ class Verbs(CommandLine):
         self.assertIn("2 cases at other values are not drawn", drawn.err)
         self.assertIn("dt = ", (self.folder / drawn.out.split()[0]).read_text())
         series = self.taut("plot", study, "--kind", "series", "--y", "stretch.rms")
-        self.assertIn("Jakobsen 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
+        self.assertIn("Jakobsen 5 × 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
 
     def test_targets_that_cannot_be_written_are_refused_before_the_work(self):
         study = self.study()
         self.taut("run", study)
         (self.folder / "file").write_text("")
-        self.assertIn("name the page", self.taut("report", study, "-o", ".", expect=2).err)
+        self.assertIn("is a folder; name a file in it", self.taut("report", study, "-o", ".", expect=2).err)
         for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"]]:
             self.assertIn("file", self.taut(*words, expect=2).err)
         self.assertIn("taut run", self.taut("plot", study, "--results", "nowhere", expect=2).err)
-        self.assertRegex(self.taut("plot", study, "--kind", "pie", expect=2).err, "unknown kind of figure 'pie'.*one of .*stability")
+        self.assertRegex(self.taut("plot", study, "--kind", "pie", expect=2).err, "unknown kind of plot 'pie'.*one of .*stability")
         self.assertIn("no folder", self.taut("check", "regression", expect=4).out)
 
     def test_the_version_names_release_build_and_compiler(self):
@@ -305,11 +305,11 @@ class Verbs(CommandLine):
     def test_a_whole_number_of_six_digits_is_one(self):
         run = self.taut("case", "./small.toml", "xpbd:iterations=100000", "--dt", "0.25", "--json")
         self.assertEqual(json.loads(run.out)["params"]["iterations"], "100000")
-        self.taut("run", self.study(solvers=["xpbd"], rest='set = ["time.dt=0.25"]\nsweep.iterations = [100000]\n'))
+        self.taut("run", self.study(solvers=["xpbd"], rest='set = ["time.dt=0.25"]\naxes.iterations = [100000]\n'))
 
     def test_export_is_one_tidy_table(self):
         study = self.study(solvers=["jakobsen:iterations=2", "xpbd"],
-                           rest='sweep.time.dt = ["1/64", "1/32"]\n')
+                           rest='axes.time.dt = ["1/64", "1/32"]\n')
         self.assertIn("taut run makes them", self.taut("export", study, expect=2).err)
         self.taut("run", study)
         self.assertEqual(self.taut("export", study, "-o", "x.csv").out, "x.csv\n")
@@ -328,7 +328,7 @@ class Verbs(CommandLine):
         priced = list(csv.DictReader(self.taut("export", study).out.splitlines()))
         for row in priced:
             self.assertLessEqual(float(row["cpu.per_second.low"]), float(row["cpu.per_second"]))
-        more = self.study(solvers=["jakobsen:iterations=2", "xpbd", "bullet"], rest='sweep.time.dt = ["1/64", "1/32"]\n')
+        more = self.study(solvers=["jakobsen:iterations=2", "xpbd", "bullet"], rest='axes.time.dt = ["1/64", "1/32"]\n')
         missing = self.taut("export", more, expect=3)
         self.assertEqual(missing.out.count(",not run,"), 2)
 

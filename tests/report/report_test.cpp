@@ -93,7 +93,7 @@ TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
     EXPECT_TRUE(model.contains(part) && !model[part].empty()) << part;
   for (const char* part : {"cost", "truths", "regressions", "films", "tables", "left_out"})
     EXPECT_FALSE(model.contains(part)) << part;
-  EXPECT_EQ(model["missing"].size(), 3U);
+  EXPECT_EQ(model["missing"].size(), 4U);
   EXPECT_EQ(model["meta"]["title"], "Jakobsen and Bullet");
   EXPECT_EQ(model["scenes"][0]["maps"].size(), 2U);
 }

@@ -57,7 +57,7 @@ TEST(Projection, ThePrintedSignsDiverge) {
   const double wrong = -excess<Projection::sqrt_free>((1 + e) * (1 + e), 1.0);
   EXPECT_NEAR((1 + e) * (1 - wrong) - 1, (4 * e + 5 * e * e + 2 * e * e * e) / (2 + 2 * e + e * e),
               1e-14);
-  // the report's splice of both listings, with diff = (d - r)/d from the exact one
+  // Vasilovici's splice of both listings, with diff = (d - r)/d from the exact one
   const double l = 1 + e, diff = excess<Projection::exact>(l * l, 1.0);
   const double spliced = l - l * (1 / (l * l + 1) - 0.5) * diff - 1;
   EXPECT_NEAR(spliced, e + e * e / 2, e * e * e);
