@@ -176,7 +176,7 @@ TEST(SceneRenderer, AThreadOfClothIsSeenFromEndToEnd) {
   int seen = 0;
   for (int x = column(ends.min.x()); x < column(ends.max.x()); ++x)
     for (int y = 0; y < 180; ++y)
-      if (panel.at(x, y).r > panel.at(x, y).g + 40) {
+      if (panel.at(x, y).r > panel.at(x, y).g + 20) {
         ++seen;
         break;
       }
