@@ -3,10 +3,11 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <string_view>
+
+#include "core/io/text_file.hpp"
 
 namespace taut {
 
@@ -16,17 +17,68 @@ SourceLocation place_of(const toml::source_region& region, int override) {
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), override};
 }
 
-Value convert(const toml::node& node, int override) {
+/// The TOML library goes down a level for each part of a dotted key, and has no bound of its own.
+constexpr int kMostKeyParts = 16;
+/// Levels of a document: what is deeper means nothing here.
+constexpr int kMostLevels = 64;
+
+/// Where the first dotted key with more parts than that stands, 0-based; npos: there is none.
+std::size_t too_long_key(std::string_view text) {
+  const auto bare = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  };
+  const auto after_part = [&](std::size_t at) {  // `at` itself: no part of a key stands here
+    if (at < text.size() && (text[at] == '"' || text[at] == '\'')) {
+      const std::size_t end = text.find_first_of(std::string{text[at], '\n'}, at + 1);
+      return end != text.npos && text[end] == text[at] ? end + 1 : at;
+    }
+    while (at < text.size() && bare(text[at])) ++at;
+    return at;
+  };
+  const auto after_blanks = [&](std::size_t at) {
+    return std::min(text.find_first_not_of(" \t", at), text.size());
+  };
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t at = begin;
+    for (int parts = 1;; ++parts) {
+      const std::size_t end = after_part(at);
+      if (end == at) break;
+      if (parts > kMostKeyParts) return begin;
+      at = after_blanks(end);
+      if (at == text.size() || text[at] != '.') break;
+      at = after_blanks(at + 1);
+    }
+    begin = std::max(at, begin + 1);
+  }
+  return text.npos;
+}
+
+toml::table parse_bounded(std::string_view text) {
+  if (const std::size_t at = too_long_key(text); at != text.npos) {
+    const auto line =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    const std::size_t start = text.rfind('\n', at) + 1;  // npos + 1 is 0
+    const toml::source_position place{static_cast<toml::source_index>(line + 1),
+                                      static_cast<toml::source_index>(at - start + 1)};
+    throw toml::parse_error("a key of more than 16 parts", place, nullptr);
+  }
+  return toml::parse(text);
+}
+
+Value convert(const toml::node& node, int override, int level = 0) {
+  if (level > kMostLevels)
+    throw toml::parse_error("nested more than 64 levels deep", node.source());
   Value value;
   value.place = place_of(node.source(), override);
   if (const toml::table* table = node.as_table()) {
     for (const auto& [key, child] : *table) {
       value.keys.push_back({std::string(key.str()), place_of(key.source(), override)});
-      value.items.push_back(convert(child, override));
+      value.items.push_back(convert(child, override, level + 1));
     }
   } else if (const toml::array* array = node.as_array()) {
     value.kind = Value::Kind::array;
-    for (const toml::node& child : *array) value.items.push_back(convert(child, override));
+    for (const toml::node& child : *array)
+      value.items.push_back(convert(child, override, level + 1));
   } else if (node.is_string()) {
     value.kind = Value::Kind::string;
     value.string = node.value_or(std::string());
@@ -132,7 +184,7 @@ Document parse_document(const std::string& file, const std::string& text,
   Document document{file, overrides, {}};
   std::vector<Diagnostic> found;
   try {
-    document.root = convert(toml::parse(text), -1);
+    document.root = convert(parse_bounded(text), -1);
   } catch (const toml::parse_error& error) {
     found.push_back(syntax_error(error, document, text, -1));
   }
@@ -140,7 +192,7 @@ Document parse_document(const std::string& file, const std::string& text,
     const std::string& assignment = overrides[static_cast<std::size_t>(i)];
     try {
       std::vector<std::string> problems;
-      assign(document.root, toml::parse(assignment), i, problems);
+      assign(document.root, parse_bounded(assignment), i, problems);
       for (const std::string& problem : problems)
         found.push_back(document.diagnostic({1, 1, i}, problem));
     } catch (const toml::parse_error& error) {
@@ -153,14 +205,7 @@ Document parse_document(const std::string& file, const std::string& text,
 
 Document read_document(const std::filesystem::path& path,
                        const std::vector<std::string>& overrides) {
-  const auto fail = [&](const std::string& why) {
-    throw InputError(std::vector{Diagnostic{path.string(), 0, 0, why}});
-  };
-  if (std::filesystem::is_directory(path)) fail("is a folder, not a file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail(std::string("cannot be read: ") + std::strerror(errno));
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  return parse_document(path.string(), text, overrides);
+  return parse_document(path.string(), read_text(path, kMostSceneBytes), overrides);
 }
 
 }  // namespace taut

@@ -1,16 +1,13 @@
 // The text of an OBJ file; what makes a surface of it is in polygons.cpp.
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 
 #include "core/io/mesh_io.hpp"
 #include "core/io/polygons.hpp"
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 
 namespace taut {
@@ -144,14 +141,7 @@ Polygons parse_obj(const std::string& file, const std::string& text) {
 }
 
 Polygons read_obj(const std::filesystem::path& path) {
-  const auto fail = [&](const std::string& why) {
-    throw InputError(std::vector{Diagnostic{path.string(), 0, 0, why}});
-  };
-  if (std::filesystem::is_directory(path)) fail("is a folder, not a file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail(std::string("cannot be read: ") + std::strerror(errno));
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  return parse_obj(path.string(), text);
+  return parse_obj(path.string(), read_text(path, kMostMeshBytes));
 }
 
 }  // namespace taut

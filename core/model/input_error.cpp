@@ -37,7 +37,10 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 std::string Diagnostic::text() const {
   if (file.empty()) return message;
   std::string place = file + ":";
-  if (line > 0) place += std::to_string(line) + ":" + std::to_string(column) + ":";
+  if (line > 0)
+    place += std::to_string(line) + ":" + std::to_string(column) + ":";
+  else if (column > 0)  // of an argument
+    place += " column " + std::to_string(column) + ":";
   return place + " " + message;
 }
 

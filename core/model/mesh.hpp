@@ -34,7 +34,7 @@ struct Mesh {
   int size() const { return static_cast<int>(rest.size()); }
 };
 
-/// The three spring families of the report (Provot 1995; Lander 1999).
+/// The three families of springs (Provot 1995; Lander 1999; Vasilovici).
 enum class Family { structural, shear, bend };
 inline constexpr std::array kFamilies{Family::structural, Family::shear, Family::bend};
 std::string_view to_string(Family);

@@ -14,12 +14,19 @@ namespace {
 
 std::string in_quotes(std::string_view s) { return "'" + std::string(s) + "'"; }
 
-std::vector<std::string> split(std::string_view text, char separator) {
-  std::vector<std::string> parts;
-  while (!text.empty()) {
-    const auto end = std::min(text.find(separator), text.size());
-    parts.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
+/// A part of a text and where it begins.
+struct Part {
+  std::string text;
+  std::size_t at;
+};
+
+/// "a,,b" has three parts, "" has none.
+std::vector<Part> split(std::string_view text, char separator) {
+  std::vector<Part> parts;
+  for (std::size_t at = 0; !text.empty() && at <= text.size();) {
+    const auto end = std::min(text.find(separator, at), text.size());
+    parts.push_back({std::string(text.substr(at, end - at)), at});
+    at = end + 1;
   }
   return parts;
 }
@@ -32,9 +39,11 @@ bool parse(std::string_view text, auto& value) {
 /// The canonical text of a value, or the reason why it is not one.
 std::string canonical_value(const ParamSpec& spec, std::string_view given, std::string& problem) {
   if (spec.kind == ParamSpec::Kind::choice) {
-    const auto allowed = split(spec.choices, '|');
-    for (const auto& choice : allowed)
-      if (choice == given) return choice;
+    std::vector<std::string> allowed;
+    for (Part& choice : split(spec.choices, '|')) {
+      if (choice.text == given) return choice.text;
+      allowed.push_back(std::move(choice.text));
+    }
     problem =
         "is not one of " + std::string(spec.choices) + suggestion(std::string(given), allowed);
     return {};
@@ -47,11 +56,14 @@ std::string canonical_value(const ParamSpec& spec, std::string_view given, std::
     return {};
   }
   if (whole) value = static_cast<double>(integer);
+  const auto text = [&](double number) {  // 100000 and not 1e+05, which is no whole number
+    return whole ? std::to_string(static_cast<long>(number)) : shortest(number == 0 ? 0 : number);
+  };
   if (!(value >= spec.min && value <= spec.max)) {  // NaN too
-    problem = "is outside " + shortest(spec.min) + " to " + shortest(spec.max);
+    problem = "is outside " + text(spec.min) + " to " + text(spec.max);
     return {};
   }
-  return shortest(value == 0 ? 0 : value);
+  return text(value);
 }
 
 }  // namespace
@@ -59,7 +71,6 @@ std::string canonical_value(const ParamSpec& spec, std::string_view given, std::
 Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::string_view text)
     : specs_(specs) {
   std::vector<Diagnostic> problems;
-  const auto report = [&](const std::string& message) { problems.push_back({{}, 0, 0, message}); };
   std::vector<std::string> names;
   for (const ParamSpec& spec : specs) {
     names.emplace_back(spec.name);
@@ -68,16 +79,19 @@ Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::st
     assert(problem.empty() && "a default outside its own range");
   }
   std::vector<bool> seen(specs.size());
-  for (const std::string& item : split(text, ',')) {
+  for (const auto& [item, at] : split(text, ',')) {
+    const auto report = [&, column = static_cast<int>(at) + 1](const std::string& message) {
+      problems.push_back({std::string(text), 0, column, std::string(owner) + ": " + message});
+    };
     const auto eq = item.find('=');
     const std::string key = item.substr(0, eq);
     const std::size_t i = find(key);
     if (eq == std::string::npos || key.empty()) {
-      report(std::string(owner) + ": expected key=value, got " + in_quotes(item));
+      report("expected key=value, got " + in_quotes(item));
     } else if (i == specs.size()) {
-      report(std::string(owner) + ": unknown parameter " + in_quotes(key) + suggestion(key, names));
+      report("unknown parameter " + in_quotes(key) + suggestion(key, names));
     } else if (seen[i]) {
-      report(std::string(owner) + ": parameter " + in_quotes(key) + " is given twice");
+      report("parameter " + in_quotes(key) + " is given twice");
     } else {
       seen[i] = true;
       std::string problem;
@@ -85,7 +99,7 @@ Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::st
       if (problem.empty())
         values_[i] = value;
       else
-        report(std::string(owner) + ": " + key + "=" + item.substr(eq + 1) + " " + problem);
+        report(key + "=" + item.substr(eq + 1) + " " + problem);
     }
   }
   if (!problems.empty()) throw InputError(problems);

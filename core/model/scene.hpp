@@ -15,7 +15,7 @@ struct State {
   std::vector<Vec3> v;  ///< [n] m/s
 };
 
-/// Air that moves past the cloth, with the report's face law (section 3): F = c (n . d) n.
+/// Air that moves past the cloth, with Vasilovici's face law (section 3): F = c (n . d) n.
 struct Wind {
   enum class Law {
     relative,  ///< d = wind velocity - face velocity, F per m^2: c (n . d) n A; has a terminal
@@ -28,7 +28,7 @@ struct Wind {
   Law law = Law::relative;
 };
 
-/// The cloth collides with itself: every particle is a ball of this radius (report, section 4.2.4).
+/// The cloth collides with itself: every particle is a ball of this radius (Vasilovici, 4.2.4).
 struct SelfCollision {
   double radius = 0;  ///< m
 };
@@ -41,7 +41,7 @@ struct PinMotion {
 
 /// What to simulate: plain data in SI units, no behaviour. Every solver receives this same object.
 /// An empty vector or disengaged optional means that the effect is absent, and an absent effect
-/// costs neither memory nor time (tests/absent_is_free_test.cpp).
+/// costs neither memory nor time (tests/solver/absent_is_free_test.cpp).
 struct Scene {
   std::string name;     ///< file stem; a label, not part of the content
   std::string summary;  ///< one sentence; a label, not part of the content

@@ -24,8 +24,19 @@ const SolverEntry& find_solver(std::string_view name) {
 SolverChoice parse_solver(std::string_view text) {
   const auto colon = text.find(':');
   const SolverEntry& entry = find_solver(text.substr(0, colon));
-  const auto params = colon == std::string_view::npos ? std::string_view{} : text.substr(colon + 1);
-  return {&entry, Params(entry.name, entry.params, params)};
+  if (colon == std::string_view::npos) return {&entry, Params(entry.name, entry.params, {})};
+  try {
+    if (colon + 1 == text.size())
+      throw InputError({{{}, 0, 1, "expected key=value after the colon"}});
+    return {&entry, Params(entry.name, entry.params, text.substr(colon + 1))};
+  } catch (const InputError& error) {  // columns count from the start of the whole text
+    std::vector<Diagnostic> all = error.diagnostics();
+    for (Diagnostic& d : all) {
+      d.column += static_cast<int>(colon) + 1;
+      d.file = text;
+    }
+    throw InputError(all);
+  }
 }
 
 std::string SolverChoice::canonical() const {

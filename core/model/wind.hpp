@@ -4,7 +4,7 @@
 
 namespace taut {
 
-/// The report's law for one face (section 3), F = c (n . d) n, with n the unit normal and F scaled
+/// Vasilovici's law for one face (section 3), F = c (n . d) n, with n the unit normal and F scaled
 /// by the face's area; every corner takes a third, which is what this gives [N]. Positions xa, xb,
 /// xc [m]; face_velocity [m/s] is the mean of the corners' velocities, which the literal law does
 /// not read. A face without area feels nothing. All solvers blow with this one function.

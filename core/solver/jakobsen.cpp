@@ -3,17 +3,45 @@
 #include <memory>
 
 #include "core/model/solver.hpp"
-#include "core/solver/contact/responses.hpp"
 #include "core/solver/jakobsen_params.hpp"
-#include "core/solver/passes/wind.hpp"
-#include "core/solver/pins.hpp"
-#include "core/solver/relaxation.hpp"
-#include "core/solver/simd/kernels.hpp"
-#include "core/solver/team.hpp"
+#include "core/solver/wind.hpp"
 
 namespace taut::solver::jakobsen {
 
 namespace {
+
+/// The vertices that are not integrated: held, or moved along the scene's motions.
+class Pins {
+ public:
+  explicit Pins(const Scene& scene) : held_(scene.pins), motions_(scene.pin_motions) {
+    for (const PinMotion& group : motions_)
+      for (const int v : group.vertices) {
+        std::erase(held_, v);
+        starts_.push_back(scene.start.x[static_cast<std::size_t>(v)]);
+      }
+  }
+
+  /// Undoes what integration did to them and puts them where they have to be at time t [s].
+  template <class Real>
+  void place(Particles<Real>& p, double t) const {
+    for (const int v : held_)
+      p.x.set(static_cast<std::size_t>(v), p.previous[static_cast<std::size_t>(v)]);
+    std::size_t next = 0;
+    for (const PinMotion& group : motions_)
+      for (const int v : group.vertices)
+        p.x.set(static_cast<std::size_t>(v),
+                group.motion.moved(starts_[next++], t).template cast<Real>());
+  }
+
+  bool empty() const { return held_.empty() && motions_.empty(); }
+  std::size_t size() const { return held_.size() + starts_.size(); }
+  std::size_t bytes() const { return held_.size() * sizeof(int) + starts_.size() * sizeof(Vec3); }
+
+ private:
+  std::vector<int> held_;
+  std::vector<PinMotion> motions_;
+  std::vector<Vec3> starts_;  ///< m, of the moved ones, group after group
+};
 
 /// Thomas Jakobsen, Advanced Character Physics (GDC 2001).
 template <class Real>
@@ -26,17 +54,18 @@ class Jakobsen final : public Solver {
         gravity_(scene.gravity),
         damping_(scene.damping),
         simd_(simd_of(params)),
-        team_(params.integer("threads")),
+        pool_(params.integer("threads")),
         pins_(scene) {
     const std::vector<double> w = inverse_masses(scene);
-    Relaxation<Real> links = make_relaxation<Real>(scene, w, params, team_);
+    const RelaxationSettings settings = relaxation_settings(scene, params);
+    Relaxation<Real> links = make_relaxation<Real>(scene, w, settings, pool_);
     p_ = Particles<Real>(std::move(links.layout));
     p_.w.assign(w.begin(), w.end());
     p_.x = p_.previous = Points<Real>(p_.layout);
     add_forces(scene);
-    constraints_ = make_accelerators<Real>(scene, w, params);
+    constraints_ = make_accelerators<Real>(scene, w, settings);
     if (links.pass) constraints_.push_back(std::move(links.pass));
-    contact_ = make_contact<Real>(scene, params);
+    contact_ = make_contact<Real>(scene, contact_settings(params));
   }
 
   /// The published TimeStep(), substeps times with dt / substeps.
@@ -117,7 +146,7 @@ class Jakobsen final : public Solver {
                                 .g = g};
     const Kernels<Real>& k = kernels<Real>(simd_);
     const auto kernel = p_.layout->stride() == kWide ? k.wide_verlet : k.narrow_verlet;
-    team_.run(p_.layout->length() / kGrain, [&](std::size_t begin, std::size_t end) {
+    pool_.run(p_.layout->length() / kGrain, [&](std::size_t begin, std::size_t end) {
       kernel(step, begin * kGrain, end * kGrain);
     });
   }
@@ -134,7 +163,7 @@ class Jakobsen final : public Solver {
   Vec3 gravity_;
   double damping_;
   Simd simd_;
-  Team team_;
+  ThreadPool pool_;
   Pins pins_;
   Particles<Real> p_;
   PassList forces_;

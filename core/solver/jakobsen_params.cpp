@@ -1,11 +1,11 @@
 #include "core/solver/jakobsen_params.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
-#include "core/solver/contact/responses.hpp"
 
 namespace taut {
 
@@ -20,13 +20,13 @@ constexpr ParamSpec kSpecs[] = {
      .default_value = "3",
      .min = 0,
      .max = 1e6,
-     .help = "relaxation sweeps per substep; the report finds that 3 suffice"},
+     .help = "relaxation sweeps per substep; Vasilovici's report finds that 3 suffice"},
     {.name = "substeps",
      .kind = Kind::integer,
      .default_value = "5",
      .min = 1,
      .max = 1e6,
-     .help = "each step is this many steps of dt / substeps; the report takes 1"},
+     .help = "each step is this many steps of dt / substeps; Jakobsen takes 1"},
     {.name = "projection",
      .kind = Kind::choice,
      .default_value = "sqrt-free",
@@ -42,8 +42,8 @@ constexpr ParamSpec kSpecs[] = {
      .kind = Kind::choice,
      .default_value = "coloured",
      .choices = "mesh|coloured|reversed|random",
-     .help = "in which Gauss-Seidel visits the links; mesh is the scene's own order, as the report "
-             "has it"},
+     .help = "in which Gauss-Seidel visits the links; mesh is the scene's own order, as "
+             "published"},
     {.name = "seed",
      .kind = Kind::integer,
      .default_value = "1",
@@ -62,7 +62,7 @@ constexpr ParamSpec kSpecs[] = {
      .default_value = "inf",
      .min = 0,
      .max = kInf,
-     .help = "of a structural link, whatever the time step and the sweeps; inf: a stick"},
+     .help = "of a structural link, whatever the time step and the sweeps; inf: rigid"},
     {.name = "shear_stiffness",
      .kind = Kind::real,
      .unit = "N/m",
@@ -79,10 +79,11 @@ constexpr ParamSpec kSpecs[] = {
      .help = "of a bend link"},
     {.name = "contact",
      .kind = Kind::choice,
-     .default_value = "swept",
-     .choices = "swept|sweep|before|after|freeze|halt",
-     .help = "response to colliders: in every sweep, with or without the test against passing "
-             "through; once, before or after the sweeps; or the report's quick fixes"},
+     .default_value = "continuous",
+     .choices = "continuous|discrete|before|after|freeze|halt",
+     .help = "response to colliders: out in every sweep, with a test against passing through "
+             "(continuous) or without (discrete); once, before or after the sweeps; or put on the "
+             "surface for good (freeze) or for a step (halt)"},
     {.name = "faces",
      .kind = Kind::choice,
      .default_value = "off",
@@ -92,7 +93,8 @@ constexpr ParamSpec kSpecs[] = {
      .kind = Kind::choice,
      .default_value = "grid",
      .choices = "grid|octree|off",
-     .help = "self-collision where the scene has it: hash grid, the report's octree, or none"},
+     .help =
+         "self-collision where the scene has it: grid, octree as published by Vasilovici, or none"},
     {.name = "tethers",
      .kind = Kind::choice,
      .default_value = "off",
@@ -112,9 +114,10 @@ constexpr ParamSpec kSpecs[] = {
     {.name = "layout",
      .kind = Kind::choice,
      .default_value = "auto",
-     .choices = "auto|strips|packed",
-     .help = "of the particles under order=coloured: strips of a regular sheet, or packed for any "
-             "mesh"},
+     .choices = "auto|interleaved|batches",
+     .help =
+         "of the links under order=coloured: interleaved (AoSoA) for a regular sheet, or colour "
+         "batches for any mesh"},
     {.name = "simd",
      .kind = Kind::choice,
      .default_value = "auto",
@@ -125,18 +128,44 @@ constexpr ParamSpec kSpecs[] = {
      .default_value = "1",
      .min = 1,
      .max = 64,
-     .help = "that share the sweeps of order=coloured; any number computes the same bits"},
+     .help = "that divide the sweeps of order=coloured; any number computes the same bits"},
 };
+
+template <class T>
+using Choice = std::pair<std::string_view, T>;
+
+/// The value that the parameter's choice stands for.
+template <class T, std::size_t n>
+T value_of(const Params& params, std::string_view name, const Choice<T> (&choices)[n]) {
+  const auto* const found = std::ranges::find(choices, params.choice(name), &Choice<T>::first);
+  return found->second;  // Params accepts no other
+}
+
+constexpr Choice<Projection> kProjections[] = {{"exact", Projection::exact},
+                                               {"sqrt-free", Projection::sqrt_free}};
+constexpr Choice<std::optional<Jacobi>> kMethods[] = {
+    {"gauss-seidel", {}},
+    {"jacobi", Jacobi::plain},
+    {"jacobi-averaged", Jacobi::averaged},
+    {"jacobi-underrelaxed", Jacobi::underrelaxed}};
+constexpr Choice<Order> kOrders[] = {{"mesh", Order::mesh},
+                                     {"coloured", Order::coloured},
+                                     {"reversed", Order::reversed},
+                                     {"random", Order::random}};
+constexpr Choice<LinkLayout> kLayouts[] = {{"auto", LinkLayout::automatic},
+                                           {"interleaved", LinkLayout::interleaved},
+                                           {"batches", LinkLayout::batches}};
+constexpr Choice<Response> kResponses[] = {
+    {"continuous", Response::continuous}, {"discrete", Response::discrete},
+    {"before", Response::before},         {"after", Response::after},
+    {"freeze", Response::freeze},         {"halt", Response::halt}};
+constexpr Choice<SelfCollisionMethod> kSelfCollision[] = {{"grid", SelfCollisionMethod::grid},
+                                                          {"octree", SelfCollisionMethod::octree},
+                                                          {"off", SelfCollisionMethod::off}};
 
 }  // namespace
 
 const std::span<const ParamSpec> kJakobsenParams = kSpecs;
-
-Path path_of(const Params& params) {
-  if (params.is("layout", "strips")) return Path::strips;
-  if (params.is("layout", "packed")) return Path::packed;
-  return Path::automatic;
-}
 
 Simd simd_of(const Params& params) {
   for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
@@ -149,30 +178,28 @@ Simd simd_of(const Params& params) {
   return widest();
 }
 
-Projection projection_of(const Params& params) {
-  return params.is("projection", "exact") ? Projection::exact : Projection::sqrt_free;
+RelaxationSettings relaxation_settings(const Scene& scene, const Params& params) {
+  return {
+      .projection = value_of(params, "projection", kProjections),
+      .jacobi = value_of(params, "method", kMethods),
+      .order = value_of(params, "order", kOrders),
+      .seed = static_cast<std::uint32_t>(params.integer("seed")),
+      .layout = value_of(params, "layout", kLayouts),
+      .stiffness = {.of_family = {params.real("structural_stiffness"),
+                                  params.real("shear_stiffness"), params.real("bend_stiffness")},
+                    .omega = params.real("omega"),
+                    .substep = scene.dt / params.integer("substeps"),
+                    .iterations = params.integer("iterations")},
+      .levels = params.integer("levels"),
+      .tethers = params.is("tethers", "on"),
+      .simd = simd_of(params)};
 }
 
-Order order_of(const Params& params) {
-  if (params.is("order", "coloured")) return Order::coloured;
-  if (params.is("order", "reversed")) return Order::reversed;
-  if (params.is("order", "random")) return Order::random;
-  return Order::mesh;
-}
-
-std::optional<Jacobi> jacobi_of(const Params& params) {
-  if (params.is("method", "jacobi")) return Jacobi::plain;
-  if (params.is("method", "jacobi-averaged")) return Jacobi::averaged;
-  if (params.is("method", "jacobi-underrelaxed")) return Jacobi::under;
-  return {};
-}
-
-Firmness firmness(const Params& params, double substep, int iterations) {
-  return {.stiffness = {params.real("structural_stiffness"), params.real("shear_stiffness"),
-                        params.real("bend_stiffness")},
-          .omega = params.real("omega"),
-          .substep = substep,
-          .iterations = iterations};
+ContactSettings contact_settings(const Params& params) {
+  return {.response = value_of(params, "contact", kResponses),
+          .faces = params.is("faces", "on"),
+          .self = value_of(params, "self", kSelfCollision),
+          .simd = simd_of(params)};
 }
 
 ResolvedSettings jakobsen_settings(const Scene& scene, const Params& params) {
@@ -188,7 +215,14 @@ ResolvedSettings jakobsen_settings(const Scene& scene, const Params& params) {
   if (scene.damping > 0)
     lines.emplace_back("damping",
                        "velocity x " + shortest(std::exp(-scene.damping * h)) + " per substep");
-  for (auto& line : contact_settings(scene, params)) lines.push_back(std::move(line));
+  if (!scene.colliders.empty()) {
+    lines.emplace_back("contact response", std::string(params.choice("contact")));
+    lines.emplace_back("friction", "Coulomb: tangential correction at most mu times the depth");
+    lines.emplace_back("contact distance", "the scene's thickness");
+    lines.emplace_back("contact of faces", std::string(params.choice("faces")));
+  }
+  if (scene.self_collision)
+    lines.emplace_back("self-collision", std::string(params.choice("self")));
   return lines;
 }
 

@@ -1,6 +1,7 @@
-// The report's section 3, before any constraint: F = -k x - c v on springs, integrated explicitly.
+// Springs and dampers before any constraint, F = -k x - c v, integrated explicitly: Vasilovici,
+// Cloth Simulation Report, section 3.
 //
-//     explicit-euler     x' = x + v dt;   v' = v + a(x, v) dt              the report's two lines
+//     explicit-euler     x' = x + v dt;   v' = v + a(x, v) dt              as printed there
 //     symplectic-euler   v' = v + a dt;   x' = x + v' dt
 //     verlet             x* = 2x - x' + a dt^2                             v = (x - x')/dt
 //
@@ -12,7 +13,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/solver.hpp"
-#include "core/solver/external_forces.hpp"
+#include "core/solver/wind.hpp"
 
 namespace taut::solver::mass_spring {
 
@@ -24,7 +25,7 @@ constexpr ParamSpec kParams[] = {
      .kind = Kind::choice,
      .default_value = "verlet",
      .choices = "explicit-euler|symplectic-euler|verlet",
-     .help = "how the particles move; explicit-euler is the report's first pair of lines"},
+     .help = "how the particles move"},
     {.name = "structural",
      .unit = "N/m",
      .default_value = "50",
@@ -244,7 +245,7 @@ LinearModel linear_model(const Scene&, const Params& params) {
 TAUT_SOLVER(mass_spring) = {
     .name = "mass-spring",
     .summary = "Hooke springs with drag, integrated explicitly",
-    .source = "the report, section 3; Provot 1995; Lander 1999",
+    .source = "Vasilovici, Cloth Simulation Report, section 3; Provot 1995; Lander 1999",
     .params = taut::solver::mass_spring::kParams,
     .make = taut::solver::mass_spring::make,
     .unsupported = taut::solver::mass_spring::unsupported,

@@ -13,7 +13,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/solver.hpp"
-#include "core/solver/external_forces.hpp"
+#include "core/solver/wind.hpp"
 
 namespace taut::solver::xpbd {
 
@@ -71,8 +71,8 @@ class Xpbd final : public Solver {
     for (const Family family : kFamilies)
       for (const Link& l : scene.links)
         if (l.family == family && (w_[to_index(l.a)] > 0 || w_[to_index(l.b)] > 0))
-          rods_.push_back({to_index(l.a), to_index(l.b), static_cast<Real>(l.rest),
-                           params.real(to_string(family)), Real(0)});
+          constraints_.push_back({to_index(l.a), to_index(l.b), static_cast<Real>(l.rest),
+                                  params.real(to_string(family)), Real(0)});
   }
 
   void load(const State& state) override {
@@ -89,9 +89,9 @@ class Xpbd final : public Solver {
     const double h = dt / substeps_;
     for (int s = 0; s < substeps_; ++s) {
       predict(t + (s + 1) * h, h);
-      for (Rod& rod : rods_) rod.lambda = 0;
+      for (DistanceConstraint& c : constraints_) c.lambda = 0;
       for (int k = 0; k < iterations_; ++k) {
-        for (Rod& rod : rods_) solve(rod, h);
+        for (DistanceConstraint& c : constraints_) solve(c, h);
         for (const Collider& collider : scene_.colliders) collide(collider, t + (s + 1) * h);
       }
       if (s + 1 < substeps_) substep_ended(t + (s + 1) * h);
@@ -117,11 +117,11 @@ class Xpbd final : public Solver {
                      .items = w_.size(),
                      .repeats = substeps,
                      .bytes = w_.size() * (4 * sizeof(V) + sizeof(Real))});
-    if (!rods_.empty())
+    if (!constraints_.empty())
       costs.push_back({.pass = "links",
-                       .items = rods_.size(),
+                       .items = constraints_.size(),
                        .repeats = sweeps,
-                       .bytes = rods_.size() * sizeof(Rod),
+                       .bytes = constraints_.size() * sizeof(DistanceConstraint),
                        .projections = true});
     for (const Collider& collider : scene_.colliders)
       costs.push_back({.pass = "collide " + std::string(type_name(collider.shape)),
@@ -131,7 +131,7 @@ class Xpbd final : public Solver {
   }
 
  private:
-  struct Rod {
+  struct DistanceConstraint {
     std::size_t a, b;
     Real rest;
     double compliance;  ///< m/N
@@ -157,17 +157,17 @@ class Xpbd final : public Solver {
       x_[to_index(pin)] = pin_position(scene_, pin, end).template cast<Real>();
   }
 
-  void solve(Rod& rod, double h) {
-    const V delta = x_[rod.b] - x_[rod.a];
+  void solve(DistanceConstraint& c, double h) {
+    const V delta = x_[c.b] - x_[c.a];
     const Real length = delta.norm();
     if (length == 0) return;  // no direction to push in
-    const Real soft = static_cast<Real>(rod.compliance / (h * h));
-    const Real w1 = w_[rod.a], w2 = w_[rod.b];
-    const Real change = (rod.rest - length - soft * rod.lambda) / (w1 + w2 + soft);
-    rod.lambda += change;
+    const Real soft = static_cast<Real>(c.compliance / (h * h));
+    const Real w1 = w_[c.a], w2 = w_[c.b];
+    const Real change = (c.rest - length - soft * c.lambda) / (w1 + w2 + soft);
+    c.lambda += change;
     const V push = change / length * delta;
-    x_[rod.a] -= w1 * push;
-    x_[rod.b] += w2 * push;
+    x_[c.a] -= w1 * push;
+    x_[c.b] += w2 * push;
   }
 
   void collide(const Collider& collider, double end) {
@@ -183,7 +183,7 @@ class Xpbd final : public Solver {
   Scene scene_;
   int substeps_, iterations_;
   std::vector<Real> w_;
-  std::vector<Rod> rods_;
+  std::vector<DistanceConstraint> constraints_;
   std::vector<V> x_, previous_, v_, a_;
 };
 

@@ -51,7 +51,7 @@ double rounded(double value, const Tolerance& t) {
 class RowComparison {
  public:
   RowComparison(const BaselineRow& before, const BaselineRow& now, const Tolerances& tolerances,
-                Comparison& result)
+                const std::set<std::string>& known, Comparison& result)
       : now_(now), result_(result) {
     ++result_.cases;
     if (before.status != now.status)
@@ -61,17 +61,27 @@ class RowComparison {
       return;
     }
     if (before.projections != now.projections)
-      add(Change::Kind::value_moved, "projections per step " + std::to_string(before.projections) +
-                                         " -> " + std::to_string(now.projections));
+      move("projections", static_cast<double>(before.projections),
+           static_cast<double>(now.projections),
+           "projections per step " + std::to_string(before.projections) + " -> " +
+               std::to_string(now.projections));
     for (const auto& [name, value] : before.values) compare(name, value, tolerances.of(name));
     for (const auto& [name, value] : now.values)
       if (!before.values.count(name) && !tolerances.of(name).ignored && !std::isnan(value))
-        add(Change::Kind::value_new, name + " has no baseline; now " + readable(value));
+        add(known.count(name) ? Change::Kind::value_unrecorded : Change::Kind::value_new,
+            name + " has no baseline" + (known.count(name) ? " in this row alone" : "") + "; now " +
+                readable(value));
   }
 
  private:
   void add(Change::Kind kind, const std::string& text) {
     result_.findings.push_back({kind, now_.id, now_.solver(), text});
+  }
+  void move(const std::string& name, double before, double now, const std::string& text) {
+    add(Change::Kind::value_moved, text);
+    Change& change = result_.findings.back();
+    change.scene = now_.spec.scene, change.value = name;
+    change.before = before, change.now = now;
   }
   void compare(const std::string& name, double before, const Tolerance& tolerance) {
     if (tolerance.ignored) return;
@@ -82,7 +92,7 @@ class RowComparison {
     }
     ++result_.values;
     if (!tolerance.holds(now->second, before))
-      add(Change::Kind::value_moved, moved_text(name, before, now->second, tolerance));
+      move(name, before, now->second, moved_text(name, before, now->second, tolerance));
   }
 
   const BaselineRow& now_;
@@ -113,7 +123,8 @@ const BaselineRow* renamed(const BaselineRow& row, const Baseline& in, const Bas
 }
 
 void compare_case(const BaselineRow& row, const Baseline& before, const Baseline& now,
-                  const Tolerances& tolerances, Comparison& result) {
+                  const Tolerances& tolerances, const std::set<std::string>& known,
+                  Comparison& result) {
   const auto add = [&](Change::Kind kind, const std::string& text) {
     result.findings.push_back({kind, row.id, row.solver(), text});
   };
@@ -128,7 +139,7 @@ void compare_case(const BaselineRow& row, const Baseline& before, const Baseline
     add(Change::Kind::scene_changed, "the scene changed: content " + old->scene.substr(0, 12) +
                                          " -> " + row.scene.substr(0, 12));
   } else {
-    RowComparison(*old, row, tolerances, result);
+    RowComparison(*old, row, tolerances, known, result);
   }
 }
 
@@ -180,8 +191,11 @@ Comparison compare(const Baseline& before, const Baseline& now, const Tolerances
     if (!old_solvers.count(solver))
       result.findings.push_back({Change::Kind::solver_new, "", solver,
                                  "the study runs this solver, which has no baseline"});
+  std::set<std::string> known;  // a value of any row; a value of none is of a new metric
+  for (const BaselineRow& row : before)
+    for (const auto& [name, value] : row.values) known.insert(name);
   for (const BaselineRow& row : now)
-    if (old_solvers.count(row.solver())) compare_case(row, before, now, tolerances, result);
+    if (old_solvers.count(row.solver())) compare_case(row, before, now, tolerances, known, result);
   for (const BaselineRow& row : before)
     if (new_solvers.count(row.solver()) && !find_row(now, row.id) && !renamed(row, now, before))
       result.findings.push_back({Change::Kind::case_missing, row.id, row.solver(),

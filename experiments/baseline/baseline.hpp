@@ -58,20 +58,24 @@ struct Change {
     value_moved,
     status_changed,
     // not the same question: the baseline does not match the study
-    case_missing,    ///< in the baseline, not in the study
-    case_new,        ///< in the study, not in the baseline
-    case_renamed,    ///< the same scene and solver under another id
-    scene_changed,   ///< same id, other content
-    solver_missing,  ///< the baseline has a solver that the study does not run
-    solver_new,      ///< the study runs a solver that has no baseline
-    value_missing,   ///< the baseline has a metric value that no longer exists
+    case_missing,      ///< in the baseline, not in the study
+    case_new,          ///< in the study, not in the baseline
+    case_renamed,      ///< the same scene and solver under another id
+    scene_changed,     ///< same id, other content
+    solver_missing,    ///< the baseline has a solver that the study does not run
+    solver_new,        ///< the study runs a solver that has no baseline
+    value_missing,     ///< the baseline has a metric value that no longer exists
+    value_unrecorded,  ///< the baseline lacks a value in this row that it has in others
     // for information: no failure
-    value_new
+    value_new  ///< the baseline has it nowhere: a new metric
   };
   Kind kind = Kind::value_moved;
   std::string id;      ///< of the case; empty for a solver
   std::string solver;  ///< name
   std::string text;    ///< one line: what it was -> what it is
+  std::string scene = {},
+              value = {};      ///< of a moved value: its scene's and the metric value's name
+  double before = 0, now = 0;  ///< of a moved value, in its unit; NaN: no meaning
   bool is_regression() const { return kind <= Kind::status_changed; }
   bool is_mismatch() const { return !is_regression() && kind != Kind::value_new; }
 };

@@ -32,18 +32,17 @@ std::string line_of(const BaselineRow& row) {
   return to_text(json) + "\n";
 }
 
-BaselineRow row_of(const Json& json) {
+BaselineRow row_of(const JsonReader& json) {
   BaselineRow row;
-  row.id = json.at("id");
-  row.spec = {json.at("scene"), json.at("overrides").get<std::vector<std::string>>(),
-              json.at("solver")};
-  row.scene = json.at("content");
-  row.status = json.at("status");
-  row.projections = json.at("projections");
-  row.frontier = json.value("frontier", "");
-  row.flaky = json.value("flaky", false);
-  for (const auto& [name, value] : json.at("values").items())
-    row.values[name] = value.is_null() ? std::nan("") : value.get<double>();
+  row.id = json.at("id").text();
+  row.spec = {json.at("scene").text(), json.at("overrides").texts(), json.at("solver").text()};
+  row.scene = json.at("content").text();
+  row.status = json.at("status").text();
+  row.projections = json.at("projections").count();
+  if (const auto frontier = json.find("frontier")) row.frontier = frontier->text();
+  if (const auto flaky = json.find("flaky")) row.flaky = flaky->flag();
+  for (const auto& [name, value] : json.at("values").members())
+    row.values[name] = value.number_or_null();
   return row;
 }
 
@@ -72,13 +71,13 @@ Baseline read_baseline(const fs::path& folder) {
     for (std::string line; std::getline(in, line);) {
       ++number;
       try {
-        rows.push_back(row_of(parse_json(line)));
+        rows.push_back(read_json(line, file.string(), row_of, number));
         const BaselineRow& row = rows.back();
         if (row.solver() != file.stem())
           found.push_back({file.string(), number, 1, "this row belongs to " + row.solver()});
-      } catch (const Json::exception& error) {
-        found.push_back(
-            {file.string(), number, 1, std::string("no baseline row: ") + error.what()});
+      } catch (const InputError& error) {
+        for (const Diagnostic& d : error.diagnostics())
+          found.push_back({file.string(), number, 1, "no baseline row: " + d.message});
       }
     }
   }

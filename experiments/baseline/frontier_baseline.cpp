@@ -73,7 +73,7 @@ BaselineRow frontier_row(const FrontierQuestion& question, const CaseFrontier& f
   row.scene = digest(*base.scene);
   row.frontier = options_of(question);
   row.status = to_string(found.frontier.kind);
-  row.values["frontier.islands"] = static_cast<double>(found.frontier.islands.size());
+  row.values["frontier.stable_above"] = static_cast<double>(found.frontier.stable_above.size());
   if (found.frontier.kind == Frontier::Kind::bracketed) {
     row.values["frontier.stable"] = found.frontier.stable;
     row.values["frontier.unstable"] = found.frontier.unstable;

@@ -88,7 +88,7 @@ class Subject {
     repeats_ = std::clamp(static_cast<int>(seconds / std::max(once * row_.steps, 1e-9)), 1, 10000);
   }
 
-  /// Adds one sample: every solver forth and back.
+  /// Adds one sample: every solver in alternating order (ABBA).
   void sample() {
     double t[2][2];
     for (std::size_t i = 0; i < 4; ++i) t[i / 2][i % 2] = time(i / 2, i % 2);
@@ -133,9 +133,9 @@ std::vector<Subject> subjects_of(int side) {
     keep_structural(scene);
     Scene bare = scene;
     bare.colliders.clear();
-    for (const char* setting : {"contact=swept,order=mesh", "contact=sweep,order=mesh",
-                                "contact=after,order=mesh", "contact=swept,order=coloured",
-                                "contact=sweep,order=coloured", "contact=after,order=coloured"})
+    for (const char* setting : {"contact=continuous,order=mesh", "contact=discrete,order=mesh",
+                                "contact=after,order=mesh", "contact=continuous,order=coloured",
+                                "contact=discrete,order=coloured", "contact=after,order=coloured"})
       all.emplace_back(name, setting, 4, scene, bare, start);
   }
   for (const double seconds : {0.3, 0.6}) {  // its lower edge folds; all of it collapses

@@ -10,7 +10,7 @@ namespace taut {
 /// What contact costs one setting of `jakobsen` on one scene, beside the structural links of the
 /// same cloth.
 struct ContactRow {
-  std::string scene, setting;  ///< "ball", "contact=swept,order=coloured"
+  std::string scene, setting;  ///< "ball", "contact=continuous,order=coloured"
   std::size_t particles = 0;
   int steps = 1;        ///< timed in one go from the same state
   double touching = 0;  ///< share of the particles in contact with a collider at the start
@@ -31,8 +31,9 @@ struct ContactBenchOptions {
 
 /// The scenes `plane`, `ball`, `box` and `crumple` with structural links alone, run until the cloth
 /// lies on what it falls on. From that state: steps of 2 and of 18 sweeps, with contact and
-/// without, all interleaved, forth and back; one thread, CPU time. A step of self-collision that
-/// begins afresh has to search for pairs, so it is timed in one step and in eight.
+/// without, all interleaved in alternating order (ABBA); one thread, CPU time. A step of
+/// self-collision that begins afresh has to search for pairs, so it is timed in one step and in
+/// eight.
 std::vector<ContactRow> bench_contact(const ContactBenchOptions&);
 
 }  // namespace taut

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "core/model/solver.hpp"
+#include "core/reference/textbook.hpp"
 #include "core/solver/simd/kernels.hpp"
-#include "experiments/bench/textbook_kernel.hpp"
 
 namespace taut {
 
@@ -49,8 +49,7 @@ Scene sheet(int side) {
 
 template <class Real>
 Kernel textbook(const Scene& scene, const std::string& name) {
-  const auto w = inverse_masses(scene);
-  const auto kernel = std::make_shared<TextbookKernel<Real>>(scene.start.x, w, scene.links);
+  const auto kernel = std::make_shared<Textbook<Real>>(scene, 1);
   // 3 differences, 5 for the square, root, 2 for w1 + w2 and its product, 2 for diff, 2 + 12 to
   // move
   return {.row = {.name = name, .flops = 27, .bytes = 15 * static_cast<int>(sizeof(Real)) + 8},
@@ -58,7 +57,7 @@ Kernel textbook(const Scene& scene, const std::string& name) {
               [kernel](int sweeps) {
                 for (int k = 0; k < sweeps; ++k) kernel->sweep();
               },
-          .projections = static_cast<double>(kernel->links()) * (kManySweeps - kFewSweeps)};
+          .projections = static_cast<double>(kernel->constraints()) * (kManySweeps - kFewSweeps)};
 }
 
 /// A solver; `name` is its text without iterations.
@@ -107,8 +106,8 @@ std::vector<Kernel> kernels_of(const Scene& scene, bool bullet) {
   const auto add = [&](const std::string& name, const std::string& layout, bool exact, bool single,
                        int threads) {
     const int word = single ? 4 : 8, flops = exact ? kExact : kSqrtFree;
-    const int points = layout == "strips" ? 12 : 16;  // numbers read and written
-    const int list = layout == "strips" ? 0 : 8 + word;
+    const int points = layout == "interleaved" ? 12 : 16;  // numbers read and written
+    const int list = layout == "interleaved" ? 0 : 8 + word;
     all.push_back(of_solver(scene,
                             "jakobsen:substeps=1,layout=" + layout +
                                 ",projection=" + (exact ? "exact" : "sqrt-free") +
@@ -118,15 +117,15 @@ std::vector<Kernel> kernels_of(const Scene& scene, bool bullet) {
   };
   for (const bool single : {true, false})
     for (const bool exact : {true, false}) {
-      add(",simd=scalar", "packed", exact, single, 1);
-      add("", "packed", exact, single, 1);
-      if (scene.mesh.grid->nu >= 17) add("", "strips", exact, single, 1);
+      add(",simd=scalar", "batches", exact, single, 1);
+      add("", "batches", exact, single, 1);
+      if (scene.mesh.grid->nu >= 17) add("", "interleaved", exact, single, 1);
     }
   // Half as wide as the widest: what the width is worth.
   if (widest() == Simd::avx512 && scene.mesh.grid->nu >= 17)
-    add(",simd=avx2", "strips", false, true, 1);
-  add("", "packed", false, true, 2);
-  if (scene.mesh.grid->nu >= 17) add("", "strips", false, true, 2);
+    add(",simd=avx2", "interleaved", false, true, 1);
+  add("", "batches", false, true, 2);
+  if (scene.mesh.grid->nu >= 17) add("", "interleaved", false, true, 2);
   if (bullet)
     for (const char* precision : {"float", "double"})
       if (linked(precision))
@@ -206,8 +205,8 @@ KernelBench bench_kernels(const KernelBenchOptions& options) {
       .rows = {},
       .arithmetic_float = 1e9 * seconds_per_projection(true),
       .arithmetic_double = 1e9 * seconds_per_projection(false),
-      .carried_float = 1e9 * seconds_per_carried_link(scene, true),
-      .carried_double = 1e9 * seconds_per_carried_link(scene, false),
+      .traffic_float = 1e9 * seconds_per_link_traffic(scene, true),
+      .traffic_double = 1e9 * seconds_per_link_traffic(scene, false),
       .two_cores = bench_two_cores(scene, kRoundsOfCores * options.rounds, options.seconds)};
   for (Kernel& kernel : kernels) {
     kernel.row.fastest = 1e9 * (kernel.fastest_many - kernel.fastest_few) / kernel.projections;

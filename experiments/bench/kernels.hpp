@@ -33,8 +33,8 @@ struct KernelBench {
   std::vector<KernelRow> rows;  ///< the first is the textbook
   /// ns of a square-root-free projection in registers (seconds_per_projection).
   double arithmetic_float = 0, arithmetic_double = 0;
-  /// ns to load and store the particles of a packed link (seconds_per_carried_link).
-  double carried_float = 0, carried_double = 0;
+  /// ns to load and store the particles of a link in a colour batch (seconds_per_link_traffic).
+  double traffic_float = 0, traffic_double = 0;
   TwoCores two_cores;
   /// Median over rounds of rows[i]'s cost over rows[j]'s cost.
   Interval ratio(std::size_t i, std::size_t j) const;
@@ -47,9 +47,9 @@ struct KernelBenchOptions {
   bool bullet = true;
 };
 
-/// All kernels interleaved: each round times every one of them, forth and then back. A projection's
-/// time is the difference between steps of 18 and of 2 sweeps, so that what a step costs besides
-/// drops out. One thread: CPU time; several: wall time.
+/// All kernels interleaved: each round times every one of them in alternating order (ABBA). A
+/// projection's time is the difference between steps of 18 and of 2 sweeps, so that what a step
+/// costs besides drops out. One thread: CPU time; several: wall time.
 KernelBench bench_kernels(const KernelBenchOptions&);
 
 /// Seconds of one addition or multiplication of floats (doubles) on this machine's widest vectors
@@ -58,8 +58,8 @@ double seconds_per_flop(bool single);
 /// Seconds of one square-root-free projection of particles that are in registers already: its
 /// arithmetic with the division, without loads and stores.
 double seconds_per_projection(bool single);
-/// Seconds to load and to store both ends of a link as the packed sweep over the scene does, in its
-/// order, with an addition in the place of the projection.
-double seconds_per_carried_link(const Scene&, bool single);
+/// Seconds to load and to store both ends of a link as the sweep over the scene's colour batches
+/// does, in its order, with an addition in the place of the projection.
+double seconds_per_link_traffic(const Scene&, bool single);
 
 }  // namespace taut

@@ -5,7 +5,7 @@
 #include <ctime>
 #include <limits>
 
-#include "core/solver/batch.hpp"
+#include "core/solver/layout/colour_batches.hpp"
 #include "experiments/bench/kernels.hpp"
 
 namespace taut {
@@ -87,22 +87,22 @@ double projection() {
 }
 
 template <class Real>
-double carried(const Scene& scene) {
+double traffic(const Scene& scene) {
   const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.links, scene.mesh));
-  constexpr double kStick = std::numeric_limits<double>::infinity();
-  const BatchPlan<Real> plan(
+  constexpr double kRigid = std::numeric_limits<double>::infinity();
+  const ColourBatches<Real> batches(
       colour(scene.links, scene.mesh), inverse_masses(scene),
-      {.stiffness = {kStick, kStick, kStick}, .omega = 1, .substep = scene.dt, .iterations = 1},
+      {.of_family = {kRigid, kRigid, kRigid}, .omega = 1, .substep = scene.dt, .iterations = 1},
       layout);
   std::vector<Real> x(layout.length());
-  const auto carry = kernels<Real>(widest()).carry;
+  const auto load_and_store = kernels<Real>(widest()).load_and_store;
   const auto sweep = [&](Real) {
-    for (std::size_t phase = 0; phase < plan.phases(); ++phase)
-      for (std::size_t tile = 0; tile < plan.tiles(phase); ++tile)
-        for (const BatchRun<Real>& run : plan.runs(phase, tile)) carry(run, x.data());
+    for (std::size_t phase = 0; phase < batches.phases(); ++phase)
+      for (std::size_t tile = 0; tile < batches.tiles(phase); ++tile)
+        for (const BatchRun<Real>& run : batches.runs(phase, tile)) load_and_store(run, x.data());
     return x[0];
   };
-  return fastest(sweep, Real(0)) / static_cast<double>(plan.order(layout).size());
+  return fastest(sweep, Real(0)) / static_cast<double>(batches.order(layout).size());
 }
 
 }  // namespace
@@ -113,8 +113,8 @@ double seconds_per_projection(bool single) {
   return single ? projection<float>() : projection<double>();
 }
 
-double seconds_per_carried_link(const Scene& scene, bool single) {
-  return single ? carried<float>(scene) : carried<double>(scene);
+double seconds_per_link_traffic(const Scene& scene, bool single) {
+  return single ? traffic<float>(scene) : traffic<double>(scene);
 }
 
 }  // namespace taut

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/key.hpp"
 #include "experiments/system/data.hpp"
@@ -40,8 +41,20 @@ const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
 }
 
 Case CaseMaker::make(const CaseSpec& spec) {
-  Case one{spec, nullptr, parse_solver(spec.solver), {}, {}};
-  const Loaded& loaded = scene(spec);
+  Case one{spec, nullptr, {}, {}, {}};
+  std::vector<Diagnostic> wrong;
+  const auto collect = [&](const auto& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      wrong.insert(wrong.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  };
+  const Loaded* found = nullptr;
+  collect([&] { found = &scene(spec); });
+  collect([&] { one.choice = parse_solver(spec.solver); });
+  if (!wrong.empty()) throw InputError(wrong);
+  const Loaded& loaded = *found;
   one.scene = loaded.scene;
   one.spec.solver = one.choice.canonical();
   one.key = case_key(*loaded.scene, loaded.digest, one.choice);

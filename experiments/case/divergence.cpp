@@ -139,9 +139,10 @@ double area(const Scene& scene) {
 EnergyBudget::EnergyBudget(const Scene& scene) : gravity_(scene.gravity.norm()), dt_(scene.dt) {
   const Hanging hanging = hang(scene);
   const std::vector<double> w = inverse_masses(scene);
-  double mass = 0, lightest = 0, farthest = 0;
+  double mass = 0, lightest = 0, farthest = 0, fastest = 0;
   for (std::size_t i = 0; i < w.size(); ++i) {
     farthest = std::max(farthest, scene.start.x[i].norm());
+    fastest = std::max(fastest, scene.start.v[i].norm());
     if (w[i] == 0) continue;
     const double m = scene.mesh.mass[i];
     mass += m;
@@ -155,8 +156,11 @@ EnergyBudget::EnergyBudget(const Scene& scene) : gravity_(scene.gravity.norm()),
                (square(2 * motion_speed(scene)) +
                 (square(repair(scene)) + square(rounding)) / square(scene.dt));
   stored_ = stored(scene, w);
+  size_ = farthest + extent(scene);
+  speed_ = fastest + motion_speed(scene);
   if (!scene.wind) return;
   const double speed = scene.wind->velocity.norm();
+  speed_ += speed;
   if (scene.wind->law == Wind::Law::relative) {
     wind_power_ = scene.wind->strength * area(scene) * square(speed) / 4;
   } else {
@@ -171,6 +175,11 @@ double EnergyBudget::available(double t) const {
   return constant_ + square(2 * t / dt_ + 1) * stored_ +
          gravity_ * (free_mass_ * fall + hung_mass_ * std::min(fall, reach_)) + wind_power_ * t +
          wind_mass_ / 2 * square(wind_acceleration_ * t);
+}
+
+double EnergyBudget::farthest(double t) const {
+  const double way = speed_ * t + (gravity_ + wind_acceleration_) * t * (t + dt_) / 2;
+  return std::min(1e6, 1e3 * size_ + 10 * way);
 }
 
 std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& step_cost) {
@@ -208,12 +217,22 @@ void DivergenceDetector::explode(const char* reason, int step, std::size_t verte
 }
 
 bool DivergenceDetector::observe(int step, double t, const State& state) {
+  const std::size_t all = free_mass_.size();
+  if (state.x.size() != all || state.v.size() != all) {
+    status_ = {Status::Kind::error,
+               "stored " + std::to_string(state.x.size()) + " positions and " +
+                   std::to_string(state.v.size()) + " velocities of " + std::to_string(all) +
+                   " vertices",
+               step, -1};
+    return false;
+  }
+  const double box = budget_.farthest(t);
   double energy = 0, fastest = 0;
   std::size_t fastest_vertex = 0;
   for (std::size_t i = 0; i < free_mass_.size(); ++i) {
     if (!state.x[i].allFinite() || !state.v[i].allFinite())
       return explode("nonfinite", step, i), false;
-    if (state.x[i].lpNorm<Eigen::Infinity>() > 1e6) return explode("box", step, i), false;
+    if (state.x[i].lpNorm<Eigen::Infinity>() > box) return explode("box", step, i), false;
     if (free_mass_[i] == 0) continue;
     const double v2 = state.v[i].squaredNorm();
     energy += free_mass_[i] * v2 / 2;

@@ -39,6 +39,9 @@ class EnergyBudget {
  public:
   explicit EnergyBudget(const Scene&);
   double available(double t) const;  ///< J at time t [s]
+  /// A coordinate [m] that no vertex can have at time t: a thousand sizes of the scene and ten
+  /// times the way that start, motion, wind and gravity can carry it, 1e6 at most.
+  double farthest(double t) const;
 
  private:
   double constant_ = 0;           ///< start, motion, repair, rounding [J]
@@ -51,6 +54,8 @@ class EnergyBudget {
   double wind_power_ = 0;         ///< W
   double wind_mass_ = 0;          ///< kg pushed by the literal law
   double wind_acceleration_ = 0;  ///< m/s^2, literal law
+  double size_ = 0;               ///< m, of the cloth and its distance from the origin
+  double speed_ = 0;              ///< m/s that start, motion and wind can give
 };
 
 /// Theoretical settling time [s]: in it the slowest mode of a hanging cloth decays by 1/e. Relaxing
@@ -62,9 +67,10 @@ std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& s
 
 /// Judges a run, boundary by boundary (design: never by raw strain, which a soft solver may rightly
 /// bring to 500 %).
+///   error                the solver stored another number of vertices than the scene has
 ///   exploded{nonfinite}  a position or velocity is not finite
 ///   exploded{energy}     kinetic energy above ten times EnergyBudget::available
-///   exploded{box}        a coordinate beyond 1e6 m
+///   exploded{box}        a coordinate beyond EnergyBudget::farthest
 ///   unsettled            the run lasted at least five settling times and yet, in its last settling
 ///                        time, a vertex is faster than 1e-3 sqrt(|g| L) (L: extent) and than the
 ///                        fastest ever seen times exp(-t/T)

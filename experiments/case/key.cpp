@@ -17,4 +17,11 @@ std::string case_key(const Scene& scene, const std::string& scene_digest,
   return sha256(to_text(parts));
 }
 
+std::string program_digest() {
+  std::string text(measurement());
+  for (const SolverEntry* entry : solvers())
+    text += std::string(entry->name) + ":" + std::string(implementation(entry->name)) + "\n";
+  return sha256(text);
+}
+
 }  // namespace taut

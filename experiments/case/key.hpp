@@ -13,4 +13,8 @@ namespace taut {
 /// commit. `scene_digest` is digest(scene).
 std::string case_key(const Scene& scene, const std::string& scene_digest, const SolverChoice&);
 
+/// Digest of everything in this program that makes numbers: measurement() and every solver. What
+/// one build found says nothing about another one.
+std::string program_digest();
+
 }  // namespace taut

@@ -1,5 +1,6 @@
 #include "experiments/case/record.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "core/model/input_error.hpp"
@@ -13,6 +14,10 @@ constexpr std::array<std::string_view, 9> kNames{"ok",          "exploded", "uns
 }
 
 std::string_view to_string(Status::Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+
+bool is_status(std::string_view name) {
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
 
 Status::Kind status_kind(std::string_view name) {
   for (std::size_t i = 0; i < kNames.size(); ++i)

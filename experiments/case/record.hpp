@@ -33,6 +33,7 @@ struct Status {
   bool is_result() const { return kind <= Kind::unsupported; }
 };
 std::string_view to_string(Status::Kind);
+bool is_status(std::string_view);
 Status::Kind status_kind(std::string_view);  ///< throws InputError
 
 /// What is to be run: names and settings, no content. Solver in canonical form

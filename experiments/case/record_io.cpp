@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/json.hpp"
@@ -53,35 +52,55 @@ std::string_view take(std::string_view& text, char separator) {
   return head;
 }
 
-Record from_json(const Json& j) {
+}  // namespace
+
+Record record_of(const JsonReader& j) {
+  constexpr int kNone = -1;
+  j.require_schema(kRecordSchema);
   Record r;
-  r.key = j.at("key");
-  r.id = j.at("id");
-  r.spec = {j.at("spec").at("scene"), j.at("spec").at("overrides"), j.at("spec").at("solver")};
-  r.scene = j.at("scene");
-  r.solver = j.at("solver");
-  r.params = j.at("params");
-  r.dt = j.at("dt");
-  r.steps = j.at("steps");
-  r.vertices = j.at("vertices");
-  r.links = j.at("links");
-  const Json& status = j.at("status");
-  r.status = {status_kind(status.at("kind").get<std::string>()), status.at("reason"),
-              status.at("step"), status.at("vertex")};
-  for (const auto& [name, value] : j.at("values").items())
-    r.values[name] =
-        value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
-  r.projections = j.at("projections");
-  for (const Json& p : j.at("step_cost"))
-    r.step_cost.push_back(
-        {p.at("pass"), p.at("items"), p.at("repeats"), p.at("bytes"), p.at("projections")});
-  for (const Json& e : j.at("resolved_settings"))
-    r.resolved_settings.emplace_back(e.at(0), e.at(1));
-  r.digest = j.at("digest");
+  r.key = j.at("key").text();
+  if (!is_key(r.key)) j.at("key").fail("expected 64 hexadecimal digits");
+  r.id = j.at("id").text();
+  const JsonReader spec = j.at("spec");
+  r.spec = {spec.at("scene").text(), spec.at("overrides").texts(), spec.at("solver").text()};
+  r.scene = j.at("scene").text();
+  r.solver = j.at("solver").text();
+  for (const auto& [name, value] : j.at("params").members()) r.params[name] = value.text();
+  r.dt = j.at("dt").number();
+  if (!(r.dt > 0)) j.at("dt").fail("expected a time step greater than 0");
+  r.steps = j.at("steps").integer(0);
+  r.vertices = j.at("vertices").integer(0);
+  r.links = j.at("links").integer(0);
+  const JsonReader status = j.at("status");
+  const std::string kind = status.at("kind").text();
+  if (!is_status(kind)) status.at("kind").fail("unknown status '" + kind + "'");
+  r.status = {status_kind(kind), status.at("reason").text(), status.at("step").integer(kNone),
+              status.at("vertex").integer(kNone)};
+  for (const auto& [name, value] : j.at("values").members())
+    r.values[name] = value.number_or_null();
+  r.projections = j.at("projections").count();
+  for (const JsonReader& p : j.at("step_cost").items())
+    r.step_cost.push_back({p.at("pass").text(), p.at("items").count(), p.at("repeats").count(),
+                           p.at("bytes").count(), p.at("projections").flag()});
+  for (const JsonReader& e : j.at("resolved_settings").items()) {
+    const std::vector<JsonReader> pair = e.items(2);
+    r.resolved_settings.emplace_back(pair[0].text(), pair[1].text());
+  }
+  r.digest = j.at("digest").text();
   return r;
 }
 
-}  // namespace
+bool completed(const Status& status) {
+  return status.kind == Status::Kind::ok || status.kind == Status::Kind::unsettled;
+}
+
+std::string describe(const Status& status) {
+  std::string text(to_string(status.kind));
+  if (!status.reason.empty()) text += " (" + status.reason + ")";
+  if (status.step >= 0) text += " at step " + std::to_string(status.step);
+  if (status.vertex >= 0) text += ", vertex " + std::to_string(status.vertex);
+  return text;
+}
 
 std::string to_json(const Record& r, int indent) {
   Json j = result_json(r);
@@ -100,14 +119,12 @@ std::string to_json(const Record& r, int indent) {
   return to_text(j, indent);
 }
 
-Record record_from_json(std::string_view text, const std::string& where) try {
-  const Json j = parse_json(text);
-  if (j.at("schema") != kRecordSchema)
-    throw InputError(where + ": schema " + to_text(j.at("schema")) + ", this program reads " +
-                     std::to_string(kRecordSchema));
-  return from_json(j);
-} catch (const Json::exception& error) {
-  throw InputError(where + ": not a record: " + error.what());
+Record record_from_json(std::string_view text, const std::string& where) {
+  return read_json(text, where, record_of);
+}
+
+bool is_key(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == text.npos;
 }
 
 std::string result_digest(const Record& r) { return sha256(to_text(result_json(r))); }

@@ -8,6 +8,14 @@
 
 namespace taut {
 
+class JsonReader;
+
+/// It ran to its end, so that its values say something.
+bool completed(const Status&);
+
+/// "exploded (energy) at step 12, vertex 3".
+std::string describe(const Status&);
+
 /// Version of every JSON text below; readers refuse others.
 inline constexpr int kRecordSchema = 1;
 
@@ -15,9 +23,14 @@ inline constexpr int kRecordSchema = 1;
 std::string to_json(const Record&, int indent = -1);
 /// Throws InputError that names `where` (a file) if the text is not a record of this schema.
 Record record_from_json(std::string_view text, const std::string& where);
+/// The same of a part of another JSON text.
+Record record_of(const JsonReader&);
 
-/// SHA-256 of what was computed: status, values, plan, effective settings and final state. Not of
-/// how the case was called (spec, id, scene name): the same key must always give the same.
+/// Whether the text is a case's address, 64 hexadecimal digits: no other becomes part of a path.
+bool is_key(std::string_view);
+
+/// SHA-256 of what was computed: status, values, step costs, effective settings and final state.
+/// Not of how the case was called (spec, id, scene name): the same key must always give the same.
 std::string result_digest(const Record&);
 
 /// CSV with a header line; doubles in shortest exact form, NaN as an empty field.

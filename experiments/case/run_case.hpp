@@ -25,7 +25,8 @@ struct RunOptions {
 
 /// What became of a case: the record and what is too big for it.
 struct CaseRun {
-  Record record;  ///< key and id are empty; run_case of a Case (lab/case.hpp) sets them
+  Record
+      record;  ///< key and id are empty; run_case of a Case (experiments/case/case.hpp) sets them
   Series series;
   State last;  ///< the last sound boundary: the final state, or the last before an explosion
 };

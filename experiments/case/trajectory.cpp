@@ -3,6 +3,7 @@
 #include <bit>
 #include <cassert>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <iostream>
 
@@ -199,7 +200,15 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
               << reader.frame_end(reader.frames()) << " on, after " << reader.frames()
               << " whole ones\n";
   Trajectory trajectory{reader.header(), {}};
-  for (int k = 0; k < reader.frames(); ++k) trajectory.frames.push_back(reader.read(k));
+  for (int k = 0; k < reader.frames(); ++k) {
+    trajectory.frames.push_back(reader.read(k));
+    const double t = trajectory.frames.back().t;
+    if (!std::isfinite(t) || (k > 0 && t < trajectory.frames[static_cast<std::size_t>(k) - 1].t))
+      throw InputError({{path.string(), 0, 0,
+                         "frame " + std::to_string(k) +
+                             " is at no time, or at an earlier one "
+                             "than the frame before it"}});
+  }
   return trajectory;
 }
 

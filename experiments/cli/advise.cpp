@@ -1,66 +1,41 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <iomanip>
 #include <iostream>
-#include <map>
 #include <memory>
-#include <sstream>
+#include <optional>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/metrics/metric.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/timing/advice.hpp"
+#include "experiments/timing/answer.hpp"
+#include "experiments/timing/search.hpp"
 
 namespace taut::verb::advise {
 
 namespace {
 
-constexpr double kFrame = 1.0 / 60;        ///< s; budgets are CPU time within it
 constexpr int kQuickSteps = 48;            ///< of the quick cost that guides the search
 constexpr std::size_t kMostFinalists = 5;  ///< timed against each other
+constexpr std::size_t kMostRefused = 4;    ///< printed; --json has all
 
 struct Options {
-  std::string scene, metric = "stretch.rms", error, out = default_results();
+  std::string scene, metric = "stretch.rms", error, out;
   double budget = 0;  ///< ms per frame; 0: not given
   std::vector<std::string> solvers, settings;
   double patience = 120;
   int rounds = 8;
-  double seconds = 0.05, tolerance = 0.05;
+  double seconds = 0.05, tolerance = kTolerance;
   bool json = false;
 };
 
-using Seconds = std::chrono::duration<double>;
-
-double since(std::chrono::steady_clock::time_point start) {
-  return Seconds(std::chrono::steady_clock::now() - start).count();
-}
-
-std::string number(double value, int digits = 3) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
-std::string interval(const Interval& i, double scale = 1) {
-  return number(i.mid * scale) + " (" + number(i.low * scale) + " to " + number(i.high * scale) +
-         ")";
-}
-
-const ValueSpec& find_value(const std::string& name) {
-  std::vector<std::string> names;
-  for (const MetricEntry* metric : metrics())
-    for (const ValueSpec& value : metric->values) {
-      if (value.name == name) return value;
-      names.emplace_back(value.name);
-    }
-  throw InputError("unknown metric value '" + name + "'" + suggestion(name, names));
-}
+using Clock = std::chrono::steady_clock;
 
 /// "0.01" or "1%".
 double error_of(const std::string& text) {
@@ -77,205 +52,235 @@ double error_of(const std::string& text) {
   return unit == "%" ? value / 100 : value;
 }
 
-Wish wish_of(const Options& options) {
+Target target_of(const Options& options) {
   if (options.error.empty() == (options.budget <= 0))
     throw InputError("advise needs one of --error and --budget");
   if (!options.error.empty()) return {error_of(options.error), {}};
   return {{}, options.budget * 1e-3 / kFrame};
 }
 
-/// Cases of one scene, run in processes of their own and kept in the store.
-class Runner {
- public:
-  explicit Runner(const Options& options) : options_(options), store_(options.out) {
-    store_.prepare();
-  }
-
-  Case make(const std::string& solver) {
-    return maker_.make({options_.scene, options_.settings, parse_solver(solver).canonical()});
-  }
-
-  Record stored(const Case& one) { return run_stored(one, store_); }
-  Record again(const Case& one) { return run_again(one, store_); }
-
- private:
-  const Options& options_;
-  Store store_;
-  CaseMaker maker_;
-};
-
-Offer quick_offer(const Record& record, const std::string& metric) {
-  const auto value = record.values.find(metric);
-  const bool ok =
-      record.status.kind == Status::Kind::ok || record.status.kind == Status::Kind::unsettled;
-  Offer offer{record.solver,
-              record.spec.solver,
-              {},
-              value == record.values.end() ? std::nan("") : std::abs(value->second),
-              !ok};
-  try {
-    TimingWorker worker(program_of(record.spec), record.spec);
-    const double cost = worker.rehearse(std::min(kQuickSteps, steps_done(record))).cpu / record.dt;
-    offer.cost = {cost, cost, cost};
-  } catch (const std::runtime_error&) {
-    offer.failed = true;
-    offer.cost.mid = std::nan("");
-  }
-  return offer;
-}
-
-/// What was asked, searched and found.
-struct Answer {
-  Wish wish;
-  std::vector<Offer> tried;
+/// What was searched and found.
+struct Result {
+  Target target;
+  std::vector<Candidate> tried;
   std::vector<std::string> unsupported;  ///< "xpbd: why"
-  std::vector<std::string> cut;          ///< solvers whose share of the time ended their search
+  std::vector<std::string> cut;          ///< solvers whose search --patience ended
   SceneBench bench;
-  Advice advice;
-  double searched = 0;  ///< s
+  Answer answer;
+  Interval cost;  ///< of the best, widened by how far the same code strays here
   bool same_bits = false;
   Interval again;  ///< cost of the best in a second session
 
-  const BenchedCase& best() const { return bench.cases[*advice.best]; }
+  const BenchedCase& best() const { return bench.cases[*answer.best]; }
+  bool confirmed() const { return cost.contains(again.mid); }
 };
 
-/// Every solver gets an equal share of the time that those before it have left.
-void search(const Options& options, Runner& runner, Answer& answer) {
-  const auto start = std::chrono::steady_clock::now();
-  double deadline = 0;
-  bool in_time = true;
-  const Try run = [&](const std::string& setting) -> std::optional<Offer> {
-    in_time = since(start) <= deadline;
-    if (!in_time) return {};
-    const Offer offer = quick_offer(runner.stored(runner.make(setting)), options.metric);
-    std::cerr << "  " << parse_solver(setting).brief() << ": "
-              << (offer.failed ? "failed" : options.metric + " " + number(offer.error)) << ", "
-              << number(1e3 * offer.cost.mid) << " ms per simulated s\n";
-    return offer;
-  };
-  auto left = static_cast<double>(options.solvers.size());
-  for (const std::string& solver : options.solvers) {
-    deadline = since(start) + (options.patience - since(start)) / left--;
-    in_time = true;
-    const Case one = runner.make(solver);
-    const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
-    if (!reasons.empty()) {
-      answer.unsupported.push_back(solver + ": " + reasons.front());
-      continue;
-    }
-    const std::vector<Offer> found = search_settings(solver, answer.wish, run, answer.tried);
-    answer.tried.insert(answer.tried.end(), found.begin(), found.end());
-    if (!in_time) answer.cut.push_back(solver);
+/// Searches, times the finalists and verifies the best, all within --patience.
+class Advisor {
+ public:
+  explicit Advisor(const Options& options)
+      : options_(options), store_(options.out), result_{.target = target_of(options)} {
+    store_.prepare();
   }
-  answer.searched = since(start);
-}
 
-SceneBench time_them(const std::vector<Record>& records, const Options& options) {
-  std::vector<CaseSpec> specs;
-  for (const Record& record : records) specs.push_back(record.spec);
-  const auto steps = [&](const CaseSpec& spec) {
-    const auto at = std::find_if(records.begin(), records.end(),
-                                 [&](const Record& r) { return r.spec.solver == spec.solver; });
-    return steps_done(*at);
-  };
-  Bench bench = run_bench(specs, {.rounds = options.rounds,
-                                  .seconds = options.seconds,
-                                  .program = program_of,
-                                  .steps = steps,
-                                  .progress = {}});
-  SceneBench result{options.scene, bench.control, {}};
-  for (std::size_t i = 0; i < specs.size(); ++i)
-    result.cases.push_back({records[i], std::move(bench.timings[i])});
-  return result;
-}
+  Result run() {
+    search();
+    decide();
+    return std::move(result_);
+  }
+  double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-Answer advise(const Options& options) {
-  Answer answer{.wish = wish_of(options),
-                .tried = {},
-                .unsupported = {},
-                .bench = {},
-                .advice = {},
-                .again = {}};
-  Runner runner(options);
-  search(options, runner, answer);
-  std::vector<Record> records;
-  for (const std::size_t i : finalists(answer.tried, answer.wish, kMostFinalists))
-    records.push_back(runner.stored(runner.make(answer.tried[i].setting)));
-  if (records.empty()) return answer;
-  answer.bench = time_them(records, options);
-  answer.advice = judge_finalists(answer.bench, answer.wish, options.metric, options.tolerance);
-  if (!answer.advice.best) return answer;
-  const Record& best = answer.best().record;
-  answer.same_bits = runner.again(runner.make(best.spec.solver)).digest == best.digest;
-  answer.again = time_them({best}, options).cases.front().cost();
-  return answer;
-}
+ private:
+  Case make(const std::string& solver) {
+    Case one = maker_.make({options_.scene, options_.settings, parse_solver(solver).canonical()});
+    duration_ = one.scene->duration(), dt_ = one.scene->dt;
+    return one;
+  }
 
-std::string command(const Options& options, const Answer& answer) {
+  Clock::time_point at(double seconds) const {
+    return start_ +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
+
+  /// Wall time that timing and verifying the best `most` takes, by their quick costs [s].
+  double seconds_of_final(std::size_t most, int rounds) const {
+    double all = 0;
+    const auto chosen = finalists(result_.tried, result_.target, most);
+    const auto of = [&](const Candidate& c) {
+      return c.cost.mid * duration_ + 2 * rounds * (options_.seconds + 5 * c.cost.mid * dt_);
+    };
+    for (const std::size_t i : chosen) all += of(result_.tried[i]);
+    // The control, its and the best's second session, and the best's second run with its metrics.
+    if (!chosen.empty())
+      all += 3 * of(result_.tried[chosen.front()]) +
+             2 * result_.tried[chosen.front()].cost.mid * duration_;
+    return slowdown_ * all;
+  }
+
+  /// Physics and quick cost of a setting; nothing when the time is up.
+  std::optional<Candidate> evaluate(const std::string& setting, double deadline) {
+    const double end =
+        std::min(deadline, options_.patience - seconds_of_final(kMostFinalists, options_.rounds));
+    if (elapsed() >= end) return {};
+    const auto record = run_stored_until(make(setting), store_, at(end));
+    if (!record) return {};
+    const auto value = record->values.find(options_.metric);
+    Candidate found{record->solver, record->spec.solver, {}, std::nan(""), {}};
+    if (value != record->values.end()) found.error = std::abs(value->second);
+    if (!completed(record->status)) found.failure = describe(record->status);
+    try {
+      TimingWorker worker(program_of(record->spec), record->spec);
+      worker.give_up_at(at(end));
+      const StepTime step = worker.pilot_run(std::min(kQuickSteps, steps_done(*record)));
+      const double cost = step.cpu / record->dt;
+      found.cost = {cost, cost, cost};
+      slowdown_ = std::max(1.0, step.wall / step.cpu);
+    } catch (const TimeIsUp&) {
+      return {};
+    } catch (const std::runtime_error& error) {
+      found.failure = error.what();
+      found.cost.mid = std::nan("");
+    }
+    progress() << "  " << number_text(elapsed(), 2) << " of " << number_text(options_.patience)
+               << " s  " << parse_solver(setting).brief() << ": "
+               << (found.failure.empty() ? options_.metric + " " + number_text(found.error)
+                                         : found.failure)
+               << ", " << number_text(1e3 * found.cost.mid) << " ms per simulated s\n";
+    return found;
+  }
+
+  /// Every solver gets an equal share of the time that those before it have left.
+  void search() {
+    auto left = static_cast<double>(options_.solvers.size());
+    for (const std::string& solver : options_.solvers) {
+      const double deadline = elapsed() + (options_.patience - elapsed()) / left--;
+      const Case one = make(solver);
+      const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
+      if (!reasons.empty()) {
+        result_.unsupported.push_back(solver + ": " + reasons.front());
+        continue;
+      }
+      bool ended = true;
+      const Evaluation run = [&](const std::string& setting) {
+        const auto found = evaluate(setting, deadline);
+        ended = found.has_value();
+        return found;
+      };
+      const auto found = search_settings(solver, result_.target, run, result_.tried);
+      result_.tried.insert(result_.tried.end(), found.begin(), found.end());
+      if (!ended) result_.cut.push_back(solver);
+    }
+  }
+
+  SceneBench time(const std::vector<Record>& records, int rounds) const {
+    std::vector<CaseSpec> specs;
+    for (const Record& record : records) specs.push_back(record.spec);
+    const auto steps = [&](const CaseSpec& spec) {
+      return steps_done(
+          *std::ranges::find(records, spec.solver, [](const Record& r) { return r.spec.solver; }));
+    };
+    Bench bench = run_bench(specs, {.rounds = rounds,
+                                    .seconds = options_.seconds,
+                                    .program = program_of,
+                                    .steps = steps,
+                                    .progress = Countdown("timing round")});
+    SceneBench result{options_.scene, bench.control, {}};
+    for (std::size_t i = 0; i < specs.size(); ++i)
+      result.cases.push_back({records[i], std::move(bench.timings[i])});
+    return result;
+  }
+
+  void decide() {
+    std::size_t most = kMostFinalists;
+    int rounds = options_.rounds;
+    const auto too_long = [&] {
+      return elapsed() + seconds_of_final(most, rounds) > options_.patience;
+    };
+    while (most > 2 && too_long()) --most;
+    while (rounds > 2 && too_long()) --rounds;
+    std::vector<Record> records;
+    for (const std::size_t i : finalists(result_.tried, result_.target, most))
+      records.push_back(run_stored(make(result_.tried[i].setting), store_));
+    if (records.empty()) return;
+    result_.bench = time(records, rounds);
+    Answer& answer = result_.answer =
+        taut::answer(result_.bench, result_.target, options_.metric, options_.tolerance);
+    if (!answer.best) return;
+    const Record& best = result_.best().record;
+    result_.same_bits = run_again(make(best.spec.solver), store_).digest == best.digest;
+    result_.again = time({best}, rounds).cases.front().cost();
+    const double stray = 1 + spread(result_.bench.control);
+    result_.cost = result_.best().cost();
+    result_.cost.low /= stray, result_.cost.high *= stray;
+    if (answer.certainty == Certainty::clear && !(result_.cut.empty() && result_.confirmed()))
+      answer.certainty = Certainty::likely;
+  }
+
+  const Options& options_;
+  Clock::time_point start_ = Clock::now();
+  Store store_;
+  CaseMaker maker_;
+  double duration_ = 0, dt_ = 0;  ///< of the scene [s]
+  double slowdown_ = 1;           ///< wall over CPU time now: others use the machine
+  Result result_;
+};
+
+std::string command(const Options& options, const Result& result) {
   std::string text = "taut bench " + options.scene;
   for (const std::string& value : options.settings) text += " --set '" + value + "'";
   const auto solver = [&](std::size_t i) {
-    text += " --solver " + parse_solver(answer.bench.cases[i].record.spec.solver).brief();
+    text += " --solver " + parse_solver(result.bench.cases[i].record.spec.solver).brief();
   };
-  solver(*answer.advice.best);
-  if (answer.advice.runner_up) solver(*answer.advice.runner_up);
+  solver(*result.answer.best);
+  if (result.answer.runner_up) solver(*result.answer.runner_up);
   return text + (options.metric == "stretch.rms" ? "" : " --metric " + options.metric);
 }
 
-std::string asked(const Options& options, const Answer& answer) {
-  return answer.wish.error
-             ? "least cost for " + options.metric + " <= " + number(*answer.wish.error)
-             : "least " + options.metric + " within " + number(options.budget) +
-                   " ms per frame of 1/60 s";
+void line(const char* what, const std::string& text) {
+  std::cout << "  " << std::left << std::setw(11) << what << text << '\n';
 }
 
-void print_best(const Options& options, const Answer& answer) {
-  const BenchedCase& best = answer.best();
-  const Advice& advice = answer.advice;
-  const auto line = [](const char* what, const std::string& text) {
-    std::cout << "  " << std::left << std::setw(11) << what << text << '\n';
-  };
-  line("use", parse_solver(best.record.spec.solver).brief());
-  line("error", options.metric + " " + number(best.record.values.at(options.metric)));
-  line("cost", interval(best.cost(), 1e3) + " ms CPU per simulated s, " +
-                   number(1e3 * kFrame * best.cost().mid) + " ms per frame");
-  if (advice.runner_up) {
-    const BenchedCase& other = answer.bench.cases[*advice.runner_up];
-    line("runner-up", parse_solver(other.record.spec.solver).brief() + ": " + options.metric + " " +
-                          number(other.record.values.at(options.metric)) +
-                          (advice.ratio ? ", " + interval(*advice.ratio) + " x the cost" : ""));
-  }
-  line("certainty", std::string(to_string(advice.certainty)) +
-                        (answer.cut.empty() ? "" : " among what was tried") +
-                        "; the same code against itself: " + interval(answer.bench.control));
-  line("verified", std::string(answer.same_bits ? "run again, the same bits"
-                                                : "RUN AGAIN, OTHER BITS: not deterministic") +
-                       "; timed again, " + interval(answer.again, 1e3) + " ms");
-  line("reproduce", command(options, answer));
+void print_best(const Options& options, const Result& result) {
+  line("cost",
+       interval_text(result.cost, 1e-3) + " ms CPU per simulated s, " +
+           number_text(1e3 * kFrame * result.cost.mid) +
+           " ms per frame; the same code against itself: " + interval_text(result.bench.control));
+  line("verified",
+       std::string(result.same_bits ? "run again, the same bits"
+                                    : "RUN AGAIN, OTHER BITS: not deterministic") +
+           "; timed again, " + interval_text(result.again, 1e-3) + " ms" +
+           (result.confirmed() ? ""
+                               : ": OUTSIDE THE INTERVAL, THIS MACHINE IS TOO NOISY NOW TO JUDGE"));
+  line("reproduce", command(options, result));
 }
 
-void print_searched(const Options& options, const Answer& answer) {
-  std::cout << "  searched   " << answer.tried.size() << " settings in " << number(answer.searched)
-            << " s" << '\n';
-  for (const std::string& solver : answer.cut)
-    std::cout << "  NOT DONE   " << solver << ": stopped by --patience " << number(options.patience)
-              << "\n";
-  for (const std::string& reason : answer.unsupported)
-    std::cout << "  cannot     " << reason << '\n';
-}
-
-/// How near anything came, where nothing granted the wish.
-void print_nearest(const Options& options, const Answer& answer) {
-  std::cout << "  never reached";
-  const Offer* nearest = nullptr;
-  const auto miss = [&](const Offer& o) { return answer.wish.error ? o.error : o.cost.mid; };
-  for (const Offer& o : answer.tried)
-    if (!o.failed && std::isfinite(o.error) && (!nearest || miss(o) < miss(*nearest))) nearest = &o;
+/// How near anything came, where nothing meets the target.
+void print_nearest(const Options& options, const Result& result) {
+  const auto miss = [&](const Candidate& c) { return result.target.error ? c.error : c.cost.mid; };
+  const Candidate* nearest = nullptr;
+  for (const Candidate& c : result.tried)
+    if (c.failure.empty() && std::isfinite(c.error) && (!nearest || miss(c) < miss(*nearest)))
+      nearest = &c;
+  std::cout << text(result.target, options.metric) << ": never reached";
   if (nearest)
     std::cout << "; nearest: " << parse_solver(nearest->setting).brief() << ", " << options.metric
-              << " " << number(nearest->error) << " for " << number(1e3 * nearest->cost.mid)
-              << " ms CPU per simulated s";
+              << " " << number_text(nearest->error) << " for "
+              << number_text(1e3 * nearest->cost.mid) << " ms CPU per simulated s";
   std::cout << '\n';
+}
+
+void print_searched(const Options& options, const Result& result, double elapsed) {
+  line("searched", std::to_string(result.tried.size()) + " settings; " + number_text(elapsed) +
+                       " s of " + number_text(options.patience) + " s in all");
+  for (const std::string& solver : result.cut)
+    line("NOT DONE", solver + ": stopped by --patience " + number_text(options.patience));
+  for (const std::string& reason : result.unsupported) line("cannot", reason);
+  std::size_t refused = 0;
+  for (const Candidate& c : result.tried)
+    if (!c.failure.empty() && ++refused <= kMostRefused)
+      line("refused", parse_solver(c.setting).brief() + ": " + c.failure);
+  if (refused > kMostRefused)
+    line("", "and " + std::to_string(refused - kMostRefused) + " more; --json names all");
 }
 
 Json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
@@ -289,86 +294,96 @@ Json json_of(const BenchedCase& c, const std::string& metric) {
           {"case", c.record.id}};
 }
 
-void print_json(const Options& options, const Answer& answer) {
+void print_json(const Options& options, const Result& result, double elapsed) {
   Json all{{"scene", options.scene},
            {"metric", options.metric},
            {"best", nullptr},
            {"runner_up", nullptr},
-           {"unsupported", answer.unsupported},
-           {"searched_seconds", answer.searched},
-           {"complete", answer.cut.empty()},
-           {"not_done", answer.cut}};
-  if (answer.wish.error) all["error"] = *answer.wish.error;
-  if (answer.wish.budget) all["budget_cpu_seconds_per_second"] = *answer.wish.budget;
-  for (const Offer& o : answer.tried)
-    all["tried"].push_back({{"setting", parse_solver(o.setting).brief()},
-                            {"error", o.error},
-                            {"quick_cost", o.cost.mid},
-                            {"failed", o.failed}});
-  if (const Advice& advice = answer.advice; advice.best) {
-    all["best"] = json_of(answer.best(), options.metric);
-    all["certainty"] = to_string(advice.certainty);
-    all["control"] = json_of(answer.bench.control);
-    all["verified"] = {{"same_bits", answer.same_bits},
-                       {"cpu_seconds_per_second", json_of(answer.again)}};
-    all["command"] = command(options, answer);
-    if (advice.runner_up)
-      all["runner_up"] = json_of(answer.bench.cases[*advice.runner_up], options.metric);
-    if (advice.ratio) all["ratio"] = json_of(*advice.ratio);
+           {"unsupported", result.unsupported},
+           {"seconds", elapsed},
+           {"patience_seconds", options.patience},
+           {"complete", result.cut.empty()},
+           {"not_done", result.cut},
+           {"tried", Json::array()}};
+  if (result.target.error) all["error"] = *result.target.error;
+  if (result.target.budget) all["budget_cpu_seconds_per_second"] = *result.target.budget;
+  for (const Candidate& c : result.tried)
+    all["tried"].push_back({{"setting", parse_solver(c.setting).brief()},
+                            {"error", c.error},
+                            {"quick_cost", c.cost.mid},
+                            {"refused", c.failure.empty() ? Json() : Json(c.failure)}});
+  if (const Answer& answer = result.answer; answer.best) {
+    all["best"] = json_of(result.best(), options.metric);
+    all["best"]["cpu_seconds_per_second"] = json_of(result.cost);
+    all["certainty"] = to_string(answer.certainty);
+    all["control"] = json_of(result.bench.control);
+    all["verified"] = {{"same_bits", result.same_bits},
+                       {"cpu_seconds_per_second", json_of(result.again)},
+                       {"inside_interval", result.confirmed()}};
+    all["command"] = command(options, result);
+    if (answer.runner_up)
+      all["runner_up"] = json_of(result.bench.cases[*answer.runner_up], options.metric);
+    if (answer.ratio) all["ratio"] = json_of(*answer.ratio);
   }
   std::cout << to_text(all, 1) << '\n';
 }
 
 int run(Options options) {
-  find_value(options.metric);
   find_scene(options.scene);
-  wish_of(options);
+  target_of(options);
   if (options.solvers.empty())
     for (const SolverEntry* entry : solvers()) options.solvers.emplace_back(entry->name);
   // Ours first: what it costs bounds how far the others need to be searched.
   std::stable_partition(options.solvers.begin(), options.solvers.end(),
                         [](const std::string& s) { return s.starts_with("jakobsen"); });
   for (const std::string& solver : options.solvers) parse_solver(solver);
-  const Answer answer = advise(options);
-  if (std::all_of(answer.tried.begin(), answer.tried.end(),
-                  [](const Offer& o) { return o.failed || std::isnan(o.error); }))
-    throw InputError(answer.tried.empty()
+  Advisor advisor(options);
+  const Result result = advisor.run();
+  if (result.cut.empty() && std::ranges::all_of(result.tried, [](const Candidate& c) {
+        return !c.failure.empty() || std::isnan(c.error);
+      }))
+    throw InputError(result.tried.empty()
                          ? "no solver can run scene '" + options.scene + "'"
                          : options.metric + " has no value on scene '" + options.scene + "'");
   if (options.json) {
-    print_json(options, answer);
+    print_json(options, result, advisor.elapsed());
   } else {
-    std::cout << options.scene << ": " << asked(options, answer) << '\n';
-    answer.advice.best ? print_best(options, answer) : print_nearest(options, answer);
-    print_searched(options, answer);
+    std::cout << options.scene << ", ";
+    if (result.answer.best)
+      std::cout << text(result.answer, result.bench, options.metric), print_best(options, result);
+    else
+      print_nearest(options, result);
+    print_searched(options, result, advisor.elapsed());
   }
-  if (!answer.advice.best) return kNothing;
-  return answer.same_bits ? kPass : kConflict;
+  if (!result.answer.best) return kNothing;
+  return result.same_bits ? kPass : kConflict;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto o = std::make_shared<Options>();
-  arguments.option("SCENE", o->scene, "Name or path of a scene").required();
-  arguments.option("--error", o->error, "Reach this error (0.01 or 1%) at the least cost");
-  arguments
-      .option("--budget", o->budget,
-              "Reach the least error within this CPU time per frame of 1/60 s [ms]")
-      .positive();
-  arguments.option("--metric", o->metric, "What the error is (default: stretch.rms)");
-  arguments.option(
-      "--solver", o->solvers,
-      "Only this solver; what its text fixes is not searched; repeat it (default: all)");
-  arguments.option("--set", o->settings,
-                   "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
-  arguments.option("--patience", o->patience, "Search no longer than this [s] (default: 120)")
-      .positive();
-  arguments.option("--rounds", o->rounds, "Rounds of the final timing (default: 8)").range(2, 1000);
-  arguments.option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)").positive();
-  arguments
-      .option("--tolerance", o->tolerance, "Smaller relative differences are none (default: 0.05)")
-      .positive();
-  arguments.option("--out", o->out, "Results folder (default: " + o->out + ")");
-  arguments.flag("--json", o->json, "The answer and all that was tried, as JSON");
+  app.add_option("SCENE", o->scene, "Name or path of a scene")->required();
+  app.add_option("--error", o->error, "Reach this error (0.01 or 1%) at the least cost");
+  app.add_option("--budget", o->budget,
+                 "Reach the least error within this CPU time per frame of 1/60 s [ms]")
+      ->check(above_zero());
+  app.add_option("--metric", o->metric, "What the error is (default: stretch.rms)")
+      ->check(metric_value());
+  app.add_option("--solver", o->solvers,
+                 "Only this solver; what its text fixes is not searched; repeat it (default: all)");
+  app.add_option("--set", o->settings,
+                 "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
+  app.add_option("--patience", o->patience,
+                 "Search, time and verify within this time [s] (default: 120)")
+      ->check(above_zero());
+  app.add_option("--rounds", o->rounds, "Rounds of the final timing at most (default: 8)")
+      ->check(CLI::Range(2, 1000));
+  app.add_option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)")
+      ->check(above_zero());
+  app.add_option("--tolerance", o->tolerance,
+                 "Smaller relative differences are none (default: 0.05)")
+      ->check(above_zero());
+  add_results(app, o->out);
+  add_json(app, o->json, "The answer and all that was tried");
   return [o] { return run(*o); };
 }
 
@@ -377,10 +392,10 @@ std::function<int()> bind(Arguments& arguments) {
 
 TAUT_VERB(advise) = {
     .name = "advise",
-    .summary =
-        "Finds the best solver and setting for an error or a budget, and verifies it (exit "
-        "4: never reached)",
+    .group = VerbGroup::cost,
+    .summary = "Finds and verifies the best setting for an error or a budget",
     .example =
         "taut advise hang --error 1%\n  taut advise ball --budget 4 --metric "
-        "stretch.max\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json",
+        "stretch.max\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
+        "Exit: 0 found; 4 never reached; 6 the best does not repeat bit for bit",
     .bind = taut::verb::advise::bind};

@@ -4,8 +4,10 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/baseline_study.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::verb::baseline {
 
@@ -13,6 +15,7 @@ namespace {
 
 struct Options : BaselineOptions {
   std::string study, why;
+  bool json = false;
 };
 
 /// A baseline is made of results of all its cases.
@@ -32,7 +35,14 @@ int diff(const Options& options) {
   const BaselineStudy study = baseline_study(options.study, options, false);
   if (const int code = early_exit(study); code != kPass) return code;
   const Comparison comparison = study.compare();
-  print_findings(study, comparison);
+  if (options.json) {
+    Json all = Json::array();
+    for (const Change& f : comparison.findings)
+      all.push_back({{"case", f.id}, {"solver", f.solver}, {"change", f.text}});
+    std::cout << to_text(all, 1) << '\n';
+  } else {
+    print_findings(study, comparison);
+  }
   return comparison.findings.empty() ? kPass : kRegression;
 }
 
@@ -70,23 +80,26 @@ int update(Options options) {
   return kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  Arguments updating = arguments.subverb("update", "Takes what is different as the new baseline");
-  updating.option("--why", options->why, "The reason, kept beside the baseline").required();
-  Arguments differing =
-      arguments.subverb("diff", "Shows what an update would change (exit 1: something)");
-  for (Arguments* sub : {&updating, &differing}) {
-    sub->option("STUDY", options->study, "Name or path").required();
+  app.require_subcommand(1);
+  CLI::App* updating = app.add_subcommand("update", "Takes what is different as the new baseline");
+  updating->add_option("--why", options->why, "The reason, kept beside the baseline")->required();
+  CLI::App* differing =
+      app.add_subcommand("diff", "Shows what an update would change (exit 1: something)");
+  for (CLI::App* sub : {updating, differing}) {
+    sub->add_option("STUDY", options->study, "Name or path")->required();
     options->bind(*sub);
   }
-  return [options, updating] { return updating.named() ? update(*options) : diff(*options); };
+  add_json(*differing, options->json, "What differs");
+  return [options, updating] { return updating->parsed() ? update(*options) : diff(*options); };
 }
 
 }  // namespace
 }  // namespace taut::verb::baseline
 
 TAUT_VERB(baseline) = {.name = "baseline",
+                       .group = VerbGroup::trust,
                        .summary = "Updates a committed baseline, or shows how it differs",
                        .example =
                            "taut baseline update regression --why \"contacts are swept\"\n"

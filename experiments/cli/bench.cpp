@@ -1,20 +1,18 @@
-#include "experiments/timing/bench.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <thread>
 
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/timing/answer.hpp"
 
 namespace taut::verb::bench {
 
@@ -23,11 +21,11 @@ namespace {
 struct Options {
   std::vector<std::string> what, solvers, settings;
   std::vector<double> levels{std::begin(kErrorLevels), std::end(kErrorLevels)};
-  std::string preset, metric = "stretch.rms", out = default_results();
+  std::string preset, metric = "stretch.rms", out;
   int rounds = 5;
   double seconds = 0.05;
-  double tolerance = 0.05;
-  bool json = false, quiet = false, worker = false;
+  double tolerance = kTolerance;
+  bool json = false, worker = false;
 };
 
 /// The physics of every case, from the store or run now.
@@ -36,11 +34,12 @@ std::vector<Record> physics(const std::vector<Case>& cases, const Options& optio
   store.prepare();
   const Session session(store, "taut bench", cases, {});
   Progress progress;
-  const Tally tally =
-      run_cases(cases, store, session,
-                {.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency())),
-                 .progress = [&](const Tally& t, const Record* r) { progress.show(t, r); }});
-  progress.finish(tally);
+  const CampaignProgress campaign = run_cases(
+      cases, store, session,
+      {.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency())),
+       .progress = [&](const CampaignProgress& t, const Record* r) { progress.show(t, r); }});
+  progress.finish(campaign);
+  if (campaign.interrupted) throw Interrupted();
   std::vector<Record> records;
   for (const Case& one : cases)
     if (auto record = store.find(one)) records.push_back(std::move(*record));
@@ -60,68 +59,35 @@ SceneBench bench_scene(const std::string& scene, const std::vector<Record>& reco
     specs.push_back(record.spec);
     by_spec[name(record.spec)] = &record;
   }
-  std::cerr << scene << ": timing " << specs.size() << " cases, " << options.rounds
-            << " rounds forth and back\n";
+  progress() << scene << ": timing " << specs.size() << " cases\n";
   Bench bench = run_bench(
       specs, {.rounds = options.rounds,
               .seconds = options.seconds,
               .program = program_of,
               .steps = [&](const CaseSpec& s) { return steps_done(*by_spec.at(name(s))); },
-              .progress = {}});
+              .progress = Countdown("timing round")});
   SceneBench result{scene, bench.control, {}};
   for (std::size_t i = 0; i < specs.size(); ++i)
     result.cases.push_back({records[i], std::move(bench.timings[i])});
   return result;
 }
 
-std::string number(double value, int digits = 3) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
-std::string interval(const Interval& i, double unit = 1) {
-  return number(i.mid / unit) + " (" + number(i.low / unit) + " to " + number(i.high / unit) + ")";
-}
-
 void print_control(const SceneBench& bench, double tolerance) {
-  const bool noisy = judge(bench.control, bench.control, tolerance) == Judgement::too_noisy;
-  std::cout << "  the same code against itself: " << interval(bench.control) << ", tolerance "
-            << number(100 * tolerance) << " %"
+  const bool noisy = spread(bench.control) > tolerance;
+  std::cout << "  the same code against itself: " << interval_text(bench.control) << ", tolerance "
+            << number_text(100 * tolerance) << " %"
             << (noisy ? ": THIS MACHINE IS TOO NOISY NOW TO JUDGE" : "") << '\n';
 }
 
-void print_equal_error(const SceneBench& bench, const std::string& metric,
-                       const std::vector<double>& levels) {
-  for (const double level : levels) {
-    std::cout << "  " << metric << " <= " << number(100 * level) << " %\n";
-    for (const Reached& r : equal_error(bench, metric, level)) {
-      std::cout << "    " << std::left << std::setw(18) << r.solver;
-      if (!r.at) {
-        std::cout << "never reached\n";
-        continue;
-      }
-      const BenchedCase& c = bench.cases[*r.at];
-      std::cout << interval(c.cost(), 1e-3) << " ms per simulated s";
-      if (r.times) std::cout << ", " << interval(*r.times) << " x the cheapest";
-      std::cout << ", " << c.record.id << '\n';
-    }
-  }
-}
-
-void print_budgets(const SceneBench& bench, const std::string& metric) {
-  const std::vector<Offer> offers = bench.offers(metric);
-  for (const double budget : kFrameBudgets) {
-    std::cout << "  within " << number(1e3 * budget) << " ms per frame of 1/60 s\n";
-    for (const std::string& solver : solvers_of(bench)) {
-      const auto best = best_within(offers, solver, budget * 60);
-      std::cout << "    " << std::left << std::setw(18) << solver
-                << (best ? metric + " " + number(offers[*best].error) + ", " +
-                               bench.cases[*best].record.id
-                         : "nothing that cheap")
-                << '\n';
-    }
-  }
+/// Who is cheapest for each error, and who is most accurate within each budget.
+void print_answers(const SceneBench& bench, const Options& options) {
+  std::vector<Target> targets;
+  for (const double level : options.levels) targets.push_back({level, {}});
+  for (const double budget : kFrameBudgets) targets.push_back({{}, budget / kFrame});
+  for (const Target& target : targets)
+    std::cout << "  "
+              << text(answer(bench, target, options.metric, options.tolerance), bench,
+                      options.metric);
 }
 
 void print_pairs(const SceneBench& bench, double tolerance) {
@@ -129,9 +95,10 @@ void print_pairs(const SceneBench& bench, double tolerance) {
                                            "too noisy to judge"};
   for (std::size_t i = 1; i < bench.cases.size(); ++i)
     if (const auto ratio = bench.ratio(i, 0))
-      std::cout << "  " << bench.cases[i].record.id << ": " << interval(*ratio) << " x "
+      std::cout << "  " << bench.cases[i].record.id << ": " << interval_text(*ratio) << " x "
                 << bench.cases[0].record.id << ": "
-                << kWords[static_cast<int>(judge(*ratio, bench.control, tolerance))] << '\n';
+                << kWords[static_cast<int>(compare_costs(*ratio, bench.control, tolerance))]
+                << '\n';
 }
 
 void print_failures(const SceneBench& bench) {
@@ -174,12 +141,10 @@ void bench_study(const std::string& name, const Options& options) {
     std::cout << to_json(session);
     return;
   }
-  if (options.quiet) return;
   for (const SceneBench& scene : session.scenes) {
     std::cout << scene.scene << '\n';
     print_control(scene, options.tolerance);
-    print_equal_error(scene, options.metric, options.levels);
-    print_budgets(scene, options.metric);
+    print_answers(scene, options);
     print_failures(scene);
   }
   std::cout << file.string() << '\n';
@@ -199,10 +164,11 @@ void compare(const std::string& scene, const Options& options) {
     std::cout << one.scene << '\n';
     print_control(one, options.tolerance);
     for (const BenchedCase& c : one.cases)
-      std::cout << "  " << c.record.id << ": " << interval(c.cost(), 1e-3)
+      std::cout << "  " << c.record.id << ": " << interval_text(c.cost(), 1e-3)
                 << " ms per simulated s, " << options.metric << " "
-                << number(c.record.values.count(options.metric) ? c.record.values.at(options.metric)
-                                                                : std::nan(""))
+                << number_text(c.record.values.count(options.metric)
+                                   ? c.record.values.at(options.metric)
+                                   : std::nan(""))
                 << ", " << to_string(c.record.status.kind) << '\n';
     print_pairs(one, options.tolerance);
     print_failures(one);
@@ -215,41 +181,37 @@ int run(const Options& options) {
     const Case one = make_case({options.what[0], options.settings, options.what[1]});
     return serve_timing(*one.scene, one.choice);
   }
-  if (options.what.empty())
-    throw InputError("bench what? A study, a scene with --solver, `kernels` or `contact`");
+  if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
   for (const std::string& name : options.what)
     options.solvers.empty() ? bench_study(name, options) : compare(name, options);
   return kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto o = std::make_shared<Options>();
-  arguments.option("WHAT", o->what, "Studies; or scenes, with --solver; or `kernels` or `contact`");
-  arguments.option("--solver", o->solvers, "A solver to time on the scene; repeat it for each");
-  arguments.option("--set", o->settings,
-                   "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
-  arguments.option("--preset", o->preset, "A smaller or larger version that the study defines");
-  arguments.option("--metric", o->metric,
-                   "The error of the equal-error table (default: stretch.rms)");
-  arguments
-      .option("--at", o->levels,
-              "Errors of the equal-error table (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
-      .separated_by(',')
-      .positive();
-  arguments
-      .option("--rounds", o->rounds,
-              "Rounds forth and back; each gives two samples a case (default: 5)")
-      .range(1, 1000);
-  arguments.option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)").positive();
-  arguments
-      .option("--tolerance", o->tolerance, "Smaller relative differences are none (default: 0.05)")
-      .positive();
-  arguments.option("--out", o->out, "Results folder (default: " + o->out + ")");
-  arguments.flag("--json", o->json, "Everything measured, every sample, as JSON");
-  arguments.flag("--quiet", o->quiet, "Measure and keep; print nothing of it");
-  arguments
-      .flag("--worker", o->worker, "Serve samples of one case over stdin and stdout (internal)")
-      .hidden();
+  app.add_option("WHAT", o->what, "Studies; or scenes, with --solver");
+  app.add_option("--solver", o->solvers, "A solver to time on the scene; repeat it for each");
+  app.add_option("--set", o->settings,
+                 "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
+  add_preset(app, o->preset);
+  app.add_option("--metric", o->metric, "What the error is (default: stretch.rms)")
+      ->check(metric_value());
+  app.add_option("--at", o->levels,
+                 "Errors to ask for (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
+      ->delimiter(',')
+      ->check(above_zero());
+  app.add_option("--rounds", o->rounds,
+                 "Rounds, each in alternating order (ABBA): two samples a case (default: 5)")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)")
+      ->check(above_zero());
+  app.add_option("--tolerance", o->tolerance,
+                 "Smaller relative differences are none (default: 0.05)")
+      ->check(above_zero());
+  add_results(app, o->out);
+  app.add_flag("--json", o->json, "Everything measured, every sample, as JSON");
+  app.add_flag("--worker", o->worker, "Serve samples of one case over stdin and stdout (internal)")
+      ->group("");
   return [o] { return run(*o); };
 }
 
@@ -258,8 +220,8 @@ std::function<int()> bind(Arguments& arguments) {
 
 TAUT_VERB(bench) = {
     .name = "bench",
-    .summary =
-        "Measures cost: interleaved, CPU time of Solver::step alone, with confidence intervals",
+    .group = VerbGroup::cost,
+    .summary = "Measures cost: CPU time of Solver::step alone, with intervals",
     .example =
         "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
         "jakobsen:iterations=1,substeps=16 --solver "

@@ -1,9 +1,12 @@
 #include <cstdio>
+#include <iostream>
 #include <memory>
 
 #include "experiments/bench/contact.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::verb::contact {
 
@@ -14,6 +17,7 @@ struct Options {
   int rounds = 11;
   double seconds = 0.01;
   std::string plot;
+  bool json = false;
 };
 
 using Rows = std::vector<ContactRow>;
@@ -92,27 +96,46 @@ void plot(const std::vector<Rows>& sizes, const std::string& folder) {
                          .title = "A step of one sweep, by what keeps the cloth from itself",
                          .file = "self-collision-scaling",
                          .slope = 1},
-                        records, {}, {}, folder);
+                        records, {}, folder);
   std::printf("%s\n%s\n", files.svg.c_str(), files.pdf.c_str());
 }
 
-std::function<int()> bind(Arguments& arguments) {
+Json json_of(const std::vector<Rows>& sizes) {
+  Json all = Json::array();
+  for (const Rows& rows : sizes)
+    for (const ContactRow& row : rows)
+      all.push_back({{"scene", row.scene},
+                     {"setting", row.setting},
+                     {"particles", row.particles},
+                     {"steps", row.steps},
+                     {"touching", row.touching},
+                     {"sweep_ns", row.sweep},
+                     {"each_sweep_ns", row.each_sweep},
+                     {"each_step_ns", row.each_step}});
+  return all;
+}
+
+std::function<int()> bind(CLI::App& app) {
   const auto o = std::make_shared<Options>();
-  arguments.option("--sizes", o->sizes, "Vertices along a side (default: 128)")
-      .separated_by(',')
-      .range(8, 1024);
-  arguments.option("--rounds", o->rounds, "Interleaved rounds forth and back (default: 11)")
-      .range(1, 1000);
-  arguments.option("--seconds", o->seconds, "Of one sample (default: 0.01)").positive();
-  arguments.option("--plot", o->plot,
-                   "Folder for a figure of a step over particles: off, octree and grid");
+  app.add_option("--sizes", o->sizes, "Vertices along a side (default: 128)")
+      ->delimiter(',')
+      ->check(CLI::Range(8, 1024));
+  app.add_option("--rounds", o->rounds, "Rounds in alternating order (ABBA) (default: 11)")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--seconds", o->seconds, "Of one sample (default: 0.01)")->check(above_zero());
+  app.add_option("--plot", o->plot,
+                 "Folder for a figure of a step over particles: off, octree and grid");
+  add_json(app, o->json, "Every row with its samples");
   return [o] {
     std::vector<Rows> sizes;
     for (const int side : o->sizes) {
       sizes.push_back(bench_contact({.side = side, .rounds = o->rounds, .seconds = o->seconds}));
-      print(sizes.back(), side);
+      if (!o->json) print(sizes.back(), side);
     }
-    if (sizes.size() > 2) print_exponents(sizes);
+    if (o->json)
+      std::cout << to_text(json_of(sizes), 1) << '\n';
+    else if (sizes.size() > 2)
+      print_exponents(sizes);
     if (!o->plot.empty()) plot(sizes, o->plot);
     return kPass;
   };
@@ -122,7 +145,8 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::contact
 
 TAUT_VERB(bench_contact) = {
-    .name = "bench-contact",
+    .name = "bench contact",
+    .group = VerbGroup::cost,
     .summary = "Measures contact and self-collision against structural sweeps of the same cloth",
     .example = "taut bench contact\n  taut bench contact --sizes 16,32,64,128,317 --plot figures",
     .bind = taut::verb::contact::bind};

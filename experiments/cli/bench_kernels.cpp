@@ -5,7 +5,9 @@
 
 #include "core/solver/simd/kernels.hpp"
 #include "experiments/bench/kernels.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::verb::kernels {
 
@@ -16,6 +18,7 @@ struct Options {
   int rounds = 11;
   double seconds = 0.005;
   int largest_bullet = 256;
+  bool json = false;
 };
 
 std::string times(const Interval& ratio) {
@@ -52,9 +55,10 @@ void print(const KernelBench& bench) {
   std::printf(
       "a square-root-free projection in registers, without loads and stores: %.3f ns in float, "
       "%.3f ns in double\n"
-      "a packed projection that loads and stores, but adds a constant instead: %.3f ns in float, "
+      "a link of a colour batch, loaded and stored with an addition instead of a projection: %.3f "
+      "ns in float, "
       "%.3f ns in double\n",
-      bench.arithmetic_float, bench.arithmetic_double, bench.carried_float, bench.carried_double);
+      bench.arithmetic_float, bench.arithmetic_double, bench.traffic_float, bench.traffic_double);
   const TwoCores& cores = bench.two_cores;
   const auto text = [](const Interval& i) {
     char number[64];
@@ -73,24 +77,47 @@ void print(const KernelBench& bench) {
   std::fflush(stdout);
 }
 
-std::function<int()> bind(Arguments& arguments) {
+Json json_of(const KernelBench& bench) {
+  Json rows = Json::array();
+  for (const KernelRow& row : bench.rows)
+    rows.push_back({{"name", row.name},
+                    {"threads", row.threads},
+                    {"ns_per_projection", row.samples},
+                    {"fastest_ns", row.fastest},
+                    {"floor_ns", row.floor},
+                    {"flops", row.flops},
+                    {"bytes", row.bytes},
+                    {"fixed_sweeps", row.fixed}});
+  const auto interval = [](const Interval& i) { return Json{i.low, i.mid, i.high}; };
+  return {{"side", bench.side},
+          {"instructions", to_string(widest())},
+          {"rows", rows},
+          {"two_threads", interval(bench.two_cores.threads)},
+          {"unrelated_sheets", interval(bench.two_cores.unrelated)}};
+}
+
+std::function<int()> bind(CLI::App& app) {
   const auto o = std::make_shared<Options>();
-  arguments.option("--sizes", o->sizes, "Vertices along a side (default: 32,128,512)")
-      .separated_by(',')
-      .range(2, 4096);
-  arguments.option("--rounds", o->rounds, "Interleaved rounds forth and back (default: 11)")
-      .range(1, 1000);
-  arguments.option("--seconds", o->seconds, "Of one sample (default: 0.005)").positive();
-  arguments
-      .option("--largest-bullet", o->largest_bullet,
-              "Largest side for Bullet, whose steps take seconds beyond (default: 256)")
-      .range(0, 4096);
+  app.add_option("--sizes", o->sizes, "Vertices along a side (default: 32,128,512)")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 4096));
+  app.add_option("--rounds", o->rounds, "Rounds in alternating order (ABBA) (default: 11)")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--seconds", o->seconds, "Of one sample (default: 0.005)")->check(above_zero());
+  app.add_option("--largest-bullet", o->largest_bullet,
+                 "Largest side for Bullet, whose steps take seconds beyond (default: 256)")
+      ->check(CLI::Range(0, 4096));
+  add_json(app, o->json, "Every row with its samples");
   return [o] {
-    for (const int side : o->sizes)
-      print(bench_kernels({.side = side,
-                           .rounds = o->rounds,
-                           .seconds = o->seconds,
-                           .bullet = side <= o->largest_bullet}));
+    Json all = Json::array();
+    for (const int side : o->sizes) {
+      const KernelBench bench = bench_kernels({.side = side,
+                                               .rounds = o->rounds,
+                                               .seconds = o->seconds,
+                                               .bullet = side <= o->largest_bullet});
+      o->json ? all.push_back(json_of(bench)) : print(bench);
+    }
+    if (o->json) std::cout << to_text(all, 1) << '\n';
     return kPass;
   };
 }
@@ -99,7 +126,8 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::kernels
 
 TAUT_VERB(bench_kernels) = {
-    .name = "bench-kernels",
-    .summary = "Measures one link projection: textbook, packed, strips, Bullet, in one session",
+    .name = "bench kernels",
+    .group = VerbGroup::cost,
+    .summary = "Measures one link projection: textbook, colour batches, interleaved sheet, Bullet",
     .example = "taut bench kernels --sizes 32,1024\n  taut-f32 bench kernels   (Bullet in float)",
     .bind = taut::verb::kernels::bind};

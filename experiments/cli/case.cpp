@@ -63,7 +63,7 @@ void tell(const Moment& m, int steps) {
             << fastest << " m/s\n";
 }
 
-int run(const Options& options) {
+int run(const Options& options) try {
   const Case one = options.which.make();
   continue_in_right_program(one.choice);
   if (!options.into.empty()) return run_into(one, options.into);
@@ -84,19 +84,21 @@ int run(const Options& options) {
     for (const auto& [name, value] : result.record.resolved_settings)
       std::cerr << name << ": " << value << '\n';
   return kPass;
+} catch (const std::bad_alloc&) {  // while the scene was read
+  if (options.into.empty()) throw;
+  return kOutOfMemory;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  options->which.bind(arguments);
-  arguments.flag("--json", options->json, "Print the record as JSON");
-  arguments.option("--final-state", options->final_state,
-                   "Write vertex,x,y,z,vx,vy,vz of the last sound state, full precision (CSV)");
-  arguments.option("--trajectory", options->trajectory, "Write every step's positions");
-  arguments.option("--series", options->series, "Write values over time (CSV)");
-  arguments.flag("--verbose", options->verbose,
-                 "Say on stderr how far it is and what is effective");
-  arguments.option("--into", options->into, "Used by taut run").hidden();
+  options->which.bind(app);
+  app.add_flag("--json", options->json, "Print the record as JSON");
+  app.add_option("--final-state", options->final_state,
+                 "Write vertex,x,y,z,vx,vy,vz of the last sound state, full precision (CSV)");
+  app.add_option("--trajectory", options->trajectory, "Write every step's positions");
+  app.add_option("--series", options->series, "Write values over time (CSV)");
+  app.add_flag("--verbose", options->verbose, "Say on stderr how far it is and what is effective");
+  app.add_option("--into", options->into, "Used by taut run")->group("");
   return [options] { return run(*options); };
 }
 
@@ -105,6 +107,7 @@ std::function<int()> bind(Arguments& arguments) {
 
 TAUT_VERB(case) = {
     .name = "case",
+    .group = VerbGroup::one_case,
     .summary = "Runs one case in this process; a numerical failure is a result (exit 0)",
     .example = "taut case hang jakobsen:iterations=1,substeps=15 --dt 1/120 --final-state hang.csv",
     .bind = taut::verb::one_case ::bind};

@@ -1,12 +1,17 @@
 #include <algorithm>
+#include <iomanip>
 #include <iostream>
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "experiments/baseline/roll_up.hpp"
 #include "experiments/case/fingerprint.hpp"
+#include "experiments/case/key.hpp"
 #include "experiments/command_line/baseline_study.hpp"
-#include "experiments/command_line/program.hpp"
+#include "experiments/command_line/colour.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -17,7 +22,7 @@ namespace {
 struct Options : BaselineOptions {
   std::vector<std::string> studies;
   std::string junit;
-  bool strict = false, record = false;
+  bool strict = false, record = false, json = false;
 };
 
 /// Names of the studies that have a baseline, sorted.
@@ -62,7 +67,8 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
   const auto moved = count([](const Change& f) { return f.is_regression(); });
   const auto mismatched = count([](const Change& f) { return f.is_mismatch(); });
   std::cout << study.name << ": " << comparison.cases << " cases and " << comparison.values
-            << " values compared, " << moved << " moved";
+            << " values compared, "
+            << coloured(std::to_string(moved) + " moved", moved ? Colour::red : Colour::green);
   if (mismatched) std::cout << ", " << mismatched << " do not match the study";
   if (!study.not_run.empty()) std::cout << ", " << study.not_run.size() << " not run";
   std::cout << '\n';
@@ -71,11 +77,48 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
               << " --why \"...\"\n";
 }
 
+std::string_view unit_of(const std::string& value) {
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& spec : metric->values)
+      if (spec.name == value) return spec.unit.si;
+  return "";
+}
+
+/// By scene and value: in how many cases it moved, and how far in the worst.
+void print_roll_up(const Comparison& comparison) {
+  const std::vector<MovedValue> all = roll_up(comparison);
+  std::size_t scene = 0, value = 0;
+  for (const MovedValue& moved : all)
+    scene = std::max(scene, moved.scene.size()), value = std::max(value, moved.value.size());
+  for (const MovedValue& moved : all)
+    std::cout << "  " << std::left << std::setw(static_cast<int>(scene) + 2) << moved.scene
+              << std::setw(static_cast<int>(value) + 2) << moved.value << std::right << std::setw(4)
+              << moved.cases << (moved.cases == 1 ? " case,  " : " cases, ") << "worst "
+              << text(moved, unit_of(moved.value)) << '\n';
+}
+
 /// What the report reads: how much was compared, and what differs.
 struct Notes {
   std::size_t cases = 0, values = 0;
-  Json findings = Json::array();
+  Json findings = Json::array(), studies = Json::array();
 
+  void add(const BaselineStudy& study, const Comparison& comparison) {
+    add(study.name, comparison);
+    Json moved = Json::array();
+    for (const MovedValue& m : roll_up(comparison))
+      moved.push_back({{"scene", m.scene},
+                       {"value", m.value},
+                       {"unit", unit_of(m.value)},
+                       {"cases", m.cases},
+                       {"worst_case", m.worst->id},
+                       {"before", m.worst->before},
+                       {"now", m.worst->now}});
+    studies.push_back({{"study", study.name},
+                       {"cases", comparison.cases},
+                       {"values", comparison.values},
+                       {"moved", moved},
+                       {"not_run", study.not_run}});
+  }
   void add(const std::string& study, const Comparison& comparison) {
     cases += comparison.cases, values += comparison.values;
     for (const Change& f : comparison.findings)
@@ -99,22 +142,26 @@ int check_study(const std::string& name, const Options& options, std::string& xm
   const BaselineStudy study = baseline_study(name, options, true);
   if (study.before.empty()) {
     const std::string folder = study.folder.parent_path().string();
-    std::cout << study.name << ": nothing to compare with: ";
+    std::ostream& out = options.json ? std::cerr : std::cout;
+    out << study.name << ": nothing to compare with: ";
     if (std::filesystem::is_directory(folder))
-      std::cout << "no baseline in " << study.folder.string() << "; taut baseline update "
-                << study.name << " --why \"...\" makes one\n";
+      out << "no baseline in " << study.folder.string() << "; taut baseline update " << study.name
+          << " --why \"...\" makes one\n";
     else
-      std::cout << "no folder '" << folder << "' here; --baselines names another\n";
+      out << "no folder '" << folder << "' here; --baselines names another\n";
     return kNothing;
   }
   const bool same = same_toolchain(study);
   if (!same && options.strict) return kEnvironment;
   const Comparison comparison = study.compare();
-  notes.add(study.name, comparison);
-  print_findings(study, comparison);
-  for (const std::string& id : study.not_run)
-    std::cout << study.name << ": " << id << ": was not run\n";
-  summarise(study, comparison);
+  notes.add(study, comparison);
+  if (!options.json) {
+    summarise(study, comparison);
+    print_roll_up(comparison);
+    print_findings(study, comparison);
+    for (const std::string& id : study.not_run)
+      std::cout << study.name << ": " << id << ": was not run\n";
+  }
   xml += junit(study.name, study.now, comparison);
   return verdict(study, comparison);
 }
@@ -122,7 +169,8 @@ int check_study(const std::string& name, const Options& options, std::string& xm
 int check(Options options) {
   if (options.studies.empty()) options.studies = studies_with_baseline(options.baselines);
   if (options.studies.empty()) {
-    std::cout << "nothing to compare with: no baseline in " << options.baselines << '\n';
+    (options.json ? std::cerr : std::cout)
+        << "nothing to compare with: no baseline in " << options.baselines << '\n';
     return kNothing;
   }
   int code = kPass;
@@ -135,17 +183,20 @@ int check(Options options) {
                                   suites + "</testsuites>\n");
   }
   if (options.record && notes.cases > 0) notes.write(options.out);
+  if (options.json)
+    std::cout << to_text(Json{{"studies", notes.studies}, {"findings", notes.findings}}, 1) << '\n';
   return code;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  arguments.option("STUDY", options->studies, "Names or paths; none: all that have a baseline");
-  options->bind(arguments);
-  arguments.option("--junit", options->junit, "Also write a JUnit file for continuous integration");
-  arguments.flag("--record", options->record, "Also keep the findings for the report");
-  arguments.flag("--strict-env", options->strict,
-                 "Fail with 5 if the baseline was made with another toolchain");
+  app.add_option("STUDY", options->studies, "Names or paths; none: all that have a baseline");
+  options->bind(app);
+  app.add_option("--junit", options->junit, "Also write a JUnit file for continuous integration");
+  add_json(app, options->json, "What moved, by scene and value, and every finding,");
+  app.add_flag("--record", options->record, "Also keep the findings for the report");
+  app.add_flag("--strict-env", options->strict,
+               "Fail with 5 if the baseline was made with another toolchain");
   return [options] { return check(*options); };
 }
 
@@ -153,6 +204,7 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::check
 
 TAUT_VERB(check) = {.name = "check",
+                    .group = VerbGroup::trust,
                     .summary =
                         "Compares studies with their committed baselines; runs what is "
                         "missing",

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "experiments/case/fingerprint.hpp"
+#include "experiments/command_line/colour.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"
@@ -133,14 +134,15 @@ int run(bool as_json) {
     return kPass;
   }
   for (const Finding& f : findings)
-    std::cout << (f.good ? "  " : "! ") << std::left << std::setw(20) << f.name << f.value << '\n';
+    std::cout << (f.good ? "  " : coloured("! ", Colour::yellow)) << std::left << std::setw(20)
+              << f.name << f.value << '\n';
   std::cout << verdict << '\n';
   return kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto json = std::make_shared<bool>(false);
-  arguments.flag("--json", *json, "Print JSON");
+  app.add_flag("--json", *json, "Print JSON");
   return [json] { return run(*json); };
 }
 
@@ -148,6 +150,7 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::doctor
 
 TAUT_VERB(doctor) = {.name = "doctor",
+                     .group = VerbGroup::trust,
                      .summary = "Versions, precision, cores, load: what can be trusted here?",
                      .example = "taut doctor",
                      .bind = taut::verb::doctor::bind};

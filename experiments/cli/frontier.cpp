@@ -9,7 +9,9 @@
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/json.hpp"
@@ -20,11 +22,11 @@ namespace {
 
 struct Options {
   CaseOptions which;
-  std::string of = "dt", out = default_results();
+  std::string of = "dt", out;
   std::optional<double> from, to;
   std::vector<double> expected;  ///< low and high, or empty
   double tolerance = SearchRange{}.tolerance;
-  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int jobs = 1;
   bool json = false;
 };
 
@@ -89,11 +91,11 @@ void print_text(const CaseFrontier& result, const std::optional<Prediction>& the
     print_line("theory",
                "none for these settings; there is one for few links, with jakobsen in order=mesh");
   std::string above = std::to_string(found.above) + " values above the bracket, ";
-  if (found.islands.empty()) {
+  if (found.stable_above.empty()) {
     above += "none stable";
   } else {
     above += "NOT MONOTONE: stable again at";
-    for (const double value : found.islands) above += " " + shortest(value);
+    for (const double value : found.stable_above) above += " " + shortest(value);
   }
   if (found.kind != Frontier::Kind::all_stable) print_line("looked at", above);
   print_line("cases", std::to_string(found.probes.size()) + ", of which " +
@@ -114,7 +116,7 @@ Json to_json(const Options& options, const CaseFrontier& result,
   Json all{{"of", options.of}, {"kind", to_string(found.kind)}, {"probes", probes}};
   if (found.kind != Frontier::Kind::none_stable) all["stable"] = found.stable;
   if (found.kind != Frontier::Kind::all_stable) all["unstable"] = found.unstable;
-  all["islands"] = found.islands;
+  all["stable_above"] = found.stable_above;
   if (theory) {
     all["theory"] = {{"kind", to_string(theory->kind)}, {"law", theory->law}};
     if (theory->kind == Frontier::Kind::bracketed) all["theory"]["value"] = theory->value;
@@ -156,14 +158,15 @@ int run(const Options& options) {
   store.prepare();
   const Session session(store, "taut frontier " + first.id, {}, {});
   Progress progress;
-  const CaseFrontier result = find_frontier(question, store, session,
-                                            {.jobs = options.jobs,
-                                             .limits = {},
-                                             .shard = {},
-                                             .only_failed = false,
-                                             .progress = [&](const Tally& t, const Record* record) {
-                                               if (record) progress.show(t, record);
-                                             }});
+  const CaseFrontier result =
+      find_frontier(question, store, session,
+                    {.jobs = options.jobs,
+                     .limits = {},
+                     .shard = {},
+                     .only_failed = false,
+                     .progress = [&](const CampaignProgress& t, const Record* record) {
+                       if (record) progress.show(t, record);
+                     }});
   if (result.frontier.kind == Frontier::Kind::not_answered) return not_answered(result);
   const std::optional<Prediction> theory = predicted_frontier(question);
   if (options.json) {
@@ -176,25 +179,22 @@ int run(const Options& options) {
   return judge(options, result.frontier);
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  options->which.bind(arguments);
-  arguments.option("--of", options->of,
-                   "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
-                   "(default: dt)");
-  arguments.option("--from", options->from, "Where to start (dt: 1e-3 s)");
-  arguments.option("--to", options->to, "Where to stop (dt: 0.5 s)");
-  arguments
-      .option("--tolerance", options->tolerance, "Relative width of the bracket (default: 0.01)")
-      .range(1e-9, 0.5);
-  arguments
-      .option("--expect", options->expected,
-              "Two values; exit 1 if the bracket does not meet the range between them")
-      .values(2);
-  arguments.option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
-      .range(1, 1024);
-  arguments.option("--out", options->out, "Results folder (default: " + options->out + ")");
-  arguments.flag("--json", options->json, "Print JSON");
+  options->which.bind(app);
+  app.add_option("--of", options->of,
+                 "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
+                 "(default: dt)");
+  app.add_option("--from", options->from, "Where to start (dt: 1e-3 s)");
+  app.add_option("--to", options->to, "Where to stop (dt: 0.5 s)");
+  app.add_option("--tolerance", options->tolerance, "Relative width of the bracket (default: 0.01)")
+      ->check(CLI::Range(1e-9, 0.5));
+  app.add_option("--expect", options->expected,
+                 "Two values; exit 1 if the bracket does not meet the range between them")
+      ->expected(2);
+  add_jobs(app, options->jobs);
+  add_results(app, options->out);
+  app.add_flag("--json", options->json, "Print JSON");
   return [options] { return run(*options); };
 }
 
@@ -203,7 +203,8 @@ std::function<int()> bind(Arguments& arguments) {
 
 TAUT_VERB(frontier) = {
     .name = "frontier",
-    .summary = "Finds how far a setting can go before a solver fails, beside what theory says",
+    .group = VerbGroup::extremes,
+    .summary = "Finds how far a setting can go before a solver fails, beside theory",
     .example =
         "taut frontier chain mass-spring:substeps=1 --tolerance 0.001\n"
         "  taut frontier chain jakobsen:iterations=1,substeps=1,order=mesh --of omega --from 1\n"

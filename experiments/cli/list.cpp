@@ -131,12 +131,12 @@ int run(const std::string& what, bool as_json) {
   return kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto what = std::make_shared<std::string>();
   const auto as_json = std::make_shared<bool>(false);
-  arguments.option("WHAT", *what, "scenes | solvers | metrics | studies (default: all)")
-      .one_of({"scenes", "solvers", "metrics", "studies"});
-  arguments.flag("--json", *as_json, "Print JSON");
+  app.add_option("WHAT", *what, "scenes | solvers | metrics | studies (default: all)")
+      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies"}));
+  app.add_flag("--json", *as_json, "Print JSON");
   return [what, as_json] { return run(*what, *as_json); };
 }
 
@@ -144,6 +144,7 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::list
 
 TAUT_VERB(list) = {.name = "list",
+                   .group = VerbGroup::one_case,
                    .summary = "Names scenes, solvers with their parameters, metrics and studies",
                    .example = "taut list solvers",
                    .bind = taut::verb::list::bind};

@@ -4,10 +4,12 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/session.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::verb::merge {
 
@@ -38,7 +40,7 @@ std::size_t copy_into(const Store& store, const fs::path& from) {
   return conflicts;
 }
 
-int run(const std::vector<std::string>& folders, const std::string& out) {
+int run(const std::vector<std::string>& folders, const std::string& out, bool json) {
   for (const std::string& folder : folders)
     if (!fs::is_directory(fs::path(folder) / "store"))
       throw InputError(folder + ": no results (no folder 'store' in it)");
@@ -49,38 +51,48 @@ int run(const std::vector<std::string>& folders, const std::string& out) {
     if (fs::weakly_canonical(folder) != fs::weakly_canonical(out))
       conflicts += copy_into(store, folder);
 
-  const std::vector<Planned> plan = planned(store.root());
+  const std::vector<ManifestEntry> manifest = read_manifests(store.root());
   std::set<std::string> missing_shards;
   std::size_t there = 0;
-  for (const Planned& one : plan) {
+  for (const ManifestEntry& one : manifest) {
     if (store.find(one.key))
       ++there;
     else
       missing_shards.insert(std::to_string(one.shard) + "/" + std::to_string(one.shards));
   }
-  std::cout << there << "/" << plan.size() << " cases";
-  if (!missing_shards.empty()) {
-    std::cout << "; missing from shards";
+  if (json) {
+    std::cout << to_text(Json{{"cases", manifest.size()},
+                              {"there", there},
+                              {"missing_shards", missing_shards},
+                              {"conflicts", conflicts},
+                              {"store", store.digest()}},
+                         1)
+              << '\n';
+  } else {
+    std::cout << there << "/" << manifest.size() << " cases";
+    if (!missing_shards.empty()) std::cout << "; missing from shards";
     for (const std::string& shard : missing_shards) std::cout << ' ' << shard;
+    std::cout << "\nstore " << store.digest() << '\n';
   }
-  std::cout << "\nstore " << store.digest() << '\n';
   if (conflicts > 0) return kConflict;
-  return there == plan.size() ? kPass : kIncomplete;
+  return there == manifest.size() ? kPass : kIncomplete;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto folders = std::make_shared<std::vector<std::string>>();
   const auto out = std::make_shared<std::string>(default_results());
-  arguments.option("DIR", *folders, "Results folders of shards").required();
-  arguments.option("--out", *out, "Where to (default: " + *out + ")");
-  return [folders, out] { return run(*folders, *out); };
+  app.add_option("DIR", *folders, "Results folders of shards")->required();
+  app.add_option("--out", *out, "Where to (default: " + *out + ")");
+  const auto json = std::make_shared<bool>(false);
+  add_json(app, *json, "What is there and what is missing");
+  return [folders, out, json] { return run(*folders, *out, *json); };
 }
 
 }  // namespace
 }  // namespace taut::verb::merge
 
-TAUT_VERB(merge) = {
-    .name = "merge",
-    .summary = "Unites the results of shards and checks that no planned case is missing (exit 3)",
-    .example = "taut merge results/shard1 results/shard2 --out results/runs",
-    .bind = taut::verb::merge::bind};
+TAUT_VERB(merge) = {.name = "merge",
+                    .group = VerbGroup::studies,
+                    .summary = "Unites results of shards; says which planned case is missing",
+                    .example = "taut merge results/shard1 results/shard2 --out results/runs",
+                    .bind = taut::verb::merge::bind};

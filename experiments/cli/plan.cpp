@@ -55,11 +55,11 @@ int run(const Case& one, bool json) {
   return kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto which = std::make_shared<CaseOptions>();
   const auto json = std::make_shared<bool>(false);
-  which->bind(arguments);
-  arguments.flag("--json", *json, "Print JSON");
+  which->bind(app);
+  app.add_flag("--json", *json, "Print JSON");
   return [which, json] { return run(which->make(), *json); };
 }
 
@@ -68,6 +68,7 @@ std::function<int()> bind(Arguments& arguments) {
 
 TAUT_VERB(plan) = {
     .name = "plan",
+    .group = VerbGroup::one_case,
     .summary = "Shows the passes of one step, what they visit and what they hold in memory",
     .example = "taut plan ball jakobsen:iterations=1,substeps=15",
     .bind = taut::verb::planning::bind};

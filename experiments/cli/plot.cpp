@@ -5,11 +5,11 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/stored.hpp"
-#include "experiments/study/map.hpp"
 
 namespace taut::verb::plot {
 
@@ -19,6 +19,7 @@ using report::PlotSpec;
 
 struct Options {
   std::string study, preset, kind, x, y, title, results = default_results(), out;
+  bool json = false;
 };
 
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
@@ -62,20 +63,13 @@ std::string hold(const PlotSpec& spec, std::vector<Record>& records, const std::
 }
 
 /// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
-int draw(PlotSpec spec, const report::StudyResult& study, const std::vector<Record>& inferred,
-         const std::string& scene, const Store& store, const std::filesystem::path& out) {
+report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const std::string& scene,
+                       const Store& store, const std::filesystem::path& out) {
   const report::PlotKind& kind = report::find_plot_kind(spec.kind);
   if (spec.x.empty()) spec.x = kind.x;
   if (spec.y.empty()) spec.y = kind.y;
-  const auto here = [&](const std::vector<Record>& all) {
-    std::vector<Record> chosen;
-    for (const Record& r : all)
-      if (r.scene == scene) chosen.push_back(r);
-    return chosen;
-  };
-  std::vector<Record> records = here(study.records);
-  const std::vector<Record> guessed =
-      spec.kind == "stability" ? here(inferred) : std::vector<Record>{};
+  std::vector<Record> records = study.records;
+  std::erase_if(records, [&](const Record& r) { return r.scene != scene; });
   if (spec.kind == "scaling") spec.slope = 1;
   const std::string held = spec.kind == "stability" ? "" : hold(spec, records, scene);
   std::vector<report::TimeSeries> series;
@@ -87,9 +81,7 @@ int draw(PlotSpec spec, const report::StudyResult& study, const std::vector<Reco
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
   spec.file = report::slug(
       scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
-  const report::PlotFiles files = report::make_plot(spec, records, guessed, series, out);
-  std::cout << files.svg.string() << '\n' << files.pdf.string() << '\n';
-  return 1;
+  return report::make_plot(spec, records, series, out);
 }
 
 int run(const Options& options) {
@@ -102,7 +94,6 @@ int run(const Options& options) {
     throw InputError("none of the " + std::to_string(result.planned) + " cases of study '" +
                      study.name + "' is in " + options.results +
                      " as this build would run them; taut run makes them");
-  const std::vector<Record> inferred = inferred_records(study, store);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path(options.results) / "figures" /
                                 (study.name + (study.preset.empty() ? "" : "-" + study.preset))
@@ -113,11 +104,12 @@ int run(const Options& options) {
     for (const std::string& name : {spec.x, spec.y})
       if (!name.empty()) report::check_value_name(name, result.records);
   }
-  int drawn = 0;
+  std::vector<std::string> files;
   try {
     for (const PlotSpec& spec : specs)
       for (const report::SceneInfo& scene : input.scenes) try {
-          drawn += draw(spec, result, inferred, scene.name, store, out);
+          const report::PlotFiles plot = draw(spec, result, scene.name, store, out);
+          for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
         } catch (const InputError& error) {
           std::cerr << scene.name << ": " << error.what() << '\n';
         }
@@ -125,27 +117,30 @@ int run(const Options& options) {
     std::cerr << error.what() << '\n';
     return kEnvironment;
   }
-  return drawn > 0 ? kPass : kNothing;
+  print_files(files, options.json);
+  return files.empty() ? kNothing : kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   std::string kinds;
+  std::vector<std::string> names;
   for (const report::PlotKind& kind : report::plot_kinds())
-    kinds += (kinds.empty() ? "" : ", ") + std::string(kind.name);
-  arguments.option("STUDY", options->study, "Name or path of a study that was run").required();
-  arguments.option("--preset", options->preset, "The preset under which it was run");
-  arguments.option("--kind", options->kind,
-                   "One of: " + kinds + " (default: what the study asks for)");
-  arguments.option("--x", options->x,
-                   "Value on x: dt, iterations, projections or a metric's value");
-  arguments.option("--y", options->y, "Value on y, such as stretch.rms");
-  arguments.option("--title", options->title, "Title above the figure");
-  arguments.option("--results", options->results,
-                   "Results folder (default: " + options->results + ")");
-  arguments.option(
+    names.emplace_back(kind.name), kinds += (kinds.empty() ? "" : ", ") + names.back();
+  app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
+  app.add_option("--preset", options->preset, "The preset under which it was run");
+  app.add_option("--kind", options->kind,
+                 "One of: " + kinds + " (default: what the study asks for)")
+      ->check(known("kind of plot", names));
+  app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
+  app.add_option("--y", options->y, "Value on y, such as stretch.rms");
+  app.add_option("--title", options->title, "Title above the figure");
+  app.add_option("--results", options->results,
+                 "Results folder (default: " + options->results + ")");
+  app.add_option(
       "--out", options->out,
       "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
+  add_json(app, options->json, "The names of the files");
   return [options] { return run(*options); };
 }
 
@@ -153,6 +148,7 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::plot
 
 TAUT_VERB(plot) = {.name = "plot",
+                   .group = VerbGroup::studies,
                    .summary = "Draws the figures of a study: SVG, PDF, gnuplot script and CSV",
                    .example =
                        "taut plot iterations --preset quick\n  taut plot time-steps --kind "

@@ -8,9 +8,12 @@
 #include "core/model/input_error.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/reference_store.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::verb::references {
 
@@ -20,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::vector<std::string> scenes;
-  bool all = false;
+  bool all = false, json = false;
   std::string out = references_folder().string();
 };
 
@@ -34,63 +37,79 @@ std::vector<fs::path> chosen(const Options& options) {
   return files;
 }
 
-/// A static reference, or why there is none; true if one was written.
-bool write_static(const Scene& scene, const fs::path& out) {
+/// What became of a reference: its floor [m], or why there is none.
+struct Outcome {
+  std::string scene, kind, derivation, refused;
+  double floor = 0;
+};
+
+Outcome write_static(const Scene& scene, const fs::path& out) {
   const reference::Equilibrium rest = reference::static_equilibrium(scene);
-  std::cout << scene.name << "\tstatic\t";
-  if (!rest.unique) {
-    std::cout << "refused: " << rest.reason << '\n';
-    return false;
-  }
+  if (!rest.unique) return {scene.name, "static", "", rest.reason};
   write_reference({scene.name, reference_digest(scene, "static"), "static", 0, rest.derivation,
                    rest.floor, rest.x},
                   out / scene.name);
-  std::cout << "floor " << rest.floor << " m\t" << rest.derivation << '\n';
-  return true;
+  return {scene.name, "static", rest.derivation, "", rest.floor};
 }
 
 /// The same for the state after half a second, before any chaos.
-bool write_motion(const Scene& scene, const fs::path& out) {
+Outcome write_motion(const Scene& scene, const fs::path& out) {
   const double t = 0.5;
   const reference::Trajectory motion = reference::converged_motion(scene, {t}, 1.0 / 1024);
-  std::cout << scene.name << "\tmotion\t";
-  if (!motion.unique) {
-    std::cout << "refused: " << motion.reason << '\n';
-    return false;
-  }
+  if (!motion.unique) return {scene.name, "motion", "", motion.reason};
   write_reference({scene.name, reference_digest(scene, "motion"), "motion", t, motion.derivation,
                    motion.floor[0], motion.states[0].x},
                   out / scene.name);
-  std::cout << "floor " << motion.floor[0] << " m at " << t << " s\t" << motion.derivation << '\n';
-  return true;
+  return {scene.name, "motion", motion.derivation, "", motion.floor[0]};
+}
+
+void print(const Outcome& o) {
+  std::cout << o.scene << '\t' << o.kind << '\t';
+  if (o.refused.empty())
+    std::cout << "floor " << o.floor << " m\t" << o.derivation << '\n';
+  else
+    std::cout << "refused: " << o.refused << '\n';
 }
 
 int run(const Options& options) {
   int written = 0;
-  for (const fs::path& file : chosen(options)) {
-    const Scene scene = load_scene(file);
-    written += write_static(scene, options.out);
-    written += write_motion(scene, options.out);
+  Json all = Json::array();
+  const std::vector<fs::path> files = chosen(options);
+  const Countdown countdown("scene");
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Scene scene = load_scene(files[i]);
+    for (const Outcome& o : {write_static(scene, options.out), write_motion(scene, options.out)}) {
+      written += o.refused.empty();
+      all.push_back({{"scene", o.scene},
+                     {"kind", o.kind},
+                     {"floor", o.refused.empty() ? Json(o.floor) : Json()},
+                     {"derivation", o.derivation},
+                     {"refused", o.refused}});
+      if (!options.json) print(o);
+    }
+    countdown(i + 1, files.size());
   }
+  if (options.json) std::cout << to_text(all, 1) << '\n';
   std::cerr << written << " references in " << options.out << '\n';
   return written > 0 || options.all ? kPass : kNothing;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  arguments.option("SCENE", options->scenes, "Names of shipped scenes, or scene files");
-  arguments.flag("--all", options->all, "Every shipped scene");
-  arguments.option("-o,--out", options->out,
-                   "Where references are kept (default: " + options->out + ")");
+  app.add_option("SCENE", options->scenes, "Names of shipped scenes, or scene files");
+  app.add_flag("--all", options->all, "Every shipped scene");
+  app.add_option("-o,--out", options->out,
+                 "Where references are kept (default: " + options->out + ")");
+  add_json(app, options->json, "What became of each");
   return [options] { return run(*options); };
 }
 
 }  // namespace
 }  // namespace taut::verb::references
 
-TAUT_VERB(reference) = {.name = "reference",
-                        .summary =
-                            "Rebuilds the converged references of scenes that have a unique "
-                            "truth, and says why the others have none",
-                        .example = "taut reference drape\n  taut reference --all",
-                        .bind = taut::verb::references::bind};
+TAUT_VERB(reference) = {
+    .name = "reference",
+    .group = VerbGroup::one_case,
+    .summary = "Rebuilds converged references of scenes, or says why there is none",
+    .example = "taut reference drape\n  taut reference --all",
+    .bind = taut::verb::references::bind};

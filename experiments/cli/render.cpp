@@ -1,15 +1,14 @@
-#include <unistd.h>
-
-#include <chrono>
 #include <iostream>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/film/takes.hpp"
-#include "experiments/render/figure.hpp"
-#include "experiments/render/obj_export.hpp"
-#include "experiments/render/video.hpp"
+#include "experiments/film/recorded_runs.hpp"
+#include "experiments/render/image/video.hpp"
+#include "experiments/render/picture/figure.hpp"
+#include "experiments/render/picture/obj_export.hpp"
 
 namespace taut::verb::render {
 
@@ -18,37 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  TakeRequest what;
+  RunRequest what;
   std::vector<std::string> at;
   std::string duration, dt, view = "three-quarter", colour = "strain", exported, out;
   std::string size, quality;
   double range = 0;
-  bool sheet = false, video = false, dark = false;
-};
-
-/// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere. The end
-/// says what one took: "frame 80/80  0.15 s each".
-class Countdown {
- public:
-  explicit Countdown(std::string what) : what_(std::move(what)) {}
-  void operator()(int done, int total) const {
-    if (!terminal_ && done != total && done % std::max(1, total / 10) != 0) return;
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-    const int left = static_cast<int>(spent.count() * (total - done) / done + 0.5);
-    char text[80];
-    if (done < total)
-      std::snprintf(text, sizeof text, " %d/%d  left %d:%02d", done, total, left / 60, left % 60);
-    else
-      std::snprintf(text, sizeof text, " %d/%d  %.2g s each", done, total, spent.count() / total);
-    std::cerr << (terminal_ ? "\r\033[K" : "") << what_ << text;
-    if (!terminal_ || done == total) std::cerr << '\n';
-    std::cerr << std::flush;
-  }
-
- private:
-  std::string what_;
-  bool terminal_ = isatty(2) == 1;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool sheet = false, video = false, dark = false, json = false;
 };
 
 std::pair<int, int> parse_size(const std::string& text) {
@@ -66,10 +40,11 @@ RenderQuality parse_quality(const std::string& name) {
   return RenderQuality::still();
 }
 
-StudioOptions look_of(const Options& options, const std::string& quality, int width, int height) {
-  StudioOptions look;
+SceneRendererOptions look_of(const Options& options, const std::string& quality, int width,
+                             int height) {
+  SceneRendererOptions look;
   look.width = width, look.height = height;
-  look.theme = options.dark ? StageTheme::dark() : StageTheme::paper();
+  look.theme = options.dark ? Theme::dark() : Theme::paper();
   look.quality = parse_quality(options.quality.empty() ? quality : options.quality);
   look.view = parse_view(options.view);
   look.quantity = parse_quantity(options.colour);
@@ -79,78 +54,79 @@ StudioOptions look_of(const Options& options, const std::string& quality, int wi
   return look;
 }
 
-void tell_written(const fs::path& file) { std::cout << file.string() << '\n'; }
+using Files = std::vector<std::string>;
 
 /// Files of several moments get the time into their names: ball-t0.50.png.
-void draw_stills(const Options& options, const TakeSet& set, const std::vector<double>& times,
-                 const fs::path& out) {
+Files draw_stills(const Options& options, const RunSet& set, const std::vector<double>& times,
+                  const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1920x1080" : options.size);
-  const PageLayout layout(width, height, static_cast<int>(set.takes.size()));
-  StudioOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
+  const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
+  SceneRendererOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
   look.frame = Frame::beside_inset();
   look.from = times.front(), look.to = times.back();
-  const Studio studio(set.scene, set.takes, look);
+  const SceneRenderer renderer(set.scene, set.runs, look);
   const Countdown countdown("still");
+  Files files;
   for (std::size_t k = 0; k < times.size(); ++k) {
     fs::path file = out;
     char suffix[32];
     std::snprintf(suffix, sizeof suffix, "-t%.2f", times[k]);
     if (times.size() > 1)
       file.replace_filename(out.stem().string() + suffix + out.extension().string());
-    write_png(file, compose(studio, layout, times[k]));
-    countdown(static_cast<int>(k) + 1, static_cast<int>(times.size()));
-    tell_written(file);
+    write_png(file, compose(renderer, layout, times[k]));
+    countdown(k + 1, times.size());
+    files.push_back(file.string());
   }
+  return files;
 }
 
-void draw_sheet(const Options& options, const TakeSet& set, const std::vector<double>& times,
-                const fs::path& out) {
+Files draw_sheet(const Options& options, const RunSet& set, const std::vector<double>& times,
+                 const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "480x400" : options.size);
-  StudioOptions look = look_of(options, "video", width, height);
+  SceneRendererOptions look = look_of(options, "video", width, height);
   look.from = times.front(), look.to = times.back();
-  const Studio studio(set.scene, set.takes, look);
-  write_png(out, compose_sheet(studio, times));
-  tell_written(out);
+  const SceneRenderer renderer(set.scene, set.runs, look);
+  write_png(out, compose_sheet(renderer, times));
+  return {out.string()};
 }
 
 /// Without ffmpeg: the last frame as a poster and five moments as a strip.
-void draw_video(const Options& options, const TakeSet& set, const fs::path& out) {
+Files draw_video(const Options& options, const RunSet& set, const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
-  const PageLayout layout(width, height, static_cast<int>(set.takes.size()));
-  StudioOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
+  const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
+  SceneRendererOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
   look.frame = Frame::beside_inset();
-  const Studio studio(set.scene, set.takes, look);
+  const SceneRenderer renderer(set.scene, set.runs, look);
   const double dt = set.scene.dt;
   const int stride = std::max(1, static_cast<int>(1 / (30 * dt) + 0.5));
   const int frames = set.scene.steps / stride + 1;
   VideoWriter video(out, {width, height, frame_rate(stride * dt), 22});
   const Countdown countdown("frame");
-  for (int k = 0; k < frames && video.write(compose(studio, layout, k * stride * dt)); ++k)
-    countdown(k + 1, frames);
+  for (int k = 0; k < frames && video.write(compose(renderer, layout, k * stride * dt)); ++k)
+    countdown(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(frames));
   const std::string why = video.finish();
-  if (why.empty()) return tell_written(out);
+  if (why.empty()) return {out.string()};
   std::cerr << out.string() << ": " << why << "; a poster and a strip of five frames instead\n";
   fs::path poster = out, strip = out;
   poster.replace_extension(".png");
   strip.replace_filename(out.stem().string() + "-strip.png");
-  write_png(poster, compose(studio, layout, set.scene.duration()));
+  write_png(poster, compose(renderer, layout, set.scene.duration()));
   Image five(width, 5 * height);
   for (int k = 0; k < 5; ++k)
-    five.paste(compose(studio, layout, set.scene.duration() * k / 4), 0, k * height);
+    five.paste(compose(renderer, layout, set.scene.duration() * k / 4), 0, k * height);
   write_png(strip, five);
-  tell_written(poster);
-  tell_written(strip);
+  return {poster.string(), strip.string()};
 }
 
-void export_frames(const TakeSet& set, const fs::path& folder) {
+Files export_frames(const RunSet& set, const fs::path& folder) {
   const int stride = std::max(1, static_cast<int>(1 / (30 * set.scene.dt) + 0.5));
-  for (std::size_t k = 0; k < set.takes.size(); ++k) {
-    const std::string& solver = set.takes[k].trajectory.header.solver;
+  for (std::size_t k = 0; k < set.runs.size(); ++k) {
+    const std::string& solver = set.runs[k].trajectory.header.solver;
     const std::string prefix =
         set.scene.name + "_" + std::to_string(k + 1) + "_" + solver.substr(0, solver.find(':'));
-    export_obj(set.scene, set.takes[k], folder, prefix, stride, Countdown("file"));
+    export_obj(set.scene, set.runs[k], folder, prefix, stride, Countdown("file"));
   }
-  tell_written(folder);
+  return {folder.string()};
 }
 
 fs::path output(const Options& options, const std::string& scene) {
@@ -190,50 +166,54 @@ int run(Options options) {
     options.what.overrides.push_back("time.duration=" + std::to_string(times.back() + 1e-4));
   parse_view(options.view), parse_quantity(options.colour);
   if (!options.size.empty()) parse_size(options.size);
-  const TakeSet set =
-      make_takes(options.what, [](const std::string& text) { std::cerr << text << '\n'; });
+  const RunSet set =
+      record_runs(options.what, [](const std::string& text) { std::cerr << text << '\n'; });
   if (!times.empty() && times.back() > set.scene.duration() + set.scene.dt)
     throw InputError("--at " + options.at.back() + " is after the end: see --duration");
   const fs::path out = output(options, set.scene.name);
-  if (!options.exported.empty()) return export_frames(set, out), kPass;
-  if (options.video) return draw_video(options, set, out), kPass;
+  const auto done = [&](const Files& files) {
+    print_files(files, options.json);
+    return kPass;
+  };
+  if (!options.exported.empty()) return done(export_frames(set, out));
+  if (options.video) return done(draw_video(options, set, out));
   const double end = set.scene.duration();
   if (times.empty() && options.sheet)
     times = {0, end / 8, end / 4, end / 2, end};
   else if (times.empty())
     times = {end};
-  options.sheet ? draw_sheet(options, set, times, out) : draw_stills(options, set, times, out);
-  return kPass;
+  return done(options.sheet ? draw_sheet(options, set, times, out)
+                            : draw_stills(options, set, times, out));
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto o = std::make_shared<Options>();
-  arguments.option("SCENE", o->what.scene, "Name of a shipped scene, or a path").required();
-  arguments.option("--solver", o->what.solvers, "NAME or NAME:key=value,...; one to four of them")
-      .repeated();
-  arguments
-      .option("--trajectory", o->what.files,
-              "A motion of this scene kept by `taut case --trajectory`, in a panel of its own")
-      .repeated();
-  arguments.option("--at", o->at, "Moments to draw [s]; default: the end").repeated();
-  arguments.flag("--sheet", o->sheet, "One picture, a row for each moment");
-  arguments.flag("--video", o->video, "H.264 video in real time (so does -o NAME.mp4)");
-  arguments.option("--view", o->view,
-                   "three-quarter, front, back, left, right, top, or AZIMUTH,ELEVATION in degrees");
-  arguments.option("--colour", o->colour, "strain, penetration or speed");
-  arguments.option("--range", o->range, "End of the colour bar, in its unit (%, mm, m/s)")
-      .positive();
-  arguments.option("--export", o->exported, "obj: a Wavefront file per frame into the folder -o")
-      .one_of({"obj"});
-  arguments.option("--duration", o->duration, "Simulated time [s]");
-  arguments.option("--dt", o->dt, "Time step [s], a number or a fraction such as 1/120");
-  arguments.option("--set", o->what.overrides, "Replace a key of the scene: 'cloth.grid=[65, 65]'")
-      .repeated();
-  arguments.option("--size", o->size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
-  arguments.option("--quality", o->quality, "draft, video or still")
-      .one_of({"draft", "video", "still"});
-  arguments.flag("--dark", o->dark, "The dark stage of the report");
-  arguments.option("-o,--out", o->out, "File (.png, .mp4) or, for --export, folder");
+  app.add_option("SCENE", o->what.scene, "Name of a shipped scene, or a path")->required();
+  app.add_option("--solver", o->what.solvers, "NAME or NAME:key=value,...; one to four of them")
+      ->allow_extra_args(false);
+  app.add_option("--trajectory", o->what.files,
+                 "A motion of this scene kept by `taut case --trajectory`, in a panel of its own")
+      ->allow_extra_args(false);
+  app.add_option("--at", o->at, "Moments to draw [s]; default: the end")->allow_extra_args(false);
+  app.add_flag("--sheet", o->sheet, "One picture, a row for each moment");
+  app.add_flag("--video", o->video, "H.264 video in real time (so does -o NAME.mp4)");
+  app.add_option("--view", o->view,
+                 "three-quarter, front, back, left, right, top, or AZIMUTH,ELEVATION in degrees");
+  app.add_option("--colour", o->colour, "strain, penetration or speed");
+  app.add_option("--range", o->range, "End of the colour bar, in its unit (%, mm, m/s)")
+      ->check(above_zero());
+  app.add_option("--export", o->exported, "obj: a Wavefront file per frame into the folder -o")
+      ->check(CLI::IsMember({"obj"}));
+  app.add_option("--duration", o->duration, "Simulated time [s]");
+  app.add_option("--dt", o->dt, "Time step [s], a number or a fraction such as 1/120");
+  app.add_option("--set", o->what.overrides, "Replace a key of the scene: 'cloth.grid=[65, 65]'")
+      ->allow_extra_args(false);
+  app.add_option("--size", o->size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
+  app.add_option("--quality", o->quality, "draft, video or still")
+      ->check(CLI::IsMember({"draft", "video", "still"}));
+  app.add_flag("--dark", o->dark, "The dark background of the report");
+  app.add_option("-o,--out", o->out, "File (.png, .mp4) or, for --export, folder");
+  add_json(app, o->json, "The names of the files");
   return [o] { return run(*o); };
 }
 
@@ -242,6 +222,7 @@ std::function<int()> bind(Arguments& arguments) {
 
 TAUT_VERB(render) = {
     .name = "render",
+    .group = VerbGroup::one_case,
     .summary = "Pictures and videos of solvers side by side",
     .example =
         "taut render ball --solver jakobsen --solver bullet:substeps=5 --at 0.6\n"

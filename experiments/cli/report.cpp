@@ -4,18 +4,20 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/case/fingerprint.hpp"
-#include "experiments/command_line/program.hpp"
+#include "experiments/case/key.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/film/film.hpp"
 #include "experiments/report/findings.hpp"
 #include "experiments/report/model.hpp"
 #include "experiments/report/stored.hpp"
-#include "experiments/study/map.hpp"
+#include "experiments/study/main_job.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
@@ -70,10 +72,13 @@ std::string readable(const std::string& stamp) {
 
 int run(Options options) {
   const std::string command = command_line(options);
+  std::vector<std::string> maps = options.studies;
   if (options.studies.empty()) {
-    options.studies = {"iterations", "time-steps", "penetration"};
+    const MainJob job = main_job();
+    options.studies = job.studies;
+    maps = job.maps;
     if (options.films.empty()) options.films = shipped("scenes");
-    if (options.preset.empty()) options.preset = "quick";
+    if (options.preset.empty()) options.preset = job.preset;
   }
   if (!options.json) test_writable(options.out);
   std::vector<Study> studies;
@@ -81,10 +86,9 @@ int run(Options options) {
     studies.push_back(load_study(name, options.preset));
   const Store store(options.results);
   report::ReportInput input = report::stored_results(studies, store);
-  std::vector<Study> maps;
-  for (const std::string& name : shipped_maps())
-    maps.push_back(load_study(name, options.preset.empty() ? "quick" : options.preset));
-  input.maps = report::stored_maps(maps, store);
+  std::vector<Study> map_studies;
+  for (const std::string& name : maps) map_studies.push_back(load_study(name, options.preset));
+  input.maps = report::stored_maps(map_studies, store);
   input.command = command;
   input.solvers = introductions();
   const std::string program = program_digest();
@@ -113,30 +117,36 @@ int run(Options options) {
     std::cout << report::make_model(input, 1) << '\n';
     return kPass;
   }
-  if (!options.no_media)
-    film_scenes(input, options.films, [](const std::string& news) { std::cerr << news << '\n'; });
+  if (!options.no_media) {
+    std::set<std::string> scenes(options.films.begin(), options.films.end());
+    for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);
+    std::size_t filmed = 0;
+    const Countdown countdown("filmed scene");
+    film_scenes(input, options.films, [&](const std::string& news) {
+      progress() << news << '\n';
+      countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());
+    });
+  }
   write_file(options.out, report::make_report(input));
   std::cout << options.out << '\n';
   return kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  arguments.option("STUDY", options->studies,
-                   "Names or paths of studies; none: the main job, preset quick");
-  arguments.option("--preset", options->preset, "The preset under which the studies were run");
-  arguments.option("--results", options->results,
-                   "Results folder (default: " + options->results + ")");
-  arguments
-      .option("--film", options->films,
-              "Also films this scene (name or path), which no study ran; none and no STUDY: all "
-              "shipped scenes")
-      .repeated();
-  arguments.flag("--no-media", options->no_media, "Without pictures and videos");
-  arguments.flag("--json", options->json,
-                 "Prints the model of the page (experiments/report/MODEL.md) instead, without "
-                 "pictures");
-  arguments.option("-o,--out", options->out, "The page (default: report.html)");
+  app.add_option("STUDY", options->studies,
+                 "Names or paths of studies; none: the main job, preset quick");
+  app.add_option("--preset", options->preset, "The preset under which the studies were run");
+  app.add_option("--results", options->results,
+                 "Results folder (default: " + options->results + ")");
+  app.add_option("--film", options->films,
+                 "Also films this scene (name or path), which no study ran; none and no STUDY: all "
+                 "shipped scenes")
+      ->allow_extra_args(false);
+  app.add_flag("--no-media", options->no_media, "Without pictures and videos");
+  add_json(app, options->json,
+           "The model of the page (experiments/report/MODEL.md), without pictures");
+  app.add_option("-o,--out", options->out, "The page (default: report.html)");
   return [options] { return run(*options); };
 }
 
@@ -145,6 +155,7 @@ std::function<int()> bind(Arguments& arguments) {
 
 TAUT_VERB(report) = {
     .name = "report",
+    .group = VerbGroup::studies,
     .summary = "Writes the comparison of stored results as one HTML page",
     .example =
         "taut report\n  taut report iterations --preset quick -o hang.html\n  taut "

@@ -1,31 +1,29 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <thread>
+#include <sstream>
 
 #include "core/model/input_error.hpp"
-#include "experiments/command_line/invoke.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/study/main_job.hpp"
+#include "experiments/study/table.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::verb::run {
 
 namespace {
 
-/// What a bare `taut run` answers.
-const std::vector<std::string> kMainJob{"iterations", "time-steps", "penetration"};
-constexpr const char* kMainPreset = "quick";
-constexpr const char* kMainBench = "trade";
-
 struct Options {
-  std::vector<std::string> studies;
-  std::string preset, shard, only, out = default_results();
-  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<std::string> studies, values;
+  std::string preset, shard, only, out;
+  int jobs = 1;
   double seconds = Limits{}.seconds;
   double megabytes = static_cast<double>(Limits{}.bytes >> 20);
-  bool no_report = false;
+  bool no_report = false, json = false;
 };
 
 std::string command_line(const Options& options) {
@@ -41,7 +39,7 @@ std::string command_line(const Options& options) {
 void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
   std::vector<std::string> known = report::quantity_names();
   known.emplace_back("setting");
-  for (const Sweep& sweep : study.sweeps) known.push_back(sweep.name);
+  for (const StudyAxis& axis : study.axes) known.push_back(axis.name);
   const auto report = [&](std::size_t i, const std::string& text) {
     wrong.push_back({study.file, 0, 0, "[[plot]] " + std::to_string(i + 1) + ": " + text});
   };
@@ -93,56 +91,76 @@ std::vector<Case> all_cases(const std::vector<Study>& studies) {
   return cases;
 }
 
-int exit_code(const Tally& tally) {
-  if (tally.interrupted) return kInterrupted;
-  if (tally.conflicts > 0) return kConflict;
+int exit_code(const CampaignProgress& campaign) {
+  if (campaign.interrupted) return kInterrupted;
+  if (campaign.conflicts > 0) return kConflict;
   return kPass;
 }
 
-/// Where solvers break.
-void maps(const Options& options) {
-  if (!options.no_report && has_verb("map"))
-    invoke("map", {"--quiet", "--jobs", std::to_string(options.jobs), "--out", options.out});
-}
-
 /// What accuracy costs: exclusive, so after everything else has ended. A machine too noisy to judge
-/// still gives numbers; the report shows how noisy.
-void bench(const Options& options) {
-  if (!options.no_report && has_verb("bench"))
-    invoke("bench", {kMainBench, "--preset", kMainPreset, "--seconds", "0.015", "--quiet", "--out",
-                     options.out});
-}
-
-/// Truths and baselines: what the report says besides the studies. It says which one failed, too,
-/// so the run goes on.
-void prove(const Options& options) {
-  if (options.no_report || !has_verb("report")) return;
+/// still gives numbers; the report shows how noisy. Then truths and baselines: what the report says
+/// besides the studies. It says which one failed, too, so the run goes on.
+int finish_main_job(const MainJob& job, const Options& options) {
   const std::string jobs = std::to_string(options.jobs);
+  invoke("bench", {job.bench, "--preset", job.preset, "--seconds", "0.015", "--out", options.out},
+         Output::discarded);
   std::cerr << "holding solvers to closed forms and published numbers\n";
-  invoke("verify", {"--quiet", "-j", jobs, "--out", options.out + "/verify.json"});
+  invoke("verify", {"-j", jobs, "--out", options.out + "/verify.json"}, Output::discarded);
   std::cerr << "comparing with the committed baselines\n";
-  invoke("check", {"--record", "-j", jobs, "--out", options.out});
+  if (invoke("check", {"--record", "-j", jobs, "--out", options.out}) == kInterrupted)
+    throw Interrupted();
+  std::vector<std::string> arguments{"--results", options.out};  // none named: the main job's
+  if (options.preset != job.preset) arguments.insert(arguments.end(), {"--preset", options.preset});
+  return invoke("report", arguments);
 }
 
-int report(const Options& options) {
-  if (options.no_report || !has_verb("report")) {
-    std::cout << options.out << '\n';
-    return kPass;
+Json to_json(const CampaignProgress& campaign, const Options& options, const Store& store) {
+  Json all{{"results", options.out}, {"store", store.digest()},   {"cases", campaign.cases},
+           {"ran", campaign.ran},    {"stored", campaign.reused}, {"statuses", Json::object()}};
+  for (const auto& [kind, count] : campaign.by_status) all["statuses"][to_string(kind)] = count;
+  return all;
+}
+
+/// The values that were asked for, of every study.
+void print_tables(const std::vector<Study>& studies, const Options& options, const Store& store) {
+  Json all = Json::array();
+  for (const Study& study : studies) {
+    const StudyTable table(collect(study, store));
+    if (!options.json)
+      for (const std::string& value : options.values) std::cout << table.text(value) << '\n';
+    for (const auto& [where, record] : table.records()) {
+      all.push_back({{"setting", where.first},
+                     {"scene", where.second},
+                     {"status", to_string(record.status.kind)}});
+      for (const std::string& value : options.values)
+        if (const auto at = record.values.find(value); at != record.values.end())
+          all.back()["values"][value] = at->second;  // NaN becomes null
+    }
   }
-  std::vector<std::string> arguments{"--results", options.out};  // none named: the main job's
-  if (options.preset != kMainPreset)
-    arguments.insert(arguments.end(), {"--preset", options.preset});
-  return invoke("report", arguments);
+  if (options.json) std::cout << to_text(all, 1) << '\n';
+}
+
+void print_next(const Options& options) {
+  std::string which;
+  for (const std::string& study : options.studies) which += " " + study;
+  const std::string first = options.studies.front();
+  const std::string more = options.preset.empty() ? "" : " --preset " + options.preset;
+  const std::string in = options.out == default_results() ? "" : " --results " + options.out;
+  std::cerr << "next: taut report" << which << more << in << "\n      taut plot " << first << more
+            << in << "\n      taut export " << first << more << in << " -o table.csv\n";
 }
 
 int run(Options options) {
   const bool bare = options.studies.empty();
+  const MainJob job = bare ? main_job() : MainJob{};
   if (bare) {
-    options.studies = kMainJob;
-    if (options.preset.empty()) options.preset = kMainPreset;
+    options.studies = job.studies;
+    options.studies.insert(options.studies.end(), job.maps.begin(), job.maps.end());
+    if (options.preset.empty()) options.preset = job.preset;
   }
   const Shard shard = Shard::parse(options.shard);
-  const std::vector<Case> cases = all_cases(load_studies(options));
+  const std::vector<Study> studies = load_studies(options);
+  const std::vector<Case> cases = all_cases(studies);
   if (cases.empty()) {
     std::cerr << "these studies have no case: their exclusions leave out all\n";
     return kNothing;
@@ -151,52 +169,58 @@ int run(Options options) {
   store.prepare();
   const Session session(store, command_line(options), cases, shard);
   Progress progress;
-  const Tally tally = run_cases(
-      cases, store, session,
-      {.jobs = options.jobs,
-       .limits = {options.seconds, static_cast<std::size_t>(options.megabytes) << 20},
-       .shard = shard,
-       .only_failed = options.only == "failed",
-       .progress = [&](const Tally& t, const Record* record) { progress.show(t, record); }});
-  progress.finish(tally);
-  if (tally.conflicts > 0)
-    std::cerr << tally.conflicts << " cases gave another result than the one stored: see "
+  const CampaignProgress campaign =
+      run_cases(cases, store, session,
+                {.jobs = options.jobs,
+                 .limits = {options.seconds, static_cast<std::size_t>(options.megabytes) << 20},
+                 .shard = shard,
+                 .only_failed = options.only == "failed",
+                 .progress = [&](const CampaignProgress& t, const Record* record) {
+                   progress.show(t, record);
+                 }});
+  progress.finish(campaign);
+  if (campaign.conflicts > 0)
+    std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
               << (store.root() / "conflicts").string() << '\n';
-  if (tally.interrupted)
+  if (campaign.interrupted)
     std::cerr << "interrupted; the same command goes on where this one stopped\n";
   std::cerr << "store " << store.digest() << '\n';
-  if (const int code = exit_code(tally); code != kPass) return code;
-  if (tally.cases == 0 && options.only == "failed") std::cerr << "no stored failure to run again\n";
-  if (!bare) {
+  if (const int code = exit_code(campaign); code != kPass) return code;
+  if (campaign.cases == 0 && options.only == "failed")
+    std::cerr << "no stored failure to run again\n";
+  if (bare && !options.no_report) return finish_main_job(job, options);
+  if (!options.values.empty())
+    print_tables(studies, options, store);
+  else if (options.json)
+    std::cout << to_text(to_json(campaign, options, store), 1) << '\n';
+  else
     std::cout << options.out << '\n';
-    return kPass;
-  }
-  maps(options);
-  bench(options);
-  prove(options);
-  return report(options);
+  print_next(options);
+  return kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  arguments.option("STUDY", options->studies,
-                   "Names or paths of studies; none: the main job, preset quick, with its report");
-  arguments.option("--preset", options->preset,
-                   "A smaller or larger version that the study defines");
-  arguments.option("-j,--jobs", options->jobs, "Cases at a time (default: one per core)")
-      .range(1, 1024);
-  arguments.option("--shard", options->shard,
-                   "Only part i of n of the cases, as i/n (default: a Slurm array's, else all)");
-  arguments.option("--only", options->only, "failed: run stored failures again, nothing else")
-      .one_of({"failed"});
-  arguments.option("--out", options->out, "Results folder (default: " + options->out + ")");
-  arguments
-      .option("--timeout", options->seconds,
-              "CPU time limit of a case [s] (default: 120); wall time: five times that")
-      .positive();
-  arguments.option("--memory", options->megabytes, "Memory limit of a case [MB] (default: 2048)")
-      .range(64.0, 1e9);
-  arguments.flag("--no-report", options->no_report, "Run the main job without its report");
+  app.add_option("STUDY", options->studies,
+                 "Names or paths of studies; none: the main job, preset quick, with its report");
+  add_preset(app, options->preset);
+  add_jobs(app, options->jobs);
+  app.add_option("--shard", options->shard,
+                 "Only part i of n of the cases, as i/n (default: a Slurm array's, else all)");
+  app.add_option("--only", options->only, "failed: run stored failures again, nothing else")
+      ->check(CLI::IsMember({"failed"}));
+  add_results(app, options->out);
+  app.add_option("--timeout", options->seconds,
+                 "CPU time limit of a case [s] (default: 120); wall time: five times that")
+      ->check(above_zero());
+  app.add_option("--memory", options->megabytes, "Memory limit of a case [MB] (default: 2048)")
+      ->check(CLI::Range(64.0, 1e9));
+  app.add_option("--table", options->values,
+                 "Then print this value of a metric, settings by scenes; repeat it for each")
+      ->allow_extra_args(false)
+      ->check(metric_value());
+  app.add_flag("--no-report", options->no_report, "Run the main job without its report");
+  add_json(app, options->json, "How the cases ended, or the tables,");
   return [options] { return run(*options); };
 }
 
@@ -204,8 +228,10 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::run
 
 TAUT_VERB(run) = {.name = "run",
+                  .group = VerbGroup::studies,
                   .summary = "Runs studies, one process per case; resumes what was interrupted",
                   .example =
                       "taut run\n  taut run iterations --preset quick -j 2\n"
+                      "  taut run default-setting --table stretch.rms --table energy.drift\n"
                       "  taut run my/study.toml --shard 1/4 --out results/shard1",
                   .bind = taut::verb::run::bind};

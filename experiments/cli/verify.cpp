@@ -4,13 +4,17 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <mutex>
 #include <sstream>
 #include <string>
 #include <thread>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/command_line/program.hpp"
+#include "experiments/case/key.hpp"
+#include "experiments/command_line/colour.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -23,7 +27,7 @@ namespace {
 struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
-  bool json = false, verbose = false, quiet = false;
+  bool json = false, verbose = false;
   std::string out;
 };
 
@@ -60,6 +64,9 @@ std::vector<const TruthEntry*> choose(const Options& options) {
 std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const Options& options) {
   std::vector<Outcome> outcomes(chosen.size());
   std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::size_t done = 0;
+  const Countdown countdown("truth");
   const auto work = [&] {
     for (std::size_t i = next++; i < chosen.size(); i = next++) {
       const auto start = std::chrono::steady_clock::now();
@@ -68,6 +75,8 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
       outcomes[i] = {
           chosen[i], ledger.findings(),
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+      const std::lock_guard lock(mutex);
+      countdown(++done, chosen.size());
     }
   };
   std::vector<std::thread> threads;
@@ -112,7 +121,9 @@ std::string value(double v) {
 }
 
 std::string line(const Finding& f) {
-  std::string text = std::string(to_string(f.verdict)) + "  " + f.subject;
+  static constexpr Colour kColours[] = {Colour::green, Colour::yellow, Colour::yellow, Colour::red};
+  std::string text =
+      coloured(to_string(f.verdict), kColours[static_cast<int>(f.verdict)]) + "  " + f.subject;
   if (f.verdict == TruthVerdict::not_claimed) return text + ": " + f.why;
   text += ": " + f.quantity + " " + value(f.measured);
   if (f.uncertainty > 0) text += " +- " + value(f.uncertainty);
@@ -186,7 +197,7 @@ int run(const Options& options) {
   }
   if (options.json)
     std::cout << json << '\n';
-  else if (!options.quiet)
+  else
     print_table(outcomes, options.verbose);
   return summary(outcomes);
 }
@@ -198,22 +209,21 @@ int list() {
   return kPass;
 }
 
-std::function<int()> bind(Arguments& arguments) {
+std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   const auto only_list = std::make_shared<bool>(false);
-  arguments.option("TRUTH", options->names, "Truths to check by name; all if none is given");
-  arguments.option("--solver", options->solvers,
-                   "Only what binds these solvers (\"reference\": the references)");
-  arguments.option("--section", options->section, "Only one section of the catalogue").range(1, 10);
-  arguments
-      .option("-j,--jobs", options->jobs,
-              "Threads (default: " + std::to_string(options->jobs) + ")")
-      .range(1, 64);
-  arguments.option("-o,--out", options->out, "Also write the findings as JSON to this file");
-  arguments.flag("--json", options->json, "Findings as JSON instead of a table");
-  arguments.flag("--quiet", options->quiet, "Only the line that sums it up");
-  arguments.flag("--verbose", options->verbose, "Every number, with sources and times");
-  arguments.flag("--list", *only_list, "Only name the truths");
+  app.add_option("TRUTH", options->names, "Truths to check by name; all if none is given");
+  app.add_option("--solver", options->solvers,
+                 "Only what binds these solvers (\"reference\": the references)");
+  app.add_option("--section", options->section, "Only one section of the catalogue")
+      ->check(CLI::Range(1, 10));
+  app.add_option("-j,--jobs", options->jobs,
+                 "Threads (default: " + std::to_string(options->jobs) + ")")
+      ->check(CLI::Range(1, 64));
+  app.add_option("-o,--out", options->out, "Also write the findings as JSON to this file");
+  app.add_flag("--json", options->json, "Findings as JSON instead of a table");
+  app.add_flag("--verbose", options->verbose, "Every number, with sources and times");
+  app.add_flag("--list", *only_list, "Only name the truths");
   return [options, only_list] { return *only_list ? list() : run(*options); };
 }
 
@@ -221,10 +231,10 @@ std::function<int()> bind(Arguments& arguments) {
 }  // namespace taut::verb::verify
 
 TAUT_VERB(verify) = {.name = "verify",
-                     .summary =
-                         "Holds solvers, references and metrics to closed forms and "
-                         "published numbers; exit 1 when a truth breaks",
+                     .group = VerbGroup::trust,
+                     .summary = "Holds solvers and metrics to closed forms and published numbers",
                      .example =
                          "taut verify --section 4 --solver jakobsen\n"
-                         "  taut verify hanging-chain-sweeps --verbose",
+                         "  taut verify hanging-chain-sweeps --verbose\n"
+                         "Exit: 0 no truth is broken; 1 one is; 4 nothing was held to anything",
                      .bind = taut::verb::verify::bind};

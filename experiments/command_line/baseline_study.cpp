@@ -3,10 +3,10 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <thread>
 
 #include "experiments/baseline/frontier_baseline.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"
@@ -21,16 +21,18 @@ void run_missing(const std::vector<Case>& cases, const Store& store, const Basel
   store.prepare();
   const Session session(store, "taut check " + result.name, cases, {});
   Progress progress;
-  const Tally tally = run_cases(
-      cases, store, session,
-      {.jobs = options.jobs,
-       .limits = {},
-       .shard = {},
-       .only_failed = false,
-       .progress = [&](const Tally& t, const Record* record) { progress.show(t, record); }});
-  progress.finish(tally);
-  result.conflict = tally.conflicts > 0;
-  result.interrupted = tally.interrupted;
+  const CampaignProgress campaign =
+      run_cases(cases, store, session,
+                {.jobs = options.jobs,
+                 .limits = {},
+                 .shard = {},
+                 .only_failed = false,
+                 .progress = [&](const CampaignProgress& t, const Record* record) {
+                   progress.show(t, record);
+                 }});
+  progress.finish(campaign);
+  result.conflict = campaign.conflicts > 0;
+  result.interrupted = campaign.interrupted;
 }
 
 /// Runs all cases again, beside the store, and marks those whose result is not the same to the bit.
@@ -73,14 +75,11 @@ const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
 
 }  // namespace
 
-void BaselineOptions::bind(Arguments& arguments) {
+void BaselineOptions::bind(CLI::App& app) {
   baselines = results_folder() / "baselines";
-  out = default_results();
-  jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  arguments.option("--baselines", baselines,
-                   "Folder of the baselines (default: " + baselines + ")");
-  arguments.option("--out", out, "Results folder (default: " + out + ")");
-  arguments.option("-j,--jobs", jobs, "Cases at a time (default: one per core)").range(1, 1024);
+  app.add_option("--baselines", baselines, "Folder of the baselines (default: " + baselines + ")");
+  add_results(app, out);
+  add_jobs(app, jobs);
 }
 
 Comparison BaselineStudy::compare() const {

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "experiments/baseline/baseline.hpp"
-#include "experiments/command_line/arguments.hpp"
 #include "experiments/study/campaign.hpp"
 
 namespace taut {
@@ -17,7 +17,7 @@ struct BaselineOptions {
   std::string out;  ///< results folder
   int jobs = 1;
   bool repeat = false;  ///< run every case a second time, to mark those that differ as flaky
-  void bind(Arguments&);
+  void bind(CLI::App&);
 };
 
 /// A study beside its baseline.

@@ -9,13 +9,13 @@
 
 namespace taut {
 
-void CaseOptions::bind(Arguments& arguments) {
-  arguments.option("SCENE", scene_, "Name of a shipped scene, or a path").required();
-  arguments.option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)").required();
-  arguments.option("--dt", dt_, "Time step [s], a number or a fraction such as 1/120");
-  arguments.option("--duration", duration_, "Simulated time [s]");
-  arguments.option("--set", settings_, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
-      .repeated();
+void CaseOptions::bind(CLI::App& app) {
+  app.add_option("SCENE", scene_, "Name of a shipped scene, or a path")->required();
+  app.add_option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)")->required();
+  app.add_option("--dt", dt_, "Time step [s], a number or a fraction such as 1/120");
+  app.add_option("--duration", duration_, "Simulated time [s]");
+  app.add_option("--set", settings_, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
+      ->allow_extra_args(false);
 }
 
 CaseSpec CaseOptions::spec() const {

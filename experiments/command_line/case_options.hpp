@@ -1,18 +1,17 @@
 #pragma once
 
-#include <optional>
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "experiments/case/case.hpp"
-#include "experiments/command_line/arguments.hpp"
 
 namespace taut {
 
 /// How verbs name one case: SCENE SOLVER [--dt] [--duration] [--set key=value ...].
 class CaseOptions {
  public:
-  void bind(Arguments&);
+  void bind(CLI::App&);
   CaseSpec spec() const;  ///< as typed
   /// Throws InputError.
   Case make() const;

@@ -1,103 +1,128 @@
-// The command line: options, verbs and what calls them. Only this file knows CLI11.
-#include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/fingerprint.hpp"
-#include "experiments/command_line/arguments.hpp"
-#include "experiments/command_line/invoke.hpp"
-#include "experiments/command_line/program.hpp"
+#include "experiments/case/key.hpp"
+#include "experiments/command_line/manual.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 
 namespace taut {
 
-Option& Option::required() { return option_->required(), *this; }
-Option& Option::positive() { return option_->check(CLI::PositiveNumber), *this; }
-Option& Option::range(double lowest, double highest) {
-  return option_->check(CLI::Range(lowest, highest)), *this;
-}
-Option& Option::one_of(std::initializer_list<const char*> words) {
-  return option_->check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end()))), *this;
-}
-Option& Option::repeated() { return option_->allow_extra_args(false), *this; }
-Option& Option::values(int count) { return option_->expected(count), *this; }
-Option& Option::separated_by(char mark) { return option_->delimiter(mark), *this; }
-Option& Option::hidden() { return option_->group(""), *this; }
-
-template <class Value>
-Option Arguments::option(const std::string& name, Value& value, const std::string& help) {
-  return Option(*app_->add_option(name, value, help));
-}
-template Option Arguments::option(const std::string&, std::string&, const std::string&);
-template Option Arguments::option(const std::string&, int&, const std::string&);
-template Option Arguments::option(const std::string&, double&, const std::string&);
-template Option Arguments::option(const std::string&, std::vector<std::string>&,
-                                  const std::string&);
-template Option Arguments::option(const std::string&, std::vector<int>&, const std::string&);
-template Option Arguments::option(const std::string&, std::vector<double>&, const std::string&);
-template Option Arguments::option(const std::string&, std::optional<double>&, const std::string&);
-
-Option Arguments::flag(const std::string& name, bool& value, const std::string& help) {
-  return Option(*app_->add_flag(name, value, help));
-}
-
-Arguments Arguments::subverb(const std::string& name, const std::string& summary) {
-  app_->require_subcommand(1);
-  return Arguments(*app_->add_subcommand(name, summary));
-}
-
-bool Arguments::named() const { return app_->parsed(); }
-
 namespace {
 
-const VerbEntry* find_verb(const std::string& name) {
-  for (const VerbEntry* verb : verbs())
-    if (verb->name == name) return verb;
-  return nullptr;
+constexpr const char* kGroups[] = {"Studies", "One case", "Cost", "Trust", "Extremes"};
+
+/// Discards what is written to stdout for as long as it lives.
+class Silence {
+ public:
+  Silence() : stdout_(dup(1)) {
+    std::cout << std::flush;
+    std::fflush(stdout);
+    const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    dup2(nothing, 1);
+    close(nothing);
+  }
+  ~Silence() {
+    std::cout << std::flush;
+    std::fflush(stdout);
+    dup2(stdout_, 1);
+    close(stdout_);
+  }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  int stdout_;
+};
+
+/// A verb with its parser.
+struct Verb {
+  CLI::App* app;
+  std::function<int()> run;
+};
+
+/// Adds the verb's options and --quiet to its parser; gives what to do once they are parsed.
+std::function<int()> bind(const VerbEntry& entry, CLI::App& app) {
+  std::function<int()> run = entry.bind(app);
+  const auto quiet = std::make_shared<bool>(false);
+  app.add_flag("--quiet", *quiet, "Print nothing but errors; the exit code says how it went");
+  return [run = std::move(run), quiet] {
+    std::optional<Silence> silence;
+    if (*quiet) silence.emplace(), show_progress(false);
+    return run();
+  };
 }
 
-/// Parses and runs what follows the program's name.
-int run_verb(int argc, char** argv) {
+void add_verb(CLI::App& parent, const VerbEntry& entry, std::vector<Verb>& all) {
+  const std::string_view name = entry.name.substr(entry.name.rfind(' ') + 1);
+  CLI::App* app = parent.add_subcommand(std::string(name), std::string(entry.summary));
+  app->formatter(std::make_shared<CLI::Formatter>());
+  app->footer("Example:\n  " + std::string(entry.example));
+  all.push_back({app, bind(entry, *app)});
+}
+
+/// The whole parser: verbs in the order of their groups, then verbs of verbs.
+std::vector<Verb> add_verbs(CLI::App& app) {
+  std::vector<const VerbEntry*> entries(verbs().begin(), verbs().end());
+  const auto inner = [](const VerbEntry* e) { return e->name.find(' ') != std::string::npos; };
+  std::ranges::stable_sort(entries, {},
+                           [&](const VerbEntry* e) { return std::pair(inner(e), e->group); });
+  std::vector<Verb> all;
+  for (const VerbEntry* entry : entries)
+    if (inner(entry)) {
+      add_verb(*app.get_subcommand(std::string(entry->name.substr(0, entry->name.find(' ')))),
+               *entry, all);
+    } else {
+      add_verb(app, *entry, all);
+      all.back().app->group(kGroups[static_cast<int>(entry->group)]);
+    }
+  return all;
+}
+
+int parse_and_run(int argc, char** argv) {
   CLI::App app("taut: runs cloth solvers side by side on identical scenes and measures them");
   app.require_subcommand(1);
+  app.get_formatter()->column_width(14);
   app.set_help_all_flag("--help-all", "Help of every verb");
   app.set_version_flag("--version", [] {
     return "taut " TAUT_VERSION "\nprogram " + program_digest().substr(0, 10) + "\n" +
            std::string(toolchain());
   });
   app.footer("`taut VERB --help` shows the options and an example of each verb.");
-  int exit_code = kPass;
-  for (const VerbEntry* verb : verbs()) {
-    CLI::App* sub = app.add_subcommand(std::string(verb->name), std::string(verb->summary));
-    sub->footer("Example:\n  " + std::string(verb->example));
-    Arguments arguments(*sub);
-    sub->callback([&exit_code, run = verb->bind(arguments)] { exit_code = run(); });
-  }
+  const std::vector<Verb> all = add_verbs(app);
+  const std::string first = argc == 2 ? argv[1] : "";  // for `cmake --install`
+  if (first == "--man") return std::cout << man_page(app, TAUT_VERSION), kPass;
+  if (first == "--bash-completion") return std::cout << bash_completion(app), kPass;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kPass : kUsage;
   }
-  return exit_code;
+  const auto chosen = std::find_if(all.rbegin(), all.rend(),  // a verb of a verb is the last
+                                   [](const Verb& verb) { return verb.app->parsed(); });
+  const int code = chosen->run();
+  if (!(std::cout << std::flush) || std::fflush(stdout) != 0)
+    throw InputError("standard output cannot be written");
+  return code;
 }
 
-/// "bench kernels" is the verb bench-kernels, with options of its own.
-std::vector<char*> join_verb(int argc, char** argv, std::string& joined) {
-  std::vector<char*> words(argv, argv + argc);
-  if (argc < 3) return words;
-  joined = std::string(argv[1]) + "-" + argv[2];
-  if (!has_verb(joined)) return words;
-  words.erase(words.begin() + 1);
-  words[1] = joined.data();
-  return words;
+const VerbEntry* find_verb(const std::string& name) {
+  const auto found = std::ranges::find(verbs(), name, &VerbEntry::name);
+  return found == verbs().end() ? nullptr : *found;
 }
 
 }  // namespace
 
 int command_line(int argc, char** argv) {
-  if (argc > 1 && argv[1][0] != '-' && !has_verb(argv[1])) {
+  if (argc > 1 && argv[1][0] != '-' && !find_verb(argv[1])) {
     std::vector<std::string> names;
     for (const VerbEntry* verb : verbs()) names.emplace_back(verb->name);
     std::cerr << "unknown verb '" << argv[1] << "'" << suggestion(argv[1], names)
@@ -105,9 +130,11 @@ int command_line(int argc, char** argv) {
     return kUsage;
   }
   try {
-    std::string joined;
-    std::vector<char*> words = join_verb(argc, argv, joined);
-    return run_verb(static_cast<int>(words.size()), words.data());
+    return parse_and_run(argc, argv);
+  } catch (const Interrupted&) {
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "out of memory\n";
   } catch (const InputError& error) {
     std::cerr << error.what() << '\n';
   } catch (const std::filesystem::filesystem_error& error) {
@@ -116,20 +143,19 @@ int command_line(int argc, char** argv) {
   return kUsage;
 }
 
-bool has_verb(const std::string& name) { return find_verb(name) != nullptr; }
-
-int invoke(const std::string& name, std::vector<std::string> words) {
+int invoke(const std::string& name, std::vector<std::string> words, Output output) {
   const VerbEntry* verb = find_verb(name);
   if (!verb) throw InputError("this program has no verb '" + name + "'");
   CLI::App app(std::string(verb->summary), name);
-  Arguments arguments(app);
-  const std::function<int()> run = verb->bind(arguments);
+  const std::function<int()> run = bind(*verb, app);
   std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
   try {
     app.parse(words);
   } catch (const CLI::ParseError& error) {
     throw InputError(name + ": " + error.what());
   }
+  std::optional<Silence> silence;
+  if (output == Output::discarded) silence.emplace();
   return run();
 }
 

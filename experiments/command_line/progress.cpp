@@ -5,9 +5,13 @@
 #include <cstdio>
 #include <iostream>
 
+#include "experiments/case/record_io.hpp"
+
 namespace taut {
 
 namespace {
+
+bool g_shown = true;
 
 std::string clock_text(double seconds) {
   char text[32];
@@ -16,45 +20,66 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-std::string outcome(const Record& record) {
-  std::string text(to_string(record.status.kind));
-  if (!record.status.reason.empty()) text += " (" + record.status.reason + ")";
-  if (record.status.step >= 0) text += " at step " + std::to_string(record.status.step);
-  return text;
-}
-
 }  // namespace
 
-std::string counts(const Tally& tally) {
+std::string counts(const CampaignProgress& campaign) {
   std::string text;
-  for (const auto& [kind, count] : tally.by_status)
+  for (const auto& [kind, count] : campaign.by_status)
     text += (text.empty() ? "" : ", ") + std::string(to_string(kind)) + " " + std::to_string(count);
   return text.empty() ? "no case" : text;
 }
 
 Progress::Progress() : start_(std::chrono::steady_clock::now()), terminal_(isatty(2) == 1) {}
 
-void Progress::show(const Tally& tally, const Record* record) {
+void show_progress(bool shown) { g_shown = shown; }
+
+std::ostream& progress() {
+  static std::ostream nowhere(nullptr);
+  return g_shown ? std::cerr : nowhere;
+}
+
+Countdown::Countdown(std::string what)
+    : what_(std::move(what)), terminal_(isatty(2) == 1), start_(std::chrono::steady_clock::now()) {}
+
+void Countdown::operator()(std::size_t done, std::size_t total) const {
+  if (!g_shown || (!terminal_ && done != total && done % std::max<std::size_t>(1, total / 10) != 0))
+    return;
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+  const double each = spent.count() / static_cast<double>(done);
+  char text[80];
+  if (done < total)
+    std::snprintf(text, sizeof text, " %zu/%zu  left %s", done, total,
+                  clock_text(each * static_cast<double>(total - done)).c_str());
+  else
+    std::snprintf(text, sizeof text, " %zu/%zu  %.2g s each", done, total, each);
+  std::cerr << (terminal_ ? "\r\033[K" : "") << what_ << text;
+  if (!terminal_ || done == total) std::cerr << '\n';
+  std::cerr << std::flush;
+}
+
+void Progress::show(const CampaignProgress& campaign, const Record* record) {
+  if (!g_shown) return;
   const std::string place =
-      "[" + std::to_string(tally.done()) + "/" + std::to_string(tally.cases) + "] ";
+      "[" + std::to_string(campaign.done()) + "/" + std::to_string(campaign.cases) + "] ";
   if (!terminal_) {
-    if (record) std::cerr << place << record->id << ": " << outcome(*record) << '\n';
+    if (record) std::cerr << place << record->id << ": " << describe(record->status) << '\n';
     return;
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   if (record && !record->status.is_result())
-    std::cerr << "\r\033[K" << record->id << ": " << outcome(*record) << '\n';
+    std::cerr << "\r\033[K" << record->id << ": " << describe(record->status) << '\n';
   std::string left = "?";
-  if (tally.work_done > 0)
-    left = clock_text(elapsed.count() * (tally.work - tally.work_done) / tally.work_done);
-  std::cerr << "\r\033[K" << place << counts(tally) << "  elapsed " << clock_text(elapsed.count())
-            << "  left " << left << std::flush;
+  if (campaign.work_done > 0)
+    left = clock_text(elapsed.count() * (campaign.work - campaign.work_done) / campaign.work_done);
+  std::cerr << "\r\033[K" << place << counts(campaign) << "  elapsed "
+            << clock_text(elapsed.count()) << "  left " << left << std::flush;
 }
 
-void Progress::finish(const Tally& tally) {
+void Progress::finish(const CampaignProgress& campaign) {
+  if (!g_shown) return;
   if (terminal_) std::cerr << "\r\033[K";
-  std::cerr << tally.done() << "/" << tally.cases << " cases: " << counts(tally) << " ("
-            << tally.reused << " were stored already)\n";
+  std::cerr << campaign.done() << "/" << campaign.cases << " cases: " << counts(campaign) << " ("
+            << campaign.reused << " were stored already)\n";
 }
 
 }  // namespace taut

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <chrono>
+#include <iosfwd>
+#include <string>
 
 #include "experiments/study/campaign.hpp"
 
@@ -11,15 +13,33 @@ namespace taut {
 class Progress {
  public:
   Progress();
-  void show(const Tally&, const Record*);
-  void finish(const Tally&);  ///< the last line: how the cases ended
+  void show(const CampaignProgress&, const Record*);
+  void finish(const CampaignProgress&);  ///< the last line: how the cases ended
 
  private:
   std::chrono::steady_clock::time_point start_;
   bool terminal_;
 };
 
+/// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere. The end
+/// says what one took: "frame 80/80  0.15 s each".
+class Countdown {
+ public:
+  explicit Countdown(std::string what);
+  void operator()(std::size_t done, std::size_t total) const;
+
+ private:
+  std::string what_;
+  bool terminal_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Whether progress is shown; --quiet switches it off.
+void show_progress(bool);
+/// Where news of progress go: stderr, or nowhere.
+std::ostream& progress();
+
 /// "ok 88, exploded 4".
-std::string counts(const Tally&);
+std::string counts(const CampaignProgress&);
 
 }  // namespace taut

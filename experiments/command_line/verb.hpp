@@ -1,10 +1,12 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
-#include "experiments/command_line/arguments.hpp"
 #include "experiments/system/signals.hpp"
 
 namespace taut {
@@ -21,19 +23,32 @@ enum ExitCode : int {
   kInterrupted = kInterruptedExit
 };
 
+/// Under what heading `taut --help` shows a verb, in this order.
+enum class VerbGroup { studies, one_case, cost, trust, extremes };
+
 /// How `taut VERB` introduces itself: one per file in experiments/cli, found by its TAUT_VERB
 /// line.
 struct VerbEntry {
-  std::string_view name;
+  std::string_view name;  ///< "run"; "bench kernels" is a verb of the verb bench
+  VerbGroup group = VerbGroup::studies;
   std::string_view summary;  ///< one line
   std::string_view example;  ///< one or more full command lines, shown below --help
   /// Adds options to the verb's parser and gives what to do once they are parsed. It may throw
   /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr.
-  std::function<int()> (*bind)(Arguments&);
+  std::function<int()> (*bind)(CLI::App&);
 };
 
-/// All verbs, sorted by name (generated; see cmake/registry.cmake).
+/// All verbs, sorted by identifier (generated; see cmake/registry.cmake).
 std::span<const VerbEntry* const> verbs();
+
+/// What main() does: finds the verb, parses its options, runs it; gives the exit code.
+int command_line(int argc, char** argv);
+
+/// Runs another verb of this program as if it had been typed: how `taut run` ends in a report
+/// without knowing how reports are made. Gives its exit code; throws InputError if its arguments
+/// are wrong. Progress and complaints are shown even if its output is discarded.
+enum class Output { shown, discarded };
+int invoke(const std::string& verb, std::vector<std::string> arguments, Output = Output::shown);
 
 }  // namespace taut
 

@@ -11,9 +11,9 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/film/takes.hpp"
+#include "experiments/film/recorded_runs.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/render/media.hpp"
+#include "experiments/render/picture/media.hpp"
 #include "experiments/report/rivals.hpp"
 #include "experiments/system/data.hpp"
 
@@ -28,7 +28,7 @@ constexpr std::size_t kMostPanels = 4;
 /// One scene to be filmed: who runs it and who does not.
 struct Film {
   std::string scene, summary;
-  TakeRequest request;
+  RunRequest request;
   std::vector<std::string> labels;    ///< of the solvers, in the order of the request's
   std::vector<std::string> settings;  ///< "1 × 16, order=mesh"
   std::vector<std::string> keys;      ///< of their cases; empty if no study ran them
@@ -108,11 +108,11 @@ std::vector<Film> all_films(const report::ReportInput& input,
   return films;
 }
 
-MediaOptions options_of(const Film& film, std::size_t takes) {
+MediaOptions options_of(const Film& film, std::size_t runs) {
   MediaOptions options;
   options.speed = film.speed;
   options.duration = kSeconds * film.speed;
-  const std::size_t panels = std::max<std::size_t>(2, takes + film.refused.size());
+  const std::size_t panels = std::max<std::size_t>(2, runs + film.refused.size());
   options.width = 960, options.height = 400;
   if (!film.studied) {
     options.width = 704, options.height = 320;
@@ -120,7 +120,7 @@ MediaOptions options_of(const Film& film, std::size_t takes) {
     options.quality.light = {16, 192, 96};
     options.crf = 27;
   }
-  options.width = options.width / static_cast<int>(panels) * static_cast<int>(takes) / 2 * 2;
+  options.width = options.width / static_cast<int>(panels) * static_cast<int>(runs) / 2 * 2;
   return options;
 }
 
@@ -138,25 +138,25 @@ report::ColourBar bar_of(const ColourScale& scale) {
   return bar;
 }
 
-std::string solver_name(const Take& take) {
-  const std::string& solver = take.trajectory.header.solver;
+std::string solver_name(const RecordedRun& run) {
+  const std::string& solver = run.trajectory.header.solver;
   return solver.substr(0, solver.find(':'));
 }
 
 /// A value over time of each run, from its positions alone; empty if the scene has no such thing.
-std::vector<report::TimeSeries> watched(const Film& film, const TakeSet& set,
+std::vector<report::TimeSeries> watched(const Film& film, const RunSet& set,
                                         const std::string& metric, const std::string& value) {
   std::vector<report::TimeSeries> all;
   const auto entry = std::ranges::find(metrics(), metric, &MetricEntry::name);
   if (entry == metrics().end()) return all;
   const auto spec = std::ranges::find((*entry)->values, value, &ValueSpec::name);
   const auto index = static_cast<std::size_t>(spec - (*entry)->values.begin());
-  for (std::size_t k = 0; k < set.takes.size(); ++k) {
+  for (std::size_t k = 0; k < set.runs.size(); ++k) {
     const std::unique_ptr<Metric> watch = (*entry)->make(set.scene);
     if (!watch) return {};
-    report::TimeSeries series{film.scene, solver_name(set.takes[k]), film.labels[k], value, {}, {}};
+    report::TimeSeries series{film.scene, solver_name(set.runs[k]), film.labels[k], value, {}, {}};
     int step = 0;
-    for (const TrajectoryReader::Frame& frame : set.takes[k].trajectory.frames) {
+    for (const TrajectoryReader::Frame& frame : set.runs[k].trajectory.frames) {
       const Moment moment{step++, frame.t, frame.state};
       watch->observe(moment);
       series.t.push_back(frame.t);
@@ -167,16 +167,16 @@ std::vector<report::TimeSeries> watched(const Film& film, const TakeSet& set,
   return all;
 }
 
-report::Clip clip_of(const Film& film, const TakeSet& set, const Media& media) {
+report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
   report::Clip clip;
   std::string who;
-  for (std::size_t k = 0; k < set.takes.size(); ++k) {
-    const Take& take = set.takes[k];
+  for (std::size_t k = 0; k < set.runs.size(); ++k) {
+    const RecordedRun& run = set.runs[k];
     clip.panels.push_back(
-        {solver_name(take), film.settings[k], film.keys.empty() ? "" : film.keys[k]});
-    who += (k > 0 ? " and " : "") + take.title + " (" + take.settings + ")";
+        {solver_name(run), film.settings[k], film.keys.empty() ? "" : film.keys[k]});
+    who += (k > 0 ? " and " : "") + run.title + " (" + run.settings + ")";
   }
-  clip.alt = set.scene.name + ": " + who + (set.takes.size() > 1 ? " side by side" : "") +
+  clip.alt = set.scene.name + ": " + who + (set.runs.size() > 1 ? " side by side" : "") +
              " from the left, coloured by " + media.scale.title() + ", full red at " +
              media.scale.text(media.scale.high) +
              "; cloth inside a collider is hatched, a run that ended early is framed in red";
@@ -187,38 +187,38 @@ report::Clip clip_of(const Film& film, const TakeSet& set, const Media& media) {
 }
 
 /// What a film gives a report.
-struct Shot {
+struct FilmResult {
   report::SceneMedia media;
   std::vector<report::TimeSeries> series;  ///< of a scene that no study ran
 };
 
-Shot shoot(const Film& film) {
-  const TakeSet set = make_takes(film.request, [](const std::string&) {});
-  const Media media = render_media(set.scene, set.takes, options_of(film, set.takes.size()));
-  Shot shot{{.scene = film.scene,
-             .clips = {clip_of(film, set, media)},
-             .duration = media.t.back(),
-             .speed = film.speed,
-             .bar = bar_of(media.scale),
-             .aspect = media.aspect,
-             .summary = film.summary,
-             .frame = media.t[1] - media.t[0],
-             .poster = media.poster_t,
-             .refused = film.refused},
-            {}};
+FilmResult make_film(const Film& film) {
+  const RunSet set = record_runs(film.request, [](const std::string&) {});
+  const Media media = render_media(set.scene, set.runs, options_of(film, set.runs.size()));
+  FilmResult result{{.scene = film.scene,
+                     .clips = {clip_of(film, set, media)},
+                     .duration = media.t.back(),
+                     .speed = film.speed,
+                     .bar = bar_of(media.scale),
+                     .aspect = media.aspect,
+                     .summary = film.summary,
+                     .frame = media.t[1] - media.t[0],
+                     .poster = media.poster_t,
+                     .refused = film.refused},
+                    {}};
   for (std::size_t k = 0; k < media.material.size(); ++k) {
-    report::MaterialRow& row = shot.media.material.emplace_back();
-    row.solver = solver_name(set.takes[k]);
+    report::MaterialRow& row = result.media.material.emplace_back();
+    row.solver = solver_name(set.runs[k]);
     for (const Media::Flat& flat : media.material[k])
       row.moments.push_back({flat.t, flat.rms, flat.png});
   }
-  for (std::size_t k = 0; !film.studied && k < set.takes.size(); ++k)
-    shot.series.push_back({film.scene, solver_name(set.takes[k]), film.labels[k], "stretch.rms",
-                           media.t, media.rms_strain[k]});
+  for (std::size_t k = 0; !film.studied && k < set.runs.size(); ++k)
+    result.series.push_back({film.scene, solver_name(set.runs[k]), film.labels[k], "stretch.rms",
+                             media.t, media.rms_strain[k]});
   if (!film.studied)
     std::ranges::move(watched(film, set, "penetration", "penetration.max"),
-                      std::back_inserter(shot.series));
-  return shot;
+                      std::back_inserter(result.series));
+  return result;
 }
 
 }  // namespace
@@ -226,14 +226,14 @@ Shot shoot(const Film& film) {
 void film_scenes(report::ReportInput& input, const std::vector<std::string>& others,
                  const std::function<void(const std::string&)>& say) {
   const std::vector<Film> films = all_films(input, others);
-  std::vector<std::optional<Shot>> shots(films.size());
+  std::vector<std::optional<FilmResult>> results(films.size());
   std::atomic<std::size_t> next{0};
   std::mutex telling;
   const auto work = [&] {
     for (std::size_t k = next++; k < films.size(); k = next++) {
       std::string news = films[k].scene + " filmed";
       try {
-        shots[k] = shoot(films[k]);
+        results[k] = make_film(films[k]);
       } catch (const InputError& error) {
         news = films[k].scene + " not filmed: " + error.what();
       }
@@ -245,10 +245,10 @@ void film_scenes(report::ReportInput& input, const std::vector<std::string>& oth
   for (int j = 1; j < kScenesAtATime; ++j) threads.emplace_back(work);
   work();
   for (std::thread& thread : threads) thread.join();
-  for (auto& shot : shots) {
-    if (!shot) continue;
-    input.media.push_back(std::move(shot->media));
-    std::ranges::move(shot->series, std::back_inserter(input.series));
+  for (auto& result : results) {
+    if (!result) continue;
+    input.media.push_back(std::move(result->media));
+    std::ranges::move(result->series, std::back_inserter(input.series));
   }
 }
 

@@ -45,7 +45,7 @@ class Popping final : public Metric {
 
 TAUT_METRIC(popping) = {
     .name = "popping",
-    .summary = "Sudden jumps of single vertices, as the report's halt makes them",
+    .summary = "Sudden jumps of single vertices, as Vasilovici's halt makes them",
     .source = "second difference of the positions, beyond gravity's own",
     .values = taut::metric::popping::kValues,
     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {

@@ -25,8 +25,8 @@ struct References {
   std::optional<Reference> rest, motion;
 };
 
-/// Found by lab/reference_store, so that metrics know no files. Throws InputError on a file that is
-/// not a reference.
+/// Found by experiments/study/reference_store, so that metrics know no files. Throws InputError on
+/// a file that is not a reference.
 References known_references(const Scene&);
 
 }  // namespace taut

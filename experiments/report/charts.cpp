@@ -9,7 +9,6 @@
 #include "experiments/report/format.hpp"
 #include "experiments/report/palette.hpp"
 #include "experiments/report/rivals.hpp"
-#include "experiments/timing/trade.hpp"
 
 namespace taut::report {
 
@@ -121,26 +120,22 @@ double theory_factor(const Chart& chart) {
 
 std::vector<Point> pareto_front(const Chart& chart) {
   std::vector<Point> points, front;
-  std::vector<Offer> offers;
   for (const Curve& curve : chart.curves)
-    for (const Point& p : curve.points) {
-      if (!p.measured()) continue;
-      points.push_back(p);
-      offers.push_back({curve.solver, "", {p.x, p.x, p.x}, p.y, false});
-    }
-  for (const std::size_t i : pareto_front(offers)) front.push_back(points[i]);
+    for (const Point& p : curve.points)
+      if (p.measured()) points.push_back(p);
+  std::ranges::sort(points, {}, [](const Point& p) { return std::pair(p.x, p.y); });
+  for (const Point& p : points)
+    if (front.empty() || p.y < front.back().y) front.push_back(p);
   return front;
 }
 
-std::vector<StatusMap> make_maps(std::span<const Record> records, std::span<const Record> inferred,
-                                 const std::string& scene, const std::string& x,
-                                 const std::string& y) {
+std::vector<StatusMap> make_maps(std::span<const Record> records, const std::string& scene,
+                                 const std::string& x, const std::string& y) {
   std::vector<const Record*> all;
   std::vector<Record> flat;
-  for (const auto& part : {records, inferred})
-    for (const Record& r : part)
-      if (r.scene == scene && std::isfinite(value_of(r, x)) && std::isfinite(value_of(r, y)))
-        all.push_back(&r), flat.push_back(without(r, x, y));
+  for (const Record& r : records)
+    if (r.scene == scene && std::isfinite(value_of(r, x)) && std::isfinite(value_of(r, y)))
+      all.push_back(&r), flat.push_back(without(r, x, y));
   std::vector<StatusMap> maps;
   for (const Curve& curve : make_curves(flat, x, y, x)) {
     StatusMap map{.scene = {},
@@ -168,8 +163,7 @@ std::vector<StatusMap> make_maps(std::span<const Record> records, std::span<cons
                         row = index(map.rows, value_of(*r, y));
       const auto [at, fresh] = cells.try_emplace({row, column});
       if (!fresh && at->second.record->status.kind >= r->status.kind) continue;
-      const bool guess = !inferred.empty() && r >= &inferred.front() && r <= &inferred.back();
-      at->second = {column, row, r, guess};
+      at->second = {column, row, r};
     }
     for (const auto& [at, cell] : cells) map.cells.push_back(cell);
     map.scene = scene;
@@ -241,10 +235,9 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
 std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& scene) {
   std::vector<StatusMap> maps;
   const auto add = [&](const std::string& study, std::span<const Record> records,
-                       std::span<const Record> inferred, const std::string& x,
-                       const std::string& y) {
+                       const std::string& x, const std::string& y) {
     try {
-      for (StatusMap& map : make_maps(records, inferred, scene, x, y)) {
+      for (StatusMap& map : make_maps(records, scene, x, y)) {
         if (map.columns.size() < 2 || map.rows.size() < 2) continue;
         map.study = study;
         maps.push_back(std::move(map));
@@ -257,10 +250,9 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
     std::set<double> sweeps, steps;
     for (const Record& r : study.records)
       if (r.scene == scene) sweeps.insert(value_of(r, "iterations")), steps.insert(r.dt);
-    if (steps.size() >= 3 && sweeps.size() >= 3)
-      add(study.name, study.records, {}, "dt", "iterations");
+    if (steps.size() >= 3 && sweeps.size() >= 3) add(study.name, study.records, "dt", "iterations");
   }
-  for (const MapResult& map : input.maps) add(map.study, map.records, map.inferred, map.x, map.y);
+  for (const MapResult& map : input.maps) add(map.study, map.records, map.x, map.y);
   return maps;
 }
 
@@ -273,7 +265,7 @@ Chart cost_chart(const SceneBench& scene, std::span<const Record> records) {
       " to " + fixed(scene.control.high, 2) + ".";
   chart.front = true;
   for (const BenchedCase& c : scene.cases)
-    if (c.sound()) chart.cost[c.record.key] = c.cost();
+    if (c.stable()) chart.cost[c.record.key] = c.cost();
   return chart;
 }
 

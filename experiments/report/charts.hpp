@@ -51,15 +51,13 @@ struct StatusMap {
   struct Cell {
     std::size_t column = 0, row = 0;
     const Record* record = nullptr;
-    bool inferred = false;  ///< not run: neighbouring cells say so
   };
   std::vector<Cell> cells;
 };
 /// One for each solver and choice on this scene; of two cases in one cell the worse. Throws
 /// InputError if no case has both settings. Points into the records.
-std::vector<StatusMap> make_maps(std::span<const Record>, std::span<const Record> inferred,
-                                 const std::string& scene, const std::string& x,
-                                 const std::string& y);
+std::vector<StatusMap> make_maps(std::span<const Record>, const std::string& scene,
+                                 const std::string& x, const std::string& y);
 
 /// "1", "4.2", "33": a setting's value in its shown unit, for the edge of a map.
 std::string tick_of(const Quantity&, double si);

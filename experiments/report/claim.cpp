@@ -69,7 +69,7 @@ std::optional<double> Evidence::look(const std::string& label, const Record& r) 
 void Evidence::look(const BenchedCase& c, const std::string& label) {
   Seen seen = seen_of(c.record, label);
   seen.n = c.timing.samples.size();
-  if (c.sound()) {
+  if (c.stable()) {
     seen.interval = c.cost();
     if (quantity_.name == "cpu.per_step")
       for (double* end : {&seen.interval->low, &seen.interval->mid, &seen.interval->high})

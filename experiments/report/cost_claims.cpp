@@ -44,10 +44,10 @@ Admits shared_knobs(const SceneBench& scene, const Pair& pair) {
 /// The cheapest admitted case of `solver` that reaches the error; nothing: none does.
 std::optional<std::size_t> cheapest(const SceneBench& scene, const std::string& solver,
                                     const Admits& admits) {
-  std::vector<Offer> offers = scene.offers(kPricedMetric);
-  for (std::size_t i = 0; i < offers.size(); ++i)
-    if (!admits(scene.cases[i])) offers[i].failed = true;
-  return cheapest_within(offers, solver, kPricedError);
+  std::vector<Candidate> candidates = scene.candidates(kPricedMetric);
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (!admits(scene.cases[i])) candidates[i].failure = "not admitted";
+  return best_for({.error = kPricedError}, candidates, solver);
 }
 
 bool timed(const SceneBench& scene, const std::string& solver) {
@@ -61,7 +61,7 @@ void look_at(Evidence& evidence, const SceneBench& scene, const Pair& pair, cons
       evidence.look(c, c.record.solver == pair.first ? pair.first_label : pair.other_label);
 }
 
-std::string interval_text(const Interval& r) {
+std::string share_interval(const Interval& r) {
   return "95\u00A0% interval " + share_text(r.low) + " to " + share_text(r.high);
 }
 
@@ -111,7 +111,7 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
     verdicts.strong = share_text(share.mid) + " of the CPU time";
     verdicts.text = (less ? pair.first_label : pair.other_label) + " uses " + verdicts.strong +
                     " of " + (less ? pair.other_label : pair.first_label) + " (" +
-                    interval_text(share) + over + ".";
+                    share_interval(share) + over + ".";
   } else {
     if (judged) sure(*judged);
     verdicts.text = std::string(judged ? "too noisy to judge" : "no difference that can be told") +
@@ -211,7 +211,7 @@ void claim_same_work(const BenchSession& bench, const Pair& pair, std::vector<Cl
     for (std::size_t i = 0; i < scene.cases.size(); ++i) {
       const BenchedCase& c = scene.cases[i];
       const Work work = work_of(c.record);
-      if (!c.sound() || !shared(c) || work.sweeps < 0 || work.substeps < 0) continue;
+      if (!c.stable() || !shared(c) || work.sweeps < 0 || work.substeps < 0) continue;
       if (c.record.solver != pair.first && c.record.solver != pair.other) continue;
       auto& at = c.record.solver == pair.first ? cheapest[work].first : cheapest[work].second;
       if (!at || c.cost().mid < scene.cases[*at].cost().mid) at = i;

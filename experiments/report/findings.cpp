@@ -54,13 +54,15 @@ TruthRow row_of(const Json& truth, const Json& finding) {
   return row;
 }
 
+/// Nothing if there is no such file or another program wrote it. Throws InputError if it is
+/// damaged.
 std::optional<Json> document(const std::filesystem::path& file, const std::string& schema,
                              std::string_view program) {
   if (!std::filesystem::exists(file)) return std::nullopt;
-  Json json = try_parse_json(read_text(file));
-  if (json.is_discarded() || json.value("schema", "") != schema)
-    throw InputError(file.string() + ": not a file of schema " + schema + "; remove it");
-  if (json.value("program", "") != program) return std::nullopt;
+  Json json = parse_json_of(read_text(file), file.string());
+  const JsonReader root(json, file.string());
+  root.require_schema(schema);
+  if (root.at("program").text() != program) return std::nullopt;
   return json;
 }
 

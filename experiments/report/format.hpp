@@ -23,7 +23,8 @@ std::string typeset(std::string_view);
 /// For a page: & < > " ' escaped; control characters become U+FFFD.
 std::string escape_html(std::string_view);
 std::string csv_field(
-    std::string_view);  ///< quoted if it must be; one line always, as gnuplot wants
+    std::string_view);  ///< quoted if it must be; one line always, as gnuplot wants; what begins
+                        ///< with = + - @ gets a ' in front: a spreadsheet would run it
 std::string gnuplot_string(std::string_view);  ///< a literal that no text can leave; one line
 std::string base64(std::string_view bytes);
 /// Letters, digits, '-' and '.' only: safe as a file name and as an HTML id.

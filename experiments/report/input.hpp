@@ -31,12 +31,11 @@ struct StudyResult {
   std::map<std::string, double> slopes;  ///< by scene: the theory's exponent of stretch over sweeps
 };
 
-/// A study over two settings, run along the borders between outcomes.
+/// A study over two settings: how its cases end.
 struct MapResult {
   std::string study, question;
   std::string x, y;  ///< names that value_of() knows
   std::vector<Record> records;
-  std::vector<Record> inferred;  ///< were not run: their neighbours say how they end
 };
 
 struct SolverInfo {

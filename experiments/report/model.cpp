@@ -121,7 +121,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, References& refs) {
   one["values"] = Json::object();
   for (const auto& [name, value] : r.values)
     if (std::isfinite(value)) one["values"][name] = value, refs.use(name);
-  if (timed && timed->sound()) {
+  if (timed && timed->stable()) {
     const Interval second = timed->cost();
     const Interval step{second.low * r.dt, second.mid * r.dt, second.high * r.dt};
     const std::size_t n = timed->timing.samples.size();
@@ -314,8 +314,6 @@ class Builder {
   Json statuses() const {
     std::set<Status::Kind> kinds{Status::Kind::ok};
     for (const Record* r : refs_.cases()) kinds.insert(r->status.kind);
-    for (const MapResult& map : input_.maps)
-      for (const Record& r : map.inferred) kinds.insert(r.status.kind);
     Json all;
     for (const Status::Kind kind : kinds) {
       const StatusStyle style = status_style(kind);

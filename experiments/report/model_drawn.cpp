@@ -7,6 +7,7 @@
 #include "experiments/report/format.hpp"
 #include "experiments/report/model_parts.hpp"
 #include "experiments/report/palette.hpp"
+#include "experiments/timing/answer.hpp"
 
 namespace taut::report {
 
@@ -148,19 +149,17 @@ Json json_of(const StatusMap& map, const std::string& id, References& refs) {
            {"x", json_of_axis(refs.use(map.x.name), map.columns)},
            {"y", json_of_axis(refs.use(map.y.name), map.rows)}};
   std::map<Status::Kind, int> counts;
-  std::size_t run = 0;
   for (const StatusMap::Cell& cell : map.cells) {
     const Status& status = cell.record->status;
     Json at{{"column", cell.column},
             {"row", cell.row},
             {"status", to_string(status.kind)},
-            {"inferred", cell.inferred}};
+            {"case", refs.key(*cell.record)}};
     add_if(at, "reason", status.reason);
-    if (!cell.inferred) add_if(at, "case", refs.key(*cell.record)), ++run;
     ++counts[status.kind];
     one["cells"].push_back(std::move(at));
   }
-  one["run"] = run, one["all"] = map.cells.size();
+  one["run"] = one["all"] = map.cells.size();
   for (const auto& [kind, n] : counts) one["counts"][std::string(to_string(kind))] = n;
   return one;
 }
@@ -285,10 +284,11 @@ struct CostScene {
   }
   /// "not reached by the settings tried (at best 0.12 %)".
   std::string never(const std::string& solver) const {
-    const std::vector<Offer> offers = bench.offers(kPricedMetric);
-    const auto nearest = best_within(offers, solver, std::numeric_limits<double>::infinity());
+    const std::vector<Candidate> candidates = bench.candidates(kPricedMetric);
+    const auto nearest =
+        best_for({.budget = std::numeric_limits<double>::infinity()}, candidates, solver);
     return nearest ? "not reached by the settings tried (at best " +
-                         quantity(kPricedMetric).text(offers[*nearest].error) + ")"
+                         quantity(kPricedMetric).text(candidates[*nearest].error) + ")"
                    : "no case completed";
   }
 };
@@ -319,7 +319,7 @@ Json levels_table(const CostScene& scene) {
   for (const double level : kErrorLevels) {
     Json row = Json::array();
     row.push_back({{"text", q.text(level, 1)}, {"value", level}});
-    for (const Reached& r : equal_error(scene.bench, kPricedMetric, level)) {
+    for (const SolverAnswer& r : answer(scene.bench, {.error = level}, kPricedMetric).solvers) {
       if (!r.at) {
         row.push_back(scene.never(r.solver));
         continue;
@@ -334,8 +334,6 @@ Json levels_table(const CostScene& scene) {
   return table;
 }
 
-constexpr double kFrame = 1.0 / 60;  ///< s; budgets are CPU time within it
-
 Json budgets_table(const CostScene& scene) {
   const Quantity q = quantity(kPricedMetric), ms{"", "", "ms", 1e3 * kFrame};
   Json table{{"id", "cost-budgets-" + scene.bench.scene},
@@ -345,21 +343,21 @@ Json budgets_table(const CostScene& scene) {
               "costs and with which setting."},
              {"columns", Json::array()}};
   table["columns"].push_back({{"title", "within, per frame"}});
-  const std::vector<Offer> offers = scene.bench.offers(kPricedMetric);
+  const std::vector<Candidate> candidates = scene.bench.candidates(kPricedMetric);
   for (const std::string& solver : solvers_of(scene.bench))
     table["columns"].push_back({{"title", solver_title(solver)}, {"metric", kPricedMetric}});
   for (const double budget : kFrameBudgets) {
     Json row = Json::array();
     row.push_back({{"text", significant(1e3 * budget, 2) + "\u00A0ms"}, {"value", budget}});
     for (const std::string& solver : solvers_of(scene.bench)) {
-      const auto at = best_within(offers, solver, budget / kFrame);
+      const auto at = best_for({.budget = budget / kFrame}, candidates, solver);
       if (!at) {
         row.push_back("nothing that cheap");
         continue;
       }
-      row.push_back({{"text", q.text(offers[*at].error) + " for " +
-                                  span_text(offers[*at].cost, ms) + ", " + scene.setting(*at)},
-                     {"value", offers[*at].error},
+      row.push_back({{"text", q.text(candidates[*at].error) + " for " +
+                                  span_text(candidates[*at].cost, ms) + ", " + scene.setting(*at)},
+                     {"value", candidates[*at].error},
                      {"case", scene.refs.key(scene.bench.cases[*at].record)}});
     }
     table["rows"].push_back(std::move(row));
@@ -374,11 +372,11 @@ Json answer_row(const CostScene& scene) {
   if (!bench.cases.empty())
     for (const std::string& value : bench.cases.front().record.spec.overrides)
       again += " --set '" + value + "'";
-  const auto best = cheapest_within(bench.offers(kPricedMetric), "", kPricedError);
+  const auto best = best_for({.error = kPricedError}, bench.candidates(kPricedMetric));
   if (!best) return {bench.scene, "not reached by the settings tried", "–", "–", again};
   const BenchedCase& c = bench.cases[*best];
   std::string others;
-  for (const Reached& r : equal_error(bench, kPricedMetric, kPricedError)) {
+  for (const SolverAnswer& r : answer(bench, {.error = kPricedError}, kPricedMetric).solvers) {
     if (r.at == best) continue;
     others += (others.empty() ? "" : "; ") + solver_title(r.solver) + " ";
     if (!r.at || !r.times) {

@@ -183,7 +183,7 @@ Sheet series_sheet(std::span<const TimeSeries> all, const std::string& value,
 Sheet map_sheet(const std::vector<StatusMap>& maps, const std::string& title) {
   Sheet sheet;
   const StatusMap& first = maps.front();
-  sheet.csv = "curve,solver,label,x,y,column,row,status,reason,run,case\n";
+  sheet.csv = "curve,solver,label,x,y,column,row,status,reason,case\n";
   std::set<Status::Kind> kinds;
   sheet.settings = "set multiplot layout 1," + std::to_string(maps.size()) + " title " +
                    gnuplot_string(title) + "\nset xlabel " + gnuplot_string(first.x.label()) +
@@ -197,8 +197,7 @@ Sheet map_sheet(const std::vector<StatusMap>& maps, const std::string& title) {
                    "," + exact(map.columns[cell.column]) + "," + exact(map.rows[cell.row]) + "," +
                    std::to_string(cell.column) + "," + std::to_string(cell.row) + "," +
                    std::string(to_string(cell.record->status.kind)) + "," +
-                   csv_field(cell.record->status.reason) + "," + (cell.inferred ? "no" : "yes") +
-                   "," + csv_field(cell.record->id) + "\n";
+                   csv_field(cell.record->status.reason) + "," + csv_field(cell.record->id) + "\n";
     const auto ticks = [](const char* axis, const Quantity& q, const std::vector<double>& values) {
       std::string list;
       for (std::size_t k = 0; k < values.size(); ++k)
@@ -269,8 +268,7 @@ void check_value_name(const std::string& name, std::span<const Record> records) 
 }
 
 PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
-                    std::span<const Record> inferred, std::span<const TimeSeries> series,
-                    const std::filesystem::path& folder) {
+                    std::span<const TimeSeries> series, const std::filesystem::path& folder) {
   const PlotKind& kind = find_plot_kind(spec.kind);
   if (spec.x.empty()) spec.x = kind.x;
   if (spec.y.empty()) spec.y = kind.y;
@@ -284,8 +282,7 @@ PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
     sheet = series_sheet(series, spec.y, spec.title);
   } else if (spec.kind == "stability") {
     if (records.empty()) throw InputError("there is no case to draw");
-    sheet =
-        map_sheet(make_maps(records, inferred, records.front().scene, spec.x, spec.y), spec.title);
+    sheet = map_sheet(make_maps(records, records.front().scene, spec.x, spec.y), spec.title);
   } else {
     Chart chart = make_chart(spec.kind, records, spec.x, spec.y, spec.along);
     chart.slope = spec.slope, chart.front = spec.kind == "work-precision";

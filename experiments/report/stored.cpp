@@ -9,7 +9,6 @@
 #include "experiments/report/palette.hpp"
 #include "experiments/report/quantity.hpp"
 #include "experiments/report/rivals.hpp"
-#include "experiments/study/map.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {
@@ -93,17 +92,13 @@ std::vector<MapResult> stored_maps(const std::vector<Study>& studies, const Stor
   std::vector<MapResult> maps;
   for (const Study& study : studies) {
     const auto plot = std::ranges::find(study.plots, "stability", &Plot::kind);
-    if (plot == study.plots.end() || study.sweeps.size() != 2) continue;
+    if (plot == study.plots.end() || study.axes.size() != 2) continue;
     const auto axis = [&](const char* name, const char* otherwise) {
       const auto option = plot->options.find(name);
       return option == plot->options.end() ? std::string(otherwise) : option->second;
     };
-    MapResult map{study.name,
-                  study.question,
-                  axis("x", "dt"),
-                  axis("y", "iterations"),
-                  collect(study, store).records,
-                  inferred_records(study, store)};
+    MapResult map{study.name, study.question, axis("x", "dt"), axis("y", "iterations"),
+                  collect(study, store).records};
     if (!map.records.empty()) maps.push_back(std::move(map));
   }
   return maps;

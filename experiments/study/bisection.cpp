@@ -9,7 +9,7 @@ namespace taut {
 
 namespace {
 
-/// Values looked at between the bracket and the rung above it.
+/// Values looked at between the bracket and the coarse value above it.
 constexpr int kLooksAbove = 4;
 
 class BorderSearch {
@@ -17,7 +17,7 @@ class BorderSearch {
   BorderSearch(const SearchRange& range, const Trial& trial) : range_(range), trial_(trial) {}
 
   Frontier run() {
-    if (answers(rungs())) {
+    if (answers(coarse_values())) {
       bracket();
       look_above();
     }
@@ -38,11 +38,11 @@ class BorderSearch {
     return std::strtod(text, nullptr);
   }
 
-  std::vector<double> rungs() const {
+  std::vector<double> coarse_values() const {
     std::vector<double> values{range_.from};
-    for (int i = 1; i + 1 < range_.rungs; ++i)
+    for (int i = 1; i + 1 < range_.coarse; ++i)
       values.push_back(
-          between(range_.from, range_.to, static_cast<double>(i) / (range_.rungs - 1)));
+          between(range_.from, range_.to, static_cast<double>(i) / (range_.coarse - 1)));
     values.push_back(range_.to);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;
@@ -109,7 +109,7 @@ class BorderSearch {
     for (const Probed& probe : result_.probes) {
       if (probe.value <= result_.unstable) continue;
       ++result_.above;
-      if (probe.stable()) result_.islands.push_back(probe.value);
+      if (probe.stable()) result_.stable_above.push_back(probe.value);
     }
   }
 

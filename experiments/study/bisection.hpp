@@ -12,8 +12,8 @@ struct SearchRange {
   double from = 0, to = 0;
   bool whole = false;       ///< whole numbers only
   double tolerance = 0.01;  ///< width of the bracket, relative to its upper end
-  int rungs = 9;            ///< values tried first, ends included, evenly spaced (geometrically if
-                            ///< from > 0): between two of them the frontier is taken to be one
+  int coarse = 9;  ///< how many values are tried first, ends included, evenly spaced (geometrically
+                   ///< if from > 0): between two of them the frontier is taken to be one
 };
 
 struct Probed {
@@ -34,10 +34,10 @@ struct Frontier {
                    ///< search was interrupted
   };
   Kind kind = Kind::not_answered;
-  double stable = 0, unstable = 0;  ///< the bracket; meaningless where `kind` says so
-  std::vector<double> islands;      ///< stable values above `unstable`: not monotone
-  std::size_t above = 0;            ///< values tried above the bracket
-  std::vector<Probed> probes;       ///< all, ascending
+  double stable = 0, unstable = 0;   ///< the bracket; meaningless where `kind` says so
+  std::vector<double> stable_above;  ///< stable values above `unstable`: not monotone
+  std::size_t above = 0;             ///< values tried above the bracket
+  std::vector<Probed> probes;        ///< all, ascending
   const Probed* at(double value) const;
 };
 
@@ -47,9 +47,9 @@ std::string_view to_string(Frontier::Kind);
 /// Gives the outcome for each value; fewer if it was interrupted.
 using Trial = std::function<std::vector<Status>(const std::vector<double>&)>;
 
-/// Tries the rungs, halves the first interval whose ends differ until it is narrow, then looks
-/// between `unstable` and the next rung for stable values that monotony would rule out. Values
-/// without an answer are passed over.
+/// Tries the coarse values, halves the first interval whose ends differ until it is narrow, then
+/// looks between `unstable` and the next coarse value for stable values that monotony would rule
+/// out. Values without an answer are passed over.
 Frontier find_frontier(const SearchRange&, const Trial&);
 
 }  // namespace taut

@@ -29,7 +29,7 @@ class Campaign {
   Campaign(const Store& store, const Session& session, const CampaignOptions& options)
       : store_(store), session_(session), options_(options) {}
 
-  Tally run(const std::vector<Case>& cases) {
+  CampaignProgress run(const std::vector<Case>& cases) {
     sort_out(cases);
     const GracefulStop signals;
     while (!waiting_.empty() || !running_.empty()) {
@@ -43,13 +43,13 @@ class Campaign {
       reap();
       report(nullptr);
     }
-    tally_.interrupted = GracefulStop::requested();
+    progress_.interrupted = GracefulStop::requested();
     while (!running_.empty()) {
       const std::filesystem::path folder = running_.front().folder();
       running_.pop_front();
       std::filesystem::remove_all(folder);
     }
-    return tally_;
+    return progress_;
   }
 
  private:
@@ -59,13 +59,13 @@ class Campaign {
       const std::optional<Record> stored = store_.find(one);
       const bool failed = stored && !stored->status.is_result();
       if (options_.only_failed && !failed) continue;
-      ++tally_.cases;
+      ++progress_.cases;
       if (stored && !(options_.only_failed && failed)) {
-        ++tally_.reused;
-        ++tally_.by_status[stored->status.kind];
+        ++progress_.reused;
+        ++progress_.by_status[stored->status.kind];
         session_.done(*stored);
       } else {
-        tally_.work += estimated_work(one);
+        progress_.work += estimated_work(one);
         waiting_.push_back(&one);
       }
     }
@@ -92,17 +92,17 @@ class Campaign {
       }
       const Store::Commit commit = store_.commit(one->folder(), *record);
       session_.done(*record);
-      ++tally_.ran;
-      ++tally_.by_status[record->status.kind];
-      if (commit == Store::Commit::conflict) ++tally_.conflicts;
-      tally_.work_done += estimated_work(one->of());
+      ++progress_.ran;
+      ++progress_.by_status[record->status.kind];
+      if (commit == Store::Commit::conflict) ++progress_.conflicts;
+      progress_.work_done += estimated_work(one->of());
       one = running_.erase(one);
       report(&*record);
     }
   }
 
   void report(const Record* record) const {
-    if (options_.progress) options_.progress(tally_, record);
+    if (options_.progress) options_.progress(progress_, record);
   }
 
   const Store& store_;
@@ -110,36 +110,56 @@ class Campaign {
   const CampaignOptions& options_;
   std::list<const Case*> waiting_;
   std::list<IsolatedCase> running_;
-  Tally tally_;
+  CampaignProgress progress_;
 };
 
-Record wait_for(IsolatedCase& running) {
-  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
-    if (const auto record = running.poll()) return *record;
+using Clock = std::chrono::steady_clock;
+
+/// Nothing if it has not ended by then.
+std::optional<Record> wait_for(IsolatedCase& running, Clock::time_point deadline) {
+  for (; Clock::now() < deadline; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
+    if (const auto record = running.poll()) return record;
+  return std::nullopt;
 }
 
-}  // namespace
-
-Record run_stored(const Case& one, const Store& store, const Limits& limits) {
-  if (const auto record = store.find(one)) return *record;
-  IsolatedCase running(one, store.stage(one.key), limits);
-  const Record record = wait_for(running);
-  if (store.commit(running.folder(), record) == Store::Commit::conflict)
+std::optional<Record> run_and_store(const Case& one, const Store& store, const Limits& limits,
+                                    Clock::time_point deadline) {
+  if (const auto record = store.find(one)) return record;
+  const std::filesystem::path folder = store.stage(one.key);
+  std::optional<Record> record;
+  {
+    IsolatedCase running(one, folder, limits);
+    record = wait_for(running, deadline);
+  }
+  if (!record)
+    std::filesystem::remove_all(folder);
+  else if (store.commit(folder, *record) == Store::Commit::conflict)
     throw InputError(one.id + ": another result than the one stored; see " +
                      (store.root() / "conflicts").string());
   return record;
 }
 
+}  // namespace
+
+Record run_stored(const Case& one, const Store& store, const Limits& limits) {
+  return *run_and_store(one, store, limits, Clock::time_point::max());
+}
+
+std::optional<Record> run_stored_until(const Case& one, const Store& store,
+                                       Clock::time_point deadline) {
+  return run_and_store(one, store, {}, deadline);
+}
+
 Record run_again(const Case& one, const Store& store, const Limits& limits) {
   const std::filesystem::path folder = store.stage(one.key);
   IsolatedCase running(one, folder, limits);
-  const Record record = wait_for(running);
+  const Record record = *wait_for(running, Clock::time_point::max());
   std::filesystem::remove_all(folder);
   return record;
 }
 
-Tally run_cases(const std::vector<Case>& cases, const Store& store, const Session& session,
-                const CampaignOptions& options) {
+CampaignProgress run_cases(const std::vector<Case>& cases, const Store& store,
+                           const Session& session, const CampaignOptions& options) {
   return Campaign(store, session, options).run(cases);
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "experiments/case/case.hpp"
@@ -13,7 +15,7 @@
 namespace taut {
 
 /// How far a campaign is.
-struct Tally {
+struct CampaignProgress {
   std::size_t cases = 0;      ///< of this shard
   std::size_t reused = 0;     ///< were stored already
   std::size_t ran = 0;        ///< have been run now
@@ -31,18 +33,23 @@ struct CampaignOptions {
   Shard shard;
   bool only_failed = false;  ///< run again what is stored as a failure, and nothing else
   /// After every case that was run, and about twice a second (record: nullptr).
-  std::function<void(const Tally&, const Record*)> progress;
+  std::function<void(const CampaignProgress&, const Record*)> progress;
 };
 
 /// Runs those cases that the store does not have, each in a process of its own, the longest first,
 /// and commits each as it ends. SIGINT and SIGTERM end it after the running cases are killed; what
 /// was finished is stored. Throws InputError if results cannot be written: nothing finished is
 /// lost.
-Tally run_cases(const std::vector<Case>&, const Store&, const Session&, const CampaignOptions&);
+CampaignProgress run_cases(const std::vector<Case>&, const Store&, const Session&,
+                           const CampaignOptions&);
 
 /// The stored record of a case, or the one that a process of its own gives and that is stored now.
 /// Throws InputError if the result differs from one that is stored.
 Record run_stored(const Case&, const Store&, const Limits& = {});
+
+/// The same, but nothing if it has not ended by then; nothing is stored of that.
+std::optional<Record> run_stored_until(const Case&, const Store&,
+                                       std::chrono::steady_clock::time_point deadline);
 
 /// The same without looking into the store and without leaving anything there.
 Record run_again(const Case&, const Store&, const Limits& = {});

@@ -10,56 +10,56 @@ namespace taut {
 
 namespace {
 
-using Settings = std::map<std::string, std::string>;  ///< what one case has, by sweep name
+using Settings = std::map<std::string, std::string>;  ///< what one case has, by axis name
 
-/// Calls `visit` for every combination of one value per sweep, the first sweep outermost.
-void combinations(const std::vector<Sweep>& sweeps,
+/// Calls `visit` for every combination of one value per axis, the first axis outermost.
+void combinations(const std::vector<StudyAxis>& axes,
                   const std::function<void(const Settings&)>& visit, Settings settings = {}) {
   const std::size_t next = settings.size();
-  if (next == sweeps.size()) return visit(settings);
-  for (const std::string& value : sweeps[next].values) {
-    settings[sweeps[next].name] = value;
-    combinations(sweeps, visit, settings);
+  if (next == axes.size()) return visit(settings);
+  for (const std::string& value : axes[next].values) {
+    settings[axes[next].name] = value;
+    combinations(axes, visit, settings);
   }
 }
 
-std::vector<Sweep> scene_sweeps(const Study& study) {
-  std::vector<Sweep> chosen;
-  for (const Sweep& sweep : study.sweeps)
-    if (sweep.of_scene()) chosen.push_back(sweep);
+std::vector<StudyAxis> scene_axes(const Study& study) {
+  std::vector<StudyAxis> chosen;
+  for (const StudyAxis& axis : study.axes)
+    if (axis.of_scene()) chosen.push_back(axis);
   return chosen;
 }
 
 /// The parameters to vary of one solver: those that it has and that its text does not fix.
-std::vector<Sweep> solver_sweeps(const Study& study, const std::string& text) {
+std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) {
   const SolverChoice choice = parse_solver(text);
-  std::vector<Sweep> chosen;
-  for (const Sweep& sweep : study.sweeps) {
+  std::vector<StudyAxis> chosen;
+  for (const StudyAxis& axis : study.axes) {
     const auto specs = choice.entry->params;
     const bool has = std::any_of(specs.begin(), specs.end(),
-                                 [&](const ParamSpec& spec) { return spec.name == sweep.name; });
-    const bool fixed = text.find(':' + sweep.name + '=') != std::string::npos ||
-                       text.find(',' + sweep.name + '=') != std::string::npos;
-    if (has && !fixed) chosen.push_back(sweep);
+                                 [&](const ParamSpec& spec) { return spec.name == axis.name; });
+    const bool fixed = text.find(':' + axis.name + '=') != std::string::npos ||
+                       text.find(',' + axis.name + '=') != std::string::npos;
+    if (has && !fixed) chosen.push_back(axis);
   }
   return chosen;
 }
 
-/// More than anybody waits for; a sweep of a thousand values too many is a slip.
+/// More than anybody waits for; an axis of a thousand values too many is a slip.
 constexpr int kMostCases = 100'000;
 
-double count(const std::vector<Sweep>& sweeps) {
+double count(const std::vector<StudyAxis>& axes) {
   double product = 1;
-  for (const Sweep& sweep : sweeps) product *= static_cast<double>(sweep.values.size());
+  for (const StudyAxis& axis : axes) product *= static_cast<double>(axis.values.size());
   return product;
 }
 
 /// Before any of them is made; exclusions and repetitions do not count.
 void require_few(const Study& study) {
   double of_solvers = 0;
-  for (const std::string& solver : study.solvers) of_solvers += count(solver_sweeps(study, solver));
+  for (const std::string& solver : study.solvers) of_solvers += count(solver_axes(study, solver));
   const double all =
-      static_cast<double>(study.scenes.size()) * count(scene_sweeps(study)) * of_solvers;
+      static_cast<double>(study.scenes.size()) * count(scene_axes(study)) * of_solvers;
   if (all > kMostCases)
     throw InputError(study.file.string() + ": " +
                      std::to_string(static_cast<long long>(std::min(all, 1e18))) +
@@ -82,9 +82,9 @@ bool excluded(const Study& study, const Settings& settings) {
 CaseSpec spec_of(const Study& study, const std::string& scene, const std::string& solver,
                  const Settings& of_scene, const Settings& of_solver) {
   CaseSpec spec{scene, study.settings, solver};
-  for (const Sweep& sweep : study.sweeps)
-    if (of_scene.contains(sweep.name))
-      spec.overrides.push_back(sweep.name + "=" + of_scene.at(sweep.name));
+  for (const StudyAxis& axis : study.axes)
+    if (of_scene.contains(axis.name))
+      spec.overrides.push_back(axis.name + "=" + of_scene.at(axis.name));
   for (const auto& [name, value] : of_solver)
     spec.solver += (spec.solver.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
   return spec;
@@ -108,9 +108,9 @@ std::vector<Case> cases_of(const Study& study) {
     }
   };
   for (const std::string& scene : study.scenes)
-    combinations(scene_sweeps(study), [&](const Settings& of_scene) {
+    combinations(scene_axes(study), [&](const Settings& of_scene) {
       for (const std::string& solver : study.solvers)
-        combinations(solver_sweeps(study, solver), [&](const Settings& of_solver) {
+        combinations(solver_axes(study, solver), [&](const Settings& of_solver) {
           Settings all = of_scene;
           all.insert(of_solver.begin(), of_solver.end());
           all["scene"] = scene;

@@ -70,9 +70,9 @@ CaseFrontier find_frontier(const FrontierQuestion& question, const Store& store,
   result.frontier = find_frontier(question.range, [&](const std::vector<double>& values) {
     std::vector<Case> cases;
     for (const double value : values) cases.push_back(maker.make(question.at(value)));
-    const Tally tally = run_cases(cases, store, session, options);
-    result.ran += tally.ran;
-    result.interrupted = result.interrupted || tally.interrupted;
+    const CampaignProgress campaign = run_cases(cases, store, session, options);
+    result.ran += campaign.ran;
+    result.interrupted = result.interrupted || campaign.interrupted;
     std::vector<Status> statuses;
     for (std::size_t i = 0; i < cases.size(); ++i) {
       const std::optional<Record> record = store.find(cases[i]);
@@ -113,14 +113,6 @@ std::optional<Prediction> predicted_frontier(const FrontierQuestion& question) {
   }
   result.value = range.whole ? low : (low + high) / 2;
   return result;
-}
-
-std::string describe(const Status& status) {
-  std::string text(to_string(status.kind));
-  if (!status.reason.empty()) text += " (" + status.reason + ")";
-  if (status.step >= 0) text += " at step " + std::to_string(status.step);
-  if (status.vertex >= 0) text += ", vertex " + std::to_string(status.vertex);
-  return text;
 }
 
 }  // namespace taut

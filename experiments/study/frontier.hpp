@@ -46,7 +46,4 @@ struct Prediction {
 /// Empty if there is no theory. Precondition: as of find_frontier.
 std::optional<Prediction> predicted_frontier(const FrontierQuestion&);
 
-/// "exploded (energy) at step 91, vertex 3".
-std::string describe(const Status&);
-
 }  // namespace taut

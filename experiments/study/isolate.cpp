@@ -38,9 +38,17 @@ std::vector<std::string> command(const Case& one, const fs::path& folder) {
   const auto program_of = one.choice.entry->program;
   const std::string program(program_of ? program_of(one.choice.params) : "");
   std::vector<std::string> words{sibling_program(program), "case",   one.spec.scene,
-                                 one.spec.solver,          "--into", folder};
+                                 one.spec.solver,          "--into", fs::absolute(folder)};
   for (const std::string& text : one.spec.overrides) words.insert(words.end(), {"--set", text});
   return words;
+}
+
+/// What the case wrote; its address is what this process says, never what the case claims.
+Record record_in(const fs::path& file, const Case& one) {
+  Record record = record_from_json(read_text(file), file.filename());
+  if (record.key != one.key)
+    throw InputError("case.json: the record belongs to another case: " + record.key);
+  return record;
 }
 
 std::string signal_name(int signal) {
@@ -66,7 +74,7 @@ Heartbeat::Heartbeat(const fs::path& path) {
 Heartbeat::~Heartbeat() { munmap(const_cast<int*>(step_), sizeof(int)); }
 
 int Heartbeat::last(const fs::path& path) {
-  int step = -1;
+  int step = kCannotWrite;
   std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(&step), sizeof step);
   return step;
 }
@@ -77,6 +85,7 @@ IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limit
       deadline_(std::chrono::steady_clock::now() +
                 std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                     std::chrono::duration<double>(5 * limits.seconds))),
+      bytes_(limits.bytes),
       process_(command(case_, folder_), {.errors_file = folder_ / "stderr.txt",
                                          .limits = {.cpu_seconds = limits.seconds,
                                                     .address_space = limits.bytes,
@@ -99,12 +108,16 @@ std::optional<Record> IsolatedCase::poll() {
 
 Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   using Kind = Status::Kind;
-  const int step = Heartbeat::last(folder_ / "heartbeat");
+  const int beat = Heartbeat::last(folder_ / "heartbeat"), step = std::max(beat, -1);
   const std::string said = last_line(folder_ / "stderr.txt");
   const auto failed = [&](Kind kind, const std::string& reason) {
     return unfinished(case_, {kind, reason, step, -1});
   };
   if (!end) return failed(Kind::timeout, "wall time");
+  // What is no property of the case leaves no record: it would be taken for the case's result.
+  if (end->exit_code == kCannotWrite && beat == Heartbeat::kCannotWrite)
+    throw InputError(said.empty() ? folder_.string() + ": cannot write: " + std::strerror(ENOSPC)
+                                  : said);  // on a full disk its words are lost too
   if (end->signal == SIGXCPU) return failed(Kind::timeout, "CPU time");
   if (end->signal == SIGKILL) return failed(Kind::oom, "killed by the system");
   if (end->signal != 0)
@@ -112,16 +125,13 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   switch (end->exit_code) {
     case 0:
       try {
-        return record_from_json(read_text(folder_ / "case.json"), "case.json");
+        return record_in(folder_ / "case.json", case_);
       } catch (const InputError& error) {
         return failed(Kind::error, error.what());
       }
     case kOutOfMemory:
-      return failed(Kind::oom, "out of memory");
-    // What is no property of the case leaves no record: it would be taken for the case's result.
-    case kCannotWrite:  // on a full disk its words are lost too
-      throw InputError(said.empty() ? folder_.string() + ": cannot write: " + std::strerror(ENOSPC)
-                                    : said);
+      return failed(Kind::oom, "more than the limit of " + std::to_string(bytes_ >> 20) +
+                                   " MB (taut run --memory raises it)");
     default:
       return failed(Kind::error,
                     said.empty() ? "exit code " + std::to_string(end->exit_code) : said);
@@ -146,6 +156,7 @@ int run_into(const Case& one, const fs::path& folder) try {
     write_durably(folder / "series.csv", to_csv(run.series));
     write_durably(folder / "case.json", to_json(run.record, 1) + "\n");
   });
+  if (!written) heartbeat->beat(Heartbeat::kCannotWrite);
   return written ? 0 : kCannotWrite;
 } catch (const std::bad_alloc&) {
   return kOutOfMemory;

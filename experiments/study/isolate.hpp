@@ -18,8 +18,8 @@ struct Limits {
 
 /// Exit code by which a case says that it ran out of memory.
 inline constexpr int kOutOfMemory = 77;
-/// Exit code by which a case says that its folder cannot be written: the campaign ends, for a full
-/// disk is no property of the case that meets it.
+/// Exit code by which a case says, with its heartbeat, that its folder cannot be written: the
+/// campaign ends, for a full disk is no property of the case that meets it.
 inline constexpr int kCannotWrite = 74;
 
 /// The step that a case has reached, in a file that outlives it: 4 bytes, mapped, so that reporting
@@ -31,7 +31,8 @@ class Heartbeat {
   Heartbeat(const Heartbeat&) = delete;
   Heartbeat& operator=(const Heartbeat&) = delete;
   void beat(int step) { *step_ = step; }
-  /// What the file says; -1: nothing yet.
+  static constexpr int kCannotWrite = -2;  ///< instead of a step: the folder cannot be written
+  /// What the file says; -1: nothing yet; kCannotWrite if there is no such file.
   static int last(const std::filesystem::path&);
 
  private:
@@ -61,6 +62,7 @@ class IsolatedCase {
   Case case_;
   std::filesystem::path folder_;
   std::chrono::steady_clock::time_point deadline_;
+  std::size_t bytes_;
   Process process_;
 };
 

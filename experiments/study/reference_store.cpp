@@ -1,6 +1,5 @@
 #include "experiments/study/reference_store.hpp"
 
-#include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -38,22 +37,21 @@ void write_reference(const Reference& reference, const std::filesystem::path& fo
 }
 
 Reference read_reference(const std::filesystem::path& path) {
-  try {
-    const Json json = parse_json(read_text(path));
-    if (json.at("schema") != kSchema) throw InputError(path.string() + ": unknown schema");
-    Reference reference{json.at("scene"),
-                        json.at("digest"),
-                        json.at("kind"),
-                        json.at("t"),
-                        json.at("derivation"),
-                        json.at("floor_m"),
+  return read_json(read_text(path), path.string(), [](const JsonReader& j) {
+    j.require_schema(kSchema);
+    Reference reference{j.at("scene").text(),
+                        j.at("digest").text(),
+                        j.at("kind").text(),
+                        j.at("t").number(),
+                        j.at("derivation").text(),
+                        j.at("floor_m").number(),
                         {}};
-    for (const Json& x : json.at("x"))
-      reference.x.emplace_back(x.at(0).get<double>(), x.at(1).get<double>(), x.at(2).get<double>());
+    for (const JsonReader& vertex : j.at("x").items()) {
+      const std::vector<JsonReader> x = vertex.items(3);
+      reference.x.emplace_back(x[0].number(), x[1].number(), x[2].number());
+    }
     return reference;
-  } catch (const Json::exception& error) {
-    throw InputError(path.string() + ": not a reference: " + error.what());
-  }
+  });
 }
 
 std::string reference_digest(const Scene& scene, const std::string& kind) {

@@ -25,6 +25,13 @@ int shard_of(const std::string& key, int count) {
   return static_cast<int>(number % static_cast<unsigned long>(count)) + 1;
 }
 
+ManifestEntry manifest_entry(const JsonReader& j) {
+  ManifestEntry one{j.at("key").text(), j.at("id").text(), j.at("shard").integer(1),
+                    j.at("shards").integer(1)};
+  if (!is_key(one.key)) j.at("key").fail("expected 64 hexadecimal digits");
+  return one;
+}
+
 int from_environment(const char* name, int fallback) {
   const char* text = std::getenv(name);
   return text ? std::atoi(text) : fallback;
@@ -58,19 +65,25 @@ Session::Session(const Store& store, const std::string& command, const std::vect
   make_folder(folder_);
   char host[256] = "";
   gethostname(host, sizeof host - 1);
-  const Json manifest{{"schema", kRecordSchema},  {"command", command},
-                      {"started", utc_stamp()},   {"host", host},
-                      {"toolchain", toolchain()}, {"shard", shard.index},
-                      {"shards", shard.count},    {"cases", cases.size()}};
-  write_durably(folder_ / "manifest.json", to_text(manifest, 1) + "\n");
-  std::string plan;
+  const Json session{{"schema", kRecordSchema},  {"command", command},
+                     {"started", utc_stamp()},   {"host", host},
+                     {"toolchain", toolchain()}, {"shard", shard.index},
+                     {"shards", shard.count},    {"cases", cases.size()}};
+  std::string manifest;
   for (const Case& one : cases)
-    plan += to_text(Json{{"key", one.key},
-                         {"id", one.id},
-                         {"shard", shard_of(one.key, shard.count)},
-                         {"shards", shard.count}}) +
-            "\n";
-  write_durably(folder_ / "plan.jsonl", plan);
+    manifest += to_text(Json{{"key", one.key},
+                             {"id", one.id},
+                             {"shard", shard_of(one.key, shard.count)},
+                             {"shards", shard.count}}) +
+                "\n";
+  try {
+    write_durably(folder_ / "session.json", to_text(session, 1) + "\n");
+    write_durably(folder_ / "manifest.jsonl", manifest);
+  } catch (const InputError&) {  // of a session that cannot be recorded nothing stays
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+    throw;
+  }
 }
 
 void Session::done(const Record& record) const {
@@ -79,21 +92,20 @@ void Session::done(const Record& record) const {
                                                       {"status", to_string(record.status.kind)}}));
 }
 
-std::vector<Planned> planned(const fs::path& root) {
-  std::map<std::string, Planned> all;
+std::vector<ManifestEntry> read_manifests(const fs::path& root) {
+  std::map<std::string, ManifestEntry> all;
   std::error_code none;
   for (const auto& session : fs::directory_iterator(root / "sessions", none)) {
-    if (!fs::exists(session.path() / "plan.jsonl")) continue;
-    std::istringstream lines(read_text(session.path() / "plan.jsonl"));
-    for (std::string line; std::getline(lines, line);) try {
-        const Json j = parse_json(line);
-        Planned one{j.at("key"), j.at("id"), j.at("shard"), j.at("shards")};
-        all.emplace(one.key, std::move(one));
-      } catch (const Json::exception& error) {
-        throw InputError((session.path() / "plan.jsonl").string() + ": " + error.what());
-      }
+    const fs::path file = session.path() / "manifest.jsonl";
+    if (!fs::exists(file)) continue;
+    std::istringstream lines(read_text(file));
+    int number = 0;
+    for (std::string line; std::getline(lines, line);) {
+      ManifestEntry one = read_json(line, file.string(), manifest_entry, ++number);
+      all.emplace(one.key, std::move(one));
+    }
   }
-  std::vector<Planned> list;
+  std::vector<ManifestEntry> list;
   for (auto& [key, one] : all) list.push_back(std::move(one));
   return list;
 }

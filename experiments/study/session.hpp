@@ -10,7 +10,7 @@
 
 namespace taut {
 
-/// Part i of n of a plan, by key, so that adding cases does not reshuffle the others.
+/// Part i of n of a list of cases, by key, so that adding cases does not reshuffle the others.
 struct Shard {
   int index = 1;  ///< 1 to count
   int count = 1;
@@ -21,9 +21,9 @@ struct Shard {
 };
 
 /// Who ran what and how far it came: a folder of the store that only this process writes.
-///     manifest.json   command, time, host, versions, shard
-///     plan.jsonl      every case of the plan, all shards: {"key", "id", "shard"}
-///     journal.jsonl   a line per case that is done: {"key", "id", "status"}
+///     session.json     command, time, host, versions, shard
+///     manifest.jsonl   every case, of all shards: {"key", "id", "shard", "shards"}
+///     journal.jsonl    a line per case that is done: {"key", "id", "status"}
 class Session {
  public:
   /// Throws InputError if the folder cannot be written.
@@ -35,13 +35,14 @@ class Session {
   std::filesystem::path folder_;
 };
 
-/// A line of a plan.
-struct Planned {
+/// A line of a manifest.
+struct ManifestEntry {
   std::string key, id;
   int shard = 1, shards = 1;
 };
 
-/// What the sessions of a results folder planned, each key once.
-std::vector<Planned> planned(const std::filesystem::path& root);
+/// What the sessions of a results folder were to run, each key once. Throws InputError with file
+/// and line.
+std::vector<ManifestEntry> read_manifests(const std::filesystem::path& root);
 
 }  // namespace taut

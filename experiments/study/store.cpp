@@ -35,12 +35,16 @@ Json seal_of(const fs::path& folder, const Record& record) {
 
 /// The record of an entry; throws if a part is not what its seal says.
 Record open_entry(const fs::path& folder, const std::string& key) {
-  const Json seal = parse_json(read_text(folder / "status.json"));
-  for (const auto& [part, digest] : seal.at("files").items())
-    if (sha256(read_text(folder / part)) != digest)
-      throw InputError(part + " does not match its digest");
+  read_json(read_text(folder / "status.json"), "status.json", [&](const JsonReader& seal) {
+    for (const auto& [part, digest] : seal.at("files").members()) {
+      if (std::ranges::find(kParts, part) == kParts.end()) digest.fail("is no part of an entry");
+      if (sha256(read_text(folder / part)) != digest.text())
+        throw InputError(part + " does not match its digest");
+    }
+    if (seal.at("key").text() != key) throw InputError("it belongs to another key");
+  });
   Record record = record_from_json(read_text(folder / "case.json"), "case.json");
-  if (record.key != key || seal.at("key") != key) throw InputError("it belongs to another key");
+  if (record.key != key) throw InputError("it belongs to another key");
   return record;
 }
 
@@ -114,33 +118,42 @@ fs::path Store::stage(const std::string& key) const {
 }
 
 Store::Commit Store::commit(const fs::path& staged, const Record& record) const {
+  std::error_code error;
+  for (const auto& left : fs::directory_iterator(staged))  // what else the case left there
+    if (std::ranges::find(kParts, left.path().filename()) == kParts.end())
+      fs::remove_all(left.path(), error);
   write_durably(staged / "case.json", to_json(record, 1) + "\n");
   write_durably(staged / "status.json", to_text(seal_of(staged, record), 1) + "\n");
   sync_folder(staged);
   const fs::path target = folder(record.key);
   make_folder(target.parent_path());
-  std::error_code error;
-  if (const std::optional<Record> old = find(record.key)) {
-    const bool same = result_digest(*old) == result_digest(record);
-    if (same || (old->status.is_result() && !record.status.is_result())) {
-      fs::remove_all(staged, error);
-      return Commit::same;
+  // Another process may commit the same case at any moment: then this one looks again.
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    if (const std::optional<Record> old = find(record.key)) {
+      const bool same = result_digest(*old) == result_digest(record);
+      if (same || (old->status.is_result() && !record.status.is_result())) {
+        fs::remove_all(staged, error);
+        return Commit::same;
+      }
+      if (old->status.is_result()) {
+        const fs::path place = root_ / "conflicts" / (record.key + "." + unique_suffix());
+        make_folder(place.parent_path());
+        fs::rename(staged, place, error);
+        if (error) throw InputError(place.string() + ": cannot create: " + error.message());
+        return Commit::conflict;
+      }
+      fs::rename(target, staged.string() + ".replaced", error);
     }
-    if (old->status.is_result()) {
-      const fs::path place = root_ / "conflicts" / (record.key + "." + unique_suffix());
-      make_folder(place.parent_path());
-      fs::rename(staged, place, error);
-      if (error) throw InputError(place.string() + ": cannot create: " + error.message());
-      return Commit::conflict;
+    fs::rename(staged, target, error);
+    std::error_code ignored;
+    fs::remove_all(staged.string() + ".replaced", ignored);
+    if (!error) {
+      sync_folder(target.parent_path());
+      return Commit::stored;
     }
-    fs::rename(target, staged.string() + ".replaced", error);
+    if (error != std::errc::directory_not_empty && error != std::errc::file_exists) break;
   }
-  fs::rename(staged, target, error);
-  if (error) throw InputError(target.string() + ": cannot create: " + error.message());
-  sync_folder(target.parent_path());
-  std::error_code ignored;
-  fs::remove_all(staged.string() + ".replaced", ignored);
-  return Commit::stored;
+  throw InputError(target.string() + ": cannot create: " + error.message());
 }
 
 std::vector<std::string> Store::keys() const {

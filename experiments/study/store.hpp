@@ -21,7 +21,7 @@ namespace taut {
 ///     <root>/tmp/<key>.<host>.<pid>.<rand>/   an entry that is being written
 ///     <root>/corrupt/<key>.<rand>/            entries that did not match their digests
 ///     <root>/conflicts/<key>.<rand>/          another result under a key that has one
-///     <root>/sessions/<utc>-<host>.<pid>.<rand>/   who ran what: lab/session.hpp
+///     <root>/sessions/<utc>-<host>.<pid>.<rand>/   who ran what: session.hpp
 class Store {
  public:
   /// Says what it had to do ("corrupt entry ... set aside"); default: stderr.

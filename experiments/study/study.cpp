@@ -33,6 +33,9 @@ std::string text_of(const Value& value, bool toml) {
         items += (items.empty() ? "" : ", ") + text_of(item, toml);
       return "[" + items + "]";
     }
+    case Value::Kind::integer:  // 100000 and not 1e+05
+      if (std::abs(value.number) < 1e15) return std::to_string(std::lround(value.number));
+      return shortest(value.number);
     default:
       return shortest(value.number);
   }
@@ -44,6 +47,19 @@ bool has_param(const std::vector<SolverChoice>& solvers, const std::string& name
     for (const ParamSpec& spec : choice.entry->params)
       if (spec.name == name && (!whole || spec.kind == ParamSpec::Kind::integer)) return true;
   return false;
+}
+
+/// Texts of a study become parts of commands, scripts and file names: they hold no line breaks.
+void refuse_control_characters(Diagnostics& diagnostics, const Value& value) {
+  const auto check = [&](const SourceLocation& place, const std::string& text) {
+    if (std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+      diagnostics.report(place,
+                         "a text of a study holds no line breaks, tabs or other control "
+                         "characters");
+  };
+  check(value.place, value.string);
+  for (const Key& key : value.keys) check(key.place, key.text);
+  for (const Value& item : value.items) refuse_control_characters(diagnostics, item);
 }
 
 /// Reads one document into a Study; what is wrong goes to the diagnostics.
@@ -69,7 +85,7 @@ class StudyReader {
     strings(section, "scenes", study_.scenes, find_scene);
     if (strings(section, "solvers", study_.solvers, parse_solver)) remember_solvers();
     strings(section, "set", study_.settings, [](const std::string&) {});
-    if (const Value* sweeps = section.table("sweep")) read_sweeps(*sweeps);
+    if (const Value* axes = section.table("axes")) read_axes(*axes);
     if (const Value* list = section.find("exclude")) read_exclusions(section, *list);
   }
 
@@ -87,18 +103,23 @@ class StudyReader {
         diagnostics_.report(item.place, "'" + key + "' holds texts, not " + describe(item));
         continue;
       }
-      guarded(item.place, [&] { check(item.string); });
+      guarded(item, [&] { check(item.string); });
       into.push_back(item.string);
     }
     return true;
   }
 
-  /// InputErrors of `action` stand at `place`.
-  bool guarded(const SourceLocation& place, const std::function<void()>& action) try {
+  /// InputErrors of `action` stand at the value; a column in a text counts from its quote.
+  bool guarded(const Value& value, const std::function<void()>& action) try {
     action();
     return true;
   } catch (const InputError& error) {
-    for (const Diagnostic& d : error.diagnostics()) diagnostics_.report(place, d.text());
+    for (const Diagnostic& d : error.diagnostics()) {
+      const bool of_argument = d.line == 0 && d.column > 0;
+      SourceLocation place = value.place;
+      if (of_argument && value.is_string()) place.column += d.column;
+      diagnostics_.report(place, of_argument ? d.message : d.text());
+    }
     return false;
   }
 
@@ -110,41 +131,41 @@ class StudyReader {
       }
   }
 
-  void read_sweeps(const Value& table) {
+  void read_axes(const Value& table) {
     for (std::size_t i = 0; i < table.items.size(); ++i) {
-      Sweep sweep{table.keys[i].text, {}};
+      StudyAxis axis{table.keys[i].text, {}};
       const Value& value = table.items[i];
-      if (!sweep.of_scene() && value.is_table() && !value.find("from")) {
+      if (!axis.of_scene() && value.is_table() && !value.find("from")) {
         for (std::size_t k = 0; k < value.items.size(); ++k)  // time.dt without quotes: a table
-          read_sweep({sweep.name + "." + value.keys[k].text, {}}, value.keys[k], value.items[k]);
+          read_axis({axis.name + "." + value.keys[k].text, {}}, value.keys[k], value.items[k]);
         continue;
       }
-      read_sweep(std::move(sweep), table.keys[i], value);
+      read_axis(std::move(axis), table.keys[i], value);
     }
   }
 
-  void read_sweep(Sweep sweep, const Key& key, const Value& value) {
-    if (!sweep.of_scene() && !choices_.empty() && !has_param(choices_, sweep.name, false)) {
-      diagnostics_.report(key.place, "no solver of this study has a parameter '" + sweep.name +
-                                         "'" + suggestion(sweep.name, param_names()) +
+  void read_axis(StudyAxis axis, const Key& key, const Value& value) {
+    if (!axis.of_scene() && !choices_.empty() && !has_param(choices_, axis.name, false)) {
+      diagnostics_.report(key.place, "no solver of this study has a parameter '" + axis.name + "'" +
+                                         suggestion(axis.name, param_names()) +
                                          " (a scene key has a dot, as \"time.dt\")");
       return;
     }
     if (value.is_table())
-      sweep.values = range(value, has_param(choices_, sweep.name, true));
+      axis.values = range(value, has_param(choices_, axis.name, true));
     else if (value.is_array())
-      for (const Value& item : value.items) sweep.values.push_back(text_of(item, sweep.of_scene()));
-    if (sweep.values.empty()) {
+      for (const Value& item : value.items) axis.values.push_back(text_of(item, axis.of_scene()));
+    if (axis.values.empty()) {
       if (!value.is_table())
-        diagnostics_.report(value.place, "'" + sweep.name +
+        diagnostics_.report(value.place, "'" + axis.name +
                                              "' must be a list of values or a range " +
                                              "{ from, to, steps, scale }");
       return;
     }
-    if (!sweep.of_scene()) check_values(sweep, value);
-    const auto same = [&](const Sweep& s) { return s.name == sweep.name; };
-    std::erase_if(study_.sweeps, same);
-    study_.sweeps.push_back(std::move(sweep));
+    if (!axis.of_scene()) check_values(axis, value);
+    const auto same = [&](const StudyAxis& s) { return s.name == axis.name; };
+    std::erase_if(study_.axes, same);
+    study_.axes.push_back(std::move(axis));
   }
 
   std::vector<std::string> range(const Value& table, bool whole) {
@@ -166,19 +187,18 @@ class StudyReader {
       const double s = static_cast<double>(i) / (count - 1);
       double value = log ? *from * std::pow(*to / *from, s) : *from + s * (*to - *from);
       if (i == count - 1) value = *to;
-      std::string text = shortest(whole ? std::round(value) : value);
+      std::string text = whole ? std::to_string(std::lround(value)) : shortest(value);
       if (values.empty() || values.back() != text) values.push_back(std::move(text));
     }
     return values;
   }
 
-  void check_values(const Sweep& sweep, const Value& value) {
+  void check_values(const StudyAxis& axis, const Value& value) {
     for (const SolverChoice& choice : choices_)
-      if (has_param({choice}, sweep.name, false))
-        for (std::size_t i = 0; i < sweep.values.size(); ++i)
-          if (!guarded(value.is_array() ? value.items[i].place : value.place, [&] {
-                Params(choice.entry->name, choice.entry->params,
-                       sweep.name + "=" + sweep.values[i]);
+      if (has_param({choice}, axis.name, false))
+        for (std::size_t i = 0; i < axis.values.size(); ++i)
+          if (!guarded(value.is_array() ? value.items[i] : value, [&] {
+                Params(choice.entry->name, choice.entry->params, axis.name + "=" + axis.values[i]);
               }))
             return;
   }
@@ -201,7 +221,7 @@ class StudyReader {
         if (std::ranges::count(settings(), key) == 0)
           diagnostics_.report(item.keys[i].place, "nothing that this study varies is called '" +
                                                       key + "'" + suggestion(key, settings()) +
-                                                      " (scene, solver, or a sweep's name)");
+                                                      " (scene, solver, or an axis's name)");
         std::vector<std::string>& values = exclusion.when[key];
         if (item.items[i].is_array() && !toml)
           for (const Value& v : item.items[i].items) values.push_back(text_of(v, toml));
@@ -218,7 +238,7 @@ class StudyReader {
   /// What an exclusion may name.
   std::vector<std::string> settings() const {
     std::vector<std::string> names{"scene", "solver"};
-    for (const Sweep& sweep : study_.sweeps) names.push_back(sweep.name);
+    for (const StudyAxis& axis : study_.axes) names.push_back(axis.name);
     return names;
   }
 
@@ -262,12 +282,20 @@ class StudyReader {
 
 }  // namespace
 
+std::vector<std::string> shipped_maps() {
+  std::vector<std::string> names = shipped("studies");
+  std::erase_if(names, [](const std::string& name) { return !name.starts_with("map-"); });
+  return names;
+}
+
 Study load_study(const std::string& name_or_path, const std::string& preset) {
   Study study;
   study.file = find_study(name_or_path);
   study.name = study.file.stem();
   const Document document = read_document(study.file, {});
   Diagnostics diagnostics(document);
+  refuse_control_characters(diagnostics, document.root);
+  diagnostics.throw_if_any();
   StudyReader(diagnostics, study).read(document.root, preset);
   diagnostics.throw_if_any();
   return study;

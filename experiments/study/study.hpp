@@ -11,7 +11,7 @@ namespace taut {
 
 /// A setting that a study varies: a scene key ("time.dt") if its name has a dot, else a parameter
 /// of those solvers that have it.
-struct Sweep {
+struct StudyAxis {
   std::string name;
   std::vector<std::string> values;  ///< as typed: TOML for scene keys ("\"1/64\"", "[16, 16]")
   bool of_scene() const { return name.find('.') != std::string::npos; }
@@ -19,7 +19,7 @@ struct Sweep {
 
 /// Cases that a study leaves out: those that match every setting that is named.
 struct Exclusion {
-  /// By "scene" (name), "solver" (entry's name) or a sweep's name: any of these values.
+  /// By "scene" (name), "solver" (entry's name) or an axis's name: any of these values.
   std::map<std::string, std::vector<std::string>> when;
 };
 
@@ -29,7 +29,7 @@ struct Plot {
   std::map<std::string, std::string> options;  ///< "x", "y", "title", ...: numbers in shortest form
 };
 
-/// A question and the cases that answer it: scenes x solvers x sweeps. A file of
+/// A question and the cases that answer it: scenes x solvers x axes. A file of
 /// experiments/studies or of the user; experiments/studies/README.md describes every key.
 struct Study {
   std::string name;      ///< file stem
@@ -40,7 +40,7 @@ struct Study {
   std::vector<std::string> scenes;    ///< names or paths
   std::vector<std::string> solvers;   ///< "name:key=value,..."
   std::vector<std::string> settings;  ///< scene overrides of every case
-  std::vector<Sweep> sweeps;
+  std::vector<StudyAxis> axes;
   std::vector<Exclusion> exclusions;
   std::vector<Plot> plots;
 };
@@ -48,6 +48,9 @@ struct Study {
 /// Reads a study by name or path; `preset` replaces what it names, and "" or a preset that this
 /// study lacks replaces nothing. Throws InputError with every diagnostic at once.
 Study load_study(const std::string& name_or_path, const std::string& preset = "");
+
+/// Names of the shipped studies of where solvers break ("map-..."), sorted.
+std::vector<std::string> shipped_maps();
 
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
 /// wrong with any of the scenes, or if it would be more than 100 000.

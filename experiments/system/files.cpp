@@ -8,8 +8,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <random>
 
 #include "core/model/input_error.hpp"
@@ -98,12 +96,6 @@ Scratch::Scratch() : path_(new_scratch_folder()), tie_(path_) {}
 Scratch::~Scratch() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
-}
-
-std::string read_text(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(path.string() + ": cannot read");
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 void write_file(const fs::path& path, std::string_view bytes) { replace_file(path, bytes, false); }

@@ -4,12 +4,10 @@
 #include <string>
 #include <string_view>
 
+#include "core/io/text_file.hpp"
 #include "experiments/system/signals.hpp"
 
 namespace taut {
-
-/// Everything in a file; throws InputError if it cannot be read.
-std::string read_text(const std::filesystem::path&);
 
 /// Writes a file beside the old one and renames it: nobody ever sees half of it, and the old one
 /// stays if this fails. A device or a pipe is written to as it is. Throws InputError with the

@@ -1,5 +1,9 @@
 #include "experiments/system/json.hpp"
 
+#include <cmath>
+
+#include "core/model/input_error.hpp"
+
 namespace taut {
 
 std::string to_text(const Json& json, int indent) {
@@ -9,5 +13,107 @@ std::string to_text(const Json& json, int indent) {
 Json parse_json(std::string_view text) { return Json::parse(text); }
 
 Json try_parse_json(std::string_view text) { return Json::parse(text, nullptr, false); }
+
+Json parse_json_of(std::string_view text, const std::string& file, int line) try {
+  return Json::parse(text);
+} catch (const Json::exception& error) {
+  throw InputError({{file, line, 0, std::string("is not JSON: ") + error.what()}});
+}
+
+void JsonReader::fail(const std::string& why) const {
+  throw InputError({{file_, line_, 0, (path_.empty() ? "" : path_ + ": ") + why}});
+}
+
+JsonReader JsonReader::part(const Json& json, const std::string& step) const {
+  JsonReader reader(json, file_, line_);
+  reader.path_ = path_ + (path_.empty() && step.front() == '.' ? step.substr(1) : step);
+  return reader;
+}
+
+std::optional<JsonReader> JsonReader::find(const char* key) const {
+  if (!json_->is_object()) fail("expected an object");
+  const auto found = json_->find(key);
+  if (found == json_->end()) return {};
+  return part(*found, std::string(".") + key);
+}
+
+JsonReader JsonReader::at(const char* key) const {
+  auto found = find(key);
+  if (!found) fail("has no '" + std::string(key) + "'");
+  return *std::move(found);
+}
+
+std::vector<JsonReader> JsonReader::items() const {
+  if (!json_->is_array()) fail("expected an array");
+  std::vector<JsonReader> all;
+  for (const Json& item : *json_) all.push_back(part(item, "[" + std::to_string(all.size()) + "]"));
+  return all;
+}
+
+std::vector<JsonReader> JsonReader::items(std::size_t count) const {
+  std::vector<JsonReader> all = items();
+  if (all.size() != count)
+    fail("has " + std::to_string(all.size()) + " items, not " + std::to_string(count));
+  return all;
+}
+
+std::vector<std::pair<std::string, JsonReader>> JsonReader::members() const {
+  if (!json_->is_object()) fail("expected an object");
+  std::vector<std::pair<std::string, JsonReader>> all;
+  for (const auto& [key, value] : json_->items()) all.emplace_back(key, part(value, "." + key));
+  return all;
+}
+
+std::string JsonReader::text() const {
+  if (!json_->is_string()) fail("expected a text");
+  return json_->get<std::string>();
+}
+
+bool JsonReader::flag() const {
+  if (!json_->is_boolean()) fail("expected true or false");
+  return json_->get<bool>();
+}
+
+double JsonReader::number() const {
+  if (!json_->is_number()) fail("expected a number");
+  const auto value = json_->get<double>();
+  if (!std::isfinite(value)) fail("expected a finite number");
+  return value;
+}
+
+double JsonReader::number_or_null() const {
+  return json_->is_null() ? std::numeric_limits<double>::quiet_NaN() : number();
+}
+
+int JsonReader::integer(int least, int most) const {
+  const double value = number();
+  if (value != std::floor(value) || value < least || value > most)
+    fail("expected a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+  return static_cast<int>(value);
+}
+
+std::size_t JsonReader::count() const {
+  const double value = number();
+  if (value != std::floor(value) || value < 0 || value > 9007199254740992.0)
+    fail("expected a count");
+  return static_cast<std::size_t>(value);
+}
+
+std::vector<std::string> JsonReader::texts() const {
+  std::vector<std::string> all;
+  for (const JsonReader& item : items()) all.push_back(item.text());
+  return all;
+}
+
+std::vector<double> JsonReader::numbers() const {
+  std::vector<double> all;
+  for (const JsonReader& item : items()) all.push_back(item.number());
+  return all;
+}
+
+void JsonReader::require_schema(const Json& schema) const {
+  if (const JsonReader found = at("schema"); *found.json_ != schema)
+    found.fail("is " + to_text(*found.json_) + "; this program reads " + to_text(schema));
+}
 
 }  // namespace taut

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace taut {
 
@@ -16,5 +20,50 @@ std::string to_text(const Json&, int indent = -1);
 Json parse_json(std::string_view);
 /// is_discarded() if the text is not JSON.
 Json try_parse_json(std::string_view);
+
+/// A value of a JSON text that a program wrote and this one reads back. Whatever is not there or of
+/// another type is an InputError with file, line and the place within the text ("scenes[0].cases").
+class JsonReader {
+ public:
+  JsonReader(const Json& json, std::string file, int line = 0)
+      : json_(&json), file_(std::move(file)), line_(line) {}
+
+  JsonReader at(const char* key) const;  ///< of an object that has it
+  std::optional<JsonReader> find(const char* key) const;
+  std::vector<JsonReader> items() const;  ///< of an array
+  /// `count` items; throws if it has another number of them.
+  std::vector<JsonReader> items(std::size_t count) const;
+  std::vector<std::pair<std::string, JsonReader>> members() const;  ///< of an object
+
+  std::string text() const;
+  bool flag() const;
+  double number() const;          ///< finite
+  double number_or_null() const;  ///< null is NaN
+  /// A whole number within the bounds.
+  int integer(int least = std::numeric_limits<int>::min(),
+              int most = std::numeric_limits<int>::max()) const;
+  std::size_t count() const;  ///< a whole number from 0 to 2^53
+  std::vector<std::string> texts() const;
+  std::vector<double> numbers() const;
+  /// Throws unless the value of `schema` is this one.
+  void require_schema(const Json& schema) const;
+  [[noreturn]] void fail(const std::string& why) const;
+
+ private:
+  JsonReader part(const Json& json, const std::string& step) const;
+  const Json* json_;
+  std::string file_, path_;
+  int line_;
+};
+
+/// The parsed text; throws InputError that names the file.
+Json parse_json_of(std::string_view text, const std::string& file, int line = 0);
+
+/// Parses a text of that file and gives what `read` makes of its root. Throws InputError.
+template <class Read>
+auto read_json(std::string_view text, const std::string& file, Read read, int line = 0) {
+  const Json json = parse_json_of(text, file, line);
+  return read(JsonReader(json, file, line));
+}
 
 }  // namespace taut

@@ -233,10 +233,10 @@ bool Process::read_more(double seconds) {
   }
 }
 
-bool Process::read_line(std::string& line) {
+bool Process::read_line(std::string& line, double seconds) {
   std::size_t end;
   while ((end = buffer_.find('\n')) == buffer_.npos)
-    if (!read_more(-1)) return false;
+    if (!read_more(seconds)) return false;
   line = buffer_.substr(0, end);
   buffer_.erase(0, end + 1);
   return true;

@@ -58,8 +58,9 @@ class Process {
   /// To its standard input; false once it no longer reads (never a SIGPIPE).
   bool write(std::string_view bytes);
   void close_input();
-  /// A line of its output without the line feed; false: it ended first.
-  bool read_line(std::string&);
+  /// A line of its output without the line feed; false: it ended first, or so many seconds passed
+  /// without more of it (< 0: no limit).
+  bool read_line(std::string&, double seconds = -1);
   /// Its output to the end; what came by then if that takes longer than so many seconds (< 0: no
   /// limit).
   std::string read_all(double seconds = -1);

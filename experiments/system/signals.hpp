@@ -11,6 +11,9 @@ namespace taut {
 
 inline constexpr int kInterruptedExit = 130;
 
+/// Thrown by work that a GracefulStop ended early and that has nothing whole to give.
+struct Interrupted {};
+
 /// While one lives, the first signal only sets requested(); a second one ends the program.
 class GracefulStop {
  public:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/json.hpp"
 
@@ -18,33 +17,66 @@ Interval scaled(const Interval& i, double factor) {
 }
 
 Json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
-Interval interval_of(const Json& j) { return {j.at(0), j.at(1), j.at(2)}; }
+
+Interval interval_of(const JsonReader& j) {
+  const std::vector<JsonReader> ends = j.items(3);
+  return {ends[0].number_or_null(), ends[1].number_or_null(), ends[2].number_or_null()};
+}
+
+BenchedCase case_of(const JsonReader& j) {
+  BenchedCase benched{record_of(j.at("record")), {}};
+  benched.timing = {.spec = benched.record.spec,
+                    .samples = j.at("cpu_seconds_per_step").numbers(),
+                    .wall = j.at("wall_seconds_per_step").numbers(),
+                    .peak_bytes = j.at("peak_bytes").count(),
+                    .failure = j.at("failure").text()};
+  const Timing& timing = benched.timing;
+  for (const auto* seconds : {&timing.samples, &timing.wall})
+    for (const double value : *seconds)
+      if (!(value > 0)) j.fail("expected times greater than 0");
+  if (timing.failure.empty() && (timing.samples.empty() || timing.wall.empty()))
+    j.fail("has neither times nor a failure");
+  return benched;
+}
+
+BenchSession session_of(const JsonReader& j) {
+  j.require_schema(kBenchSchema);
+  BenchSession session{j.at("study").text(), j.at("machine").text(), {}};
+  for (const JsonReader& one : j.at("scenes").items()) {
+    SceneBench scene{one.at("scene").text(), interval_of(one.at("control")), {}};
+    for (const JsonReader& c : one.at("cases").items()) scene.cases.push_back(case_of(c));
+    session.scenes.push_back(std::move(scene));
+  }
+  return session;
+}
 
 }  // namespace
 
-bool BenchedCase::sound() const {
-  return timing.failure.empty() && !timing.samples.empty() &&
-         (record.status.kind == Status::Kind::ok || record.status.kind == Status::Kind::unsettled);
+bool BenchedCase::stable() const {
+  return timing.failure.empty() && !timing.samples.empty() && completed(record.status);
 }
 
 Interval BenchedCase::cost() const {
   return scaled(bootstrap_median(timing.samples), 1 / record.dt);
 }
 
-std::vector<Offer> SceneBench::offers(const std::string& metric) const {
-  std::vector<Offer> offers;
+std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
+  std::vector<Candidate> all;
   for (const BenchedCase& c : cases) {
     const auto value = c.record.values.find(metric);
-    const double error = value == c.record.values.end() ? std::nan("") : value->second;
-    const std::string setting = c.record.spec.solver;
-    offers.push_back({c.record.solver, setting, c.cost(), error, !c.sound()});
+    const double error = value == c.record.values.end() ? std::nan("") : std::abs(value->second);
+    std::string failure = c.timing.failure;
+    if (failure.empty() && !c.stable()) failure = describe(c.record.status);
+    all.push_back({c.record.solver, c.record.spec.solver, c.cost(), error, failure});
   }
-  return offers;
+  return all;
 }
 
 std::optional<Interval> SceneBench::ratio(std::size_t i, std::size_t j) const {
   const BenchedCase &a = cases[i], &b = cases[j];
   if (!a.timing.failure.empty() || !b.timing.failure.empty()) return {};
+  const std::size_t samples = a.timing.samples.size();
+  if (samples != b.timing.samples.size() || samples % 2 != 0) return {};  // not of one session
   return scaled(interleaved_ratio(a.timing.samples, b.timing.samples), b.record.dt / a.record.dt);
 }
 
@@ -54,18 +86,6 @@ std::vector<std::string> solvers_of(const SceneBench& bench) {
     if (std::find(names.begin(), names.end(), c.record.solver) == names.end())
       names.push_back(c.record.solver);
   return names;
-}
-
-std::vector<Reached> equal_error(const SceneBench& bench, const std::string& metric, double level) {
-  const std::vector<Offer> offers = bench.offers(metric);
-  const std::optional<std::size_t> best = cheapest_within(offers, "", level);
-  std::vector<Reached> row;
-  for (const std::string& solver : solvers_of(bench)) {
-    Reached reached{solver, level, cheapest_within(offers, solver, level), {}};
-    if (reached.at && best) reached.times = bench.ratio(*reached.at, *best);
-    row.push_back(reached);
-  }
-  return row;
 }
 
 std::vector<Record> BenchSession::records() const {
@@ -97,27 +117,8 @@ std::string to_json(const BenchSession& session) {
   return to_text(all, 1) + "\n";
 }
 
-BenchSession bench_from_json(std::string_view text, const std::string& where) try {
-  const auto all = parse_json(text);
-  if (all.at("schema") != kBenchSchema)
-    throw InputError(where + ": not a bench of schema 2; run `taut bench` again");
-  BenchSession session{all.at("study"), all.at("machine"), {}};
-  for (const auto& one : all.at("scenes")) {
-    SceneBench scene{one.at("scene"), interval_of(one.at("control")), {}};
-    for (const auto& c : one.at("cases")) {
-      BenchedCase benched{record_from_json(to_text(c.at("record")), where), {}};
-      benched.timing = {.spec = benched.record.spec,
-                        .samples = c.at("cpu_seconds_per_step"),
-                        .wall = c.at("wall_seconds_per_step"),
-                        .peak_bytes = c.at("peak_bytes"),
-                        .failure = c.at("failure")};
-      scene.cases.push_back(std::move(benched));
-    }
-    session.scenes.push_back(std::move(scene));
-  }
-  return session;
-} catch (const Json::exception& error) {
-  throw InputError(where + ": damaged bench: " + error.what());
+BenchSession bench_from_json(std::string_view text, const std::string& where) {
+  return read_json(text, where, session_of);
 }
 
 std::filesystem::path bench_file(const std::filesystem::path& results, const std::string& study) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "experiments/case/record.hpp"
+#include "experiments/timing/candidate.hpp"
 #include "experiments/timing/timing.hpp"
-#include "experiments/timing/trade.hpp"
 
 namespace taut {
 
@@ -19,7 +19,7 @@ struct BenchedCase {
   /// CPU seconds per simulated second, with its 95 % interval over the samples.
   Interval cost() const;
   /// Whether cost and errors count: no failure, no explosion, at least one sample.
-  bool sound() const;
+  bool stable() const;
 };
 
 /// All settings of all solvers on one scene, timed in one interleaved session.
@@ -28,9 +28,8 @@ struct SceneBench {
   Interval control;  ///< the first case against itself: how far apart the same code strays here
   std::vector<BenchedCase> cases;
 
-  /// What the cases offer for the metric value `metric`; same order. An explosion or a failure is
-  /// no offer.
-  std::vector<Offer> offers(const std::string& metric) const;
+  /// The cases by their error in the metric's value; same order.
+  std::vector<Candidate> candidates(const std::string& metric) const;
   /// Cost of case i over case j per simulated second, from their interleaved samples; nothing if
   /// either failed.
   std::optional<Interval> ratio(std::size_t i, std::size_t j) const;
@@ -46,16 +45,6 @@ struct BenchSession {
   /// "wall.per_step" [s], "memory.peak" [bytes].
   std::vector<Record> records() const;
 };
-
-/// Cost of reaching a level of error with the cheapest setting, per solver (a row of the
-/// equal-error table).
-struct Reached {
-  std::string solver;
-  double level = 0;
-  std::optional<std::size_t> at;  ///< index of the case; nothing: never reached
-  std::optional<Interval> times;  ///< cost over that of the cheapest solver at this level
-};
-std::vector<Reached> equal_error(const SceneBench&, const std::string& metric, double level);
 
 /// Names of the solvers in a bench, in order of appearance.
 std::vector<std::string> solvers_of(const SceneBench&);

@@ -11,12 +11,12 @@ std::string size_of(const Case& one) {
   return std::to_string(one.scene->mesh.size()) + " vertices";
 }
 
-/// A power law through at least three sound cases.
+/// A power law through at least three stable cases.
 std::optional<PowerLaw> fit(const std::vector<BenchedCase>& cases,
                             const std::function<double(const BenchedCase&)>& value) {
   std::vector<double> x, y;
   for (const BenchedCase& c : cases)
-    if (c.sound() && value(c) > 0) x.push_back(c.record.vertices), y.push_back(value(c));
+    if (c.stable() && value(c) > 0) x.push_back(c.record.vertices), y.push_back(value(c));
   if (x.size() < 3) return {};
   return fit_power_law(x, y);
 }
@@ -37,7 +37,7 @@ void measure(ScalingLine& line, const std::vector<const Case*>& cases, double li
     Measured measured = measure(*one);
     seconds = std::max(measured.seconds, seconds);
     vertices = size;
-    if (!measured.benched.sound())
+    if (!measured.benched.stable())
       line.skipped.push_back(size_of(*one) + ": " +
                              (measured.benched.timing.failure.empty()
                                   ? std::string(to_string(measured.benched.record.status.kind))

@@ -82,17 +82,18 @@ using Values = std::map<std::string, std::string>;
 
 class KnobSearch {
  public:
-  KnobSearch(const std::string& solver, const Wish& wish, const Try& run, std::vector<Offer> known)
-      : solver_(solver), wish_(wish), run_(run), knobs_(solver), known_(std::move(known)) {}
+  KnobSearch(const std::string& solver, const Target& target, const Evaluation& run,
+             std::vector<Candidate> known)
+      : solver_(solver), target_(target), run_(run), knobs_(solver), known_(std::move(known)) {}
 
-  std::vector<Offer> run() {
+  std::vector<Candidate> run() {
     const Columns columns = knobs_.columns();
     int start = 1, idle = 0;
     for (const std::string& value : columns.values) {
       Values values;
       for (const std::string& knob : columns.knobs) values[knob] = value;
       const auto before = best_;
-      if (wish_.error)
+      if (target_.error)
         start = columns.sweeps ? std::max(1, fewest(values, start) / 2) : (fewest(values, 1), 1);
       else
         most(values);
@@ -100,8 +101,8 @@ class KnobSearch {
       if (over_ || (idle >= 2 && (best_ || columns.sweeps == false))) break;
       if (columns.sweeps && hopeless_) break;
     }
-    if (wish_.error) bisect();
-    if (wish_.error && columns.sweeps) bisect_sweeps();
+    if (target_.error) bisect();
+    if (target_.error && columns.sweeps) bisect_sweeps();
     if (worth_more()) alternatives();
     return tried_;
   }
@@ -114,31 +115,31 @@ class KnobSearch {
     return all;
   }
 
-  /// The offer at these values and substeps, run at most once; nullptr when time is up.
-  const Offer* attempt(Values values, int substeps) {
+  /// The candidate at these values and substeps, run at most once; nullptr when time is up.
+  const Candidate* attempt(Values values, int substeps) {
     if (knobs_.has_substeps()) values[knobs_.substeps()] = std::to_string(substeps);
     const std::string setting = text(values);
     if (const auto at = index_.find(setting); at != index_.end()) return &tried_[at->second];
     if (over_) return nullptr;
-    const std::optional<Offer> offer = run_(setting);
-    if (!offer) {
+    const std::optional<Candidate> candidate = run_(setting);
+    if (!candidate) {
       over_ = true;
       return nullptr;
     }
     index_[setting] = tried_.size();
-    tried_.push_back(*offer);
-    if (wish_.grants(*offer) && (!best_ || wish_.prefers(*offer, tried_[*best_]))) {
+    tried_.push_back(*candidate);
+    if (target_.meets(*candidate) && (!best_ || target_.prefers(*candidate, tried_[*best_]))) {
       best_ = tried_.size() - 1;
       best_values_ = values, best_substeps_ = substeps;
     }
-    if (wish_.grants(*offer)) granted_.push_back({offer->cost.mid, values, substeps});
+    if (target_.meets(*candidate)) met_.push_back({candidate->cost.mid, values, substeps});
     return &tried_.back();
   }
 
-  double least(const std::vector<Offer>& offers) const {
+  double least(const std::vector<Candidate>& candidates) const {
     double cost = std::numeric_limits<double>::infinity();
-    for (const Offer& o : offers)
-      if (wish_.grants(o)) cost = std::min(cost, o.cost.mid);
+    for (const Candidate& o : candidates)
+      if (target_.meets(o)) cost = std::min(cost, o.cost.mid);
     return cost;
   }
 
@@ -151,24 +152,24 @@ class KnobSearch {
   int fewest(const Values& values, int from) {
     int n = from;
     hopeless_ = false;
-    const Offer* offer = attempt(values, n);
-    if (!offer) return n;
-    if (wish_.grants(*offer)) {
-      while (n > 1 && (offer = attempt(values, n / 2)) && wish_.grants(*offer)) n /= 2;
+    const Candidate* candidate = attempt(values, n);
+    if (!candidate) return n;
+    if (target_.meets(*candidate)) {
+      while (n > 1 && (candidate = attempt(values, n / 2)) && target_.meets(*candidate)) n /= 2;
       return n;
     }
-    double last = offer->error;
+    double last = candidate->error;
     for (int stuck = 0; stuck < 3 && n < kMostSubsteps && knobs_.has_substeps();) {
-      if (2 * offer->cost.mid > bar()) {
+      if (2 * candidate->cost.mid > bar()) {
         hopeless_ = n == from;  // not even the start of the next column can be cheaper
         return n;
       }
       n *= 2;
-      offer = attempt(values, n);
-      if (!offer || wish_.grants(*offer)) return n;
+      candidate = attempt(values, n);
+      if (!candidate || target_.meets(*candidate)) return n;
       // Explosions have no error; rounding is a floor that no number of substeps passes.
-      stuck = offer->error > 0.9 * last ? stuck + 1 : 0;
-      if (!std::isnan(offer->error)) last = offer->error;
+      stuck = candidate->error > 0.9 * last ? stuck + 1 : 0;
+      if (!std::isnan(candidate->error)) last = candidate->error;
     }
     return n;
   }
@@ -177,9 +178,9 @@ class KnobSearch {
   void most(const Values& values) {
     int n = 1;
     for (int i = 0; i < 4; ++i) {
-      const Offer* offer = attempt(values, n);
-      if (!offer) return;
-      const double room = 0.97 * *wish_.budget / offer->cost.mid;
+      const Candidate* candidate = attempt(values, n);
+      if (!candidate) return;
+      const double room = 0.97 * *target_.budget / candidate->cost.mid;
       const int next = std::clamp(static_cast<int>(n * std::min(room, 1e6)), 1, kMostSubsteps);
       if (next == n || !knobs_.has_substeps() || (room >= 1 && next < n * 1.15)) return;
       n = next;
@@ -190,11 +191,11 @@ class KnobSearch {
   /// them, which do not.
   void bisect() {
     if (!worth_more()) return;
-    std::vector<Granted> ends = granted_;
-    std::ranges::sort(ends, {}, &Granted::cost);
+    std::vector<Met> ends = met_;
+    std::ranges::sort(ends, {}, &Met::cost);
     Values first;
     int columns = 0;
-    for (const Granted& end : ends) {
+    for (const Met& end : ends) {
       const Values values = without_substeps(end.values);
       if (columns > 0 && (values == first || end.cost > 1.7 * ends.front().cost)) continue;
       if (columns++ == 0) first = values;
@@ -207,9 +208,9 @@ class KnobSearch {
     int low = high / 2;
     while (high - low > std::max(1, high / 10)) {
       const int middle = (low + high) / 2;
-      const Offer* offer = attempt(values, middle);
-      if (!offer) return;
-      (wish_.grants(*offer) ? high : low) = middle;
+      const Candidate* candidate = attempt(values, middle);
+      if (!candidate) return;
+      (target_.meets(*candidate) ? high : low) = middle;
     }
   }
 
@@ -222,16 +223,16 @@ class KnobSearch {
     while (high - low > std::max(1, high / 10)) {
       const int middle = (low + high) / 2;
       values[knobs_.sweeps()] = std::to_string(middle);
-      const Offer* offer = attempt(values, substeps);
-      if (!offer) return;
-      (wish_.grants(*offer) ? high : low) = middle;
+      const Candidate* candidate = attempt(values, substeps);
+      if (!candidate) return;
+      (target_.meets(*candidate) ? high : low) = middle;
     }
   }
 
   /// Whether this solver is near enough to the best of the others to be polished.
   bool worth_more() const {
     if (!best_) return false;
-    return wish_.budget || tried_[*best_].cost.mid <= kFar * least(known_);
+    return target_.budget || tried_[*best_].cost.mid <= kFar * least(known_);
   }
 
   void alternatives() {
@@ -240,29 +241,29 @@ class KnobSearch {
       Values values = without_substeps(best_values_);
       if (values.contains(name) && values[name] == value) continue;
       values[name] = value;
-      const Offer* offer = attempt(values, best_substeps_);
-      if (!offer) return;
-      if (wish_.budget) {  // a cheaper step buys more of them
-        if (!offer->failed && offer->cost.mid < 0.8 * *wish_.budget) most(values);
+      const Candidate* candidate = attempt(values, best_substeps_);
+      if (!candidate) return;
+      if (target_.budget) {  // a cheaper step buys more of them
+        if (candidate->failure.empty() && candidate->cost.mid < 0.8 * *target_.budget) most(values);
         continue;
       }
       int n = best_substeps_;
-      if (wish_.grants(*offer)) {
-        while (offer && wish_.grants(*offer) && n > 1) {
+      if (target_.meets(*candidate)) {
+        while (candidate && target_.meets(*candidate) && n > 1) {
           n = std::min(n - 1, n * 3 / 4);
-          offer = attempt(values, n);
+          candidate = attempt(values, n);
         }
       } else {  // less accurate, but perhaps so much cheaper that more substeps pay
-        while (offer && !wish_.grants(*offer) && !offer->failed &&
-               1.4 * offer->cost.mid < least(tried_) && n < kMostSubsteps) {
+        while (candidate && !target_.meets(*candidate) && candidate->failure.empty() &&
+               1.4 * candidate->cost.mid < least(tried_) && n < kMostSubsteps) {
           n = n + std::max(1, n / 3);
-          offer = attempt(values, n);
+          candidate = attempt(values, n);
         }
       }
     }
   }
 
-  struct Granted {
+  struct Met {
     double cost;
     Values values;
     int substeps;
@@ -274,35 +275,23 @@ class KnobSearch {
   }
 
   std::string solver_;
-  Wish wish_;
-  const Try& run_;
+  Target target_;
+  const Evaluation& run_;
   Knobs knobs_;
-  std::vector<Offer> known_, tried_;
+  std::vector<Candidate> known_, tried_;
   std::map<std::string, std::size_t> index_;
   std::optional<std::size_t> best_;
   Values best_values_;
-  std::vector<Granted> granted_;
+  std::vector<Met> met_;
   int best_substeps_ = 1;
   bool over_ = false, hopeless_ = false;
 };
 
 }  // namespace
 
-bool Wish::grants(const Offer& o) const {
-  if (o.failed || std::isnan(o.error)) return false;
-  return error ? o.error <= *error : o.cost.mid <= *budget;
-}
-
-bool Wish::prefers(const Offer& a, const Offer& b) const {
-  if (grants(a) != grants(b)) return grants(a);
-  const auto by_cost = std::pair(a.cost.mid, a.error), by_cost_b = std::pair(b.cost.mid, b.error);
-  const auto by_error = std::pair(a.error, a.cost.mid), by_error_b = std::pair(b.error, b.cost.mid);
-  return error ? by_cost < by_cost_b : by_error < by_error_b;
-}
-
-std::vector<Offer> search_settings(const std::string& solver, const Wish& wish, const Try& run,
-                                   std::vector<Offer> known) {
-  return KnobSearch(solver, wish, run, std::move(known)).run();
+std::vector<Candidate> search_settings(const std::string& solver, const Target& target,
+                                       const Evaluation& run, std::vector<Candidate> known) {
+  return KnobSearch(solver, target, run, std::move(known)).run();
 }
 
 }  // namespace taut

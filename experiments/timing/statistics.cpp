@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <random>
+#include <sstream>
 
 namespace taut {
 
@@ -19,6 +21,17 @@ double median_of(std::vector<double>& values) {
 }
 
 }  // namespace
+
+std::string number_text(double value, int digits) {
+  std::ostringstream text;
+  text << std::setprecision(digits) << value;
+  return text.str();
+}
+
+std::string interval_text(const Interval& i, double unit) {
+  return number_text(i.mid / unit) + " (" + number_text(i.low / unit) + " to " +
+         number_text(i.high / unit) + ")";
+}
 
 double median(std::span<const double> samples) {
   std::vector<double> values(samples.begin(), samples.end());
@@ -53,13 +66,19 @@ Interval interleaved_ratio(std::span<const double> a, std::span<const double> b,
   return {std::exp(log.low), std::exp(log.mid), std::exp(log.high)};
 }
 
-Judgement judge(const Interval& ratio, const Interval& control, double tolerance) {
-  const double floor = std::max(std::abs(std::log(control.low)), std::abs(std::log(control.high)));
-  if (!(floor <= std::log1p(tolerance))) return Judgement::too_noisy;
-  const double change = std::log(ratio.mid);
-  if (ratio.contains(1) || std::abs(change) <= std::log1p(tolerance) || std::abs(change) <= floor)
-    return Judgement::same;
-  return change < 0 ? Judgement::faster : Judgement::slower;
+double spread(const Interval& control) {
+  return std::expm1(std::max(std::abs(std::log(control.low)), std::abs(std::log(control.high))));
+}
+
+bool is_significant(const Interval& ratio, const Interval& control, double tolerance) {
+  return !ratio.contains(1) &&
+         std::abs(std::log(ratio.mid)) > std::log1p(std::max(tolerance, spread(control)));
+}
+
+Difference compare_costs(const Interval& ratio, const Interval& control, double tolerance) {
+  if (!(spread(control) <= tolerance)) return Difference::too_noisy;
+  if (!is_significant(ratio, control, tolerance)) return Difference::none;
+  return ratio.mid < 1 ? Difference::faster : Difference::slower;
 }
 
 PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace taut {
@@ -13,6 +14,10 @@ struct Interval {
   double high = 0;
   bool contains(double value) const { return low <= value && value <= high; }
 };
+
+/// A number with so many significant digits, and "2.3 (2.1 to 2.5)" in a unit.
+std::string number_text(double value, int digits = 3);
+std::string interval_text(const Interval&, double unit = 1);
 
 double median(std::span<const double>);  ///< NaN if empty
 
@@ -28,17 +33,24 @@ Interval bootstrap_median(std::span<const double> samples, double confidence = 0
 Interval interleaved_ratio(std::span<const double> a, std::span<const double> b,
                            double confidence = 0.95, std::uint64_t seed = 1);
 
+/// Relative differences below this are none.
+inline constexpr double kTolerance = 0.05;
+
+/// How far the ratio of a code to itself lies from 1, as a share: 0.03 for 0.98 to 1.03.
+double spread(const Interval& control);
+
+/// Whether a ratio of costs A / B is a difference: its interval excludes 1, AND the change exceeds
+/// the tolerance (0.05: five per cent), AND it exceeds the spread of the same session's control.
+bool is_significant(const Interval& ratio, const Interval& control, double tolerance = kTolerance);
+
 /// What a ratio of costs A / B allows us to say.
-enum class Judgement {
-  same,      ///< no difference that the gates let through
+enum class Difference {
+  none,      ///< not significant
   faster,    ///< A costs less
   slower,    ///< A costs more
-  too_noisy  ///< the A/A control itself strays further than the tolerance: nothing can be said
+  too_noisy  ///< the control itself spreads further than the tolerance: nothing can be said
 };
-
-/// A difference is declared only if the interval excludes 1, AND the change exceeds the tolerance
-/// (0.05: five per cent), AND it exceeds what comparing A with itself showed in the same session.
-Judgement judge(const Interval& ratio, const Interval& control, double tolerance);
+Difference compare_costs(const Interval& ratio, const Interval& control, double tolerance);
 
 /// y = a x^slope through positive points by least squares in logarithms, with the slope's standard
 /// error.

@@ -66,7 +66,7 @@ double time_steps(const Scene& scene, Solver& solver, int steps) {
   return time.cpu / steps;
 }
 
-Rehearsal::Rehearsal(const Scene& scene, Solver& solver, int steps) : dt_(scene.dt) {
+CheckpointedRun::CheckpointedRun(const Scene& scene, Solver& solver, int steps) : dt_(scene.dt) {
   const int starts = std::clamp(steps / 8, 1, 4);
   length_ = std::max(1, steps / starts);
   solver.load(scene.start);
@@ -81,7 +81,7 @@ Rehearsal::Rehearsal(const Scene& scene, Solver& solver, int steps) : dt_(scene.
   whole_ = whole_ / std::max(1, steps);
 }
 
-StepTime Rehearsal::sample(Solver& solver, int steps) const {
+StepTime CheckpointedRun::sample(Solver& solver, int steps) const {
   const int share = std::clamp(steps / static_cast<int>(starts_.size()), 1, length_);
   StepTime time;
   for (const Start& start : starts_) {
@@ -98,12 +98,12 @@ int serve_timing(const Scene& scene, const SolverChoice& choice) {
   const std::unique_ptr<Solver> solver = choice.entry->make(scene, choice.params);
   std::cout.precision(17);
   std::cout << "ready" << std::endl;
-  std::optional<Rehearsal> run;
+  std::optional<CheckpointedRun> run;
   std::string word;
   while (std::cin >> word) {
     int steps = 0;
     StepTime time;
-    if (word == "rehearse" && std::cin >> steps) {
+    if (word == "pilot_run" && std::cin >> steps) {
       run.emplace(scene, *solver, std::max(1, steps));
       time = run->whole();
       std::cout << time.cpu << ' ' << time.wall << std::endl;
@@ -130,10 +130,15 @@ TimingWorker::TimingWorker(const std::filesystem::path& program, const CaseSpec&
 }
 
 std::string TimingWorker::ask(const std::string& request) {
+  using Clock = std::chrono::steady_clock;
   std::string answer;
-  if (!process_.write(request + "\n") || !process_.read_line(answer))
-    throw std::runtime_error("the timing worker died");
-  return answer;
+  const double seconds =
+      deadline_
+          ? std::clamp(std::chrono::duration<double>(*deadline_ - Clock::now()).count(), 0.0, 1e6)
+          : -1;
+  if (process_.write(request + "\n") && process_.read_line(answer, seconds)) return answer;
+  if (deadline_ && Clock::now() >= *deadline_) throw TimeIsUp();
+  throw std::runtime_error("the timing worker died");
 }
 
 StepTime TimingWorker::ask_time(const std::string& line) {
@@ -143,7 +148,9 @@ StepTime TimingWorker::ask_time(const std::string& line) {
   return time;
 }
 
-StepTime TimingWorker::rehearse(int steps) { return ask_time("rehearse " + std::to_string(steps)); }
+StepTime TimingWorker::pilot_run(int steps) {
+  return ask_time("pilot_run " + std::to_string(steps));
+}
 
 StepTime TimingWorker::sample(int steps) { return ask_time("time " + std::to_string(steps)); }
 
@@ -152,7 +159,7 @@ std::size_t TimingWorker::peak_bytes() { return std::stoull(ask("memory")); }
 namespace {
 
 /// A case in a bench: its worker, how many steps make a sample, and what was measured.
-struct Lane {
+struct BenchCase {
   std::unique_ptr<TimingWorker> worker;
   int steps = 0;
   Timing timing;
@@ -168,17 +175,17 @@ struct Lane {
   }
 };
 
-Lane open_lane(const CaseSpec& spec, const BenchOptions& options) {
-  Lane lane;
-  lane.timing.spec = spec;
-  lane.guard([&] {
-    lane.worker = std::make_unique<TimingWorker>(options.program(spec), spec);
+BenchCase start_case(const CaseSpec& spec, const BenchOptions& options) {
+  BenchCase one;
+  one.timing.spec = spec;
+  one.guard([&] {
+    one.worker = std::make_unique<TimingWorker>(options.program(spec), spec);
     const int all = std::max(1, options.steps(spec));
-    const double pilot = lane.worker->rehearse(all).cpu;
-    lane.steps = std::clamp(
-        static_cast<int>(std::min(options.seconds / std::max(pilot, 1e-9), 1e9)), 1, all);
+    const double pilot = one.worker->pilot_run(all).cpu;
+    one.steps = std::clamp(static_cast<int>(std::min(options.seconds / std::max(pilot, 1e-9), 1e9)),
+                           1, all);
   });
-  return lane;
+  return one;
 }
 
 }  // namespace
@@ -209,30 +216,30 @@ Interval Bench::ratio(std::size_t i, std::size_t j) const {
 }
 
 Bench run_bench(const std::vector<CaseSpec>& specs, const BenchOptions& options) {
-  std::vector<Lane> lanes;
-  for (const CaseSpec& spec : specs) lanes.push_back(open_lane(spec, options));
+  std::vector<BenchCase> cases;
+  for (const CaseSpec& spec : specs) cases.push_back(start_case(spec, options));
   if (!specs.empty()) {
-    lanes.push_back(open_lane(specs.front(), options));  // the A/A control
-    lanes.back().steps = lanes.front().steps;
+    cases.push_back(start_case(specs.front(), options));  // the A/A control
+    cases.back().steps = cases.front().steps;
   }
-  const auto sample = [](Lane& lane) {
-    lane.guard([&] {
-      const StepTime time = lane.worker->sample(lane.steps);
-      lane.timing.samples.push_back(time.cpu);
-      lane.timing.wall.push_back(time.wall);
+  const auto sample = [](BenchCase& one) {
+    one.guard([&] {
+      const StepTime time = one.worker->sample(one.steps);
+      one.timing.samples.push_back(time.cpu);
+      one.timing.wall.push_back(time.wall);
     });
   };
   for (int round = 0; round < options.rounds; ++round) {
-    std::for_each(lanes.begin(), lanes.end(), sample);
-    std::for_each(lanes.rbegin(), lanes.rend(), sample);
+    std::for_each(cases.begin(), cases.end(), sample);
+    std::for_each(cases.rbegin(), cases.rend(), sample);
     if (options.progress)
       options.progress(static_cast<std::size_t>(round) + 1,
                        static_cast<std::size_t>(options.rounds));
   }
   Bench bench;
-  for (Lane& lane : lanes) {
-    lane.guard([&] { lane.timing.peak_bytes = lane.worker->peak_bytes(); });
-    bench.timings.push_back(std::move(lane.timing));
+  for (BenchCase& one : cases) {
+    one.guard([&] { one.timing.peak_bytes = one.worker->peak_bytes(); });
+    bench.timings.push_back(std::move(one.timing));
   }
   if (specs.empty()) return bench;
   const Timing control = std::move(bench.timings.back());

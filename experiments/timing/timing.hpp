@@ -1,7 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -26,10 +29,10 @@ double time_steps(const Scene&, Solver&, int steps);
 /// A run that was seen once, so that samples can begin anywhere in it: the first steps alone would
 /// miss the contacts, which come later. Up to four states, evenly spaced, at least eight steps
 /// apart.
-class Rehearsal {
+class CheckpointedRun {
  public:
   /// Runs the first `steps` steps.
-  Rehearsal(const Scene&, Solver&, int steps);
+  CheckpointedRun(const Scene&, Solver&, int steps);
   const StepTime& whole() const { return whole_; }
   /// Time of a step over `steps` steps (at least one from each state); before each state's
   /// share one untimed step warms the caches.
@@ -46,6 +49,11 @@ class Rehearsal {
   StepTime whole_;
 };
 
+/// A worker did not answer before its deadline.
+struct TimeIsUp : std::runtime_error {
+  TimeIsUp() : std::runtime_error("time is up") {}
+};
+
 /// Samples of one case, taken in a process of its own that stays alive between them.
 class TimingWorker {
  public:
@@ -54,14 +62,17 @@ class TimingWorker {
 
   /// Runs the first `steps` steps once and gives their mean; required before sample(). Both throw
   /// std::runtime_error if the worker died.
-  StepTime rehearse(int steps);
-  StepTime sample(int steps);  ///< see Rehearsal::sample
-  std::size_t peak_bytes();    ///< resident set of the worker so far
+  StepTime pilot_run(int steps);
+  StepTime sample(int steps);  ///< see CheckpointedRun::sample
+  /// From then on what is not answered throws TimeIsUp.
+  void give_up_at(std::chrono::steady_clock::time_point deadline) { deadline_ = deadline; }
+  std::size_t peak_bytes();  ///< resident set of the worker so far
 
  private:
   std::string ask(const std::string& line);
   StepTime ask_time(const std::string& line);
   Process process_;
+  std::optional<std::chrono::steady_clock::time_point> deadline_;
 };
 
 /// The worker's side: reads requests from stdin and answers on stdout until the input ends.
@@ -85,9 +96,9 @@ struct Timing {
   std::string failure;  ///< why it could not be timed; empty: it was
 };
 
-/// One session: every case sampled in rounds that run forth and back (A B C C B A), so that a drift
-/// of the machine's speed cancels between any two of them; the first case runs twice as its own A/A
-/// control.
+/// One session: every case sampled in rounds of alternating order (ABBA: A B C C B A), so that a
+/// drift of the machine's speed cancels between any two of them; the first case runs twice as its
+/// own A/A control.
 struct Bench {
   std::vector<Timing> timings;
   Interval control;  ///< ratio of the first case to itself

@@ -8,9 +8,9 @@
 #include "core/reference/relaxation.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
+#include "core/reference/textbook.hpp"
 #include "experiments/truths/fit.hpp"
 #include "experiments/truths/probe.hpp"
-#include "experiments/truths/textbook.hpp"
 
 namespace taut {
 
@@ -331,7 +331,7 @@ void chain_tension(Ledger& ledger) {
     if (!claims(ledger, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(20000 / k);
-    TextbookWithTensions textbook(s, k);
+    Textbook<double> textbook(s, k);
     textbook.load(probe.state());
     textbook.step();
     double worst = 0;

@@ -231,19 +231,21 @@ TAUT_TRUTH(damping_factor) = {
     .source = "sum of x* = x + q (x - x') + a dt^2",
     .check = taut::damping};
 
-TAUT_TRUTH(wind_face) = {.name = "wind-face",
-                         .section = 3,
-                         .row = 6,
-                         .statement = "v_n = (m g/cA)(1 - (1 - cA dt/m)^n); stable iff cA dt/m < 2",
-                         .source = "the report, section 3, with d the wind relative to the face",
-                         .check = taut::wind_on_a_face};
+TAUT_TRUTH(wind_face) = {
+    .name = "wind-face",
+    .section = 3,
+    .row = 6,
+    .statement = "v_n = (m g/cA)(1 - (1 - cA dt/m)^n); stable iff cA dt/m < 2",
+    .source =
+        "Vasilovici, Cloth Simulation Report, section 3, with d the wind relative to the face",
+    .check = taut::wind_on_a_face};
 
 TAUT_TRUTH(wind_literal) = {
     .name = "wind-literal",
     .section = 3,
     .row = 7,
     .statement = "with d the wind itself, as printed, a face accelerates without end",
-    .source = "the report, section 3, read literally",
+    .source = "Vasilovici, Cloth Simulation Report, section 3, read literally",
     .check = taut::literal_wind};
 
 TAUT_TRUTH(wind_tilt) = {

@@ -196,8 +196,8 @@ TAUT_TRUTH(wrong_signs) = {
     .name = "wrong-signs",
     .section = 1,
     .row = 6,
-    .statement = "the report's printed listing pushes the particles apart in every reading",
-    .source = "the report's second listing, transcribed literally as a test double",
+    .statement = "Vasilovici's printed listing pushes the particles apart in every reading",
+    .source = "Vasilovici's second listing, transcribed literally as a test double",
     .check = taut::wrong_signs};
 
 TAUT_TRUTH(mass_weighted) = {

@@ -2,7 +2,7 @@
 
 namespace taut {
 
-/// The report's second listing ("the algorithm then becomes") as printed, a test double that must
+/// Vasilovici's second listing ("the algorithm then becomes") as printed, a test double that must
 /// never be used to simulate: its first line belongs to the square-root-free form and its last two
 /// to the exact one, so `diff` is undefined there and, whatever it may mean, the signs push apart.
 ///
@@ -11,7 +11,7 @@ namespace taut {
 ///     x2 -= delta * 0.5 * diff;
 enum class PrintedReading {
   opposite_sign,  ///< 0.5 diff = 1: the square-root-free form with the printed += and -=
-  literal         ///< diff = (d - r)/d, from the report's first listing
+  literal         ///< diff = (d - r)/d, from Vasilovici's first listing
 };
 
 /// Strain after one application to a link of unit rest length and strain e, equal masses.

@@ -1,9 +1,9 @@
 // Section 8: numbers that papers print, and how near to them the same set-up comes here.
 #include <cmath>
 
+#include "core/reference/textbook.hpp"
 #include "experiments/truths/fit.hpp"
 #include "experiments/truths/probe.hpp"
-#include "experiments/truths/textbook.hpp"
 
 namespace taut {
 
@@ -85,7 +85,7 @@ void xpbd_chain_force(Ledger& ledger) {
     if (!claims(ledger, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(12000 / k);
-    TextbookWithTensions textbook(s, k);
+    Textbook<double> textbook(s, k);
     textbook.load(probe.state());
     textbook.step();
     ledger.equal(solver, "force of the top link of 20 at rest over the weight", "1",
@@ -115,7 +115,7 @@ void tetrahedron(Ledger& ledger) {
 }
 
 void three_sweeps(Ledger& ledger) {
-  // "3 iterations suffice": by how much, on the sheet that the report shows.
+  // "3 iterations suffice": by how much, on the sheet that Vasilovici shows.
   for (const std::string& solver : {jakobsen(3, "sqrt-free"), bullet(3)}) {
     Scene s = bare::sheet(16, 16, {.shear = true});
     s.pins = {0, 15};
@@ -172,5 +172,5 @@ TAUT_TRUTH(three_sweeps) = {.name = "three-sweeps",
                             .section = 8,
                             .row = 5,
                             .statement = "three sweeps suffice for a good result",
-                            .source = "the report, section 4.1",
+                            .source = "Vasilovici, Cloth Simulation Report, section 4.1",
                             .check = taut::three_sweeps};

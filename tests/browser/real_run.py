@@ -15,7 +15,7 @@ scenes = ["hang", "ball"]
 solvers = ["jakobsen", "bullet"]
 set = ["cloth.grid=[9, 9]", "time.duration=1"]
 
-[sweep]
+[axes]
 iterations = [1, 4, 16]
 "time.dt" = ["1/120", "1/60", "1/30"]
 """

@@ -7,8 +7,10 @@ import json
 import pathlib
 import re
 import struct
+import subprocess
+import tomllib
 
-from command_line import CommandLine, main
+from command_line import BINARIES, CommandLine, main
 
 
 class BadInput(CommandLine):
@@ -34,6 +36,8 @@ class BadInput(CommandLine):
         self.refuse("advise", "hang", "--error", "1%", "--budget", 4, says="one of --error and --budget")
         self.refuse("advise", "hang", "--error", "small", says="expected a number above 0 such as 0.01 or 1%")
         self.refuse("advise", "hang", "--error", "1%", "--solver", "bulet", says="did you mean 'bullet'?")
+        self.refuse("advise", "hang", "--error", "1%", "--patience", -3, says="'-3' is not a number above 0")
+        self.refuse("run", "iterations", "--timeout", "-3", says="--timeout: '-3' is not a number above 0")
 
     def test_numbers(self):
         for value in ["0", "-3", "many", "nan", "1e9", "1.5"]:
@@ -42,6 +46,14 @@ class BadInput(CommandLine):
             self.refuse("case", "hang", f"jakobsen:substeps={value}", says=f"substeps={value}")
         for dt in ["0", "-0.01", "nan", "fast", "1/0"]:
             self.refuse("case", "hang", "jakobsen", "--dt", dt, says="dt")
+        self.refuse("case", "hang", "jakobsen:iterations=1e99,precision=quad,,omega=1,omega=2,itertions=1",
+                    says=["column 10: jakobsen: iterations=1e99 is not a whole number", "column 26: jakobsen: precision=quad is not one of",
+                          "column 41: jakobsen: expected key=value, got ''", "column 50: jakobsen: parameter 'omega' is given twice",
+                          "column 58: jakobsen: unknown parameter 'itertions'; did you mean 'iterations'?"])
+        self.refuse("case", "hang", "jakobsen:,,,", says=["column 10: ", "column 11: ", "column 12: ", "column 13: "])
+        self.refuse("case", "hang", "jakobsen:", says="column 10: expected key=value")
+        self.refuse("case", "hnag", "jakobsne", says=["unknown scene 'hnag'", "unknown solver 'jakobsne'"])
+        self.refuse("case", "hang", "xpbd:iterations=10000000", says="is outside 0 to 1000000")
         self.refuse("run", "iterations", "--shard", "5/4", says="shard 5/4 does not exist")
         self.refuse("run", "iterations", "--shard", "two", says="expected i/n")
 
@@ -50,7 +62,7 @@ class BadInput(CommandLine):
 scenes = ["hang", "hnag"]
 solvers = ["jakobsen:iterations=-1"]
 sovers = []
-[sweep]
+[axes]
 iteratons = [1, 2]
 substeps = [1, 0]
 [preset.quick]
@@ -60,14 +72,14 @@ x = "iterations"
 ''')
         self.refuse("run", "./bad.toml",
                     says=["bad.toml:2:", "unknown scene 'hnag'; did you mean 'hang'?",
-                          "bad.toml:3:", "iterations=-1 is outside",
+                          "bad.toml:3:22: jakobsen: iterations=-1 is outside",
                           "bad.toml:4:1: unknown key 'sovers'", "did you mean 'solvers'?",
                           "bad.toml:9:1: unknown key 'scense' in [preset.quick]; did you mean 'scenes'?",
                           "missing key 'kind'"])
         (self.folder / "bad.toml").write_text('''question = "?"
 scenes = ["hang"]
 solvers = ["jakobsen"]
-[sweep]
+[axes]
 iteratons = [1, 2]
 substeps = [1, 0]
 "time.dt" = 3
@@ -83,7 +95,7 @@ substeps = [1, 0]
 scenes = ["hang"]
 solvers = ["jakobsen"]
 exclude = [{ scen = "hang" }, { iteratons = 1 }]
-[sweep]
+[axes]
 iterations = [1, 2]
 [[plot]]
 kind = "series"
@@ -104,12 +116,12 @@ colour = "red"
         self.refuse("run", self.study(scenes=["hang", "./small.toml"]), says=["small.toml:", "unknown key 'mas'"])
 
     def test_a_swept_scene_key_that_does_not_exist(self):
-        self.refuse("run", self.study(rest='[sweep]\n"time.td" = [1]\n'), says="unknown key 'td'")
+        self.refuse("run", self.study(rest='[axes]\n"time.td" = [1]\n'), says="unknown key 'td'")
 
 
 class Verbs(CommandLine):
     def test_plots_of_values_over_time_and_what_is_held_is_said(self):
-        study = self.study(rest="sweep.iterations = [1, 2]\nsweep.time.dt = [0.02, 0.01]\n"
+        study = self.study(rest="axes.iterations = [1, 2]\naxes.time.dt = [0.02, 0.01]\n"
                                 '[[plot]]\nkind = "error-iterations"\nfile = "mine"\n')
         self.taut("run", study)
         drawn = self.taut("plot", study)
@@ -124,10 +136,10 @@ class Verbs(CommandLine):
         self.taut("run", study)
         (self.folder / "file").write_text("")
         self.assertIn("is a folder; name a file in it", self.taut("report", study, "-o", ".", expect=2).err)
-        for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"],
-                      ["figures", "-o", "file"]]:
+        for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"]]:
             self.assertIn("file", self.taut(*words, expect=2).err)
         self.assertIn("taut run", self.taut("plot", study, "--results", "nowhere", expect=2).err)
+        self.assertRegex(self.taut("plot", study, "--kind", "pie", expect=2).err, "unknown kind of plot 'pie'.*one of .*stability")
         self.assertIn("no folder", self.taut("check", "regression", expect=4).out)
 
     def test_the_version_names_release_build_and_compiler(self):
@@ -142,9 +154,68 @@ class Verbs(CommandLine):
 
     def test_every_verb_has_help_with_an_example(self):
         verbs = self.taut("--help").out
-        for verb in ["list", "run", "case", "plan", "merge", "doctor"]:
-            self.assertIn(verb, verbs)
-            self.assertIn("Example:\n  taut " + verb, self.taut(verb, "--help").out)
+        named = re.findall(r"^  ([a-z]+) ", verbs, re.MULTILINE)
+        self.assertGreater(len(named), 12)
+        self.assertEqual(len(named), len(set(named)))
+        for verb in [[name] for name in named] + [["bench", inner] for inner in ["kernels", "contact", "scaling"]]:
+            self.assertIn("Example:\n  taut " + " ".join(verb), self.taut(*verb, "--help").out)
+
+    def test_the_help_shows_verbs_in_groups_a_line_each(self):
+        lines = self.taut("--help").out.splitlines()
+        heads = ["Studies:", "One case:", "Cost:", "Trust:", "Extremes:"]
+        self.assertEqual([line for line in lines if line in heads], heads)
+        self.assertLess(max(map(len, lines)), 100)
+        for gone in ["agree", "map", "table", "figures", "scaling"]:
+            self.assertIn(f"unknown verb '{gone}'", self.taut(gone, expect=2).err)
+            self.assertNotIn(f"  {gone} ", "\n".join(lines))
+
+    def test_a_study_is_printed_as_a_table_of_a_value(self):
+        study = self.study(solvers=["jakobsen:iterations=2", "xpbd"])
+        out = self.taut("run", study, "--table", "stretch.rms").out
+        head, first, second = out.splitlines()[:3]
+        self.assertEqual(head.split(), ["stretch.rms", "small"])
+        self.assertEqual(first.split()[0], "jakobsen:iterations=2")
+        rows = json.loads(self.taut("run", study, "--table", "stretch.rms", "--json").out)
+        self.assertEqual(f"{rows[0]['values']['stretch.rms']:.3g}", f"{float(first.split()[1]):.3g}")
+        self.assertIn("did you mean 'stretch.rms'?", self.taut("run", study, "--table", "strech.rms", expect=2).err)
+
+    def test_quiet_prints_nothing_and_json_says_how_a_run_went(self):
+        study = self.study()
+        said = json.loads(self.taut("run", study, "--json").out)
+        self.assertEqual((said["cases"], said["ran"], said["statuses"]), (1, 1, {"ok": 1}))
+        for words in [["run", study], ["case", "./small.toml", "jakobsen"], ["list", "solvers"],
+                      ["bench", "kernels", "--sizes", "8", "--rounds", "1", "--seconds", "0.0001"]]:
+            self.assertEqual(self.taut(*words, "--quiet").out, "", words)
+
+    def test_manual_and_completion_are_made_from_the_verbs(self):
+        manual, completion = self.taut("--man").out, self.taut("--bash-completion").out
+        for verb in re.findall(r"^  ([a-z]+) ", self.taut("--help").out, re.MULTILINE):
+            self.assertIn(f".B {verb}\n", manual)
+        self.assertIn("\\fB\\-\\-patience\\fR", manual)
+        self.assertNotIn("worker", manual)
+        (self.folder / "taut.bash").write_text(completion)
+
+        def complete(*words):
+            line = "source ./taut.bash; COMP_WORDS=(taut %s); COMP_CWORD=%d; _taut; echo ${COMPREPLY[@]}"
+            quoted = " ".join(f"'{word}'" for word in words)
+            return subprocess.run(["bash", "-c", line % (quoted, len(words))], cwd=self.folder, text=True, check=True,
+                                  capture_output=True).stdout.split()
+        self.assertEqual(sorted(complete("re")), ["reference", "render", "report"])
+        self.assertEqual(complete("bench", "ke"), ["kernels"])
+        self.assertEqual(complete("bench", "kernels", "--si"), ["--sizes"])
+        self.assertEqual(complete("advise", "mov"), ["moving-ball"])
+        self.assertEqual(complete("case", "hang", "jak"), ["jakobsen"])
+
+    def test_a_full_disk_behind_stdout_is_an_error(self):
+        with open("/dev/full", "w") as full:
+            process = subprocess.run([BINARIES / "taut", "list", "--json"], stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual((process.returncode, "cannot be written" in process.stderr), (2, True))
+
+    def test_the_main_job_names_studies_that_exist(self):
+        job = tomllib.loads((pathlib.Path(__file__).parents[2] / "experiments/main-job.toml").read_text())
+        known = {study["name"]: study["presets"] for study in json.loads(self.taut("list", "studies", "--json").out)}
+        for study in [*job["studies"], *job["maps"], job["bench"]]:
+            self.assertIn(job["preset"], known[study], study)
 
     def test_list(self):
         everything = json.loads(self.taut("list", "--json").out)
@@ -202,10 +273,23 @@ class Verbs(CommandLine):
         alone = json.loads(self.taut("case", "./small.toml", best["setting"], "--json").out)
         self.assertEqual(alone["values"]["stretch.rms"], best["error"])
         for other in answer["tried"]:  # nothing that was tried and reaches the error is far cheaper
-            if not other["failed"] and other["error"] is not None and other["error"] <= 0.001:
+            if not other["refused"] and other["error"] is not None and other["error"] <= 0.001:
                 self.assertGreater(other["quick_cost"], 0.3 * best["cpu_seconds_per_second"][1])
 
-    def test_the_table_and_the_advice_name_the_same_solver(self):
+    def test_advice_is_clear_only_when_it_was_confirmed_and_the_search_has_ended(self):
+        for patience in [3, 120]:
+            answer = self.advise("--error", "0.3%", "--patience", patience)
+            self.assertLess(answer["seconds"], 1.1 * patience + 1)
+            cost, again = answer["best"]["cpu_seconds_per_second"], answer["verified"]["cpu_seconds_per_second"]
+            inside = cost[0] <= again[1] <= cost[2]
+            self.assertEqual(answer["verified"]["inside_interval"], inside)
+            if not (inside and answer["complete"]):
+                self.assertNotEqual(answer["certainty"], "clear")
+        self.assertTrue(answer["complete"])
+        refused = [t["refused"] for t in self.advise("--error", "0.3%", "--solver", "mass-spring")["tried"] if t["refused"]]
+        self.assertTrue(all(re.match(r"exploded \(", why) for why in refused) and refused, refused)
+
+    def test_the_bench_and_the_advice_name_the_same_solver(self):
         answer = self.advise("--error", "1%", "--solver", "jakobsen", "--solver", "bullet")
         study = self.study(solvers=[answer["best"]["setting"], answer["runner_up"]["setting"]])
         table = json.loads(self.taut("bench", study, "--seconds", 0.002, "--json").out)
@@ -217,6 +301,54 @@ class Verbs(CommandLine):
         self.assertLessEqual(answer["best"]["cpu_seconds_per_second"][1], 0.01e-3 * 60)
         never = self.advise("--error", "1e-12", "--solver", "xpbd:iterations=1,substeps=2", expect=4)
         self.assertEqual((never["best"], len(never["tried"]) > 0), (None, True))
+
+    def test_a_whole_number_of_six_digits_is_one(self):
+        run = self.taut("case", "./small.toml", "xpbd:iterations=100000", "--dt", "0.25", "--json")
+        self.assertEqual(json.loads(run.out)["params"]["iterations"], "100000")
+        self.taut("run", self.study(solvers=["xpbd"], rest='set = ["time.dt=0.25"]\naxes.iterations = [100000]\n'))
+
+    def test_export_is_one_tidy_table(self):
+        study = self.study(solvers=["jakobsen:iterations=2", "xpbd"],
+                           rest='axes.time.dt = ["1/64", "1/32"]\n')
+        self.assertIn("taut run makes them", self.taut("export", study, expect=2).err)
+        self.taut("run", study)
+        self.assertEqual(self.taut("export", study, "-o", "x.csv").out, "x.csv\n")
+        text = (self.folder / "x.csv").read_text()
+        rows = list(csv.DictReader(text.splitlines()))
+        self.assertEqual([(r["solver"], r["time.dt"]) for r in rows],
+                         [(s, dt) for dt in ["1/64", "1/32"] for s in ["jakobsen", "xpbd"]])
+        self.assertEqual(rows[0]["iterations"], "2")
+        by_key = {r["key"]: r for r in self.records()}
+        for row in rows:
+            record = by_key[row["key"]]
+            self.assertEqual(float(row["stretch.rms"]), record["values"]["stretch.rms"])
+            self.assertEqual((row["status"], float(row["dt"])), ("ok", record["dt"]))
+        self.assertNotIn("cpu.per_second", rows[0])
+        self.taut("bench", study, "--rounds", 2, "--seconds", 0.001, "--quiet")
+        priced = list(csv.DictReader(self.taut("export", study).out.splitlines()))
+        for row in priced:
+            self.assertLessEqual(float(row["cpu.per_second.low"]), float(row["cpu.per_second"]))
+        more = self.study(solvers=["jakobsen:iterations=2", "xpbd", "bullet"], rest='axes.time.dt = ["1/64", "1/32"]\n')
+        missing = self.taut("export", more, expect=3)
+        self.assertEqual(missing.out.count(",not run,"), 2)
+
+    def test_no_cell_of_a_table_is_a_formula(self):
+        (self.folder / "=1+1.toml").write_text((self.folder / "small.toml").read_text())
+        study = self.study(scenes=["./=1+1.toml"])
+        self.taut("run", study)
+        row, = csv.DictReader(self.taut("export", study).out.splitlines())
+        self.assertEqual(row["scene"], "'=1+1")
+        self.assertEqual(row["case"][0], "'")
+
+    def test_what_new_writes_runs(self):
+        self.taut("new", "study", "mine")
+        self.assertIn("is there already", self.taut("new", "study", "mine", expect=2).err)
+        self.assertIn("ok 6", self.taut("run", "./mine.toml").err)
+        self.assertIn("mine", self.taut("run", "./mine.toml", "--table", "stretch.rms").err)
+        self.taut("new", "scene", "cloth")
+        self.assertEqual(json.loads(self.taut("case", "./cloth.toml", "jakobsen", "--json").out)["status"]["kind"], "ok")
+        for name in ["../../x y", "a;b", ".hidden", "a\nb"]:
+            self.taut("new", "scene", name, expect=2)
 
     def test_plan(self):
         plan = json.loads(self.taut("plan", "./small.toml", "jakobsen:iterations=2,substeps=3", "--json").out)
@@ -244,7 +376,7 @@ class Verbs(CommandLine):
         cores = re.search(r"two threads: ([\d.]+) .* sheets at once: ([\d.]+) .* get ([\d.]+) ", out)
         self.assertGreater(min(map(float, cores.groups())), 0)
         out = self.taut("bench", "contact", *short).out
-        for text in ["contact=swept,order=mesh", "self=grid,order=coloured", "8 x 8, 64 particles"]:
+        for text in ["contact=continuous,order=mesh", "self=grid,order=coloured", "8 x 8, 64 particles"]:
             self.assertIn(text, out)
 
     def test_the_same_scene_under_another_name_is_the_same_case(self):

@@ -3,11 +3,14 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 #include <limits>
 #include <stdexcept>
 
 #include "core/model/solver.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut {
 
@@ -16,8 +19,9 @@ namespace {
 constexpr ParamSpec kParams[] = {
     {.name = "mode",
      .kind = ParamSpec::Kind::choice,
-     .default_value = "sound",
-     .choices = "sound|crash|abort|hang|spin|memory|nan|throw|exit|print|slow|refuse|random",
+     .default_value = "stable",
+     .choices = "stable|crash|abort|hang|spin|memory|nan|throw|exit|print|slow|refuse|random|"
+                "exit74|exit127|chdir|fork|fewer|far|forge",
      .help = "what it does at that step"},
     {.name = "at",
      .kind = ParamSpec::Kind::integer,
@@ -39,7 +43,10 @@ class Faulty final : public Solver {
   Faulty(const Scene& scene, const Params& params)
       : gravity_(scene.gravity), mode_(params.choice("mode")), at_(params.integer("at")) {}
   void load(const State& state) override { state_ = state; }
-  void store(State& state) const override { state = state_; }
+  void store(State& state) const override {
+    state = state_;
+    if (mode_ == "fewer" && step_ >= at_) state.x.resize(2);
+  }
   std::vector<PassCost> step_cost() const override { return {}; }
 
   void step(double, double dt) override {
@@ -57,12 +64,29 @@ class Faulty final : public Solver {
     if (mode_ == "abort") std::abort();
     if (mode_ == "nan") state_.x[2].y() = std::numeric_limits<double>::quiet_NaN();
     if (mode_ == "throw") throw std::runtime_error("faulty: threw as told");
-    if (mode_ == "exit") std::_Exit(3);
+    if (mode_.starts_with("exit")) std::_Exit(mode_ == "exit" ? 3 : std::stoi(mode_.substr(4)));
+    if (mode_ == "far") state_.x[3].y() = 9e5;
+    if (mode_ == "chdir" && chdir("/") != 0) std::abort();
+    if (mode_ == "fork" && fork() == 0)
+      for (std::ofstream("grandchild") << getpid() << std::endl;;) pause();
+    if (mode_ == "forge") forge();
     if (mode_ == "random") state_.x[0].x() += 1e-3 * static_cast<double>(getpid() % 1000);
     while (mode_ == "hang") usleep(1000);
     for (volatile int spun = 0; mode_ == "spin";) spun = spun + 1;
     while (mode_ == "print") std::cerr << std::string(1 << 20, 'x');
     while (mode_ == "memory") hoard_.emplace_back(std::size_t{1} << 20, 'x');
+  }
+
+  /// A whole record, in the place of the case's own, of an address that leads out of the store.
+  [[noreturn]] static void forge() {
+    std::ifstream in("/proc/self/cmdline", std::ios::binary);
+    std::string word, before;
+    while (std::getline(in, word, '\0') && before != "--into") before = word;
+    Record record;
+    record.key = "../../../escaped";
+    record.dt = 1;
+    write_file(std::filesystem::path(word) / "case.json", to_json(record));
+    std::_Exit(0);
   }
 
   Vec3 gravity_;

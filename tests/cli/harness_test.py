@@ -27,11 +27,11 @@ class FaultySolvers(CommandLine):
         return statuses
 
     def test_each_costs_one_case(self):
-        modes = ["crash", "abort", "nan", "hang", "spin", "throw", "exit", "refuse", "sound"]
+        modes = ["crash", "abort", "nan", "hang", "spin", "throw", "exit", "refuse", "stable"]
         status = self.run_modes(*modes)
         self.assertEqual({mode: status[mode]["kind"] for mode in modes},
                          {"crash": "crash", "abort": "crash", "nan": "exploded", "hang": "timeout", "spin": "timeout", "throw": "error",
-                          "exit": "error", "refuse": "unsupported", "sound": "ok"})
+                          "exit": "error", "refuse": "unsupported", "stable": "ok"})
         self.assertIn("SIGSEGV", status["crash"]["reason"])
         self.assertIn("SIGABRT", status["abort"]["reason"])
         self.assertEqual(status["hang"]["reason"], "wall time")
@@ -45,14 +45,43 @@ class FaultySolvers(CommandLine):
     def test_eating_memory(self):
         if SANITIZED:
             self.skipTest("the sanitizer's allocator knows no limit on address space")
-        self.assertEqual(self.run_modes("memory")["memory"]["kind"], "oom")
+        status = self.run_modes("memory")["memory"]
+        self.assertEqual((status["kind"], status["reason"]), ("oom", "more than the limit of 300 MB (taut run --memory raises it)"))
+
+    def test_a_scene_that_does_not_fit_into_memory(self):
+        if SANITIZED:
+            self.skipTest("the sanitizer's allocator knows no limit on address space")
+        study = self.study(rest='set = ["cloth.grid=[1000, 1000]"]\n')
+        self.taut("run", study, "--memory", 128)
+        record, = self.records()
+        self.assertEqual((record["status"]["kind"], record["status"]["reason"]),
+                         ("oom", "more than the limit of 128 MB (taut run --memory raises it)"))
+
+    def test_none_leaves_its_process_group_or_its_folder(self):
+        status = self.run_modes("exit74", "exit127", "chdir", "fork", "fewer", "far", "forge")
+        self.assertEqual({mode: s["kind"] for mode, s in status.items()},
+                         {"jakobsen": "ok", "exit74": "error", "exit127": "error", "chdir": "ok", "fork": "ok", "fewer": "error",
+                          "far": "exploded", "forge": "error"})
+        self.assertEqual(status["exit74"]["reason"], "exit code 74")
+        self.assertEqual(status["exit127"]["reason"], "exit code 127")
+        self.assertEqual(status["fewer"]["reason"], "stored 2 positions and 16 velocities of 16 vertices")
+        self.assertEqual((status["far"]["reason"], status["far"]["vertex"]), ("box", 3))
+        self.assertIn("key: expected 64 hexadecimal digits", status["forge"]["reason"])
+        self.assertEqual(list(self.folder.parent.glob("**/escaped")), [])
+        grandchild = int((self.folder / "grandchild").read_text())
+        with self.assertRaises(ProcessLookupError, msg="a process that a case left behind lives on"):
+            for _ in range(100):  # killed with the case; who adopts it still has to reap it
+                os.kill(grandchild, 0)
+                if (pathlib.Path("/proc") / str(grandchild) / "stat").read_text().split()[2] == "Z":
+                    raise ProcessLookupError
+                time.sleep(0.02)
 
     def test_printing_without_end(self):
         status = self.run_modes("print")["print"]
         self.assertIn(status["kind"], ("crash", "timeout"))
 
     def test_failures_run_again_only_on_request(self):
-        study = self.study(solvers=["faulty:mode=throw", "faulty:mode=sound"])
+        study = self.study(solvers=["faulty:mode=throw", "faulty:mode=stable"])
         self.taut("run", study, program="taut-faulty")
         again = self.taut("run", study, program="taut-faulty")
         self.assertIn("(2 were stored already)", again.err)
@@ -60,8 +89,37 @@ class FaultySolvers(CommandLine):
         self.assertIn("1/1 cases: error 1 (0 were stored already)", failed.err)
 
 
+class Input(CommandLine):
+    def refuse(self, scene, says):
+        done = self.taut("case", scene, "jakobsen", expect=2)
+        self.assertIn(says, done.err)
+        self.assertNotIn("terminate", done.err)
+
+    def test_files_that_are_none(self):
+        os.mkfifo(self.folder / "pipe.toml")
+        os.mkfifo(self.folder / "pipe.obj")
+        self.refuse("./pipe.toml", "pipe.toml: no such scene file")
+        for mesh, says in [("/dev/zero", "is no regular file"), ("/proc/self/mem", "cannot be read"), ("pipe.obj", "is no regular file")]:
+            (self.folder / "mesh.toml").write_text(f'[cloth]\nmesh = "{mesh}"\nmass = 1\n')
+            self.refuse("./mesh.toml", says)
+
+    def test_documents_without_bottom(self):
+        for name, text in [("keys", ".".join(["a"] * 60_000) + " = 1\n"), ("tables", "[" + ".".join(["a"] * 60_000) + "]\n"),
+                           ("arrays", "a = " + "[" * 60_000 + "]" * 60_000), ("inline", "a = " + "{a = " * 60_000 + "1" + "}" * 60_000)]:
+            with self.subTest(name):
+                (self.folder / "deep.toml").write_text(text)
+                self.refuse("./deep.toml", "deep.toml:1:")
+        (self.folder / "large.toml").write_text("#" * (17 << 20))
+        self.refuse("./large.toml", "is larger than 16 MiB")
+
+    def test_a_study_has_no_line_breaks_in_its_texts(self):
+        study = self.study(rest='[[plot]]\nkind = "stability"\ntitle = "x\\n`id`"\n')
+        refused = self.taut("run", study, expect=2)
+        self.assertIn("study.toml:6:9: a text of a study holds no line breaks", refused.err)
+
+
 class Store(CommandLine):
-    MANY = 'sweep.iterations = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]\n'
+    MANY = 'axes.iterations = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]\n'
 
     def test_a_second_run_reuses_everything(self):
         study = self.study(rest=self.MANY)
@@ -71,7 +129,7 @@ class Store(CommandLine):
         self.assertEqual(self.store_digest(first), self.store_digest(second))
 
     def test_kill_9_at_random_moments_then_resume(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest=f"sweep.variant = {list(range(3 * KILLS))}\n")
+        study = self.study(solvers=["faulty:mode=slow"], rest=f"axes.variant = {list(range(3 * KILLS))}\n")
         whole = self.store_digest(self.taut("run", study, "--out", "whole", "-j", 8, program="taut-faulty"))
         moments = random.Random(1)
         hits = 0
@@ -89,7 +147,7 @@ class Store(CommandLine):
         self.assertEqual(list((self.folder / "results/runs/tmp").iterdir()), [], "leftovers are swept up")
 
     def test_ctrl_c_then_resume(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="sweep.variant = [0, 1, 2, 3]\n")
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
         process = self.start("run", study, "-j", 1, program="taut-faulty")
         while not self.entries():
             time.sleep(0.05)
@@ -101,6 +159,47 @@ class Store(CommandLine):
         self.assertEqual(list((self.folder / "results/runs/tmp").iterdir()), [])
         self.taut("run", study, program="taut-faulty")
         self.assertEqual(len(self.entries()), 4)
+
+    def test_two_runs_share_a_folder(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
+        both = [self.start("run", study, "-j", 3, program="taut-faulty") for _ in range(2)]
+        for process in both:
+            _, said = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 0, said)
+        self.assertEqual(len(self.entries()), 6)
+        self.assertFalse((self.folder / "results/runs/conflicts").exists())
+
+    def test_an_interrupted_bench_keeps_the_stored_one(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1]\n")
+        file = self.folder / "results/runs/bench/study.json"
+        self.taut("bench", study, "--rounds", 1, "--seconds", 0.01, program="taut-faulty")
+        stored = file.read_bytes()
+        for stop in (signal.SIGINT, signal.SIGTERM):
+            process = self.start("bench", study, "--rounds", 1000, program="taut-faulty")
+            while "timing" not in process.stderr.readline():
+                pass
+            time.sleep(0.5)
+            process.send_signal(stop)
+            process.communicate(timeout=30)
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual(file.read_bytes(), stored)
+
+    def test_a_bench_interrupted_before_it_times_stores_nothing(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5, 6, 7]\n")
+        process = self.start("bench", study, program="taut-faulty")
+        while not self.entries():
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130, said)
+        self.assertFalse((self.folder / "results/runs/bench").exists())
+
+    def test_output_that_cannot_be_written(self):
+        with open("/dev/full", "w") as full:
+            process = subprocess.run([BINARIES / "taut", "case", "./small.toml", "jakobsen", "--json"], cwd=self.folder,
+                                     stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual(process.returncode, 2, process.stderr)
+        self.assertIn("cannot be written", process.stderr)
 
     def test_a_corrupt_entry_is_reported_set_aside_and_run_again(self):
         study = self.study(rest=self.MANY)
@@ -155,7 +254,7 @@ class Store(CommandLine):
             self.assertIn("Permission denied", self.taut("run", study, "--out", "locked", expect=2).err)
 
     def test_a_program_that_vanishes_is_no_result(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="sweep.variant = [0, 1, 2, 3]\n")
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
         mine = self.folder / "taut-faulty"
         shutil.copy(BINARIES / "taut-faulty", mine)
         process = self.start("run", study, "-j", 1, program=mine)  # an absolute path stays what it is
@@ -173,8 +272,18 @@ class Store(CommandLine):
         if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "tmpfs", place], capture_output=True).returncode != 0:
             self.skipTest("needs a small file system")
         self.addCleanup(subprocess.run, ["umount", place])
-        study = self.study(rest="sweep.iterations = { from = 1, to = 60, steps = 60 }\n")
+        study = self.study(rest="axes.iterations = { from = 1, to = 60, steps = 60 }\n")
         whole = self.store_digest(self.taut("run", study))
+        with open(place / "filler", "wb") as filler:  # full at the manifest: it is not there in part, and no merge stumbles
+            subprocess.run(["mount", "-o", "remount,size=300k", place], check=True)
+            self.taut("run", study, "--shard", "1/60", "--out", "disk/results")
+            sessions = set((place / "results/sessions").iterdir())
+            filler.write(bytes(os.statvfs(place).f_bavail * os.statvfs(place).f_frsize - 4096 * 5))
+            filler.flush()
+            self.assertIn("No space left", self.taut("run", study, "--out", "disk/results", expect=2).err)
+            self.assertEqual(set((place / "results/sessions").iterdir()), sessions)
+        (place / "filler").unlink()
+        shutil.rmtree(place / "results")
         for kilobytes in range(300, 348, 8):  # the disk is full at another moment of a case each time
             subprocess.run(["mount", "-o", f"remount,size={kilobytes}k", place], check=True)
             run = self.taut("run", study, "--out", "disk/results", expect=2)

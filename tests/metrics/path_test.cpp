@@ -50,7 +50,7 @@ TEST(Path, TheSameMotionTunnelsAsOftenHoweverItIsCutIntoSteps) {
 TEST(Path, APlateThinnerThanASubstepsTravelIsPassed) {
   const Scene scene =
       load_scene(std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/tunnel.toml", {});
-  EXPECT_EQ(outcome(scene, "jakobsen:contact=sweep,substeps=4").tunnelled, 289);
+  EXPECT_EQ(outcome(scene, "jakobsen:contact=discrete,substeps=4").tunnelled, 289);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/render/figure.hpp"
+#include "experiments/render/picture/figure.hpp"
 
 /// Motions that no solver made: what a picture must show of them is known.
 namespace taut::test {
@@ -39,19 +39,19 @@ inline Trajectory empty_trajectory(const Scene& scene) {
 }
 
 /// The sheet stretched evenly by 1 + strain, all the time.
-inline Take stretched(const Scene& scene, double strain) {
+inline RecordedRun stretched(const Scene& scene, double strain) {
   Trajectory trajectory = empty_trajectory(scene);
   State state = scene.start;
   for (Vec3& x : state.x) x *= 1 + strain;
   for (int k = 0; k <= scene.steps; ++k) trajectory.frames.push_back({k * scene.dt, state});
-  Take take = take_of(scene, trajectory);
-  take.title = "Analytic", take.settings = "strain", take.colour = rgb(0x0B6BCB);
-  return take;
+  RecordedRun run = recorded_run(scene, trajectory);
+  run.title = "Analytic", run.settings = "strain", run.colour = rgb(0x0B6BCB);
+  return run;
 }
 
 /// The sheet laid over the ball of `sheet_over_ball`: bent along circles around the top, folded by
 /// `folds` waves below; t lets it down.
-inline Take draped(const Scene& scene, double folds) {
+inline RecordedRun draped(const Scene& scene, double folds) {
   Trajectory trajectory = empty_trajectory(scene);
   for (int k = 0; k <= scene.steps; ++k) {
     const double down = static_cast<double>(k) / scene.steps;
@@ -65,12 +65,12 @@ inline Take draped(const Scene& scene, double folds) {
       const double y = -0.31 + 0.305 * std::cos(angle) - 0.93 * rest;
       x += down * (Vec3(out * std::cos(a), y, out * std::sin(a)) - x);
     }
-    state.v.clear();  // the take has to find out
+    state.v.clear();  // the run has to find out
     trajectory.frames.push_back({k * scene.dt, state});
   }
-  Take take = take_of(scene, trajectory);
-  take.title = "Analytic", take.settings = "drape", take.colour = rgb(0xC4501B);
-  return take;
+  RecordedRun run = recorded_run(scene, trajectory);
+  run.title = "Analytic", run.settings = "drape", run.colour = rgb(0xC4501B);
+  return run;
 }
 
 /// Largest difference of a channel, and its mean over all.

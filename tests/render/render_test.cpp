@@ -67,8 +67,8 @@ double share_of(const Image& panel, Rgb8 colour) {
   return static_cast<double>(same) / static_cast<double>(panel.pixels().size());
 }
 
-StudioOptions small(Quantity quantity = Quantity::strain) {
-  StudioOptions options;
+SceneRendererOptions small(Quantity quantity = Quantity::strain) {
+  SceneRendererOptions options;
   options.width = 240, options.height = 180;
   options.quality = RenderQuality::draft();
   options.quantity = quantity;
@@ -76,80 +76,80 @@ StudioOptions small(Quantity quantity = Quantity::strain) {
 }
 
 // Open cloth that faces the sky has the colour that the bar promises, whatever light and shader do.
-TEST(Studio, OpenClothHasTheBarsColour) {
+TEST(SceneRenderer, OpenClothHasTheBarsColour) {
   const Scene scene = test::level_sheet(9);
   for (const double strain : {-0.05, 0.0, 0.05, 0.4}) {
-    const std::vector<Take> takes{test::stretched(scene, strain)};
-    StudioOptions options = small();
+    const std::vector<RecordedRun> runs{test::stretched(scene, strain)};
+    SceneRendererOptions options = small();
     options.view = parse_view("top");
     options.range = 0.05;
-    const Studio studio(scene, takes, options);
-    EXPECT_GT(share_of(studio.panel(0, 0.5), studio.scale().colour(strain)), 0.15) << strain;
+    const SceneRenderer renderer(scene, runs, options);
+    EXPECT_GT(share_of(renderer.panel(0, 0.5), renderer.scale().colour(strain)), 0.15) << strain;
   }
 }
 
-TEST(Studio, MaterialSpaceIsExact) {
+TEST(SceneRenderer, MaterialSpaceIsExact) {
   const Scene scene = test::level_sheet(5);
-  const std::vector<Take> takes{test::stretched(scene, 0.02)};
-  StudioOptions options = small();
+  const std::vector<RecordedRun> runs{test::stretched(scene, 0.02)};
+  SceneRendererOptions options = small();
   options.range = 0.05;
-  const Studio studio(scene, takes, options);
-  const Image flat = studio.material_space(0, 0.5, 40);
+  const SceneRenderer renderer(scene, runs, options);
+  const Image flat = renderer.material_space(0, 0.5, 40);
   ASSERT_EQ(flat.pixels().size(), 40u * 40u);
-  for (const Rgb8 pixel : flat.pixels()) EXPECT_EQ(pixel, studio.scale().colour(0.02));
+  for (const Rgb8 pixel : flat.pixels()) EXPECT_EQ(pixel, renderer.scale().colour(0.02));
 }
 
-TEST(Studio, SameInputSameBytesFromEitherThread) {
+TEST(SceneRenderer, SameInputSameBytesFromEitherThread) {
   const Scene scene = test::sheet_over_ball(17);
-  const std::vector<Take> takes{test::draped(scene, 7)};
-  const auto draw = [&] { return Studio(scene, takes, small()).panel(0, 1); };
+  const std::vector<RecordedRun> runs{test::draped(scene, 7)};
+  const auto draw = [&] { return SceneRenderer(scene, runs, small()).panel(0, 1); };
   const Image first = draw();
   Image other;
   std::thread([&] { other = draw(); }).join();
   EXPECT_EQ(first.pixels(), other.pixels());
 }
 
-TEST(Studio, MovingTheClothMovesThePicture) {
+TEST(SceneRenderer, MovingTheClothMovesThePicture) {
   const Scene scene = test::sheet_over_ball(17);
-  const std::vector<Take> takes{test::draped(scene, 7)};
-  const Studio studio(scene, takes, small());
-  EXPECT_GT(difference(studio.panel(0, 0), studio.panel(0, 1)).mean, 2);
+  const std::vector<RecordedRun> runs{test::draped(scene, 7)};
+  const SceneRenderer renderer(scene, runs, small());
+  EXPECT_GT(difference(renderer.panel(0, 0), renderer.panel(0, 1)).mean, 2);
 }
 
 // What fell through a thin plate must not look as if it had never been there.
-TEST(Studio, ClothThatLeavesThePictureIsMissedAndSaidSo) {
+TEST(SceneRenderer, ClothThatLeavesThePictureIsMissedAndSaidSo) {
   Scene scene = test::sheet_over_ball(9);
-  Take gone = test::draped(scene, 7);
+  RecordedRun gone = test::draped(scene, 7);
   for (auto& frame : gone.trajectory.frames)
     if (frame.t > 0.5)
       for (Vec3& x : frame.state.x) x.y() -= 20;
-  const std::vector<Take> takes{test::draped(scene, 7), gone};
+  const std::vector<RecordedRun> runs{test::draped(scene, 7), gone};
   const PageLayout layout(640, 360, 2);
-  StudioOptions options = small();
+  SceneRendererOptions options = small();
   options.width = layout.panel_width, options.height = layout.panel_height;
-  const Studio studio(scene, takes, options);
-  EXPECT_TRUE(studio.in_sight(0, 1));
-  EXPECT_TRUE(studio.in_sight(1, 0.25));
-  EXPECT_FALSE(studio.in_sight(1, 1));
+  const SceneRenderer renderer(scene, runs, options);
+  EXPECT_TRUE(renderer.in_sight(0, 1));
+  EXPECT_TRUE(renderer.in_sight(1, 0.25));
+  EXPECT_FALSE(renderer.in_sight(1, 1));
   // Without the sheet both halves show the same ball; the plate with the text stands in one.
-  Image empty = studio.panel(1, 1), marked = empty;
+  Image empty = renderer.panel(1, 1), marked = empty;
   mark_gone(marked, layout.unit);
   EXPECT_GT(difference(empty, marked).largest, 100);
-  const Image page = compose(studio, layout, 1);
+  const Image page = compose(renderer, layout, 1);
   const int x = layout.panel_width + static_cast<int>(24 * layout.unit),
             y = layout.header + layout.panel_height - static_cast<int>(40 * layout.unit);
   EXPECT_EQ(page.at(x + 8, y), marked.at(x + 8 - layout.panel_width, y - layout.header));
 }
 
-TEST(Studio, VerticesAreProjectedToWhereTheyAreDrawn) {
+TEST(SceneRenderer, VerticesAreProjectedToWhereTheyAreDrawn) {
   const Scene scene = test::level_sheet(9);
-  const std::vector<Take> takes{test::stretched(scene, 0)};
-  StudioOptions options = small();
+  const std::vector<RecordedRun> runs{test::stretched(scene, 0)};
+  SceneRendererOptions options = small();
   options.view = parse_view("top");
   options.range = 0.05;
-  const Studio studio(scene, takes, options);
-  const Image panel = studio.panel(0, 0.5);
-  const auto points = studio.projected(0, 0.5);
+  const SceneRenderer renderer(scene, runs, options);
+  const Image panel = renderer.panel(0, 0.5);
+  const auto points = renderer.projected(0, 0.5);
   ASSERT_EQ(points.size(), scene.mesh.rest.size());
   const auto middle = points[points.size() / 2];
   const Rgb8 there = panel.at(static_cast<int>((middle.x() + 1) / 2 * 240),
@@ -158,19 +158,67 @@ TEST(Studio, VerticesAreProjectedToWhereTheyAreDrawn) {
   for (const auto& p : points) EXPECT_LT(std::max(std::abs(p.x()), std::abs(p.y())), 1);
 }
 
+// Stretched to a thread of a thousandth of a pixel, no sample of any pixel lies in it.
+TEST(SceneRenderer, AThreadOfClothIsSeenFromEndToEnd) {
+  const Scene scene = test::level_sheet(9);
+  RecordedRun thread = test::stretched(scene, 0);
+  for (auto& frame : thread.trajectory.frames)
+    for (Vec3& x : frame.state.x) x = Vec3(3 * x.x(), 0, 1e-5 * x.z());
+  const std::vector<RecordedRun> runs{thread};
+  SceneRendererOptions options = small();
+  options.view = parse_view("front");
+  options.range = 0.05;
+  const SceneRenderer renderer(scene, runs, options);
+  const Image panel = renderer.panel(0, 0.5);
+  const auto ends =
+      std::ranges::minmax(renderer.projected(0, 0.5), {}, [](const auto& p) { return p.x(); });
+  const auto column = [](float x) { return static_cast<int>((x + 1) / 2 * 240); };
+  int seen = 0;
+  for (int x = column(ends.min.x()); x < column(ends.max.x()); ++x)
+    for (int y = 0; y < 180; ++y)
+      if (panel.at(x, y).r > panel.at(x, y).g + 40) {
+        ++seen;
+        break;
+      }
+  EXPECT_GT(column(ends.max.x()) - column(ends.min.x()), 150);
+  EXPECT_GE(seen, column(ends.max.x()) - column(ends.min.x()) - 2);
+}
+
+// A ball that comes from far away is seen at the cloth, the cloth is not a speck on its way.
+TEST(Placing, FramesTheClothAndNotTheWholeWayOfACollider) {
+  Scene scene = test::level_sheet(9);
+  scene.colliders.push_back({Ball{Vec3(-10, 0, 0), 0.3}, {.velocity = Vec3(20, 0, 0)}, 0});
+  const std::vector<RecordedRun> runs{test::stretched(scene, 0)};
+  std::vector<double> times;
+  for (int k = 0; k <= 24; ++k) times.push_back(k / 24.0);
+  const Placing passing = place(scene, runs, times, View{}, Frame{}, 4.0 / 3, 0);
+  EXPECT_LT(passing.radius, 1.5);
+  EXPECT_GT(passing.radius, 0.8) << "the ball is seen while it passes";
+}
+
+TEST(Figure, WhatIsWrittenBelowIsTheQuantityThatIsShown) {
+  const LiveFigures live{
+      .max_strain = 0.041, .mean_strain = -0.002, .max_depth = 0.0015, .max_speed = 0.8};
+  EXPECT_EQ(quantity_text(Quantity::penetration, live),
+            std::vector<std::string>{"max depth = 1.5 mm"});
+  EXPECT_EQ(quantity_text(Quantity::speed, live), std::vector<std::string>{"max |v| = 0.8 m/s"});
+  EXPECT_EQ(quantity_text(Quantity::strain, live),
+            (std::vector<std::string>{"max |ε| = 4.10 %", "mean ε = \u22120.20 %"}));
+}
+
 // Cloth that sinks into a ball is lifted to its surface, and only hatched there.
-TEST(Studio, SunkenClothStaysVisible) {
+TEST(SceneRenderer, SunkenClothStaysVisible) {
   const Scene scene = test::sheet_over_ball(17);
-  Take sunken = test::draped(scene, 7);
+  RecordedRun sunken = test::draped(scene, 7);
   for (auto& frame : sunken.trajectory.frames)
     for (Vec3& x : frame.state.x)
       if (x.y() > -0.31 && (x - Vec3(0, -0.31, 0)).norm() < 0.32)
         x = Vec3(0, -0.31, 0) + (x - Vec3(0, -0.31, 0)) * (0.29 / 0.305);
-  const std::vector<Take> takes{test::draped(scene, 7), sunken};
-  StudioOptions options = small();
+  const std::vector<RecordedRun> runs{test::draped(scene, 7), sunken};
+  SceneRendererOptions options = small();
   options.range = 100;  // no colour of its own
-  const Studio studio(scene, takes, options);
-  const Image sound = studio.panel(0, 1), sank = studio.panel(1, 1);
+  const SceneRenderer renderer(scene, runs, options);
+  const Image sound = renderer.panel(0, 1), sank = renderer.panel(1, 1);
   EXPECT_LT(difference(sound, sank).mean, 4);
   EXPECT_GT(difference(sound, sank).largest, 20);  // the hatch
 }
@@ -215,45 +263,46 @@ TEST(Camera, TheInsetHidesNoneOfThePoints) {
     }
 }
 
-TEST(Take, EndsBeforeTheFirstUnsoundFrameAndSaysSo) {
+TEST(RecordedRun, EndsBeforeTheFirstUnsoundFrameAndSaysSo) {
   const Scene scene = test::level_sheet(5);
   Trajectory trajectory = test::stretched(scene, 0).trajectory;
   trajectory.frames[20].state.x[3][1] = std::nan("");
-  const Take take = take_of(scene, trajectory);
-  EXPECT_EQ(take.trajectory.frames.size(), 20u);
-  ASSERT_TRUE(take.stop.has_value());
-  EXPECT_EQ(take.stop->why, "exploded");
-  EXPECT_DOUBLE_EQ(take.at(0.9).t, 19 * scene.dt);
+  const RecordedRun run = recorded_run(scene, trajectory);
+  EXPECT_EQ(run.trajectory.frames.size(), 20u);
+  ASSERT_TRUE(run.stop.has_value());
+  EXPECT_EQ(run.stop->why, "exploded");
+  EXPECT_DOUBLE_EQ(run.at(0.9).t, 19 * scene.dt);
   trajectory.frames[0].state.x[0] = Vec3::Constant(1e30);
-  EXPECT_THROW(take_of(scene, trajectory), InputError);
+  EXPECT_THROW(recorded_run(scene, trajectory), InputError);
 }
 
-TEST(Take, OneIterationIsNotTwo) {
+TEST(RecordedRun, OneIterationIsNotTwo) {
   EXPECT_EQ(readable_settings("bullet:iterations=1,substeps=2,order=mesh"),
             "1 iteration · 2 substeps · order mesh");
 }
 
-TEST(Studio, ATakeThatBlewUpLeavesTheOthersTheirColours) {
+TEST(SceneRenderer, ARunThatBlewUpLeavesTheOthersTheirColours) {
   const Scene scene = test::level_sheet(5);
-  std::vector<Take> takes{test::stretched(scene, 0.06), test::stretched(scene, 40)};
-  takes[1].stop = Take::Stop{0.5, "exploded"};
-  EXPECT_DOUBLE_EQ(Studio(scene, takes, small()).scale().high, 0.06);
-  takes.erase(takes.begin());
-  EXPECT_DOUBLE_EQ(Studio(scene, takes, small()).scale().high, 1) << "none is sound: 100 % at most";
+  std::vector<RecordedRun> runs{test::stretched(scene, 0.06), test::stretched(scene, 40)};
+  runs[1].stop = RecordedRun::Stop{0.5, "exploded"};
+  EXPECT_DOUBLE_EQ(SceneRenderer(scene, runs, small()).scale().high, 0.06);
+  runs.erase(runs.begin());
+  EXPECT_DOUBLE_EQ(SceneRenderer(scene, runs, small()).scale().high, 1)
+      << "none is sound: 100 % at most";
 }
 
-TEST(Take, AnExplodedPanelIsMarked) {
+TEST(RecordedRun, AnExplodedPanelIsMarked) {
   const Scene scene = test::level_sheet(5);
-  Take take = test::stretched(scene, 0);
-  take.trajectory.frames.resize(30);
-  take = take_of(scene, take.trajectory);
-  take.title = "Analytic", take.stop->why = "exploded";
-  const std::vector<Take> takes{take};
+  RecordedRun run = test::stretched(scene, 0);
+  run.trajectory.frames.resize(30);
+  run = recorded_run(scene, run.trajectory);
+  run.title = "Analytic", run.stop->why = "exploded";
+  const std::vector<RecordedRun> runs{run};
   const PageLayout layout(480, 360, 1);
-  StudioOptions options = small();
+  SceneRendererOptions options = small();
   options.width = layout.panel_width, options.height = layout.panel_height;
-  const Studio studio(scene, takes, options);
-  const Image before = compose(studio, layout, 0.2), after = compose(studio, layout, 0.9);
+  const SceneRenderer renderer(scene, runs, options);
+  const Image before = compose(renderer, layout, 0.2), after = compose(renderer, layout, 0.9);
   const Rgb8 alarm = rgb(0xB3261E);
   EXPECT_EQ(share_of(before, alarm), 0);
   EXPECT_GT(share_of(after, alarm), 0.01);
@@ -269,23 +318,23 @@ void expect_golden(const std::string& name, const Image& picture) {
   if (d.mean >= 0.8) write_png(fs::path(TAUT_BINARY_DIR) / (name + "-now.png"), picture);
 }
 
-TEST(Golden, FigureOfTwoTakes) {
+TEST(Golden, FigureOfTwoRuns) {
   const Scene scene = test::sheet_over_ball(17);
-  const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
+  const std::vector<RecordedRun> runs{test::draped(scene, 5), test::draped(scene, 8)};
   const PageLayout layout(640, 360, 2);
-  StudioOptions options = small();
+  SceneRendererOptions options = small();
   options.width = layout.panel_width, options.height = layout.panel_height;
-  const Studio studio(scene, takes, options);
-  expect_golden("figure", compose(studio, layout, 1));
+  const SceneRenderer renderer(scene, runs, options);
+  expect_golden("figure", compose(renderer, layout, 1));
 }
 
-TEST(Golden, SheetOfSpeedsOnTheDarkStage) {
+TEST(Golden, SheetOfSpeedsInTheDarkTheme) {
   const Scene scene = test::sheet_over_ball(17);
-  const std::vector<Take> takes{test::draped(scene, 5)};
-  StudioOptions options = small(Quantity::speed);
-  options.theme = StageTheme::dark();
-  const Studio studio(scene, takes, options);
-  expect_golden("sheet", compose_sheet(studio, {0, 0.5, 1}));
+  const std::vector<RecordedRun> runs{test::draped(scene, 5)};
+  SceneRendererOptions options = small(Quantity::speed);
+  options.theme = Theme::dark();
+  const SceneRenderer renderer(scene, runs, options);
+  expect_golden("sheet", compose_sheet(renderer, {0, 0.5, 1}));
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "experiments/render/media.hpp"
-#include "experiments/render/obj_export.hpp"
+#include "experiments/render/picture/media.hpp"
+#include "experiments/render/picture/obj_export.hpp"
 #include "tests/render/render_scenes.hpp"
 
 namespace taut {
@@ -54,13 +54,13 @@ TEST(FrameRateTest, IsExactForFractionsOfASecond) {
 TEST_F(VideoTest, ADecodedFrameMatchesItsStill) {
   if (!on_path("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
   const Scene scene = test::sheet_over_ball(17);
-  const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
+  const std::vector<RecordedRun> runs{test::draped(scene, 5), test::draped(scene, 8)};
   const PageLayout layout(640, 360, 2);
-  StudioOptions look;
+  SceneRendererOptions look;
   look.width = layout.panel_width, look.height = layout.panel_height;
   look.quality = RenderQuality::draft();
-  const Studio studio(scene, takes, look);
-  const Image still = compose(studio, layout, 1);
+  const SceneRenderer renderer(scene, runs, look);
+  const Image still = compose(renderer, layout, 1);
   VideoWriter video(folder_ / "v.mp4", {640, 360, {32, 1}, 22});
   for (int k = 0; k < 8; ++k) ASSERT_TRUE(video.write(still));
   ASSERT_EQ(video.finish(), "");
@@ -84,9 +84,9 @@ TEST_F(VideoTest, ADecodedFrameMatchesItsStill) {
 TEST_F(VideoTest, MediaHasAVideoForEveryMomentTheSameBytesAgain) {
   if (!on_path("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
   const Scene scene = test::sheet_over_ball(17);
-  const std::vector<Take> takes{test::draped(scene, 5), test::draped(scene, 8)};
+  const std::vector<RecordedRun> runs{test::draped(scene, 5), test::draped(scene, 8)};
   int told = 0;
-  const Media media = render_media(scene, takes, quick(), [&](int done, int) { told = done; });
+  const Media media = render_media(scene, runs, quick(), [&](int done, int) { told = done; });
   EXPECT_EQ(media.mp4.substr(4, 4), "ftyp");
   EXPECT_EQ(media.poster.substr(0, 2), "\xFF\xD8");
   EXPECT_EQ(media.rms_strain.size(), 2u);
@@ -95,7 +95,7 @@ TEST_F(VideoTest, MediaHasAVideoForEveryMomentTheSameBytesAgain) {
   EXPECT_NEAR(media.rate.value(), 1 / media.t[1], 1e-9);
   ASSERT_EQ(media.material.size(), media.rms_strain.size());
   EXPECT_EQ(media.material[0].size(), 4u);
-  EXPECT_EQ(media.mp4, render_media(scene, takes, quick()).mp4);
+  EXPECT_EQ(media.mp4, render_media(scene, runs, quick()).mp4);
 }
 
 TEST_F(VideoTest, WithoutFfmpegThereIsAPosterAndAStrip) {
@@ -106,8 +106,8 @@ TEST_F(VideoTest, WithoutFfmpegThereIsAPosterAndAStrip) {
   EXPECT_EQ(video.finish(), "ffmpeg is not installed");
   EXPECT_FALSE(fs::exists(folder_ / "v.mp4"));
   const Scene scene = test::level_sheet(5);
-  const std::vector<Take> takes{test::stretched(scene, 0.01)};
-  const Media media = render_media(scene, takes, quick());
+  const std::vector<RecordedRun> runs{test::stretched(scene, 0.01)};
+  const Media media = render_media(scene, runs, quick());
   setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(media.mp4, "");
   EXPECT_EQ(media.poster_type, "image/png");

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/solver/hierarchy.hpp"
-#include "core/solver/passes/tethers.hpp"
+#include "core/solver/constraints/hierarchy.hpp"
+#include "core/solver/constraints/tethers.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut {
@@ -111,16 +111,16 @@ TEST(Hierarchy, StiffensAHangingSheetAtFewSweeps) {
   EXPECT_LT(2 * settled(",levels=6"), settled(""));
 }
 
-TEST(Accelerators, WorkInStripsAsWellAsPacked) {
+TEST(Accelerators, WorkInterleavedAsWellAsPacked) {
   const Scene scene = crumpled(hanging_sheet(20, 20), 0.01);
   for (const char* more : {",tethers=on", ",levels=3", ",levels=3,tethers=on"}) {
     const std::string method = listing("precision=double,order=coloured,iterations=2") + more;
-    const State strips = simulate(scene, method + ",layout=strips", 30);
-    const State packed = simulate(scene, method + ",layout=packed", 30);
+    const State interleaved = simulate(scene, method + ",layout=interleaved", 30);
+    const State batches = simulate(scene, method + ",layout=batches", 30);
     const State without = simulate(scene, method.substr(0, method.size() - std::strlen(more)), 30);
-    const double apart = largest_distance(strips.x, packed.x);  // other orders, same cloth
-    EXPECT_LT(3 * apart, largest_distance(strips.x, without.x)) << more;
-    EXPECT_LT(3 * apart, largest_distance(packed.x, without.x)) << more;
+    const double apart = largest_distance(interleaved.x, batches.x);  // other orders, same cloth
+    EXPECT_LT(3 * apart, largest_distance(interleaved.x, without.x)) << more;
+    EXPECT_LT(3 * apart, largest_distance(batches.x, without.x)) << more;
   }
 }
 
@@ -135,8 +135,8 @@ TEST(Memory, OfASheetIsAtMostAHundredBytesAVertexAndOfAMeshTwoHundred) {
   };
   for (const int n : {32, 64, 128}) {
     const Scene scene = hanging_sheet(n, n);
-    EXPECT_LE(per_vertex(scene, "jakobsen:layout=strips"), 100) << n;
-    EXPECT_LE(per_vertex(scene, "jakobsen:layout=packed"), 200) << n;
+    EXPECT_LE(per_vertex(scene, "jakobsen:layout=interleaved"), 100) << n;
+    EXPECT_LE(per_vertex(scene, "jakobsen:layout=batches"), 200) << n;
     EXPECT_LE(per_vertex(scene, "jakobsen:order=mesh"), 200) << n;
   }
 }

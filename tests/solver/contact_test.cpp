@@ -1,4 +1,4 @@
-// Truths of contact: closed forms for particles on planes, and what each response of the report
+// Truths of contact: closed forms for particles on planes, and what each response of Vasilovici's
 // does. Most scenes have no links: each vertex is then a point mass.
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "core/model/solver.hpp"
 #include "core/model/triangle.hpp"
-#include "core/solver/contact/place.hpp"
+#include "core/solver/contact/projector.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut {
@@ -65,7 +65,7 @@ double depth(const Collider& collider, const State& state, double t) {
 TEST(Contact, OnAPlaneRestComesWithinTwoStepsOfTheImpact) {
   Scene scene = points({0, 0.01, 0});
   scene.colliders = {{.shape = Plane{}}};
-  for (const char* response : {",contact=swept", ",contact=sweep", ",contact=after"}) {
+  for (const char* response : {",contact=continuous", ",contact=discrete", ",contact=after"}) {
     Runner run(scene, response);
     run.step(3);  // falls 6 g dt^2 = 14 mm: has met the plane
     const State& state = run.step(2);
@@ -115,7 +115,7 @@ TEST(Contact, OnAnInclineItSlidesAsCoulombSays) {
   for (const double mu : {0.0, 0.2, 0.5}) {
     Incline incline{.friction = mu};
     const Scene scene = incline.scene();
-    for (const char* response : {",contact=swept", ",contact=sweep", ",contact=after"}) {
+    for (const char* response : {",contact=continuous", ",contact=discrete", ",contact=after"}) {
       const int n = 100;
       const State state = Runner(scene, response).step(n);
       const double accelerates = kG * (std::sin(incline.slope) - mu * std::cos(incline.slope));
@@ -187,11 +187,11 @@ TEST(Contact, APlateIsMissedByOneMinusThicknessOverWayUnlessSwept) {
   for (const double share : {0.25, 0.5, 0.75}) {
     EXPECT_NEAR(missed_fraction(",contact=freeze", share * way), 1 - share, 0.005);
     // One that is caught keeps what is left of its speed, goes past the middle in the next step and
-    // is thrown out below: the report's cloth that simply passes through the box.
-    EXPECT_EQ(missed_fraction(",contact=sweep", share * way), 1);
-    EXPECT_EQ(missed_fraction(",contact=swept", share * way), 0);
+    // is thrown out below: the published cloth that simply passes through the box.
+    EXPECT_EQ(missed_fraction(",contact=discrete", share * way), 1);
+    EXPECT_EQ(missed_fraction(",contact=continuous", share * way), 0);
   }
-  EXPECT_EQ(missed_fraction(",contact=swept", 0.001 * way), 0);
+  EXPECT_EQ(missed_fraction(",contact=continuous", 0.001 * way), 0);
 }
 
 TEST(Contact, ABallThatPassesWithinAStepIsCaughtWhenSwept) {
@@ -199,8 +199,8 @@ TEST(Contact, ABallThatPassesWithinAStepIsCaughtWhenSwept) {
   scene.gravity.setZero();
   scene.colliders = {{.shape = Ball{{scene.start.x[5].x(), -1, scene.start.x[5].z()}, 0.1},
                       .motion = {.velocity = {0, 40, 0}}}};
-  EXPECT_EQ(Runner(scene, ",contact=sweep").step(8).x[5].y(), 0);
-  EXPECT_GT(Runner(scene, ",contact=swept").step(8).x[5].y(), 4);  // carried along
+  EXPECT_EQ(Runner(scene, ",contact=discrete").step(8).x[5].y(), 0);
+  EXPECT_GT(Runner(scene, ",contact=continuous").step(8).x[5].y(), 4);  // carried along
 }
 
 TEST(Contact, FreezeHoldsForEverWhatShouldSlide) {
@@ -220,7 +220,7 @@ TEST(Contact, HaltSlowsWhatShouldSlide) {
     return (Runner(scene, response).step(100).x[0] - scene.start.x[0]).dot(incline.down);
   };
   // Every other step is left out: time runs at half speed, and a quarter of the way is made.
-  EXPECT_NEAR(slid(",contact=halt") / slid(",contact=sweep"), 0.25, 0.005);
+  EXPECT_NEAR(slid(",contact=halt") / slid(",contact=discrete"), 0.25, 0.005);
 }
 
 TEST(Contact, RestartForgetsWhatWasFrozen) {
@@ -243,7 +243,7 @@ TEST(Contact, APinInsideAColliderStays) {
   Scene scene = points({0, 0, 0});
   scene.pins = {5};
   scene.colliders = {{.shape = Ball{scene.start.x[5] + Vec3(0, 0.01, 0), 0.1}}};
-  for (const char* response : {"swept", "sweep", "before", "after", "freeze", "halt"})
+  for (const char* response : {"continuous", "discrete", "before", "after", "freeze", "halt"})
     EXPECT_EQ(Runner(scene, std::string(",contact=") + response).step(3).x[5], scene.start.x[5])
         << response;
 }
@@ -305,7 +305,7 @@ void expect_model_surface(const Shape_& shape) {
   for (int k = 0; k < 2000; ++k) {
     const Vec3 x(number(random), number(random), number(random));
     const Surface exact = surface(shape, x);
-    const Triple<double> here = triple<double>(x);
+    const Vec3T<double> here = vec3t<double>(x);
     const Tangent<double> tangent = fast.nearest(here);
     EXPECT_NEAR(dot(tangent.normal, here) - tangent.offset, exact.distance, 1e-12);
     EXPECT_NEAR((point(tangent.normal) - exact.normal).norm(), 0, 1e-7);
@@ -341,7 +341,7 @@ void expect_first_hit(const Shape_& shape) {
     constexpr int kCuts = 4000;
     int first = 0;
     while (first <= kCuts && surface(shape, a + (b - a) * first / kCuts).distance > 0) ++first;
-    const Triple<double> from = triple<double>(a), to = triple<double>(b);
+    const Vec3T<double> from = vec3t<double>(a), to = vec3t<double>(b);
     const Entry<double> entry = fast.entry(from, to);
     EXPECT_FALSE(fast.misses(from, to) && entry.hits);
     misses += fast.misses(from, to);

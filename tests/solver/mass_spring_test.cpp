@@ -1,4 +1,4 @@
-// The report's section 3 and XPBD, held to each other and to what their formulas say.
+// Vasilovici's section 3 and XPBD, held to each other and to what their formulas say.
 #include <gtest/gtest.h>
 
 #include "experiments/truths/probe.hpp"

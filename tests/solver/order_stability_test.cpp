@@ -15,8 +15,8 @@
 #include <string>
 
 #include "core/reference/dense.hpp"
-#include "core/solver/distance.hpp"
-#include "core/solver/order.hpp"
+#include "core/solver/layout/order.hpp"
+#include "core/solver/simd/distance.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut {
@@ -167,7 +167,7 @@ TEST(OrderStability, AtOneSweepALargeUndampedSheetExplodesInSequentialOrdersOnly
     return most;
   };
   for (const char* order : {"mesh", "reversed"}) EXPECT_GT(fastest(order), 1e6) << order;
-  for (const char* order : {"coloured", "coloured,layout=packed", "random"})
+  for (const char* order : {"coloured", "coloured,layout=batches", "random"})
     EXPECT_LT(fastest(order), 100) << order;
 }
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/solver/distance.hpp"
+#include "core/solver/simd/distance.hpp"
 
 namespace taut {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 /// Length after one projection of a link of rest length `rest` that is `length` long.
 template <Projection kind>
 double projected(double length, double rest, double share1 = 0.5, double share2 = 0.5) {
-  Triple<double> x1{0, 0, 0}, x2{length * 0.6, 0, length * 0.8};
+  Vec3T<double> x1{0, 0, 0}, x2{length * 0.6, 0, length * 0.8};
   project_distance<kind>(x1, x2, rest, share1, share2);
   return std::hypot(x2.x - x1.x, x2.y - x1.y, x2.z - x1.z);
 }
@@ -57,7 +57,7 @@ TEST(Projection, ThePrintedSignsDiverge) {
   const double wrong = -excess<Projection::sqrt_free>((1 + e) * (1 + e), 1.0);
   EXPECT_NEAR((1 + e) * (1 - wrong) - 1, (4 * e + 5 * e * e + 2 * e * e * e) / (2 + 2 * e + e * e),
               1e-14);
-  // the report's splice of both listings, with diff = (d - r)/d from the exact one
+  // Vasilovici's splice of both listings, with diff = (d - r)/d from the exact one
   const double l = 1 + e, diff = excess<Projection::exact>(l * l, 1.0);
   const double spliced = l - l * (1 / (l * l + 1) - 0.5) * diff - 1;
   EXPECT_NEAR(spliced, e + e * e / 2, e * e * e);

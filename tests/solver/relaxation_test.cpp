@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "core/model/input_error.hpp"
-#include "core/solver/order.hpp"
+#include "core/reference/textbook.hpp"
+#include "core/solver/layout/order.hpp"
 #include "tests/support/cloths.hpp"
-#include "tests/support/textbook.hpp"
 
 namespace taut {
 namespace {
@@ -18,13 +18,13 @@ TEST(Relaxation, InMeshOrderAndDoubleItIsTheListing) {
       for (const bool exact : {false, true}) {
         Scene scene = crumpled(hanging_sheet(nu, nv, {true, true, true}, lumping), 0.2 / nu);
         scene.damping = 0.5;
-        Textbook oracle(scene);
-        for (int n = 0; n < 30; ++n) oracle.step(4, exact);
+        Textbook<double> oracle(scene, 4, exact);
+        for (int n = 0; n < 30; ++n) oracle.step();
         const State state = simulate(
             scene,
             listing("precision=double,iterations=4,projection=") + (exact ? "exact" : "sqrt-free"),
             30);
-        EXPECT_LT(largest_distance(state.x, oracle.x), 1e-11) << nu << " x " << nv;
+        EXPECT_LT(largest_distance(state.x, oracle.x()), 1e-11) << nu << " x " << nv;
       }
 }
 

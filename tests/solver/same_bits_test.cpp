@@ -5,8 +5,8 @@
 #include <cstring>
 #include <string>
 
-#include "core/solver/batch.hpp"
-#include "core/solver/strips.hpp"
+#include "core/solver/layout/colour_batches.hpp"
+#include "core/solver/layout/interleaved_sheet.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut {
@@ -49,7 +49,7 @@ TEST(SameBits, ForEveryInstructionSetAndNumberOfThreads) {
   for (const Scene& scene : scenes())
     for (const char* precision : {"float", "double"})
       for (const char* projection : {"exact", "sqrt-free"})
-        for (const char* layout : {"auto", "packed"}) {
+        for (const char* layout : {"auto", "batches"}) {
           const std::string method =
               std::string("jakobsen:order=coloured,substeps=2,iterations=3,precision=") +
               precision + ",projection=" + projection + ",layout=" + layout;
@@ -83,7 +83,7 @@ TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
     scene.thickness = 0.002;
     scene.self_collision = SelfCollision{.radius = 0.02};
     for (const char* precision : {"float", "double"})
-      for (const char* contact : {"swept", "sweep", "after", "freeze", "halt"}) {
+      for (const char* contact : {"continuous", "discrete", "after", "freeze", "halt"}) {
         const std::string method = std::string("jakobsen:substeps=1,iterations=3,contact=") +
                                    contact + ",precision=" + precision;
         for (const char* order : {",order=mesh", ",order=coloured"}) {
@@ -104,7 +104,7 @@ State one_by_one(Scene scene, std::vector<Link> order, const std::string& more) 
   return simulate(scene, listing("iterations=4,simd=scalar," + more), 20);
 }
 
-TEST(SameBits, StripsAreTheGenericPathInTheirOrder) {
+TEST(SameBits, InterleavedSheetsAreTheGenericPathInTheirOrder) {
   for (const auto& [nu, nv] : {std::pair{31, 33}, {65, 7}, {17, 40}, {24, 9}, {64, 9}, {130, 21}})
     for (const LinkChoice& families :
          {LinkChoice{true, true, true}, LinkChoice{true, false, true}}) {
@@ -112,35 +112,36 @@ TEST(SameBits, StripsAreTheGenericPathInTheirOrder) {
       const std::vector<double> w = inverse_masses(scene);
       const auto links = regular_links(scene.mesh, scene.links);
       ASSERT_TRUE(links);
-      const Firmness firm{.stiffness = {INFINITY, INFINITY, INFINITY}, .substep = 1 / 64.0};
+      const Stiffness stiffness{.of_family = {INFINITY, INFINITY, INFINITY}, .substep = 1 / 64.0};
       const auto compare = [&](const std::vector<Link>& order, const std::string& more) {
         EXPECT_EQ(order.size(), scene.links.size());
-        const State strips =
-            simulate(scene, listing("order=coloured,layout=strips,iterations=4,") + more, 20);
-        EXPECT_TRUE(same_bits(one_by_one(scene, order, more), strips))
+        const State interleaved =
+            simulate(scene, listing("order=coloured,layout=interleaved,iterations=4,") + more, 20);
+        EXPECT_TRUE(same_bits(one_by_one(scene, order, more), interleaved))
             << scene.mesh.grid->nu << more;
       };
-      compare(StripPlan<float>(*links, w, firm).order(), "precision=float");
-      compare(StripPlan<double>(*links, w, firm).order(), "precision=double,projection=exact");
+      compare(InterleavedSheet<float>(*links, w, stiffness).order(), "precision=float");
+      compare(InterleavedSheet<double>(*links, w, stiffness).order(),
+              "precision=double,projection=exact");
     }
 }
 
 TEST(SameBits, BatchesAreTheGenericPathInTheirOrder) {
   for (const Scene& scene : scenes()) {
     const std::vector<double> w = inverse_masses(scene);
-    const Firmness firm{.stiffness = {INFINITY, INFINITY, INFINITY}, .substep = 1 / 64.0};
+    const Stiffness stiffness{.of_family = {INFINITY, INFINITY, INFINITY}, .substep = 1 / 64.0};
     const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.links, scene.mesh));
-    const BatchPlan<double> plan(colour(scene.links, scene.mesh), w, firm, layout);
+    const ColourBatches<double> batches(colour(scene.links, scene.mesh), w, stiffness, layout);
     std::vector<Link> order;
-    for (const Stick<double>& s : plan.order(layout))
-      order.push_back({s.a, s.b, s.rest, Family::structural});
-    const State batches =
-        simulate(scene, listing("order=coloured,layout=packed,iterations=4,precision=double"), 20);
-    EXPECT_TRUE(same_bits(one_by_one(scene, order, "precision=double"), batches));
+    for (const DistanceConstraint<double>& c : batches.order(layout))
+      order.push_back({c.a, c.b, c.rest, Family::structural});
+    const State result =
+        simulate(scene, listing("order=coloured,layout=batches,iterations=4,precision=double"), 20);
+    EXPECT_TRUE(same_bits(one_by_one(scene, order, "precision=double"), result));
   }
 }
 
-TEST(SameBits, ShortAndNarrowSheetsAreChosenForThePackedLayout) {
+TEST(SameBits, NarrowAndIncompleteSheetsAreNotInterleaved) {
   const Scene narrow = hanging_sheet(16, 40);
   EXPECT_FALSE(regular_links(narrow.mesh, narrow.links));
   Scene cut = hanging_sheet(20, 20);
@@ -171,15 +172,15 @@ TEST(SameBits, AsRecorded) {
   EXPECT_EQ(run(listing()), 17873402768262654844u);
   EXPECT_EQ(run(listing("order=coloured")), 3464990680418230354u);
   EXPECT_EQ(run(listing("order=coloured,projection=exact,precision=double")), 4745603385666999776u);
-  EXPECT_EQ(run(listing("order=coloured,layout=packed")), 9924528306655619327u);
-  EXPECT_EQ(run(listing("order=coloured,layout=packed,projection=exact,precision=double")),
+  EXPECT_EQ(run(listing("order=coloured,layout=batches")), 9924528306655619327u);
+  EXPECT_EQ(run(listing("order=coloured,layout=batches,projection=exact,precision=double")),
             7898678465999565491u);
   EXPECT_EQ(run(listing("method=jacobi-averaged")), 1211506826981364154u);
 }
 
 /// The benchmark's measure of traffic: each end of a link is loaded, changed and stored once.
 template <class Real>
-void expect_both_ends_carried(Simd simd) {
+void expect_both_ends_stored(Simd simd) {
   Batch<Real> batch{};
   std::vector<Real> x(4 * 2 * kLanes);
   for (std::size_t l = 0; l < kLanes; ++l) {
@@ -187,20 +188,20 @@ void expect_both_ends_carried(Simd simd) {
     batch.b[l] = static_cast<std::uint32_t>(4 * (kLanes + (3 * l) % kLanes));
   }
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<Real>(i);
-  kernels<Real>(simd).carry({.batches = &batch, .count = 1, .half = 0, .shares = nullptr},
-                            x.data());
+  kernels<Real>(simd).load_and_store(
+      {.batches = &batch, .count = 1, .equal_share = 0, .shares = nullptr}, x.data());
   for (std::size_t i = 0; i < x.size(); ++i)
     if (i % 4 != 3) {
       EXPECT_NEAR(x[i] - static_cast<Real>(i), i < x.size() / 2 ? 0.001 : -0.001, 1e-5) << i;
     }
 }
 
-TEST(SameBits, CarryingMovesBothEndsOfEachLink) {
+TEST(SameBits, LoadingAndStoringMovesBothEndsOfEachLink) {
   for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
     if (available(simd)) {
       SCOPED_TRACE(to_string(simd));
-      expect_both_ends_carried<float>(simd);
-      expect_both_ends_carried<double>(simd);
+      expect_both_ends_stored<float>(simd);
+      expect_both_ends_stored<double>(simd);
     }
 }
 

@@ -1,5 +1,5 @@
-// The cloth against itself: what the hash grid keeps apart, and the two failures that the report
-// publishes of its octree.
+// The cloth against itself: what the hash grid keeps apart, and the two failures that Vasilovici's
+// report publishes of its octree.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -7,7 +7,7 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
-#include "core/solver/contact/neighbours.hpp"
+#include "core/solver/contact/neighbour_grid.hpp"
 #include "experiments/case/run_case.hpp"
 #include "tests/support/cloths.hpp"
 
@@ -197,7 +197,7 @@ std::vector<std::vector<Vec3>> clouds() {
   return all;
 }
 
-TEST(Neighbours, AreThoseOfAllPairs) {
+TEST(NeighbourGrid, AreThoseOfAllPairs) {
   for (const std::vector<Vec3>& cloud : clouds()) {
     const Points<double> x = points<double>(cloud);
     for (const double reach : {0.02, 0.3, 1.0}) {
@@ -205,7 +205,7 @@ TEST(Neighbours, AreThoseOfAllPairs) {
       for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
         if (!available(simd)) continue;
         Pairs found;
-        Neighbours<double>(cloud.size(), simd)
+        NeighbourGrid<double>(cloud.size(), simd)
             .pairs(x, reach,
                    [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
         EXPECT_EQ(found, brute) << reach << ' ' << to_string(simd);
@@ -214,7 +214,7 @@ TEST(Neighbours, AreThoseOfAllPairs) {
   }
 }
 
-TEST(Neighbours, ThatMeetAreThoseWithinTheirOwnWay) {
+TEST(NeighbourGrid, MovingPairsAreThoseWithinTheirOwnWay) {
   const std::vector<Vec3> now = anywhere(400, 1, 4);
   std::vector<Vec3> before = now, rest = now;
   const std::vector<Vec3> way = anywhere(800, 0.2, 5);
@@ -224,11 +224,12 @@ TEST(Neighbours, ThatMeetAreThoseWithinTheirOwnWay) {
   const float within = 0.1F, reach = within + 0.4F * std::sqrt(3.0F), ignored = 0.8F;
   for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
     if (!available(simd)) continue;
-    Neighbours<float> neighbours(400, simd);
+    NeighbourGrid<float> neighbours(400, simd);
     neighbours.ignore(at_rest, ignored);
     Pairs found, brute;
-    neighbours.meetings(x, previous, within, reach,
-                        [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
+    neighbours.moving_pairs(x, previous, within, reach, [&](std::uint32_t a, std::uint32_t b) {
+      found.insert(std::minmax(a, b));
+    });
     std::size_t left_out = 0;
     for (std::uint32_t a = 0; a < 400; ++a)
       for (std::uint32_t b = a + 1; b < 400; ++b) {
@@ -245,13 +246,13 @@ TEST(Neighbours, ThatMeetAreThoseWithinTheirOwnWay) {
   }
 }
 
-TEST(Neighbours, ComeInOneOrderFromEveryInstructionSet) {
+TEST(NeighbourGrid, ComeInOneOrderFromEveryInstructionSet) {
   const Points<float> x = points<float>(anywhere(3000, 2, 6));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> first;
   for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
     if (!available(simd)) continue;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
-    Neighbours<float>(3000, simd).pairs(x, 0.4F, [&](std::uint32_t a, std::uint32_t b) {
+    NeighbourGrid<float>(3000, simd).pairs(x, 0.4F, [&](std::uint32_t a, std::uint32_t b) {
       found.emplace_back(a, b);
     });
     if (first.empty()) first = found;

@@ -10,18 +10,24 @@ rules='
 core/model               | core/model/
 core/io                  | core/(model|io)/
 core/solver              | core/(model|solver)/
+core/solver/simd         | core/solver/simd/
+core/solver/layout       | core/(model|solver/(simd|layout))/
+core/solver/constraints  | core/(model/|solver/((simd|layout|constraints)/|thread_pool))
+core/solver/contact      | core/(model|solver/(simd|layout|contact))/
 core/reference           | core/(model|reference)/
 bullet_ref               | (core/model|bullet_ref)/
-experiments/system       | (core/model|experiments/system)/
+experiments/system       | (core/(model|io)|experiments/system)/
 experiments/metrics      | (core/model|experiments/metrics)/
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
 experiments/timing       | (core/model|experiments/(system|case|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|baseline))/
 experiments/truths       | (core/(model|reference)|experiments/(metrics|case|truths))/
-experiments/render       | (core/(model|io)|experiments/(system|case|render))/
+experiments/render/image | (core/model|experiments/(system|render/image))/
+experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
+experiments/render/picture | (core/(model|io)|experiments/(system|case|render))/
 experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
-experiments/bench        | (core/(model|io|solver)|experiments/(system|timing|bench))/
+experiments/bench        | (core/(model|io|solver|reference)|experiments/(system|timing|bench))/
 experiments/film         | (core/(model|io)|experiments/(system|metrics|case|render|report|film))/
 '
 # what is included | files that may include it
@@ -89,12 +95,18 @@ self_test() {
     fi
     rm "$copy/$file"
   done <<'PLANTED'
-core/model/planted.cpp|"core/solver/pass.hpp"
+core/model/planted.cpp|"core/solver/layout/particles.hpp"
 core/solver/planted.hpp|"experiments/case/record.hpp"
-bullet_ref/planted.cpp|"core/solver/pass.hpp"
-experiments/metrics/planted.cpp|"core/solver/pass.hpp"
+bullet_ref/planted.cpp|"core/solver/layout/particles.hpp"
+experiments/metrics/planted.cpp|"core/solver/layout/particles.hpp"
 experiments/case/planted.cpp|"bullet_ref/read_back.hpp"
-experiments/report/planted.cpp|"core/solver/distance.hpp"
+core/solver/simd/planted.hpp|"core/solver/layout/particles.hpp"
+core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
+core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
+core/solver/contact/planted.cpp|"core/solver/constraints/relaxation.hpp"
+experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
+experiments/render/image/planted.cpp|"experiments/render/opengl/camera.hpp"
+experiments/render/opengl/planted.cpp|"experiments/render/picture/figure.hpp"
 core/solver/planted.cpp|<BulletSoftBody/btSoftBody.h>
 bullet_ref/planted.hpp|<BulletSoftBody/btSoftBody.h>
 core/model/planted.hpp|<toml++/toml.h>

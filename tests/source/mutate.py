@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Plants random small errors in a copy of the sources and shows which of them no test notices.
 
-Usage: mutate.py BUILD [--sample N] [--seed S] [--layer L]... [--goal SHARE] [--widest N] [--list]
+Usage: mutate.py BUILD [--sample N] [--minutes M] [--seed S] [--layer L]... [--goal SHARE] [--widest N] [--list]
 
 BUILD is a Ninja build of this tree with `taut` and `tests/taut_tests` in it; nothing in it is
 changed. Each error is one operator at one place: arithmetic, comparison, logic, a constant off by
@@ -148,19 +148,20 @@ class Build:
         lines = [line for line in self.ninja("-t", "commands", program).splitlines() if f"-o {program} " in line]
         return shlex.split(lines[-1].removeprefix(": && ").split(" && ")[0])
 
+    def in_program(self, program, target):
+        """Whether the program is linked with this object, in a library or by itself."""
+        words = self.link[program]
+        library = re.match(r"CMakeFiles/(\w+)\.dir/", target)
+        return target in words or bool(library) and f"lib{library[1]}.a" in words
+
     def objects(self, file):
         """Those that depend on a source file and stand in one of the programs."""
-        libraries = {f"CMakeFiles/{pathlib.Path(word).stem[3:]}.dir" for link in self.link.values() for word in link
-                     if word.endswith(".a")}
-        direct = {os.path.normpath(word) for link in self.link.values() for word in link if word.endswith(".o")}
-        return sorted(o for o in self.dependents.get(str(ROOT / file), ())
-                      if o in direct or any(o.startswith(library) for library in libraries))
+        return sorted(target for target in self.dependents.get(str(ROOT / file), ())
+                      if any(self.in_program(program, target) for program in self.link))
 
     def compile(self, target, scratch):
         words = list(self.command[target])
-        for option in ("-MF", "-MT"):
-            del words[words.index(option):words.index(option) + 2]
-        words = [f"-I{self.copy}" if word == f"-I{ROOT}" else word for word in words if word != "-MD"]
+        words = [f"-I{self.copy}" if word == f"-I{ROOT}" else word for word in words]
         source = pathlib.Path(words[words.index("-c") + 1])
         if source.is_relative_to(self.folder):  # a batch of files, or generated
             batch = scratch / target.replace("/", "_")
@@ -187,12 +188,10 @@ class Build:
             return {}
         programs = {}
         for program, link in self.link.items():
-            direct = {word for word in link if word.endswith(".o")}
-            words = [made.get(os.path.normpath(word), word) for word in link]
+            words = [made.get(word, word) for word in link]
             words[words.index("-o") + 1] = str(scratch / pathlib.Path(program).name)
-            # In front of the archives: these then have nothing left to give.
-            words[1:1] = [made[t] for t in targets if t not in {os.path.normpath(d) for d in direct}
-                          and not t.startswith("tests/")]
+            # Members of libraries in front of these, which then have nothing left to give.
+            words[1:1] = [made[t] for t in targets if t not in link and self.in_program(program, t)]
             if subprocess.run(words, cwd=self.folder, capture_output=True).returncode != 0:
                 return {}
             programs[program] = scratch / pathlib.Path(program).name
@@ -270,6 +269,8 @@ def draw(layers, sample, seed, build, widest):
     while True:
         for layer in layers:
             pool = pools[layer]
+            if not any(pool.values()):
+                sys.exit(f"mutate: every place in {layer} was tried")
             operator = random_.choice(sorted(o for o in pool if pool[o]))
             yield layer, *pool[operator].pop(random_.randrange(len(pool[operator])))
 
@@ -278,6 +279,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--sample", type=int, default=60)
+    parser.add_argument("--minutes", type=float, default=1e9, help="plant no more after this time")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     parser.add_argument("--layer", action="append", choices=LAYERS)
     parser.add_argument("--goal", type=float, default=0.92)
@@ -291,8 +293,8 @@ def main():
             shutil.copytree(ROOT / part, copy / part)
         build = Build(options.build.resolve(), copy)
         mutants = draw(list(counts), options.sample, options.seed, build, options.widest)
-        tried = 0
-        while tried < options.sample:
+        tried, end = 0, time.monotonic() + 60 * options.minutes
+        while tried < options.sample and time.monotonic() < end:
             layer, file, number, planted = next(mutants)
             lines = (ROOT / file).read_text().splitlines()
             was, lines[number] = lines[number], planted
@@ -317,11 +319,13 @@ def main():
         return 0
     for layer, (noticed, planted) in counts.items():
         print(f"{layer:22} {noticed:3} of {planted:3}")
+    if tried == 0:
+        sys.exit("mutate: no time for a single one")
     noticed = sum(n for n, _ in counts.values())
-    bar = options.goal - 2 * math.sqrt(options.goal * (1 - options.goal) / options.sample)
-    print(f"noticed: {noticed} of {options.sample} ({noticed / options.sample:.0%}); the goal is {options.goal:.0%}, "
+    bar = options.goal - 2 * math.sqrt(options.goal * (1 - options.goal) / tried)
+    print(f"noticed: {noticed} of {tried} ({noticed / tried:.0%}); the goal is {options.goal:.0%}, "
           f"a sample of this size fails below {bar:.0%}")
-    return 0 if noticed >= bar * options.sample else 1
+    return 0 if noticed >= bar * tried else 1
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ TEST(Frontier, BracketsTheEndOfStability) {
   EXPECT_LT(found.stable, 0.0371);
   EXPECT_GE(found.unstable, 0.0371);
   EXPECT_LE(found.unstable - found.stable, 1e-4 * found.unstable);
-  EXPECT_TRUE(found.islands.empty());
+  EXPECT_TRUE(found.stable_above.empty());
   EXPECT_GE(found.above, 4u);
   EXPECT_LT(tried, 32);
   EXPECT_EQ(found.probes.size(), static_cast<std::size_t>(tried));
@@ -62,8 +62,8 @@ TEST(Frontier, StabilityAboveTheBracketIsReported) {
       {.from = 1, .to = 100, .tolerance = 0.01},
       outcome([](double x) { return x < 7 || (x > 50 && x < 70) ? Kind::ok : Kind::exploded; }));
   EXPECT_NEAR(found.stable, 7, 0.1);
-  ASSERT_FALSE(found.islands.empty());
-  for (const double island : found.islands) EXPECT_TRUE(island > 50 && island < 70) << island;
+  ASSERT_FALSE(found.stable_above.empty());
+  for (const double island : found.stable_above) EXPECT_TRUE(island > 50 && island < 70) << island;
 }
 
 TEST(Frontier, WholeNumbersEndWithNeighbours) {
@@ -150,7 +150,7 @@ TEST(LinearStability, SweepsOfRelaxation) {
 /// Longest stable step of the scene by running it.
 Frontier measured(const Scene& scene, const std::string& solver, double from, double to) {
   return find_frontier(
-      {.from = from, .to = to, .tolerance = 2e-3, .rungs = 5},
+      {.from = from, .to = to, .tolerance = 2e-3, .coarse = 5},
       [&](const std::vector<double>& values) {
         std::vector<Status> statuses;
         for (const double dt : values) {
@@ -172,7 +172,7 @@ TEST(LinearStability, ASheetOfSpringsBlowsUpWhereItSays) {
     const std::string solver = "mass-spring:substeps=1,precision=double" + std::string(more);
     const Frontier found = measured(sheet, solver, 2e-3, 8e-2);
     ASSERT_EQ(found.kind, Frontier::Kind::bracketed) << more;
-    EXPECT_TRUE(found.islands.empty()) << more;
+    EXPECT_TRUE(found.stable_above.empty()) << more;
     EXPECT_LT(margin(sheet, solver, found.stable), 1.003) << more;
     EXPECT_GT(margin(sheet, solver, found.unstable), 0.999) << more;
   }

@@ -36,7 +36,7 @@ TEST(Study, EveryCombinationIsACaseScenesOutermost) {
 question = "?"
 scenes = ["chain", "fall"]
 solvers = ["jakobsen:precision=double"]
-[sweep]
+[axes]
 "time.dt" = ["1/32", 0.5]
 iterations = [1, 2]
 )");
@@ -55,8 +55,8 @@ TEST(Study, AParameterVariesForThoseWhoHaveItAndDoNotFixIt) {
 question = "?"
 scenes = ["fall"]
 solvers = ["jakobsen", "jakobsen:iterations=9", "bullet:iterations=1"]
-sweep.projection = ["exact", "sqrt-free"]
-sweep.iterations = [4]
+axes.projection = ["exact", "sqrt-free"]
+axes.iterations = [4]
 )");
   EXPECT_EQ(ids(study),
             (Strings{"fall jakobsen:iterations=4,projection=exact", "fall jakobsen:iterations=4",
@@ -69,14 +69,14 @@ TEST(Study, RangesAreLinearOrLogarithmicAndWholeWhereTheyMustBe) {
 question = "?"
 scenes = ["fall"]
 solvers = ["jakobsen"]
-[sweep]
+[axes]
 iterations = { from = 1, to = 256, steps = 9, scale = "log" }
 substeps = { from = 1, to = 2, steps = 5 }
 "time.dt" = { from = "1/100", to = "1/10", steps = 2, scale = "log" }
 )");
-  EXPECT_EQ(study.sweeps[0].values, (Strings{"1", "2", "4", "8", "16", "32", "64", "128", "256"}));
-  EXPECT_EQ(study.sweeps[1].values, (Strings{"1", "2"})) << "rounded, repetitions dropped";
-  EXPECT_EQ(study.sweeps[2].values, (Strings{"0.01", "0.1"}));
+  EXPECT_EQ(study.axes[0].values, (Strings{"1", "2", "4", "8", "16", "32", "64", "128", "256"}));
+  EXPECT_EQ(study.axes[1].values, (Strings{"1", "2"})) << "rounded, repetitions dropped";
+  EXPECT_EQ(study.axes[2].values, (Strings{"0.01", "0.1"}));
 }
 
 TEST(Study, PresetsReplaceWhatTheyName) {
@@ -84,11 +84,11 @@ TEST(Study, PresetsReplaceWhatTheyName) {
 question = "?"
 scenes = ["fall", "hang"]
 solvers = ["jakobsen", "bullet"]
-sweep.iterations = [1, 2, 4]
-sweep.substeps = [1, 2]
+axes.iterations = [1, 2, 4]
+axes.substeps = [1, 2]
 [preset.quick]
 scenes = ["fall"]
-sweep.iterations = [8]
+axes.iterations = [8]
 )";
   const Study whole = study_of(text), quick = study_of(text, "quick");
   EXPECT_EQ(whole.presets, Strings{"quick"});
@@ -104,7 +104,7 @@ question = "?"
 scenes = ["fall", "chain"]
 solvers = ["jakobsen", "bullet"]
 exclude = [{ scene = "fall", iterations = [2, 4] }, { solver = "bullet", iterations = 4 }]
-sweep.iterations = [1, 2, 4]
+axes.iterations = [1, 2, 4]
 )");
   EXPECT_EQ(ids(study), (Strings{"fall jakobsen:iterations=1", "fall bullet:iterations=1",
                                  "chain jakobsen:iterations=1", "chain jakobsen:iterations=2",
@@ -117,7 +117,7 @@ TEST(Study, TheSameSimulationIsOneCase) {
 question = "?"
 scenes = ["fall"]
 solvers = ["jakobsen", "jakobsen:iterations=3"]
-sweep."time.dt" = ["1/64", 0.015625]
+axes."time.dt" = ["1/64", 0.015625]
 )");
   EXPECT_EQ(cases_of(study).size(), 1u);
 }
@@ -127,7 +127,7 @@ TEST(Study, MoreCasesThanAnybodyWaitsForAreRefusedBeforeTheyAreMade) {
 question = "?"
 scenes = ["fall", "chain"]
 solvers = ["jakobsen"]
-[sweep]
+[axes]
 "time.dt" = { from = "1/1000", to = "1/10", steps = 1000 }
 "forces.damping" = { from = 0, to = 1, steps = 1000 }
 )");

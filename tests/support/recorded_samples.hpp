@@ -1,7 +1,7 @@
 #pragma once
 
 // CPU time of a step in thousandths of each case's median, ten samples a case in the order taken
-// (two per round, forth and back), eight cases of each scene in a row: three runs of `taut bench
+// (two per round, ABBA), eight cases of each scene in a row: three runs of `taut bench
 // trade
 // --preset quick --seconds 0.015` on two shared cores under loads of 2 to 7.
 namespace taut {

@@ -16,17 +16,17 @@ struct Formula {
   int runs = 0;
   int most = 1000;
 
-  std::optional<Offer> operator()(const std::string& setting) {
+  std::optional<Candidate> operator()(const std::string& setting) {
     if (++runs > most) return {};
     const SolverChoice choice = parse_solver(setting);
     const double n = choice.params.integer("substeps"), k = choice.params.integer("iterations");
     const double cost = n * (overhead + k), error = 1 / (n * n * k);
     const bool explodes = n * k < 4;
-    return Offer{std::string(choice.entry->name),
-                 setting,
-                 {1e-6 / cost, cost, 1e6 / cost},  // only the middle counts
-                 explodes ? std::nan("") : error,
-                 explodes};
+    return Candidate{std::string(choice.entry->name),
+                     setting,
+                     {1e-6 / cost, cost, 1e6 / cost},  // only the middle counts
+                     explodes ? std::nan("") : error,
+                     explodes ? "exploded" : ""};
   }
 
   /// The best of a full grid: 1024 x 128 runs.
@@ -39,9 +39,10 @@ struct Formula {
   }
 };
 
-Offer best_of(const std::vector<Offer>& tried, const Wish& wish) {
-  return *std::min_element(tried.begin(), tried.end(),
-                           [&](const Offer& a, const Offer& b) { return wish.prefers(a, b); });
+Candidate best_of(const std::vector<Candidate>& tried, const Target& target) {
+  return *std::min_element(tried.begin(), tried.end(), [&](const Candidate& a, const Candidate& b) {
+    return target.prefers(a, b);
+  });
 }
 
 constexpr const char* kPlain = "xpbd:precision=double";
@@ -50,9 +51,9 @@ TEST(Search, FindsNearlyWhatAFullGridWouldFindInAFewDozenRuns) {
   for (const double overhead : {0.1, 1.0, 10.0})
     for (const double error : {0.1, 0.01, 1e-3, 1e-4}) {
       Formula formula{overhead};
-      const Wish wish{error, {}};
-      const Offer best = best_of(search_settings(kPlain, wish, std::ref(formula)), wish);
-      EXPECT_TRUE(wish.grants(best));
+      const Target target{error, {}};
+      const Candidate best = best_of(search_settings(kPlain, target, std::ref(formula)), target);
+      EXPECT_TRUE(target.meets(best));
       EXPECT_LE(best.cost.mid, 1.25 * formula.cheapest(error)) << overhead << " " << error;
       EXPECT_LE(formula.runs, 40);
     }
@@ -60,26 +61,26 @@ TEST(Search, FindsNearlyWhatAFullGridWouldFindInAFewDozenRuns) {
 
 TEST(Search, SpendsABudgetButNotMore) {
   Formula formula;
-  const Wish wish{{}, 30};
-  const Offer best = best_of(search_settings(kPlain, wish, std::ref(formula)), wish);
+  const Target target{{}, 30};
+  const Candidate best = best_of(search_settings(kPlain, target, std::ref(formula)), target);
   EXPECT_LE(best.cost.mid, 30);
   EXPECT_LE(best.error, 1.1 / (19 * 19));  // n = 20 at k = 1 fills the budget
   EXPECT_LE(formula.runs, 30);
 }
 
-TEST(Search, WhatNoSettingReachesIsNotGranted) {
+TEST(Search, WhatNoSettingReachesMeetsNothing) {
   Formula formula;
-  const Wish wish{0, {}};
-  const auto tried = search_settings(kPlain, wish, std::ref(formula));
+  const Target target{0, {}};
+  const auto tried = search_settings(kPlain, target, std::ref(formula));
   EXPECT_GT(tried.size(), 5u);
-  for (const Offer& o : tried) EXPECT_FALSE(wish.grants(o)) << o.setting;
+  for (const Candidate& o : tried) EXPECT_FALSE(target.meets(o)) << o.setting;
 }
 
 TEST(Search, ARivalThatIsFarCheaperEndsItEarly) {
   Formula alone, beaten;
-  const Wish wish{1e-4, {}};
-  search_settings(kPlain, wish, std::ref(alone));
-  search_settings(kPlain, wish, std::ref(beaten), {{"other", "other", {0.1, 0.1, 0.1}, 1e-5}});
+  const Target target{1e-4, {}};
+  search_settings(kPlain, target, std::ref(alone));
+  search_settings(kPlain, target, std::ref(beaten), {{"other", "other", {0.1, 0.1, 0.1}, 1e-5}});
   EXPECT_LT(beaten.runs, alone.runs / 2);
 }
 
@@ -94,7 +95,7 @@ TEST(Search, LeavesAloneWhatTheUserFixed) {
   const auto tried =
       search_settings("xpbd:precision=double,iterations=2", {0.01, {}}, std::ref(formula));
   EXPECT_GT(tried.size(), 3u);
-  for (const Offer& o : tried)
+  for (const Candidate& o : tried)
     EXPECT_EQ(parse_solver(o.setting).params.integer("iterations"), 2) << o.setting;
 }
 

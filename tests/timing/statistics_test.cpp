@@ -88,10 +88,10 @@ TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
   for (unsigned bench = 0; bench < 100; ++bench) {
     NoisyMachine machine(bench);
     const Samples control = interleave(machine, 1, 1, 20), pair = interleave(machine, 1, 1, 20);
-    const Judgement j =
-        judge(interleaved_ratio(pair.a, pair.b), interleaved_ratio(control.a, control.b), 0.05);
-    declared += j == Judgement::faster || j == Judgement::slower;
-    noisy += j == Judgement::too_noisy;
+    const Difference j = compare_costs(interleaved_ratio(pair.a, pair.b),
+                                       interleaved_ratio(control.a, control.b), 0.05);
+    declared += j == Difference::faster || j == Difference::slower;
+    noisy += j == Difference::too_noisy;
   }
   EXPECT_EQ(declared, 0);
   EXPECT_LT(noisy, 30);  // most of these machines are still good enough to judge
@@ -99,25 +99,25 @@ TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
 
 /// A bench of one code against itself from samples that a busy machine gave: four neighbours of one
 /// session, two as the control, two as the pair, the second of which costs `factor` times as much.
-Judgement recorded_bench(std::size_t first, double factor) {
+Difference recorded_bench(std::size_t first, double factor) {
   const auto samples = [](std::size_t row, double cost) {
     std::vector<double> out;
     for (const int value : kRecorded[row]) out.push_back(cost * value);
     return out;
   };
-  return judge(interleaved_ratio(samples(first + 2, factor), samples(first + 3, 1)),
-               interleaved_ratio(samples(first, 1), samples(first + 1, 1)), 0.05);
+  return compare_costs(interleaved_ratio(samples(first + 2, factor), samples(first + 3, 1)),
+                       interleaved_ratio(samples(first, 1), samples(first + 1, 1)), 0.05);
 }
 
 TEST(Statistics, RecordedSamplesOfOneCodeAreNeverADifferenceButATwofoldCostIs) {
   int benches = 0, declared = 0, seen = 0;
   for (std::size_t first = 0; first + 3 < std::size(kRecorded); ++first) {
     ++benches;
-    const auto is_difference = [](Judgement j) {
-      return j == Judgement::faster || j == Judgement::slower;
+    const auto is_difference = [](Difference j) {
+      return j == Difference::faster || j == Difference::slower;
     };
     declared += is_difference(recorded_bench(first, 1));
-    seen += recorded_bench(first, 2) == Judgement::slower;
+    seen += recorded_bench(first, 2) == Difference::slower;
   }
   EXPECT_GE(benches, 100);
   EXPECT_EQ(declared, 0);
@@ -129,13 +129,31 @@ TEST(Statistics, ATwentyPercentChangeIsSeenDespiteTheNoise) {
   for (unsigned bench = 0; bench < 100; ++bench) {
     NoisyMachine machine(bench);
     const Samples control = interleave(machine, 1, 1, 20), pair = interleave(machine, 1.2, 1, 20);
-    const Judgement j =
-        judge(interleaved_ratio(pair.a, pair.b), interleaved_ratio(control.a, control.b), 0.05);
-    slower += j == Judgement::slower;
-    faster += j == Judgement::faster;
+    const Difference j = compare_costs(interleaved_ratio(pair.a, pair.b),
+                                       interleaved_ratio(control.a, control.b), 0.05);
+    slower += j == Difference::slower;
+    faster += j == Difference::faster;
   }
   EXPECT_GE(slower, 70);
   EXPECT_EQ(faster, 0);
+}
+
+TEST(Statistics, TwoSessionsAgreeThoughTheMachineRunsAtAnotherSpeed) {
+  int overlapping = 0, apart = 0;
+  for (unsigned k = 0; k < 50; ++k) {
+    const auto session = [](unsigned seed, double factor, double speed) {
+      NoisyMachine machine(seed);
+      const Samples s = interleave(machine, factor * speed, speed, 20);
+      return interleaved_ratio(s.a, s.b);
+    };
+    const auto overlap = [](const Interval& a, const Interval& b) {
+      return a.low <= b.high && b.low <= a.high;
+    };
+    overlapping += overlap(session(2 * k, 3, 1), session(2 * k + 1, 3, 1.7));
+    apart += !overlap(session(2 * k, 3, 1), session(2 * k + 1, 3.6, 1));
+  }
+  EXPECT_GE(overlapping, 45);
+  EXPECT_GE(apart, 45) << "a fifth more is seen";
 }
 
 TEST(Statistics, ALinearDriftCancelsInsideABlock) {

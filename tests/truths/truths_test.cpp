@@ -7,11 +7,11 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
+#include "core/reference/textbook.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/study/reference_store.hpp"
 #include "experiments/truths/fit.hpp"
 #include "experiments/truths/probe.hpp"
-#include "experiments/truths/textbook.hpp"
 
 namespace taut {
 namespace {
@@ -75,8 +75,7 @@ TEST(Textbook, TheSolverTakesTheStepsOfThePublishedListing) {
   Scene s = bare::sheet(6, 6, {.shear = true});
   s.pins = {0, 5};
   s.gravity = {0, -kG, 0};
-  TextbookWithTensions textbook(s, 3);
-  textbook.load(s.start);
+  Textbook<double> textbook(s, 3);
   Probe probe(s, jakobsen(3));
   for (int n = 0; n < 64; ++n) {
     textbook.step(), probe.step();

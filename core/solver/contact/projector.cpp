@@ -1,8 +1,34 @@
 #include "core/solver/contact/projector.hpp"
 
-#include "core/solver/contact/place.hpp"
-
 namespace taut {
+
+PlaneSurface<double> surface_of(const Plane& plane) {
+  return {vec3t<double>(plane.normal), plane.offset};
+}
+
+BallSurface<double> surface_of(const Ball& ball) {
+  return {vec3t<double>(ball.center), ball.radius};
+}
+
+BoxSurface<double> surface_of(const Box& box) {
+  const Eigen::Matrix3d axes = box.rotation.toRotationMatrix();
+  return {vec3t<double>(box.center),
+          vec3t<double>(box.half_extents),
+          {vec3t<double>(axes.col(0)), vec3t<double>(axes.col(1)), vec3t<double>(axes.col(2))},
+          box.half_extents.norm()};
+}
+
+RigidMotion<double> rigid_motion(const Motion& motion, double t, double dt) {
+  if (motion.at_rest()) return {};
+  const Eigen::Matrix3d turn =
+      (motion.rotation(t + dt) * motion.rotation(t).conjugate()).toRotationMatrix();
+  const Vec3 shift =
+      motion.pivot + motion.displacement(t + dt) - turn * (motion.pivot + motion.displacement(t));
+  return {true,
+          {vec3t<double>(turn.row(0).transpose()), vec3t<double>(turn.row(1).transpose()),
+           vec3t<double>(turn.row(2).transpose())},
+          vec3t<double>(shift)};
+}
 
 namespace {
 
@@ -18,10 +44,10 @@ class ProjectorOf final : public Projector<Real> {
   void begin(double t, double dt) override {
     using Shape = typename SurfaceOf<Real>::Shape;
     contact_.surface = rounded<Real>(surface_of(std::get<Shape>(shape_at(collider_, t + dt))));
-    contact_.carry = rounded<Real>(carry_of(collider_.motion, t, dt));
+    contact_.motion = rounded<Real>(rigid_motion(collider_.motion, t, dt));
   }
 
-  void project(const CollideSpan<Real>& span) const override { collide_(contact_, span); }
+  void project(const ParticleSpan<Real>& span) const override { collide_(contact_, span); }
 
  private:
   Collider collider_;
@@ -33,15 +59,15 @@ class ProjectorOf final : public Projector<Real> {
 
 template <class Real>
 std::unique_ptr<Projector<Real>> make_projector(const Collider& collider, double thickness,
-                                                bool swept, Simd simd) {
+                                                bool continuous, Simd simd) {
   const CollideKernels<Real>& kernel = kernels<Real>(simd).collide;
   if (std::holds_alternative<Plane>(collider.shape))
     return std::make_unique<ProjectorOf<Real, PlaneSurface>>(collider, thickness, kernel.plane);
   if (std::holds_alternative<Ball>(collider.shape))
     return std::make_unique<ProjectorOf<Real, BallSurface>>(
-        collider, thickness, swept ? kernel.ball_swept : kernel.ball);
-  return std::make_unique<ProjectorOf<Real, BoxSurface>>(collider, thickness,
-                                                         swept ? kernel.box_swept : kernel.box);
+        collider, thickness, continuous ? kernel.ball_continuous : kernel.ball);
+  return std::make_unique<ProjectorOf<Real, BoxSurface>>(
+      collider, thickness, continuous ? kernel.box_continuous : kernel.box);
 }
 
 template std::unique_ptr<Projector<float>> make_projector(const Collider&, double, bool, Simd);

@@ -3,9 +3,55 @@
 #include <memory>
 
 #include "core/model/collider.hpp"
+#include "core/solver/layout/particles.hpp"
 #include "core/solver/simd/kernels.hpp"
 
 namespace taut {
+
+// Between the model and the numbers of the contact loops, which know no Eigen.
+
+PlaneSurface<double> surface_of(const Plane&);
+BallSurface<double> surface_of(const Ball&);
+BoxSurface<double> surface_of(const Box&);
+
+/// From time t to t + dt [s].
+RigidMotion<double> rigid_motion(const Motion&, double t, double dt);
+
+template <class Real, class Vector>
+Vec3T<Real> vec3t(const Vector& v) {
+  return {static_cast<Real>(v.x()), static_cast<Real>(v.y()), static_cast<Real>(v.z())};
+}
+template <class Real>
+Eigen::Matrix<Real, 3, 1> point(const Vec3T<Real>& t) {
+  return {t.x, t.y, t.z};
+}
+
+// The same in the solver's precision.
+template <class Real>
+Vec3T<Real> rounded(const Vec3T<double>& t) {
+  return {static_cast<Real>(t.x), static_cast<Real>(t.y), static_cast<Real>(t.z)};
+}
+template <class Real>
+PlaneSurface<Real> rounded(const PlaneSurface<double>& plane) {
+  return {rounded<Real>(plane.normal), static_cast<Real>(plane.offset)};
+}
+template <class Real>
+BallSurface<Real> rounded(const BallSurface<double>& ball) {
+  return {rounded<Real>(ball.center), static_cast<Real>(ball.radius)};
+}
+template <class Real>
+BoxSurface<Real> rounded(const BoxSurface<double>& box) {
+  return {rounded<Real>(box.center),
+          rounded<Real>(box.half),
+          {rounded<Real>(box.axes[0]), rounded<Real>(box.axes[1]), rounded<Real>(box.axes[2])},
+          static_cast<Real>(box.far)};
+}
+template <class Real>
+RigidMotion<Real> rounded(const RigidMotion<double>& c) {
+  return {c.moves,
+          {rounded<Real>(c.turn[0]), rounded<Real>(c.turn[1]), rounded<Real>(c.turn[2])},
+          rounded<Real>(c.shift)};
+}
 
 /// Puts out of a collider what is inside, step after step. Particles are taken as they lie in
 /// memory, some at once.
@@ -15,13 +61,21 @@ class Projector {
   virtual ~Projector() = default;
   /// What follows belongs to the step [t, t + dt].
   virtual void begin(double t, double dt) = 0;
-  virtual void project(const CollideSpan<Real>&) const = 0;
+  virtual void project(const ParticleSpan<Real>&) const = 0;
 };
 
-/// Keeps particles at `thickness` [m]; `swept` also catches those that passed through the collider
-/// since the step began.
+/// Keeps particles at `thickness` [m]; `continuous` also catches those that passed through the
+/// collider since the step began.
 template <class Real>
-std::unique_ptr<Projector<Real>> make_projector(const Collider&, double thickness, bool swept,
+std::unique_ptr<Projector<Real>> make_projector(const Collider&, double thickness, bool continuous,
                                                 Simd);
+
+/// All particles at once, with x as the caller keeps it.
+template <class Real>
+ParticleSpan<Real> span_of(const Particles<Real>& p, Points<Real>& x) {
+  const std::size_t lanes = p.layout->stride();
+  return {x.data(), p.previous.data(), lanes,
+          lanes > 1 ? p.layout->length() / (3 * lanes) : p.size()};
+}
 
 }  // namespace taut

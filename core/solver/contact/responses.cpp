@@ -1,67 +1,215 @@
 #include "core/solver/contact/responses.hpp"
 
-#include "core/solver/jakobsen_params.hpp"
-#include "core/solver/passes/face_contact.hpp"
-#include "core/solver/passes/octree.hpp"
-#include "core/solver/passes/report_fixes.hpp"
-#include "core/solver/passes/self_collide.hpp"
+#include "core/solver/contact/face_contact.hpp"
+#include "core/solver/contact/projector.hpp"
+#include "core/solver/contact/self_collision.hpp"
 
 namespace taut {
 
 namespace {
 
+/// Moves every particle that is inside a collider out of it (Vasilovici, Cloth Simulation Report,
+/// sections 4.2.1 to 4.2.3); continuous: also those that passed through it since the step began. No
+/// particle sees another; pins are put back afterwards.
 template <class Real>
-void add_response(const Collider& collider, const Scene& scene, const Params& params,
-                  ContactPasses<Real>& passes) {
-  const Simd simd = simd_of(params);
-  const auto project = [&](bool swept) {
-    return std::make_unique<CollidePass<Real>>(collider, scene, swept, simd);
+class CollidePass final : public Pass<Real> {
+ public:
+  CollidePass(const Collider& collider, const Scene& scene, bool continuous, Simd simd)
+      : projector_(make_projector<Real>(collider, scene.thickness, continuous, simd)),
+        kind_(type_name(collider.shape)),
+        particles_(scene.start.x.size()),
+        pins_(scene.pins.begin(), scene.pins.end()),
+        pinned_(pins_.size()) {}
+
+  void begin(Particles<Real>&, double t, double dt) override { projector_->begin(t, dt); }
+
+  void apply(Particles<Real>& p, double, double) override {
+    for (std::size_t k = 0; k < pins_.size(); ++k) pinned_[k] = p.x[pins_[k]];
+    projector_->project(span_of(p, p.x));
+    for (std::size_t k = 0; k < pins_.size(); ++k) p.x.set(pins_[k], pinned_[k]);
+  }
+
+  std::vector<PassCost> cost() const override {
+    return {{.pass = "collide " + kind_,
+             .items = particles_,
+             .bytes = sizeof(*this) + pins_.size() * (sizeof pins_[0] + sizeof pinned_[0])}};
+  }
+
+ private:
+  std::unique_ptr<Projector<Real>> projector_;
+  std::string kind_;
+  std::size_t particles_;
+  std::vector<std::size_t> pins_;
+  std::vector<typename Points<Real>::Point> pinned_;  ///< where they are meanwhile [m]
+};
+
+/// Finds the particles that have arrived inside a collider.
+template <class Real>
+class EnteringParticles {
+ public:
+  EnteringParticles(const Collider& collider, double thickness, Simd simd)
+      : projector_(make_projector<Real>(collider, thickness, false, simd)) {}
+
+  void begin(double t, double dt) { projector_->begin(t, dt); }
+
+  /// Calls visit(i, where it belongs) for each of them that can move.
+  template <class Visit>
+  void find(const Particles<Real>& p, const Visit& visit) {
+    outside_ = p.x;
+    projector_->project(span_of(p, outside_));
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (p.w[i] != 0 && outside_[i] != p.x[i]) visit(i, outside_[i]);
+  }
+
+  std::size_t bytes() const { return outside_.bytes(); }
+
+ private:
+  std::unique_ptr<Projector<Real>> projector_;
+  Points<Real> outside_;
+};
+
+/// The first quick fix for the box in Vasilovici, Cloth Simulation Report, section 4.2.3: a
+/// particle that arrives inside is put on the surface and never moves again, whatever its links ask
+/// for, and even if the collider leaves.
+template <class Real>
+class FreezePass final : public Pass<Real> {
+ public:
+  FreezePass(const Collider& collider, const Scene& scene, Simd simd)
+      : entering_(collider, scene.thickness, simd),
+        kind_(type_name(collider.shape)),
+        frozen_(scene.start.x.size()) {}
+
+  void restart() override {
+    frozen_.assign(frozen_.size(), false);
+    held_.clear();
+  }
+  void begin(Particles<Real>& p, double t, double dt) override {
+    entering_.begin(t, dt);
+    entering_.find(p, [&](std::size_t i, const Point& outside) {
+      if (frozen_[i]) return;
+      frozen_[i] = true;
+      held_.push_back({i, outside});
+    });
+    for (const Held& h : held_) p.previous.set(h.particle, h.place);
+    apply(p, t, dt);
+  }
+  void apply(Particles<Real>& p, double, double) override {
+    for (const Held& h : held_) p.x.set(h.particle, h.place);
+  }
+  std::vector<PassCost> cost() const override {
+    return {{.pass = "freeze " + kind_,
+             .items = frozen_.size(),
+             .bytes = sizeof(*this) + entering_.bytes() + frozen_.size() / 8 +
+                      held_.capacity() * sizeof(Held)}};
+  }
+
+ private:
+  using Point = typename Points<Real>::Point;
+  struct Held {
+    std::size_t particle;
+    Point place;
   };
-  if (params.is("contact", "swept"))
-    passes.sweep.push_back(project(true));
-  else if (params.is("contact", "sweep"))
-    passes.sweep.push_back(project(false));
-  else if (params.is("contact", "before"))
-    passes.before.push_back(project(false));
-  else if (params.is("contact", "after"))
-    passes.after.push_back(project(false));
-  else if (params.is("contact", "freeze"))
-    passes.sweep.push_back(std::make_unique<FreezePass<Real>>(collider, scene, simd));
-  else
-    passes.before.push_back(std::make_unique<HaltPass<Real>>(collider, scene, simd));
+  EnteringParticles<Real> entering_;
+  std::string kind_;
+  std::vector<bool> frozen_;
+  std::vector<Held> held_;
+};
+
+/// The second: a particle that arrives inside is put on the surface and its next integration is
+/// left out. Its previous place grows old meanwhile while its links go on pulling, so that the step
+/// after next takes the way of two steps for the velocity of one: the pops described there.
+template <class Real>
+class HaltPass final : public Pass<Real> {
+ public:
+  HaltPass(const Collider& collider, const Scene& scene, Simd simd)
+      : entering_(collider, scene.thickness, simd),
+        kind_(type_name(collider.shape)),
+        skip_(scene.start.x.size()) {}
+
+  void restart() override { halted_.clear(); }
+  void begin(Particles<Real>& p, double t, double dt) override {
+    entering_.begin(t, dt);
+    skip_.assign(skip_.size(), false);
+    for (const Halted& h : halted_) {  // undo this step's integration
+      p.x.set(h.particle, p.previous[h.particle]);
+      p.previous.set(h.particle, h.previous);
+      skip_[h.particle] = true;
+    }
+    halted_.clear();
+  }
+  void apply(Particles<Real>& p, double, double) override {
+    entering_.find(p, [&](std::size_t i, const Point& outside) {
+      if (skip_[i]) return;
+      p.x.set(i, outside);
+      halted_.push_back({i, p.previous[i]});
+    });
+  }
+  std::vector<PassCost> cost() const override {
+    return {{.pass = "halt " + kind_,
+             .items = skip_.size(),
+             .bytes = sizeof(*this) + entering_.bytes() + skip_.size() / 8 +
+                      halted_.capacity() * sizeof(Halted)}};
+  }
+
+ private:
+  using Point = typename Points<Real>::Point;
+  struct Halted {
+    std::size_t particle;
+    Point previous;  ///< one step before the halt
+  };
+  EnteringParticles<Real> entering_;
+  std::string kind_;
+  std::vector<bool> skip_;
+  std::vector<Halted> halted_;
+};
+
+template <class Real>
+void add_response(const Collider& collider, const Scene& scene, const ContactSettings& settings,
+                  ContactPasses<Real>& passes) {
+  const auto project = [&](bool continuous) {
+    return std::make_unique<CollidePass<Real>>(collider, scene, continuous, settings.simd);
+  };
+  switch (settings.response) {
+    case Response::continuous:
+      passes.sweep.push_back(project(true));
+      break;
+    case Response::discrete:
+      passes.sweep.push_back(project(false));
+      break;
+    case Response::before:
+      passes.before.push_back(project(false));
+      break;
+    case Response::after:
+      passes.after.push_back(project(false));
+      break;
+    case Response::freeze:
+      passes.sweep.push_back(std::make_unique<FreezePass<Real>>(collider, scene, settings.simd));
+      break;
+    case Response::halt:
+      passes.before.push_back(std::make_unique<HaltPass<Real>>(collider, scene, settings.simd));
+      break;
+  }
 }
 
 }  // namespace
 
 template <class Real>
-ContactPasses<Real> make_contact(const Scene& scene, const Params& params) {
+ContactPasses<Real> make_contact(const Scene& scene, const ContactSettings& settings) {
   ContactPasses<Real> passes;
-  if (scene.self_collision && params.is("self", "grid"))
-    passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene, simd_of(params)));
-  if (scene.self_collision && params.is("self", "octree"))
+  if (scene.self_collision && settings.self == SelfCollisionMethod::grid)
+    passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene, settings.simd));
+  if (scene.self_collision && settings.self == SelfCollisionMethod::octree)
     passes.sweep.push_back(std::make_unique<OctreePass<Real>>(scene));
   for (const Collider& collider : scene.colliders)
-    if (params.is("faces", "on") && !std::holds_alternative<Plane>(collider.shape) &&
+    if (settings.faces && !std::holds_alternative<Plane>(collider.shape) &&
         !scene.mesh.triangles.empty())
       passes.sweep.push_back(
           std::make_unique<FaceContactPass<Real>>(collider, scene.thickness, scene.mesh.triangles));
-  for (const Collider& collider : scene.colliders) add_response(collider, scene, params, passes);
+  for (const Collider& collider : scene.colliders) add_response(collider, scene, settings, passes);
   return passes;
 }
 
-template ContactPasses<float> make_contact(const Scene&, const Params&);
-template ContactPasses<double> make_contact(const Scene&, const Params&);
-
-ResolvedSettings contact_settings(const Scene& scene, const Params& params) {
-  ResolvedSettings lines;
-  if (!scene.colliders.empty())
-    lines = {{"contact response", std::string(params.choice("contact"))},
-             {"friction", "Coulomb: tangential correction at most mu times the depth"},
-             {"contact distance", "the scene's thickness"},
-             {"contact of faces", std::string(params.choice("faces"))}};
-  if (scene.self_collision)
-    lines.emplace_back("self-collision", std::string(params.choice("self")));
-  return lines;
-}
+template ContactPasses<float> make_contact(const Scene&, const ContactSettings&);
+template ContactPasses<double> make_contact(const Scene&, const ContactSettings&);
 
 }  // namespace taut

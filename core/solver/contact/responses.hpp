@@ -3,10 +3,29 @@
 #include <memory>
 #include <vector>
 
-#include "core/model/solver.hpp"
-#include "core/solver/pass.hpp"
+#include "core/model/scene.hpp"
+#include "core/solver/layout/particles.hpp"
+#include "core/solver/simd/kernels.hpp"
 
 namespace taut {
+
+/// What happens to a particle inside a collider.
+enum class Response {
+  continuous,  ///< out in every sweep, also what has passed through the collider in this step
+  discrete,    ///< out in every sweep
+  before,      ///< out once a substep, before the sweeps
+  after,       ///< out once a substep, after the sweeps
+  freeze,      ///< on to the surface, where it stays for ever
+  halt         ///< on to the surface; its next integration is left out
+};
+enum class SelfCollisionMethod { grid, octree, off };
+
+struct ContactSettings {
+  Response response = Response::continuous;
+  bool faces = false;  ///< faces are kept out, too, not only vertices
+  SelfCollisionMethod self = SelfCollisionMethod::grid;
+  Simd simd = Simd::scalar;
+};
 
 /// The passes of contact, by when they act. All empty if the scene has nothing to touch.
 template <class Real>
@@ -17,11 +36,7 @@ struct ContactPasses {
   List after;   ///< once a substep, after the sweeps
 };
 
-/// As the parameters contact, ... say.
 template <class Real>
-ContactPasses<Real> make_contact(const Scene&, const Params&);
-
-/// What the fairness panel says of contact.
-ResolvedSettings contact_settings(const Scene&, const Params&);
+ContactPasses<Real> make_contact(const Scene&, const ContactSettings&);
 
 }  // namespace taut

@@ -1,5 +1,5 @@
 // Compiled with -mavx2.
-#include "core/solver/simd/kernels_text.hpp"
+#include "core/solver/simd/kernels_impl.hpp"
 
 namespace taut {
 

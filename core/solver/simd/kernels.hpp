@@ -5,13 +5,13 @@
 #include <span>
 #include <string_view>
 
-#include "core/solver/contact/contact.hpp"
-#include "core/solver/contact/meet.hpp"
+#include "core/solver/simd/contact.hpp"
 
 namespace taut {
 
-/// A regular sheet is cut into `lanes` strips of columns, and a SIMD vector holds the same column
-/// of every strip: column c is lane c / K of vector c % K, where K = ceil(nu / lanes).
+/// An interleaved sheet (array of structures of arrays): a regular sheet is cut into `lanes` strips
+/// of columns, a lane for each, and a SIMD vector holds the same column of every strip: column c is
+/// lane c / K of vector c % K, where K = ceil(nu / lanes).
 ///
 ///     one row:  | x of columns 0, K, 2K, .. | y of them | z of them | x of 1, K+1, .. | ...
 ///
@@ -25,29 +25,29 @@ inline constexpr int kLanes = 8;
 
 /// Links of one direction that start in one row.
 template <class Real>
-struct StripRow {
+struct SheetRow {
   const Real* shares;          ///< [K][2][lanes] of the left and of the right end; 0: no link
-  int plain_begin, plain_end;  ///< vectors whose shares are all StripDirection::half
+  int equal_begin, equal_end;  ///< vectors whose shares are all SheetDirection::equal_share
 };
 
 /// Links (i, j) - (i + columns, j + ..) of one direction; `left` is the end in the lesser column.
 template <class Real>
-struct StripDirection {
+struct SheetDirection {
   int left, right;            ///< rows of the two ends, counted from the row that owns the link
   int columns;                ///< 0, 1 or 2
   int rows;                   ///< so many rows own links
   Real rest;                  ///< m
-  Real half;                  ///< share of each end between equal masses
-  const StripRow<Real>* row;  ///< [rows]
+  Real equal_share;           ///< of each end between equal masses
+  const SheetRow<Real>* row;  ///< [rows]
 };
 
 template <class Real>
-struct StripSweep {
+struct SheetSweep {
   int lanes;           ///< kNarrow or kWide
   int vectors;         ///< K
   std::size_t stride;  ///< numbers from one row to the next
   int directions;
-  StripDirection<Real> direction[6];
+  SheetDirection<Real> direction[6];
 };
 
 /// kLanes links without a common vertex.
@@ -57,13 +57,13 @@ struct Batch {
   Real rest[kLanes];
 };
 
-/// Batches between equal masses share `half`; others have shares of their own.
+/// Batches between equal masses have one share; others have a table.
 template <class Real>
 struct BatchRun {
   const Batch<Real>* batches;
   std::size_t count;
-  Real half;
-  const Real* shares;  ///< [count][2][kLanes], or null: all are `half`
+  Real equal_share;
+  const Real* shares;  ///< [count][2][kLanes], or null: all are `equal_share`
 };
 
 /// x, previous, a: [length] numbers, length a multiple of kGrain. Adds keep (x - previous) + g
@@ -76,42 +76,75 @@ struct VerletStep {
   const Real* g;  ///< [kGrain] m
 };
 
-/// `count` times the x, the y and the z of `lanes` particles of strips; lanes 1: x y z 0 of so many
-/// packed particles.
+/// `count` times the x, the y and the z of `lanes` particles of an interleaved sheet; lanes 1: x y
+/// z 0 of so many packed particles.
 template <class Real>
-struct CollideSpan {
+struct ParticleSpan {
   Real* x;
   const Real* previous;
   std::size_t lanes, count;
 };
-/// Puts out of the collider what is inside, or, `swept`, has passed through it in this step.
+/// Puts out of the collider what is inside, or, continuous, has passed through it in this step.
 template <class Real, template <class> class SurfaceOf>
-using Collide = void (*)(const Contact<Real, SurfaceOf>&, const CollideSpan<Real>&);
+using Collide = void (*)(const Contact<Real, SurfaceOf>&, const ParticleSpan<Real>&);
 template <class Real>
 struct CollideKernels {
   Collide<Real, PlaneSurface> plane;
-  Collide<Real, BallSurface> ball, ball_swept;
-  Collide<Real, BoxSurface> box, box_swept;
+  Collide<Real, BallSurface> ball, ball_continuous;
+  Collide<Real, BoxSurface> box, box_continuous;
 };
+
+/// A search looks at up to so many particles at once.
+inline constexpr std::uint32_t kSearchLanes = 8;
+
+/// As many particles from the first on as there are lanes, a bit for each that counts.
+struct SearchBlock {
+  std::uint32_t first, mask;
+};
+/// Two particles that may touch in this step.
+struct CandidatePair {
+  std::uint32_t a, b;
+};
+
+/// Particles sorted by the cells of a grid (contact/neighbour_grid.hpp), and what is looked for.
+template <class Real>
+struct NeighbourSearch {
+  /// [particles + kSearchLanes] where each is, how far it has moved in the step, and where it is at
+  /// rest: x, y, z [m].
+  const Real *now[3], *moved[3], *rest[3];
+  const std::uint32_t* buckets;           ///< [particles] where the cell of each is
+  const std::uint32_t* starts;            ///< [bucket_count + 1] first particle of each bucket
+  std::uint32_t particles, bucket_count;  ///< the latter a power of two
+  std::uint32_t row, layer;               ///< buckets from a cell to the next in y and in z
+  Real within, ignored;                   ///< m
+  SearchBlock* blocks;                    ///< scratch: [particles + 10]
+  CandidatePair* found;                   ///< [room], at least particles + 11 kSearchLanes
+  std::size_t room;
+};
+/// Finds the pairs that are less than `within` and their own way in the step apart and at rest are
+/// not less than `ignored` apart; how many. Goes on from particle `next`, which it moves on, until
+/// all are done or the next one might find more than there is room for.
+template <class Real>
+using FindPairs = std::size_t (*)(const NeighbourSearch<Real>&, std::uint32_t& next);
 
 /// The loops that matter, once for each instruction set.
 template <class Real>
 struct Kernels {
   /// As wide as the sweep: a few 512-bit instructions in each step slow down the shorter ones of
-  /// all its sweeps (strips of 32 x 32 by a sixth, packed links by 4 %).
+  /// all its sweeps (a sheet of 32 x 32 by a sixth, batches by 4 %).
   void (*narrow_verlet)(const VerletStep<Real>&, std::size_t begin, std::size_t end);
   void (*wide_verlet)(const VerletStep<Real>&, std::size_t begin, std::size_t end);
   /// Rows [begin, end) of a sweep; by Projection, with kNarrow and with kWide lanes.
-  void (*narrow_strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);
-  void (*wide_strips[2])(const StripSweep<Real>&, Real* x, int begin, int end);
+  void (*narrow_sheet[2])(const SheetSweep<Real>&, Real* x, int begin, int end);
+  void (*wide_sheet[2])(const SheetSweep<Real>&, Real* x, int begin, int end);
   void (*batches[2])(const BatchRun<Real>&, Real* x);
   CollideKernels<Real> collide;
-  Meet<Real> meet;
+  FindPairs<Real> find_pairs;
   /// Projects independent pairs without loading or storing anything: what the arithmetic alone
   /// costs, for benchmarks. Says how many projections that were.
   Real (*in_registers)(Real rest, int rounds, int& projections);
   /// Loads and stores what batches do and hardly computes: what moving the particles alone costs.
-  void (*carry)(const BatchRun<Real>&, Real* x);
+  void (*load_and_store)(const BatchRun<Real>&, Real* x);
 };
 
 enum class Simd { scalar, sse2, avx2, avx512 };
@@ -142,10 +175,10 @@ template <class F>
 
 /// Calls f(direction, row) for all links that rows [begin, end) own, in the order of the sweep.
 template <class Real, class F>
-[[gnu::always_inline]] inline void visit_rows(const StripSweep<Real>& sweep, int begin, int end,
+[[gnu::always_inline]] inline void visit_rows(const SheetSweep<Real>& sweep, int begin, int end,
                                               const F& f) {
   for (int d = 0; d < sweep.directions; ++d) {
-    const StripDirection<Real>& direction = sweep.direction[d];
+    const SheetDirection<Real>& direction = sweep.direction[d];
     const int lag = direction.left > direction.right ? direction.left : direction.right;
     in_two_passes(begin, end < direction.rows ? end : direction.rows, lag,
                   [&](int j) { f(direction, j); });
@@ -154,8 +187,8 @@ template <class Real, class F>
 
 /// Calls f(k) for the vectors of a row in the order of the sweep.
 template <class Real, class F>
-[[gnu::always_inline]] inline void visit_vectors(const StripSweep<Real>& sweep,
-                                                 const StripDirection<Real>& direction,
+[[gnu::always_inline]] inline void visit_vectors(const SheetSweep<Real>& sweep,
+                                                 const SheetDirection<Real>& direction,
                                                  const F& f) {
   in_two_passes(0, sweep.vectors, direction.left == direction.right ? direction.columns : 0, f);
 }

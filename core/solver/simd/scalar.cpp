@@ -1,4 +1,4 @@
-#include "core/solver/simd/kernels_text.hpp"
+#include "core/solver/simd/kernels_impl.hpp"
 
 namespace taut {
 

@@ -1,0 +1,39 @@
+#include "core/io/text_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/model/input_error.hpp"
+
+namespace taut {
+
+std::string read_text(const std::filesystem::path& path, std::size_t most) {
+  const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  const auto fail = [&](const std::string& why) {
+    if (fd >= 0) close(fd);
+    throw InputError({{path.string(), 0, 0, why}});
+  };
+  const auto fail_reading = [&] { fail(std::string("cannot be read: ") + std::strerror(errno)); };
+  struct stat about {};
+  if (fd < 0 || fstat(fd, &about) != 0) fail_reading();
+  if (S_ISDIR(about.st_mode)) fail("is a folder, not a file");
+  if (!S_ISREG(about.st_mode)) fail("is no regular file");
+  std::string text;
+  char piece[65536];
+  for (;;) {
+    const ssize_t got = read(fd, piece, sizeof piece);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail_reading();
+    if (got == 0) break;
+    text.append(piece, static_cast<std::size_t>(got));
+    if (text.size() > most) fail("is larger than " + std::to_string(most >> 20) + " MiB");
+  }
+  close(fd);
+  return text;
+}
+
+}  // namespace taut

@@ -1,0 +1,249 @@
+#include "core/solver/constraints/relaxation.hpp"
+
+#include <algorithm>
+
+#include "core/model/input_error.hpp"
+#include "core/solver/constraints/hierarchy.hpp"
+#include "core/solver/constraints/tethers.hpp"
+#include "core/solver/layout/colour_batches.hpp"
+#include "core/solver/layout/interleaved_sheet.hpp"
+
+namespace taut {
+
+namespace {
+
+/// A cost line for each family that has links; their memory is shared out evenly.
+std::vector<PassCost> family_costs(std::span<const Link> links, std::span<const double> w,
+                                   std::size_t bytes) {
+  std::array<std::size_t, kFamilies.size()> items{};
+  std::size_t all = 0;
+  for (const Link& link : links)
+    if (moves(link, w)) ++items[static_cast<std::size_t>(link.family)], ++all;
+  std::vector<PassCost> costs;
+  for (const Family family : kFamilies)
+    if (const std::size_t n = items[static_cast<std::size_t>(family)]; n > 0)
+      costs.push_back({.pass = std::string(to_string(family)),
+                       .items = n,
+                       .bytes = bytes * n / all,
+                       .projections = true});
+  return costs;
+}
+
+/// One Gauss-Seidel sweep over the links, one after the other.
+template <class Real, Projection kind>
+class GaussSeidelPass final : public Pass<Real> {
+ public:
+  GaussSeidelPass(std::vector<DistanceConstraint<Real>> constraints, std::vector<PassCost> costs)
+      : constraints_(std::move(constraints)), costs_(std::move(costs)) {}
+
+  void apply(Particles<Real>& p, double, double) override {
+    Real* const x = p.x.data();
+    for (const DistanceConstraint<Real>& c : constraints_) {
+      Real* const a = x + 4 * c.a;
+      Real* const b = x + 4 * c.b;
+      Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
+      project_distance<kind>(x1, x2, c.rest, c.share_a, c.share_b);
+      a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
+      b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
+    }
+  }
+
+  std::vector<PassCost> cost() const override { return costs_; }
+
+ private:
+  std::vector<DistanceConstraint<Real>> constraints_;
+  std::vector<PassCost> costs_;
+};
+
+/// One Jacobi sweep: every link sees the particles as they were when the sweep began.
+template <class Real, Projection kind>
+class JacobiPass final : public Pass<Real> {
+ public:
+  JacobiPass(Jacobi method, std::vector<DistanceConstraint<Real>> constraints,
+             std::vector<PassCost> costs, std::size_t particles)
+      : constraints_(std::move(constraints)),
+        costs_(std::move(costs)),
+        correction_(std::make_shared<const Layout>(Layout::packed(particles))),
+        factor_(particles, Real(1)) {
+    std::vector<int> links(particles);
+    for (const DistanceConstraint<Real>& c : constraints_)
+      ++links[static_cast<std::size_t>(c.a)], ++links[static_cast<std::size_t>(c.b)];
+    const int most = links.empty() ? 0 : *std::max_element(links.begin(), links.end());
+    for (std::size_t i = 0; i < links.size(); ++i)
+      if (method != Jacobi::plain && links[i] > 0)
+        factor_[i] = Real(1) / static_cast<Real>(method == Jacobi::averaged ? links[i] : most);
+    if (!costs_.empty())
+      costs_.front().bytes += correction_.bytes() + factor_.size() * sizeof(Real);
+  }
+
+  void apply(Particles<Real>& p, double, double) override {
+    using Point = typename Points<Real>::Point;
+    for (const DistanceConstraint<Real>& c : constraints_) {
+      const auto a = static_cast<std::size_t>(c.a), b = static_cast<std::size_t>(c.b);
+      const Point from1 = p.x[a], from2 = p.x[b];
+      Vec3T<Real> x1{from1.x(), from1.y(), from1.z()}, x2{from2.x(), from2.y(), from2.z()};
+      project_distance<kind>(x1, x2, c.rest, c.share_a, c.share_b);
+      correction_.add(a, Point(x1.x, x1.y, x1.z) - from1);
+      correction_.add(b, Point(x2.x, x2.y, x2.z) - from2);
+    }
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      p.x.add(i, factor_[i] * correction_[i]);
+      correction_.set(i, Point::Zero());
+    }
+  }
+
+  std::vector<PassCost> cost() const override { return costs_; }
+
+ private:
+  std::vector<DistanceConstraint<Real>> constraints_;
+  std::vector<PassCost> costs_;
+  Points<Real> correction_;
+  std::vector<Real> factor_;
+};
+
+/// One Gauss-Seidel sweep over an interleaved sheet, a vector of links at a time.
+template <class Real>
+class SheetPass final : public Pass<Real> {
+ public:
+  SheetPass(InterleavedSheet<Real> sheet, std::vector<PassCost> costs, Projection projection,
+            Simd simd, ThreadPool& pool)
+      : sheet_(std::move(sheet)),
+        costs_(std::move(costs)),
+        project_(choose(kernels<Real>(simd), sheet_.sweep().lanes)[static_cast<int>(projection)]),
+        pool_(pool) {}
+
+  void apply(Particles<Real>& p, double, double) override {
+    for (const int parity : {0, 1})
+      pool_.run(sheet_.blocks(parity), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block) {
+          const auto rows = sheet_.rows(parity, block);
+          project_(sheet_.sweep(), p.x.data(), rows.begin, rows.end);
+        }
+      });
+  }
+
+  std::vector<PassCost> cost() const override { return costs_; }
+
+ private:
+  static const auto& choose(const Kernels<Real>& kernels, int lanes) {
+    return lanes == kWide ? kernels.wide_sheet : kernels.narrow_sheet;
+  }
+  InterleavedSheet<Real> sheet_;
+  std::vector<PassCost> costs_;
+  void (*project_)(const SheetSweep<Real>&, Real*, int, int);
+  ThreadPool& pool_;
+};
+
+/// One Gauss-Seidel sweep over the colour batches of any mesh.
+template <class Real>
+class BatchPass final : public Pass<Real> {
+ public:
+  BatchPass(ColourBatches<Real> batches, std::vector<PassCost> costs, Projection projection,
+            Simd simd, ThreadPool& pool)
+      : batches_(std::move(batches)),
+        costs_(std::move(costs)),
+        project_(kernels<Real>(simd).batches[static_cast<int>(projection)]),
+        pool_(pool) {}
+
+  void apply(Particles<Real>& p, double, double) override {
+    for (std::size_t phase = 0; phase < batches_.phases(); ++phase)
+      pool_.run(batches_.tiles(phase), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t tile = begin; tile < end; ++tile)
+          for (const BatchRun<Real>& run : batches_.runs(phase, tile)) project_(run, p.x.data());
+      });
+  }
+
+  std::vector<PassCost> cost() const override { return costs_; }
+
+ private:
+  ColourBatches<Real> batches_;
+  std::vector<PassCost> costs_;
+  void (*project_)(const BatchRun<Real>&, Real*);
+  ThreadPool& pool_;
+};
+
+/// The regular links of the scene if an interleaved sheet is to hold them.
+std::optional<RegularLinks> regular(const Scene& scene, LinkLayout layout) {
+  if (layout == LinkLayout::batches) return {};
+  auto links = regular_links(scene.mesh, scene.links);
+  if (!links && layout == LinkLayout::interleaved)
+    throw InputError(
+        "jakobsen: layout=interleaved needs a regular sheet of at least 17 columns with all links "
+        "of a direction present and of one length; layout=batches takes any mesh");
+  return links;
+}
+
+template <class Real, Projection kind>
+std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const double> w,
+                                            const RelaxationSettings& settings) {
+  const std::vector<Link> links = ordered(scene.links, scene.mesh, settings.order, settings.seed);
+  auto constraints = make_distance_constraints<Real>(links, w, settings.stiffness);
+  auto costs = family_costs(links, w, constraints.size() * sizeof constraints[0]);
+  if (settings.jacobi)
+    return std::make_unique<JacobiPass<Real, kind>>(*settings.jacobi, std::move(constraints),
+                                                    std::move(costs), scene.start.x.size());
+  return std::make_unique<GaussSeidelPass<Real, kind>>(std::move(constraints), std::move(costs));
+}
+
+template <class Real, Projection kind>
+std::vector<std::unique_ptr<Pass<Real>>> accelerators(const Scene& scene, std::span<const double> w,
+                                                      const RelaxationSettings& settings) {
+  std::vector<std::unique_ptr<Pass<Real>>> passes;
+  if (settings.levels > 1)
+    if (auto levels = make_hierarchy(scene, w, settings.levels - 1); !levels.empty())
+      passes.push_back(std::make_unique<HierarchyPass<Real, kind>>(std::move(levels), w.size()));
+  if (settings.tethers)
+    if (auto tethers = make_tethers(scene); !tethers.empty())
+      passes.push_back(std::make_unique<TetherPass<Real, kind>>(std::move(tethers)));
+  return passes;
+}
+
+}  // namespace
+
+template <class Real>
+Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
+                                 const RelaxationSettings& settings, ThreadPool& pool) {
+  const std::size_t n = scene.start.x.size();
+  if (family_costs(scene.links, w, 0).empty()) return {Layout::packed(n), nullptr};
+  const Projection projection = settings.projection;
+  if (settings.order != Order::coloured || settings.jacobi) {
+    auto pass = projection == Projection::exact
+                    ? make_sequential<Real, Projection::exact>(scene, w, settings)
+                    : make_sequential<Real, Projection::sqrt_free>(scene, w, settings);
+    return {Layout::packed(n), std::move(pass)};
+  }
+  if (const auto links = regular(scene, settings.layout)) {
+    InterleavedSheet<Real> sheet(*links, w, settings.stiffness);
+    auto costs = family_costs(scene.links, w, sheet.bytes());
+    return {interleaved_layout(links->grid),
+            std::make_unique<SheetPass<Real>>(std::move(sheet), std::move(costs), projection,
+                                              settings.simd, pool)};
+  }
+  Layout layout = Layout::packed(n, tile_ranks(scene.links, scene.mesh));
+  ColourBatches<Real> batches(colour(scene.links, scene.mesh), w, settings.stiffness, layout);
+  auto costs = family_costs(scene.links, w, batches.bytes());
+  return {std::move(layout), std::make_unique<BatchPass<Real>>(std::move(batches), std::move(costs),
+                                                               projection, settings.simd, pool)};
+}
+
+template <class Real>
+std::vector<std::unique_ptr<Pass<Real>>> make_accelerators(const Scene& scene,
+                                                           std::span<const double> w,
+                                                           const RelaxationSettings& settings) {
+  return settings.projection == Projection::exact
+             ? accelerators<Real, Projection::exact>(scene, w, settings)
+             : accelerators<Real, Projection::sqrt_free>(scene, w, settings);
+}
+
+template Relaxation<float> make_relaxation(const Scene&, std::span<const double>,
+                                           const RelaxationSettings&, ThreadPool&);
+template Relaxation<double> make_relaxation(const Scene&, std::span<const double>,
+                                            const RelaxationSettings&, ThreadPool&);
+template std::vector<std::unique_ptr<Pass<float>>> make_accelerators(const Scene&,
+                                                                     std::span<const double>,
+                                                                     const RelaxationSettings&);
+template std::vector<std::unique_ptr<Pass<double>>> make_accelerators(const Scene&,
+                                                                      std::span<const double>,
+                                                                      const RelaxationSettings&);
+
+}  // namespace taut

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/model/scene.hpp"
+#include "core/solver/layout/distance_constraint.hpp"
+#include "core/solver/layout/order.hpp"
+#include "core/solver/layout/particles.hpp"
+#include "core/solver/simd/kernels.hpp"
+#include "core/solver/thread_pool.hpp"
+
+namespace taut {
+
+/// What a particle makes of the corrections that all its links ask for at the same time.
+enum class Jacobi {
+  plain,        ///< their sum: diverges where many links meet (truths: 2.4 per step on a chain)
+  averaged,     ///< their mean: stable, does not conserve momentum
+  underrelaxed  ///< their sum / the largest number of links at any particle: stable (Gershgorin
+                ///< bounds the sweep's eigenvalues by it), conserves momentum, slow
+};
+
+/// How the links of Order::coloured are laid out.
+enum class LinkLayout {
+  automatic,    ///< interleaved if the scene is a regular sheet, else batches
+  interleaved,  ///< for any other scene make_relaxation throws InputError
+  batches       ///< any mesh
+};
+
+struct RelaxationSettings {
+  Projection projection = Projection::sqrt_free;
+  std::optional<Jacobi> jacobi;  ///< empty: Gauss-Seidel
+  Order order = Order::coloured;
+  std::uint32_t seed = 1;  ///< of Order::random
+  LinkLayout layout = LinkLayout::automatic;
+  Stiffness stiffness;
+  int levels = 1;  ///< of the hierarchy; 1: the cloth alone
+  bool tethers = false;
+  Simd simd = Simd::scalar;
+};
+
+/// The sweep over all links, and where it wants the particles to be.
+template <class Real>
+struct Relaxation {
+  Layout layout;
+  std::unique_ptr<Pass<Real>> pass;  ///< null: no link can move
+};
+
+/// Chooses by method, order and layout. w: inverse masses.
+template <class Real>
+Relaxation<Real> make_relaxation(const Scene&, std::span<const double> w, const RelaxationSettings&,
+                                 ThreadPool&);
+
+/// What the settings ask to do before each sweep: coarse levels, then tethers.
+template <class Real>
+std::vector<std::unique_ptr<Pass<Real>>> make_accelerators(const Scene&, std::span<const double> w,
+                                                           const RelaxationSettings&);
+
+}  // namespace taut

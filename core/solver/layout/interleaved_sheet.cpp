@@ -1,0 +1,190 @@
+#include "core/solver/layout/interleaved_sheet.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "core/model/index.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr int kBlockRows = 8;
+constexpr int kFewestColumns =
+    2 * kNarrow + 1;  ///< three vectors: a bend link leaves its lane once
+/// In the order of the sweep: along u, along v, both diagonals, then every second vertex.
+constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::structural, 0},
+                                                              {0, 1, Family::structural, 0},
+                                                              {1, 1, Family::shear, 0},
+                                                              {-1, 1, Family::shear, 0},
+                                                              {2, 0, Family::bend, 0},
+                                                              {0, 2, Family::bend, 0}}};
+
+int lanes_of(const Grid& grid) { return grid.nu >= 4 * kWide ? kWide : kNarrow; }
+int vectors_of(const Grid& grid) { return (grid.nu + lanes_of(grid) - 1) / lanes_of(grid); }
+/// One vector more than the row needs: rows of a power of two would share cache sets.
+std::size_t stride_of(const Grid& grid) {
+  return to_index((vectors_of(grid) + 1) * 3 * lanes_of(grid));
+}
+
+}  // namespace
+
+std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link> links) {
+  if (!mesh.grid || mesh.grid->nu < kFewestColumns) return {};
+  const Grid grid = *mesh.grid;
+  RegularLinks regular{grid, {}};
+  std::array<std::vector<bool>, kDirections.size()> seen;
+  std::array<std::size_t, kDirections.size()> count{};
+  std::array<double, kDirections.size()> rest{};
+  for (const Link& link : links) {
+    const int from = std::min(link.a, link.b), to = std::max(link.a, link.b);
+    const int columns = to % grid.nu - from % grid.nu, rows = to / grid.nu - from / grid.nu;
+    std::size_t d = 0;
+    while (d < kDirections.size() &&
+           (kDirections[d].columns != columns || kDirections[d].rows != rows ||
+            kDirections[d].family != link.family))
+      ++d;
+    if (d == kDirections.size()) return {};
+    if (seen[d].empty()) seen[d].resize(to_index(grid.size())), rest[d] = link.rest;
+    if (seen[d][to_index(from)] || !(std::abs(link.rest - rest[d]) <= 1e-9 * rest[d])) return {};
+    seen[d][to_index(from)] = true;
+    ++count[d];
+  }
+  for (std::size_t d = 0; d < kDirections.size(); ++d) {
+    if (count[d] == 0) continue;
+    RegularLinks::Direction direction = kDirections[d];
+    const int complete = (grid.nu - std::abs(direction.columns)) * (grid.nv - direction.rows);
+    if (count[d] != to_index(complete)) return {};
+    direction.rest = rest[d];
+    regular.directions.push_back(direction);
+  }
+  if (regular.directions.empty()) return {};
+  return regular;
+}
+
+Layout interleaved_layout(const Grid& grid) {
+  const int vectors = vectors_of(grid), lanes = lanes_of(grid);
+  std::vector<std::uint32_t> slots;
+  slots.reserve(to_index(grid.size()));
+  for (int j = 0; j < grid.nv; ++j)
+    for (int i = 0; i < grid.nu; ++i)
+      slots.push_back(static_cast<std::uint32_t>(to_index(j) * stride_of(grid) +
+                                                 to_index(i % vectors * 3 * lanes + i / vectors)));
+  return Layout::interleaved(std::move(slots), to_index(lanes),
+                             to_index(grid.nv) * stride_of(grid));
+}
+
+template <class Real>
+InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<const double> w,
+                                         const Stiffness& stiffness)
+    : links_(links) {
+  const Grid& grid = links.grid;
+  const int lanes = sweep_.lanes = lanes_of(grid);
+  sweep_.vectors = vectors_of(grid);
+  sweep_.stride = stride_of(grid);
+  sweep_.directions = static_cast<int>(links.directions.size());
+  std::map<std::vector<Real>, std::size_t> known;
+  std::vector<std::size_t> table;  // of each row of each direction
+  for (std::size_t d = 0; d < links.directions.size(); ++d) {
+    const auto& [columns, rows, family, rest] = links.directions[d];
+    SheetDirection<Real>& to = sweep_.direction[d];
+    to = {.left = columns < 0 ? rows : 0,
+          .right = columns < 0 ? 0 : rows,
+          .columns = std::abs(columns),
+          .rows = grid.nv - rows,
+          .rest = static_cast<Real>(std::max(rest, kTinyLength)),
+          .equal_share = 0,
+          .row = nullptr};
+    std::map<Real, int> votes;  // equal shares, by how many links have them
+    const auto shares = [&, kind = family](int i, int j, bool left) {  // clang 14: no binding
+      const double wl = w[to_index(grid.index(i, j + to.left))],
+                   wr = w[to_index(grid.index(i + to.columns, j + to.right))];
+      if (wl + wr == 0) return Real(0);
+      return static_cast<Real>(relaxation_weight(stiffness, kind, wl + wr) *
+                               ((left ? wl : wr) / (wl + wr)));
+    };
+    for (int j = 0; j < to.rows; ++j) {
+      std::vector<Real> row(to_index(2 * lanes * sweep_.vectors), Real(0));
+      for (int i = 0; i + to.columns < grid.nu; ++i) {
+        const int k = i % sweep_.vectors, lane = i / sweep_.vectors;
+        const Real left = shares(i, j, true), right = shares(i, j, false);
+        row[to_index(2 * lanes * k + lane)] = left;
+        row[to_index(2 * lanes * k + lanes + lane)] = right;
+        if (left == right) ++votes[left];
+      }
+      const auto [place, is_new] = known.try_emplace(std::move(row), shares_.size());
+      if (is_new) shares_.push_back(place->first);
+      table.push_back(place->second);
+    }
+    const auto most =
+        std::max_element(votes.begin(), votes.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most != votes.end()) to.equal_share = most->first;
+  }
+  std::size_t next = 0;
+  for (std::size_t d = 0; d < links.directions.size(); ++d)
+    for (int j = 0; j < sweep_.direction[d].rows; ++j) {
+      const std::vector<Real>& shares = shares_[table[next++]];
+      const auto equal = [&](int k) {
+        const auto* s = shares.data() + 2 * lanes * k;
+        return std::all_of(s, s + 2 * lanes,
+                           [&](Real share) { return share == sweep_.direction[d].equal_share; });
+      };
+      int begin = 0;
+      while (begin < sweep_.vectors && !equal(begin)) ++begin;
+      int end = begin;
+      while (end + sweep_.direction[d].columns < sweep_.vectors && equal(end)) ++end;
+      rows_.push_back({shares.data(), begin, end});
+    }
+  const SheetRow<Real>* row = rows_.data();
+  for (std::size_t d = 0; d < links.directions.size(); row += sweep_.direction[d++].rows)
+    sweep_.direction[d].row = row;
+}
+
+template <class Real>
+std::size_t InterleavedSheet<Real>::blocks(int parity) const {
+  const int all = (links_.grid.nv + kBlockRows - 1) / kBlockRows;
+  return to_index((all + 1 - parity) / 2);
+}
+
+template <class Real>
+typename InterleavedSheet<Real>::Rows InterleavedSheet<Real>::rows(int parity,
+                                                                   std::size_t block) const {
+  const int begin = (2 * static_cast<int>(block) + parity) * kBlockRows;
+  return {begin, std::min(begin + kBlockRows, links_.grid.nv)};
+}
+
+template <class Real>
+std::vector<Link> InterleavedSheet<Real>::order() const {
+  const Grid& grid = links_.grid;
+  std::vector<Link> links;
+  for (const int parity : {0, 1})
+    for (std::size_t block = 0; block < blocks(parity); ++block)
+      visit_rows(sweep_, rows(parity, block).begin, rows(parity, block).end,
+                 [&](const SheetDirection<Real>& d, int j) {
+                   const Family family =
+                       links_.directions[static_cast<std::size_t>(&d - sweep_.direction)].family;
+                   visit_vectors(sweep_, d, [&](int k) {
+                     for (int lane = 0; lane < sweep_.lanes; ++lane)
+                       if (const int i = lane * sweep_.vectors + k; i + d.columns < grid.nu)
+                         links.push_back({grid.index(i, j + d.left),
+                                          grid.index(i + d.columns, j + d.right),
+                                          static_cast<double>(d.rest), family});
+                   });
+                 });
+  return links;
+}
+
+template <class Real>
+std::size_t InterleavedSheet<Real>::bytes() const {
+  std::size_t bytes = sizeof *this + rows_.size() * sizeof rows_[0];
+  for (const auto& table : shares_) bytes += table.size() * sizeof(Real);
+  return bytes;
+}
+
+template class InterleavedSheet<float>;
+template class InterleavedSheet<double>;
+
+}  // namespace taut

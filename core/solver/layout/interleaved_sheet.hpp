@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/model/mesh.hpp"
+#include "core/solver/layout/distance_constraint.hpp"
+#include "core/solver/layout/order.hpp"
+#include "core/solver/layout/particles.hpp"
+#include "core/solver/simd/kernels.hpp"
+
+namespace taut {
+
+/// The links of a regular sheet: every link of the directions that are present, of one length each.
+struct RegularLinks {
+  struct Direction {
+    int columns = 0, rows = 0;  ///< from (i, j) to (i + columns, j + rows)
+    Family family = Family::structural;
+    double rest = 0;  ///< m
+  };
+  Grid grid;
+  std::vector<Direction> directions;  ///< in the order of the sweep
+};
+
+/// What `links` are if an interleaved sheet can hold them: all six directions or some, each
+/// complete, without duplicates, of one length to 1e-9; at least 17 columns, below which lanes
+/// would overlap.
+std::optional<RegularLinks> regular_links(const Mesh&, std::span<const Link>);
+
+/// Where an interleaved sheet (simd/kernels.hpp) keeps each vertex. Vertices past the last column
+/// are padding that falls freely and that nobody looks at.
+Layout interleaved_layout(const Grid&);
+
+/// A Gauss-Seidel sweep over an interleaved sheet: blocks of rows, first the even ones, then the
+/// odd ones; the directions one after the other within a block. Blocks of one parity share no row.
+template <class Real>
+class InterleavedSheet {
+ public:
+  InterleavedSheet(const RegularLinks&, std::span<const double> w, const Stiffness&);
+  InterleavedSheet(InterleavedSheet&&) = default;
+  InterleavedSheet(const InterleavedSheet&) = delete;  // it points into itself
+
+  const SheetSweep<Real>& sweep() const { return sweep_; }
+  /// Blocks of even or odd number.
+  std::size_t blocks(int parity) const;
+  struct Rows {
+    int begin, end;
+  };
+  Rows rows(int parity, std::size_t block) const;
+
+  /// The links in the order in which the sweep visits them.
+  std::vector<Link> order() const;
+  std::size_t bytes() const;
+
+ private:
+  RegularLinks links_;
+  SheetSweep<Real> sweep_{};
+  std::vector<SheetRow<Real>> rows_;
+  std::vector<std::vector<Real>> shares_;  ///< different rows' tables, each kept once
+};
+
+}  // namespace taut

@@ -1,0 +1,152 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "core/model/solver.hpp"
+#include "core/model/vec3.hpp"
+#include "core/solver/simd/vectors.hpp"
+
+namespace taut {
+
+/// Where in an array the coordinates of each particle are: x at slot(i), y and z each stride()
+/// further. A sweep chooses the layout that suits it; everything else uses Points and does not
+/// care.
+class Layout {
+ public:
+  static constexpr std::size_t kGrain = 48;  ///< loops over all numbers take so many at a time
+
+  /// x y z 0 | x y z 0 | ..., particle i at place rank[i], or at i if there are no ranks; at least
+  /// two spare points at the end, which no particle owns.
+  static Layout packed(std::size_t n, std::vector<std::uint32_t> rank = {}) {
+    for (std::uint32_t& r : rank) r *= 4;
+    return Layout(n, 1, 4 * (n + 2), std::move(rank));
+  }
+  /// Vectors of `lanes` coordinates x, y, z, x, ... (AoSoA); x of each particle at its slot.
+  static Layout interleaved(std::vector<std::uint32_t> slots, std::size_t lanes,
+                            std::size_t length) {
+    const std::size_t n = slots.size();
+    return Layout(n, lanes, length, std::move(slots));
+  }
+  Layout() = default;
+
+  std::size_t size() const { return size_; }      ///< particles
+  std::size_t length() const { return length_; }  ///< numbers in the array
+  std::size_t stride() const { return stride_; }
+  [[gnu::always_inline]] std::size_t slot(std::size_t i) const {
+    return slots_.empty() ? 4 * i : slots_[i];
+  }
+  /// Where slots are looked up; null: 4 i.
+  const std::uint32_t* slots() const { return slots_.empty() ? nullptr : slots_.data(); }
+  /// Which coordinate the number at `place` is: 0 x, 1 y, 2 z, 3 none. Repeats every kGrain.
+  int axis(std::size_t place) const {
+    return static_cast<int>(stride_ == 1 ? place % 4 : place / stride_ % 3);
+  }
+  std::size_t bytes() const { return slots_.size() * sizeof slots_[0]; }
+
+ private:
+  Layout(std::size_t size, std::size_t stride, std::size_t length, std::vector<std::uint32_t> slots)
+      : size_(size),
+        stride_(stride),
+        length_((length + kGrain - 1) / kGrain * kGrain),
+        slots_(std::move(slots)) {}
+  std::size_t size_ = 0, stride_ = 1, length_ = 0;
+  std::vector<std::uint32_t> slots_;  ///< empty: 4 i
+};
+
+/// Allocates at cache-line boundaries, as the widest lanes need.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kAlign{64};
+  CacheLineAllocator() = default;
+  template <class U>
+  CacheLineAllocator(const CacheLineAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kAlign)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, kAlign); }
+  bool operator==(const CacheLineAllocator&) const { return true; }
+};
+
+/// One point or vector per particle. What the innermost loops call is inlined by order: in a large
+/// translation unit g++ gives up, and contact then costs twice as much.
+template <class Real>
+class Points {
+ public:
+  using Point = Eigen::Matrix<Real, 3, 1>;
+
+  Points() = default;  ///< none: the effect that would need them is absent
+  explicit Points(std::shared_ptr<const Layout> layout)
+      : layout_(std::move(layout)), values_(layout_->length(), Real(0)) {}
+
+  bool empty() const { return values_.empty(); }
+  [[gnu::always_inline]] Point operator[](std::size_t i) const {
+    const Real* r = values_.data() + layout_->slot(i);
+    const std::size_t s = layout_->stride();
+    return {r[0], r[s], r[2 * s]};
+  }
+  [[gnu::always_inline]] void set(std::size_t i, const Point& p) {
+    Real* r = values_.data() + layout_->slot(i);
+    const std::size_t s = layout_->stride();
+    r[0] = p.x(), r[s] = p.y(), r[2 * s] = p.z();
+  }
+  [[gnu::always_inline]] void add(std::size_t i, const Point& p) { set(i, (*this)[i] + p); }
+
+  /// Calls f(at), where at(points, i) is particle i of any points with this layout, which has
+  /// been looked up: for loops over all.
+  template <class F>
+  void read(const F& f) const {
+    const std::uint32_t* const slots = layout_->slots();
+    const std::size_t stride = layout_->stride();
+    if (slots)
+      f([ slots, stride ](const Points& points, std::size_t i) __attribute__((always_inline)) {
+        return load_vec4<false>(points.data() + slots[i], stride);
+      });
+    else
+      f([](const Points& points, std::size_t i)
+            __attribute__((always_inline)) { return load_vec4<true>(points.data() + 4 * i, 1); });
+  }
+
+  Real* data() { return values_.data(); }
+  const Real* data() const { return values_.data(); }
+  std::size_t bytes() const { return values_.size() * sizeof(Real); }
+
+ private:
+  std::shared_ptr<const Layout> layout_;
+  std::vector<Real, CacheLineAllocator<Real>> values_;
+};
+
+/// The cloth as Jakobsen keeps it: no velocities, only where each particle is and where it was.
+template <class Real>
+struct Particles {
+  using Point = typename Points<Real>::Point;
+
+  explicit Particles(Layout how = {}) : layout(std::make_shared<const Layout>(std::move(how))) {}
+
+  std::shared_ptr<const Layout> layout;
+  Points<Real> x;         ///< positions [m]
+  Points<Real> previous;  ///< positions one step ago [m]
+  Points<Real> a;         ///< accelerations besides gravity [m/s^2]; empty if no force acts
+  std::vector<Real> w;    ///< [n] inverse masses [1/kg]; 0: pinned
+  std::size_t size() const { return layout->size(); }
+};
+
+/// One effect of a scene with the data it needs. It exists only if the scene has the effect: no
+/// flag is tested inside the loop, and an absent effect owns no memory.
+template <class Real>
+class Pass {
+ public:
+  virtual ~Pass() = default;
+  /// The solver starts anew from another state: forget what was.
+  virtual void restart() {}
+  /// Once for the step [t, t + dt], after integration and before the first sweep.
+  virtual void begin(Particles<Real>&, double /*t*/, double /*dt*/) {}
+  /// For the step [t, t + dt].
+  virtual void apply(Particles<Real>&, double t, double dt) = 0;
+  /// Of one application, a line for each thing it does; the solver sets `repeats`.
+  virtual std::vector<PassCost> cost() const = 0;
+};
+
+}  // namespace taut

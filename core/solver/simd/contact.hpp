@@ -1,0 +1,89 @@
+#pragma once
+
+#include "core/solver/simd/surfaces.hpp"
+
+namespace taut {
+
+/// Rigid motion of a collider over the step: where the points that are fixed to it go. Friction and
+/// the continuous test see a particle's motion relative to the collider: x - motion(previous).
+template <class Real>
+struct RigidMotion {
+  bool moves = false;
+  Vec3T<Real> turn[3] = {};  ///< rows
+  Vec3T<Real> shift = {};    ///< m
+
+  template <class T>
+  [[gnu::always_inline]] Vec3T<T> operator()(const Vec3T<T>& p) const {
+    if (!moves) return p;
+    const Vec3T<T> turned{dot(spread_out<T>(turn[0]), p), dot(spread_out<T>(turn[1]), p),
+                          dot(spread_out<T>(turn[2]), p)};
+    return turned + spread_out<T>(shift);
+  }
+};
+
+/// A collider as one step sees it, and what it does to a particle, or to one in every lane.
+template <class Real, template <class> class SurfaceOf>
+struct Contact {
+  SurfaceOf<Real> surface;  ///< at the end of the step
+  RigidMotion<Real> motion;
+  Real thickness, friction;
+
+  template <class T>
+  [[gnu::always_inline]] auto clear(const Vec3T<T>& x) const {
+    return surface.clear(x, T(thickness));
+  }
+
+  /// Moves x out to the nearest point at the scene's thickness, then against its slip since
+  /// `previous`. Says where it did: not where x was outside.
+  template <class T>
+  [[gnu::always_inline]] auto project(Vec3T<T>& x, const Vec3T<T>& previous) const {
+    auto inside = !clear(x);
+    if (any(inside)) inside = push(x, motion(previous), surface.nearest(x), inside);
+    return inside;
+  }
+
+  /// The same, but back to the side from which the particle came in, even if it has passed through
+  /// since.
+  template <class T>
+  [[gnu::always_inline]] auto project_continuous(Vec3T<T>& x, const Vec3T<T>& previous) const {
+    const Vec3T<T> from = motion(previous);
+    auto near = !surface.beyond(x, squared_norm(x - from), T(thickness));
+    if (!any(near)) return near;
+    const auto passing = near && !surface.misses(from, x);
+    near = near && !clear(x);
+    if (!any(near || passing)) return near;
+    Tangent<T> tangent = surface.nearest(x);
+    if (any(passing)) {
+      const Entry<T> entry = surface.entry(from, x);
+      const auto same_side =
+          !surface.clear(x, T(0)) && dot(tangent.normal, entry.tangent.normal) > T(0);
+      const auto back = passing && entry.hits;
+      tangent = select(back && !same_side, entry.tangent, tangent);
+      near = near || back;
+    }
+    return push(x, from, tangent, near);
+  }
+
+ private:
+  /// Coulomb: the tangential correction is at most mu times the normal one, and no more than the
+  /// slip itself.
+  template <class T, class Mask>
+  [[gnu::always_inline]] auto push(Vec3T<T>& x, const Vec3T<T>& from, const Tangent<T>& tangent,
+                                   const Mask& where) const {
+    const Vec3T<T>& normal = tangent.normal;
+    const T depth = tangent.offset + T(thickness) - dot(normal, x);
+    const auto deep = where && depth > T(0);
+    Vec3T<T> out = x + depth * normal;
+    if (friction != 0) {
+      Vec3T<T> slip = out - from;
+      slip = slip - dot(normal, slip) * normal;
+      const T length = norm(slip), most = T(friction) * depth;
+      const auto sticks = length <= most;
+      out = out - select(sticks, T(1), most / select(sticks, T(1), length)) * slip;
+    }
+    x = select(deep, out, x);
+    return deep;
+  }
+};
+
+}  // namespace taut

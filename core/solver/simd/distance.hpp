@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/solver/simd/vectors.hpp"
+
+namespace taut {
+
+/// How the distance constraint |x2 - x1| = rest is projected; any masses, w = 1/m.
+///
+/// exact (Jakobsen 2001, section 4):          f = (|delta| - r) / |delta|
+/// sqrt-free (ibid., first-order Taylor of    f = (|delta|^2 - r^2) / (|delta|^2 + r^2)
+/// the root around r^2, signs corrected):
+/// both:                                      x1 += w1/(w1 + w2) f delta
+///                                            x2 -= w2/(w1 + w2) f delta
+///
+/// Vasilovici, Cloth Simulation Report, prints a mixture of the two listings whose sign is wrong;
+/// see tests/solver/projection_test.cpp.
+enum class Projection { exact, sqrt_free };
+
+/// Shorter than any link [m]. Added so that coincident particles give 0 and not 0/0; it changes no
+/// other bit.
+inline constexpr double kTinyLength = 1e-18;
+
+/// The share of delta by which a pair is too long.
+template <Projection kind, class T>
+[[gnu::always_inline]] inline T excess(T length2, T rest) {
+  if constexpr (kind == Projection::exact) {
+    using std::sqrt;
+    const T length = sqrt(length2 + T(kTinyLength * kTinyLength));
+    return (length - rest) / length;
+  } else {
+    const T rest2 = rest * rest;
+    return (length2 - rest2) / (length2 + rest2);
+  }
+}
+
+/// Moves x1 and x2 to the distance rest. The one implementation of the projection, for every
+/// width and precision. share1 and share2 are w1/(w1 + w2) and w2/(w1 + w2), times the
+/// relaxation weight of the link.
+template <Projection kind, class T>
+[[gnu::always_inline]] inline void project_distance(Vec3T<T>& x1, Vec3T<T>& x2, T rest, T share1,
+                                                    T share2) {
+  const Vec3T<T> delta{x2.x - x1.x, x2.y - x1.y, x2.z - x1.z};
+  const T f = excess<kind>(delta.x * delta.x + delta.y * delta.y + delta.z * delta.z, rest);
+  const T f1 = share1 * f, f2 = share2 * f;
+  x1.x += f1 * delta.x, x1.y += f1 * delta.y, x1.z += f1 * delta.z;
+  x2.x -= f2 * delta.x, x2.y -= f2 * delta.y, x2.z -= f2 * delta.z;
+}
+
+}  // namespace taut

@@ -1,0 +1,233 @@
+#pragma once
+
+#include <limits>
+
+#include "core/solver/simd/vectors.hpp"
+
+namespace taut {
+
+struct Plane;
+struct Ball;
+struct Box;
+
+/// The place of a surface to which a point belongs: the half-space normal . x >= offset.
+template <class T>
+struct Tangent {
+  Vec3T<T> normal;
+  T offset;  ///< m
+};
+template <class Mask, class T>
+[[gnu::always_inline]] inline Tangent<T> select(const Mask& mask, const Tangent<T>& yes,
+                                                const Tangent<T>& no) {
+  return {select(mask, yes.normal, no.normal), select(mask, yes.offset, no.offset)};
+}
+
+/// Where a path meets a solid; `tangent` means something only where `hits`.
+template <class T>
+struct Entry {
+  decltype(T() < T()) hits;
+  Tangent<T> tangent;
+};
+
+// Colliders at one moment, as the contact loops want them: closed forms in the solver's own
+// precision, for a point or one in every lane. surface() of core/model/collider.hpp is their
+// oracle.
+//
+//   clear(x, t)       quick and conservative: true only if x is at least t from the surface
+//   beyond(x, w2, t)  the same for all of a path that ends in x and whose squared length is w2
+//   misses(from, to)  quick and conservative: true only if entry(from, to) hits nothing
+//   nearest(x)        tangent at the surface point nearest to x
+//   entry(from, to)   tangent where a straight path first meets the solid; the one nearest to
+//                     `from` if it starts inside
+
+/// A half-space has no other side to pass to: nearest() says all.
+template <class Real>
+struct PlaneSurface {
+  using Shape = Plane;
+  Vec3T<Real> normal;
+  Real offset;  ///< m
+
+  template <class T>
+  [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
+    return dot(spread_out<T>(normal), x) >= T(offset) + thickness;
+  }
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> nearest(const Vec3T<T>&) const {
+    return {spread_out<T>(normal), T(offset)};
+  }
+};
+
+template <class Real>
+struct BallSurface {
+  using Shape = Ball;
+  Vec3T<Real> center;
+  Real radius;  ///< m
+
+  template <class T>
+  [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
+    const T reach = T(radius) + thickness;
+    return squared_norm(x - spread_out<T>(center)) >= reach * reach;
+  }
+  /// (reach + way)^2 <= 2 (reach^2 + way^2).
+  template <class T>
+  [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
+    const T reach = T(radius) + thickness;
+    return squared_norm(x - spread_out<T>(center)) >= T(2) * (reach * reach + way2);
+  }
+  /// Both ends lie beyond the plane that touches the ball towards `from`.
+  template <class T>
+  [[gnu::always_inline]] auto misses(const Vec3T<T>& from, const Vec3T<T>& to) const {
+    const Vec3T<T> a = from - spread_out<T>(center);
+    const T aa = squared_norm(a), ab = dot(a, to - spread_out<T>(center));
+    const T r2 = T(radius * radius);
+    return aa > r2 && ab > T(0) && ab * ab > r2 * aa;
+  }
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> nearest(const Vec3T<T>& x) const {
+    const Vec3T<T> out = x - spread_out<T>(center);
+    const T distance = norm(out);
+    const auto apart = distance > T(0);
+    return tangent_at(
+        select(apart, out / select(apart, distance, T(1)), Vec3T<T>{T(0), T(1), T(0)}));
+  }
+  template <class T>
+  [[gnu::always_inline]] Entry<T> entry(const Vec3T<T>& from, const Vec3T<T>& to) const {
+    using std::sqrt;
+    const Vec3T<T> a = from - spread_out<T>(center), d = to - from;
+    const T dd = squared_norm(d), ad = dot(a, d), above = squared_norm(a) - T(radius * radius);
+    const auto inside = above <= T(0);
+    const T discriminant = ad * ad - dd * above;
+    const auto ahead = !inside && ad < T(0) && discriminant > T(0);
+    const T root = sqrt(select(ahead, discriminant, T(1)));
+    const T share = above / select(ahead, root - ad, T(1));  // the nearer root, no cancellation
+    return {inside || (ahead && share <= T(1)),
+            select(inside, nearest(from), tangent_at((a + share * d) / T(radius)))};
+  }
+
+ private:
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> tangent_at(const Vec3T<T>& normal) const {
+    return {normal, dot(normal, spread_out<T>(center)) + T(radius)};
+  }
+};
+
+template <class Real>
+struct BoxSurface {
+  using Shape = Box;
+  Vec3T<Real> center, half;
+  Vec3T<Real> axes[3];  ///< the box's own, in the world
+  Real far;             ///< m, from the centre to a corner
+
+  template <class T>
+  [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
+    const Vec3T<T> out = x - spread_out<T>(center);
+    const T reach = T(far) + thickness;
+    return squared_norm(out) >= reach * reach || largest(excess(turned(out))) >= thickness;
+  }
+  template <class T>
+  [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
+    const T reach = T(far) + thickness;
+    return squared_norm(x - spread_out<T>(center)) >= T(2) * (reach * reach + way2);
+  }
+  /// Both ends lie beyond the same side.
+  template <class T>
+  [[gnu::always_inline]] auto misses(const Vec3T<T>& from, const Vec3T<T>& to) const {
+    const Vec3T<T> a = local(from), b = local(to), h = spread_out<T>(half);
+    const auto beside = [](T u, T v, T most) __attribute__((always_inline)) {
+      return lesser(u, v) > most || greater(u, v) < T(0) - most;
+    };
+    return beside(a.x, b.x, h.x) || beside(a.y, b.y, h.y) || beside(a.z, b.z, h.z);
+  }
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> nearest(const Vec3T<T>& x) const {
+    const Vec3T<T> at = local(x), past = excess(at);
+    const auto inside = largest(past) <= T(0);
+    Tangent<T> tangent = over_corner(at);
+    if (any(inside)) tangent = select(inside, over_face(at, past), tangent);
+    return tangent;
+  }
+  template <class T>
+  [[gnu::always_inline]] Entry<T> entry(const Vec3T<T>& from, const Vec3T<T>& to) const {
+    const Vec3T<T> a = local(from), d = turned(to - from);
+    const auto inside = largest(excess(a)) <= T(0);
+    // The path is inside the slab between two faces from `enters` to `leaves`; where it runs along
+    // them it is so for ever or never.
+    constexpr Real kEver = std::numeric_limits<Real>::max();
+    T in(-kEver), out(1);
+    Tangent<T> side = face(0, T(1));
+    const auto cut = [&](int axis, T ai, T di, T most) __attribute__((always_inline)) {
+      const T toward = select(di > T(0), T(1), T(-1));
+      const auto along = !(di > T(0)) && !(di < T(0));
+      const auto between = magnitude(ai) < most;
+      const T way = select(along, T(1), di);
+      const T enters =
+          select(along, select(between, T(-kEver), T(kEver)), (T(0) - toward * most - ai) / way);
+      const T leaves = select(along, T(kEver), (toward * most - ai) / way);
+      const auto later = enters > in;
+      in = select(later, enters, in);
+      side = select(later, face(axis, T(0) - toward), side);
+      out = lesser(out, leaves);
+    };
+    cut(0, a.x, d.x, T(half.x)), cut(1, a.y, d.y, T(half.y)), cut(2, a.z, d.z, T(half.z));
+    Tangent<T> tangent = side;
+    if (any(inside)) tangent = select(inside, nearest(from), side);
+    return {inside || (in >= T(0) && in < out), tangent};
+  }
+
+ private:
+  template <class T>
+  [[gnu::always_inline]] Vec3T<T> turned(const Vec3T<T>& v) const {
+    return {dot(spread_out<T>(axes[0]), v), dot(spread_out<T>(axes[1]), v),
+            dot(spread_out<T>(axes[2]), v)};
+  }
+  template <class T>
+  [[gnu::always_inline]] Vec3T<T> local(const Vec3T<T>& x) const {
+    return turned(x - spread_out<T>(center));
+  }
+  template <class T>
+  [[gnu::always_inline]] Vec3T<T> world(const Vec3T<T>& v) const {
+    const auto sum = [&v](Real a, Real b, Real c) __attribute__((always_inline)) {
+      return dot(Vec3T<T>{T(a), T(b), T(c)}, v);
+    };
+    return {sum(axes[0].x, axes[1].x, axes[2].x), sum(axes[0].y, axes[1].y, axes[2].y),
+            sum(axes[0].z, axes[1].z, axes[2].z)};
+  }
+  /// Beyond each pair of faces; negative between them.
+  template <class T>
+  [[gnu::always_inline]] Vec3T<T> excess(const Vec3T<T>& at) const {
+    return {magnitude(at.x) - T(half.x), magnitude(at.y) - T(half.y), magnitude(at.z) - T(half.z)};
+  }
+  template <class T>
+  [[gnu::always_inline]] static T largest(const Vec3T<T>& a) {
+    return greater(greater(a.x, a.y), a.z);
+  }
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> face(int axis, T sign) const {
+    const Vec3T<T> normal = sign * spread_out<T>(axes[axis]);
+    const Real most[3] = {half.x, half.y, half.z};
+    return {normal, dot(normal, spread_out<T>(center)) + T(most[axis])};
+  }
+  /// From inside, out of the nearest face.
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> over_face(const Vec3T<T>& at, const Vec3T<T>& past) const {
+    const auto sign = [](T v) __attribute__((always_inline)) {
+      return select(v < T(0), T(-1), T(1));
+    };
+    const Tangent<T> xy = select(past.y > past.x, face(1, sign(at.y)), face(0, sign(at.x)));
+    return select(past.z > greater(past.x, past.y), face(2, sign(at.z)), xy);
+  }
+  /// From outside, straight away from the nearest point of the box.
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> over_corner(const Vec3T<T>& at) const {
+    const Vec3T<T> h = spread_out<T>(half);
+    const Vec3T<T> corner{lesser(greater(at.x, T(0) - h.x), h.x),
+                          lesser(greater(at.y, T(0) - h.y), h.y),
+                          lesser(greater(at.z, T(0) - h.z), h.z)};
+    const Vec3T<T> out = at - corner;
+    const T distance = norm(out);
+    const Vec3T<T> normal = world(out / select(distance > T(0), distance, T(1)));
+    return {normal, dot(normal, spread_out<T>(center) + world(corner))};
+  }
+};
+
+}  // namespace taut

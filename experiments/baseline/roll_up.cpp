@@ -1,0 +1,51 @@
+#include "experiments/baseline/roll_up.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+namespace taut {
+
+namespace {
+
+double relative_change(const Change& c) {
+  const double share = (c.now - c.before) / std::abs(c.before);
+  return std::isfinite(share) ? share : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+double MovedValue::relative() const { return relative_change(*worst); }
+
+std::vector<MovedValue> roll_up(const Comparison& comparison) {
+  std::map<std::pair<std::string, std::string>, MovedValue> groups;
+  for (const Change& c : comparison.findings) {
+    if (c.kind != Change::Kind::value_moved) continue;
+    MovedValue& group = groups[{c.scene, c.value}];
+    group.scene = c.scene, group.value = c.value;
+    ++group.cases;
+    if (!group.worst || std::abs(relative_change(c)) > std::abs(group.relative())) group.worst = &c;
+  }
+  std::vector<MovedValue> all;
+  for (const auto& [name, group] : groups) all.push_back(group);
+  std::ranges::stable_sort(all, [](const MovedValue& a, const MovedValue& b) {
+    return std::abs(a.relative()) > std::abs(b.relative());
+  });
+  return all;
+}
+
+std::string text(const MovedValue& moved, std::string_view unit) {
+  char text[160];
+  const std::string of(unit == "1" || unit.empty() ? "" : " " + std::string(unit));
+  if (std::isfinite(moved.relative()))
+    std::snprintf(text, sizeof text, "%+.3g %% (%.4g -> %.4g%s)", 100 * moved.relative(),
+                  moved.worst->before, moved.worst->now, of.c_str());
+  else
+    std::snprintf(text, sizeof text, "%.4g -> %.4g%s", moved.worst->before, moved.worst->now,
+                  of.c_str());
+  return text;
+}
+
+}  // namespace taut

@@ -1,0 +1,71 @@
+#include "experiments/command_line/options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <thread>
+
+#include "core/model/input_error.hpp"
+#include "experiments/metrics/metric.hpp"
+#include "experiments/study/store.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut {
+
+CLI::Validator above_zero() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0;
+        const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+        return number && value > 0 ? "" : "'" + text + "' is not a number above 0";
+      },
+      "above 0");
+}
+
+CLI::Validator known(const std::string& what, std::vector<std::string> names) {
+  return CLI::Validator(
+      [what, names = std::move(names)](std::string& text) {
+        if (std::ranges::find(names, text) != names.end()) return std::string();
+        std::string list;
+        if (names.size() < 12)
+          for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+        return "unknown " + what + " '" + text + "'" + suggestion(text, names) +
+               (list.empty() ? "" : " (one of " + list + ")");
+      },
+      "");
+}
+
+CLI::Validator metric_value() {
+  std::vector<std::string> names;
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& value : metric->values) names.emplace_back(value.name);
+  return known("metric value", std::move(names));
+}
+
+CLI::Option* add_jobs(CLI::App& app, int& jobs) {
+  jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return app.add_option("-j,--jobs", jobs, "Cases at a time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
+}
+
+CLI::Option* add_results(CLI::App& app, std::string& folder) {
+  folder = default_results().string();
+  return app.add_option("--out", folder, "Results folder (default: " + folder + ")");
+}
+
+CLI::Option* add_preset(CLI::App& app, std::string& preset) {
+  return app.add_option("--preset", preset, "A smaller or larger version that the study defines");
+}
+
+void print_files(const std::vector<std::string>& files, bool json) {
+  if (json)
+    std::cout << to_text(Json{{"files", files}}, 1) << '\n';
+  else
+    for (const std::string& file : files) std::cout << file << '\n';
+}
+
+CLI::Option* add_json(CLI::App& app, bool& json, const std::string& what) {
+  return app.add_flag("--json", json, what + " as JSON");
+}
+
+}  // namespace taut

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace taut {
+
+/// A check of an option's value: a number above 0.
+CLI::Validator above_zero();
+
+/// One of these names; the message suggests the nearest and lists them if they are few.
+CLI::Validator known(const std::string& what, std::vector<std::string> names);
+
+/// The name of a metric's value, such as "stretch.rms".
+CLI::Validator metric_value();
+
+/// Cases at a time, as -j: one per core unless the user says otherwise.
+CLI::Option* add_jobs(CLI::App&, int& jobs);
+
+/// The results folder, as --out: default_results() unless the user says otherwise.
+CLI::Option* add_results(CLI::App&, std::string& folder);
+
+/// The preset of a study.
+CLI::Option* add_preset(CLI::App&, std::string& preset);
+
+/// The files that a verb wrote: a line each, or {"files": [...]}.
+void print_files(const std::vector<std::string>& files, bool json);
+
+/// --json, which says `what` is printed instead.
+CLI::Option* add_json(CLI::App&, bool& json, const std::string& what);
+
+}  // namespace taut

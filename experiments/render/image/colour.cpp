@@ -1,0 +1,155 @@
+#include "experiments/render/image/colour.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace taut {
+
+namespace {
+
+/// A colour of OKLab in polar form: lightness in [0, 1], chroma, hue in degrees.
+struct Lch {
+  double l = 0, c = 0, h = 0;
+};
+
+/// Linear sRGB, possibly out of gamut (B. Ottosson, "A perceptual color space", 2020).
+std::array<double, 3> linear_rgb(const Lch& colour) {
+  const double hue = colour.h * std::numbers::pi / 180;
+  const double a = colour.c * std::cos(hue), b = colour.c * std::sin(hue);
+  const auto cube = [](double x) { return x * x * x; };
+  const double l = cube(colour.l + 0.3963377774 * a + 0.2158037573 * b);
+  const double m = cube(colour.l - 0.1055613458 * a - 0.0638541728 * b);
+  const double s = cube(colour.l - 0.0894841775 * a - 1.2914855480 * b);
+  return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
+          -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+          -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
+}
+
+bool in_gamut(const std::array<double, 3>& rgb) {
+  return std::ranges::all_of(rgb, [](double v) { return v >= -1e-4 && v <= 1 + 1e-4; });
+}
+
+std::uint8_t encode(double linear) {
+  const double v = std::clamp(linear, 0.0, 1.0);
+  const double srgb = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255 * srgb));
+}
+
+/// Nearest colour of the same lightness and hue that a screen can show.
+Rgb8 to_rgb8(Lch colour) {
+  if (!in_gamut(linear_rgb(colour))) {
+    double inside = 0, outside = colour.c;
+    for (int i = 0; i < 30; ++i) {
+      colour.c = (inside + outside) / 2;
+      (in_gamut(linear_rgb(colour)) ? inside : outside) = colour.c;
+    }
+    colour.c = inside;
+  }
+  const auto rgb = linear_rgb(colour);
+  return {encode(rgb[0]), encode(rgb[1]), encode(rgb[2])};
+}
+
+template <class Function>
+std::vector<Rgb8> tabulate(const Function& colour) {
+  std::vector<Rgb8> table;
+  for (int i = 0; i < ColourMap::kSize; ++i)
+    table.push_back(to_rgb8(colour(static_cast<double>(i) / (ColourMap::kSize - 1))));
+  return table;
+}
+
+constexpr double kLight = 0.955, kDark = 0.445;  ///< lightness at zero and at the ends
+
+std::string trimmed(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+}  // namespace
+
+const ColourMap& ColourMap::diverging() {
+  static const ColourMap map(tabulate([](double s) {
+    const double a = std::abs(2 * s - 1);
+    const double chroma = 0.19 * std::pow(a, 0.85);
+    return Lch{kLight + (kDark - kLight) * a, chroma, s < 0.5 ? 250 + 7 * a : 54 - 29 * a};
+  }));
+  return map;
+}
+
+const ColourMap& ColourMap::violet() {
+  static const ColourMap map(tabulate([](double s) {
+    return Lch{0.9 + (0.36 - 0.9) * s, 0.21 * std::pow(s, 0.8), 350 - 45 * s};
+  }));
+  return map;
+}
+
+const ColourMap& ColourMap::teal() {
+  static const ColourMap map(tabulate([](double s) {
+    return Lch{0.9 + (0.36 - 0.9) * s, 0.13 * std::pow(s, 0.7), 165 + 80 * s};
+  }));
+  return map;
+}
+
+Rgb8 ColourMap::at(double s) const {
+  const double clamped = std::isfinite(s) ? std::clamp(s, 0.0, 1.0) : 1;
+  return table_[static_cast<std::size_t>(std::lround(clamped * (kSize - 1)))];
+}
+
+const ColourMap& ColourScale::map() const {
+  switch (quantity) {
+    case Quantity::strain:
+      return ColourMap::diverging();
+    case Quantity::penetration:
+      return ColourMap::violet();
+    case Quantity::speed:
+      break;
+  }
+  return ColourMap::teal();
+}
+
+std::string ColourScale::title() const {
+  switch (quantity) {
+    case Quantity::strain:
+      return "mean edge strain ε at each vertex";
+    case Quantity::penetration:
+      return "depth below a collider's surface";
+    case Quantity::speed:
+      break;
+  }
+  return "speed";
+}
+
+std::string ColourScale::text(double value) const {
+  if (quantity == Quantity::speed) return trimmed(value) + " m/s";
+  if (quantity == Quantity::penetration) return trimmed(1e3 * value) + " mm";
+  const std::string percent = trimmed(std::abs(100 * value)) + " %";
+  return value == 0 ? "0" : (value < 0 ? "\u2212" : "+") + percent;
+}
+
+std::vector<double> ColourScale::ticks() const {
+  const double leading = high / std::pow(10, std::floor(std::log10(high) + 1e-9));
+  const auto is = [leading](double x) { return std::abs(leading - x) < 1e-6; };
+  const bool thirds = is(1.5) || is(3) || is(6);
+  const bool both_signs = low() < 0;
+  const int parts = thirds ? 3 : both_signs ? 2 : is(1) || is(5) ? 5 : 4;
+  std::vector<double> values;
+  for (int i = both_signs ? -parts : 0; i <= parts; ++i) values.push_back(high * i / parts);
+  return values;
+}
+
+double round_up(double value, double least) {
+  const double wanted = std::max(value, least) * (1 - 1e-9);
+  const double unit = std::pow(10, std::floor(std::log10(wanted)));
+  for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0})
+    if (step * unit >= wanted) return step * unit;
+  return 10 * unit;
+}
+
+double linear_of(std::uint8_t srgb) {
+  const double v = srgb / 255.0;
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+}  // namespace taut

@@ -1,0 +1,197 @@
+#include "experiments/render/opengl/render_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut {
+
+namespace {
+
+/// A regular grid of points with a value and a depth each.
+struct Lattice {
+  int nu = 0, nv = 0;
+  std::vector<Vec3f> x;
+  std::vector<float> value, depth;
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(nu) + static_cast<std::size_t>(i);
+  }
+};
+
+/// Refines along u by `pieces`: positions by Catmull-Rom with linear continuation at the ends,
+/// values linearly. The result is transposed, so that two calls refine both directions.
+Lattice refine_and_transpose(const Lattice& in, int pieces) {
+  Lattice out{in.nv, (in.nu - 1) * pieces + 1, {}, {}, {}};
+  out.x.resize(in.x.size() / static_cast<std::size_t>(in.nu) * static_cast<std::size_t>(out.nv));
+  out.value.resize(out.x.size());
+  out.depth.resize(out.x.size());
+  for (int j = 0; j < in.nv; ++j)
+    for (int k = 0; k < out.nv; ++k) {
+      const int i = std::min(k / pieces, in.nu - 2);
+      const float s = static_cast<float>(k - i * pieces) / static_cast<float>(pieces);
+      const Vec3f &b = in.x[in.index(i, j)], &c = in.x[in.index(i + 1, j)];
+      const Vec3f a = i > 0 ? in.x[in.index(i - 1, j)] : Vec3f(2 * b - c);
+      const Vec3f d = i + 2 < in.nu ? in.x[in.index(i + 2, j)] : Vec3f(2 * c - b);
+      const float s2 = s * s, s3 = s2 * s;
+      out.x[out.index(j, k)] = 0.5f * (2 * b + (c - a) * s + (2 * a - 5 * b + 4 * c - d) * s2 +
+                                       (3 * b - a - 3 * c + d) * s3);
+      for (auto channel : {&Lattice::value, &Lattice::depth})
+        (out.*channel)[out.index(j, k)] =
+            (in.*channel)[in.index(i, j)] * (1 - s) + (in.*channel)[in.index(i + 1, j)] * s;
+    }
+  return out;
+}
+
+std::vector<std::array<std::uint32_t, 3>> lattice_triangles(int nu, int nv) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (int j = 0; j + 1 < nv; ++j)
+    for (int i = 0; i + 1 < nu; ++i) {
+      const auto at = [&](int a, int b) {
+        return static_cast<std::uint32_t>((j + b) * nu + i + a);
+      };
+      const bool falling = (i + j) % 2 == 0;
+      if (falling) {
+        triangles.push_back({at(0, 0), at(0, 1), at(1, 1)});
+        triangles.push_back({at(0, 0), at(1, 1), at(1, 0)});
+      } else {
+        triangles.push_back({at(0, 0), at(0, 1), at(1, 0)});
+        triangles.push_back({at(1, 0), at(0, 1), at(1, 1)});
+      }
+    }
+  return triangles;
+}
+
+/// A cylinder of `sides` facets between two points.
+void append_cylinder(RenderMesh& mesh, const Vec3f& from, const Vec3f& to, float radius, int sides,
+                     float value_from, float value_to) {
+  const Vec3f axis = (to - from).normalized();
+  const Vec3f across = axis.unitOrthogonal(), other = axis.cross(across);
+  const auto first = static_cast<std::uint32_t>(mesh.position.size());
+  for (int k = 0; k < sides; ++k) {
+    const float angle = 6.2831853f * static_cast<float>(k) / static_cast<float>(sides);
+    const Vec3f out = across * std::cos(angle) + other * std::sin(angle);
+    for (const bool end : {false, true}) {
+      mesh.position.push_back((end ? to : from) + radius * out);
+      mesh.normal.push_back(out);
+      mesh.value.push_back(end ? value_to : value_from);
+    }
+    const auto a = first + static_cast<std::uint32_t>(2 * k);
+    const auto b = first + static_cast<std::uint32_t>(2 * ((k + 1) % sides));
+    mesh.triangles.push_back({a, b, a + 1});
+    mesh.triangles.push_back({a + 1, b, b + 1});
+  }
+}
+
+bool has_faces(const Scene& scene) { return !scene.mesh.triangles.empty(); }
+
+bool is_sheet(const Scene& scene) {
+  return scene.mesh.grid && scene.mesh.grid->nu > 1 && scene.mesh.grid->nv > 1;
+}
+
+std::vector<Vec3f> to_float(const std::vector<Vec3>& x) {
+  std::vector<Vec3f> out;
+  for (const Vec3& p : x) out.push_back(p.cast<float>());
+  return out;
+}
+
+}  // namespace
+
+void RenderMesh::compute_normals() {
+  normal.assign(position.size(), Vec3f::Zero());
+  for (const auto& [a, b, c] : triangles) {
+    const Vec3f n = (position[b] - position[a]).cross(position[c] - position[a]);
+    normal[a] += n, normal[b] += n, normal[c] += n;
+  }
+  for (Vec3f& n : normal) n = n.norm() > 0 ? n.normalized() : Vec3f::UnitY();
+}
+
+ClothMesher::ClothMesher(const Scene& scene, int finest) : scene_(scene) {
+  if (is_sheet(scene)) {
+    const int quads = std::max(scene.mesh.grid->nu, scene.mesh.grid->nv) - 1;
+    refinement_ = std::clamp(finest / quads, 1, 8);
+    grid_spacing_ = std::max(1, (quads + 8) / 16);
+  }
+  for (const Link& link : scene.links) mean_rest_ += link.rest;
+  if (!scene.links.empty()) mean_rest_ /= static_cast<double>(scene.links.size());
+}
+
+RenderMesh ClothMesher::mesh(const std::vector<Vec3>& x, const std::vector<double>& values,
+                             const std::vector<double>& depths) const {
+  RenderMesh made = is_sheet(scene_)    ? sheet(x, values, depths)
+                    : has_faces(scene_) ? faces(x, values)
+                                        : tube(x, values);
+  made.uv.resize(made.position.size(), Eigen::Vector2f::Zero());
+  made.hidden.resize(made.position.size(), 0);
+  return made;
+}
+
+RenderMesh ClothMesher::sheet(const std::vector<Vec3>& x, const std::vector<double>& values,
+                              const std::vector<double>& depths) const {
+  const Grid& grid = *scene_.mesh.grid;
+  const Lattice coarse{grid.nu,
+                       grid.nv,
+                       to_float(x),
+                       {values.begin(), values.end()},
+                       {depths.begin(), depths.end()}};
+  const Lattice fine = refine_and_transpose(refine_and_transpose(coarse, refinement_), refinement_);
+  RenderMesh mesh;
+  mesh.position = fine.x;
+  mesh.value = fine.value;
+  mesh.hidden = fine.depth;
+  mesh.triangles = lattice_triangles(fine.nu, fine.nv);
+  const float step = 1 / static_cast<float>(refinement_);
+  for (int j = 0; j < fine.nv; ++j)
+    for (int i = 0; i < fine.nu; ++i)
+      mesh.uv.emplace_back(static_cast<float>(i) * step, static_cast<float>(j) * step);
+  mesh.compute_normals();
+  return mesh;
+}
+
+RenderMesh ClothMesher::faces(const std::vector<Vec3>& x, const std::vector<double>& values) const {
+  RenderMesh mesh;
+  mesh.position = to_float(x);
+  mesh.value.assign(values.begin(), values.end());
+  for (const auto& [a, b, c] : scene_.mesh.triangles)
+    mesh.triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                              static_cast<std::uint32_t>(c)});
+  mesh.compute_normals();
+  return mesh;
+}
+
+RenderMesh ClothMesher::tube(const std::vector<Vec3>& x, const std::vector<double>& values) const {
+  RenderMesh mesh;
+  const std::vector<Vec3f> points = to_float(x);
+  const float radius = static_cast<float>(extent(scene_)) * 0.006f;
+  const auto value = [&](int i) { return static_cast<float>(values[static_cast<std::size_t>(i)]); };
+  for (const Link& link : scene_.links)
+    if (link.family == Family::structural)
+      append_cylinder(mesh, points[static_cast<std::size_t>(link.a)],
+                      points[static_cast<std::size_t>(link.b)], radius, 12, value(link.a),
+                      value(link.b));
+  for (int i = 0; i < scene_.mesh.size(); ++i)
+    append_ball(mesh, points[static_cast<std::size_t>(i)], 2 * radius, 14, value(i));
+  return mesh;
+}
+
+void append_ball(RenderMesh& mesh, const Vec3f& centre, float radius, int segments, float value) {
+  const auto first = static_cast<std::uint32_t>(mesh.position.size());
+  const int rings = segments / 2;
+  for (int j = 0; j <= rings; ++j)
+    for (int i = 0; i <= segments; ++i) {
+      const float down = 3.1415927f * static_cast<float>(j) / static_cast<float>(rings);
+      const float turn = 6.2831853f * static_cast<float>(i) / static_cast<float>(segments);
+      const Vec3f out(std::sin(down) * std::cos(turn), std::cos(down),
+                      std::sin(down) * std::sin(turn));
+      mesh.position.push_back(centre + radius * out);
+      mesh.normal.push_back(out);
+      mesh.value.push_back(value);
+    }
+  const auto row = static_cast<std::uint32_t>(segments + 1);
+  for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rings); ++j)
+    for (std::uint32_t i = 0; i + 1 < row; ++i) {
+      const std::uint32_t a = first + j * row + i;
+      mesh.triangles.push_back({a, a + 1, a + row});
+      mesh.triangles.push_back({a + 1, a + row + 1, a + row});
+    }
+}
+
+}  // namespace taut

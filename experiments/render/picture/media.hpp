@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+
+#include "experiments/render/image/video.hpp"
+#include "experiments/render/picture/scene_renderer.hpp"
+
+namespace taut {
+
+/// What a report wants of a scene. Panels stand side by side on the dark background, each with its
+/// cloth laid flat in a corner, without text: the page writes captions and the colour bar itself,
+/// in its own fonts and themes.
+struct MediaOptions {
+  int width = 960, height = 400;  ///< of all panels together; even
+  double duration = 4;            ///< s of the scene's beginning
+  double speed = 1;               ///< simulated seconds per second of video
+  double fps = 22;  ///< of the video; frames are whole steps: the nearest rate that dt allows
+  Quantity quantity = Quantity::strain;
+  View view;
+  RenderQuality quality = RenderQuality::video();
+  int crf = 25;
+};
+
+/// Pictures and numbers of one scene, moment by moment the same for all runs.
+struct Media {
+  std::string mp4;          ///< H.264; "" without ffmpeg
+  std::string poster;       ///< the moment of the greatest difference
+  std::string poster_type;  ///< "image/jpeg", or "image/png" without ffmpeg
+  std::string strip_png;    ///< five moments one above the other, only without ffmpeg
+  int width = 0, height = 0;
+  FrameRate rate;
+  /// A run's cloth laid flat, without light.
+  struct Flat {
+    double t = 0;    ///< s
+    double rms = 0;  ///< strain
+    std::string png;
+  };
+  std::vector<std::vector<Flat>> material;      ///< [run][moment]; empty: cloth that is no sheet
+  double aspect = 1;                            ///< width / height of a flat
+  double poster_t = 0;                          ///< s
+  std::vector<double> t;                        ///< s, of each frame
+  std::vector<std::vector<double>> rms_strain;  ///< [run][frame]
+  std::vector<std::optional<RecordedRun::Stop>> stops;  ///< [run]
+  ColourScale scale;                                    ///< of the pictures
+};
+
+/// Draws the runs. `progress(done, total)` is told after each frame. Throws InputError without a
+/// renderer. Preconditions: one to four runs.
+Media render_media(const Scene&, const std::vector<RecordedRun>&, const MediaOptions& = {},
+                   const std::function<void(int, int)>& progress = {});
+
+}  // namespace taut

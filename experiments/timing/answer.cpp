@@ -1,0 +1,127 @@
+#include "experiments/timing/answer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+namespace taut {
+
+namespace {
+
+/// Indices of candidates that meet the target, best first.
+std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates, const Target& target) {
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::erase_if(order, [&](std::size_t i) { return !target.meets(candidates[i]); });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    return target.prefers(candidates[i], candidates[j]);
+  });
+  return order;
+}
+
+Certainty certainty_of_cost(const Interval& ratio, const Interval& control, double tolerance) {
+  if (ratio.low <= 1) return Certainty::a_tie;
+  return compare_costs(ratio, control, tolerance) == Difference::slower ? Certainty::clear
+                                                                        : Certainty::likely;
+}
+
+std::string line(const BenchedCase& c, const std::string& metric) {
+  const auto error = c.record.values.find(metric);
+  return parse_solver(c.record.spec.solver).brief() + ", " + metric + " " +
+         (error == c.record.values.end() ? "-" : number_text(error->second)) + ", " +
+         interval_text(c.cost(), 1e-3) + " ms CPU per simulated s";
+}
+
+/// What a solver that never reached the target came nearest to.
+std::string nearest(const SolverAnswer& solver, const SceneBench& bench, const Answer& answer,
+                    const std::string& metric) {
+  constexpr double kAny = std::numeric_limits<double>::max();
+  const Target any = answer.target.error ? Target{{}, kAny} : Target{kAny, {}};
+  const auto at = best_for(any, bench.candidates(metric), solver.solver);
+  return at ? "never; nearest: " + line(bench.cases[*at], metric) : "never; every case failed";
+}
+
+}  // namespace
+
+std::string_view to_string(Certainty certainty) {
+  switch (certainty) {
+    case Certainty::clear:
+      return "clear";
+    case Certainty::likely:
+      return "likely";
+    case Certainty::a_tie:
+      return "a tie";
+    case Certainty::unopposed:
+      return "unopposed";
+  }
+  return "";
+}
+
+std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Target& target,
+                                   std::size_t most) {
+  const std::vector<std::size_t> order = ranking(tried, target);
+  std::vector<std::size_t> chosen;
+  std::set<std::string> solvers;
+  for (const std::size_t i : order)
+    if (chosen.size() + 1 < most && solvers.insert(tried[i].solver).second) chosen.push_back(i);
+  for (const std::size_t i : order)
+    if (chosen.size() < most && std::find(chosen.begin(), chosen.end(), i) == chosen.end())
+      chosen.push_back(i);
+  return chosen;
+}
+
+Answer answer(const SceneBench& bench, const Target& target, const std::string& metric,
+              double tolerance) {
+  const std::vector<Candidate> candidates = bench.candidates(metric);
+  const std::vector<std::size_t> order = ranking(candidates, target);
+  Answer answer{.target = target};
+  for (const std::string& solver : solvers_of(bench))
+    answer.solvers.push_back({solver, best_for(target, candidates, solver), {}});
+  if (order.empty()) return answer;
+  answer.best = order.front();
+  for (SolverAnswer& solver : answer.solvers)
+    if (solver.at) solver.times = bench.ratio(*solver.at, *answer.best);
+  const auto rival = std::find_if(order.begin() + 1, order.end(), [&](std::size_t i) {
+    return candidates[i].solver != candidates[*answer.best].solver;
+  });
+  if (rival != order.end())
+    answer.runner_up = *rival;
+  else if (order.size() > 1)
+    answer.runner_up = order[1];
+  if (answer.runner_up) answer.ratio = bench.ratio(*answer.runner_up, *answer.best);
+  if (target.budget)
+    // Errors repeat to the last bit; what is uncertain is whether the budget holds.
+    answer.certainty =
+        candidates[*answer.best].cost.high <= *target.budget ? Certainty::clear : Certainty::likely;
+  else if (answer.ratio)
+    answer.certainty = certainty_of_cost(*answer.ratio, bench.control, tolerance);
+  return answer;
+}
+
+std::string text(const Target& target, const std::string& metric) {
+  if (target.error) return metric + " <= " + number_text(*target.error);
+  return "least " + metric + " within " + number_text(1e3 * kFrame * *target.budget) +
+         " ms per frame of 1/60 s";
+}
+
+std::string text(const Answer& answer, const SceneBench& bench, const std::string& metric) {
+  std::string out = text(answer.target, metric) + ": ";
+  if (answer.best)
+    out += line(bench.cases[*answer.best], metric) + "; " +
+           std::string(to_string(answer.certainty)) + "\n";
+  else
+    out += "never reached\n";
+  for (const SolverAnswer& solver : answer.solvers) {
+    if (answer.best && solver.at == answer.best) continue;
+    out += "  " + solver.solver + ": ";
+    out += solver.at ? (solver.times ? interval_text(*solver.times) + " x the cost: " : "") +
+                           line(bench.cases[*solver.at], metric)
+                     : nearest(solver, bench, answer, metric);
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace taut

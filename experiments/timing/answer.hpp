@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/timing/bench.hpp"
+
+namespace taut {
+
+/// How sure an answer is.
+enum class Certainty {
+  clear,   ///< the ratio to the runner-up is significant and the machine quiet; a budget is met by
+           ///< the whole interval
+  likely,  ///< the interval says so, but this machine strays as much or the margin is small
+  a_tie,   ///< no difference between the two
+  unopposed  ///< nobody else meets the target
+};
+std::string_view to_string(Certainty);
+
+/// How a solver's best setting serves a target.
+struct SolverAnswer {
+  std::string solver;
+  std::optional<std::size_t> at;  ///< index of the case; nothing: never reached
+  std::optional<Interval> times;  ///< its cost over that of the best of all
+};
+
+/// Which of the timed cases serves a target best, and how well every solver does.
+struct Answer {
+  Target target;
+  std::vector<SolverAnswer> solvers;     ///< in order of appearance
+  std::optional<std::size_t> best;       ///< index of the case; nothing: none meets the target
+  std::optional<std::size_t> runner_up;  ///< the best of another solver, else the next of the same
+  std::optional<Interval> ratio;         ///< cost of the runner-up over that of the best
+  Certainty certainty = Certainty::unopposed;
+};
+Answer answer(const SceneBench&, const Target&, const std::string& metric,
+              double tolerance = kTolerance);
+
+/// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms per frame of 1/60 s".
+std::string text(const Target&, const std::string& metric);
+
+/// The answer in lines, the first without indentation: who, for what error and cost, how sure; then
+/// a line for every other solver.
+std::string text(const Answer&, const SceneBench&, const std::string& metric);
+
+/// Whom to time: the best by quick cost of every solver that meets the target, at most `most`, then
+/// the next best of the leader. Indices into `tried`, best first.
+std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Target&,
+                                   std::size_t most);
+
+}  // namespace taut

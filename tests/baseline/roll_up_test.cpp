@@ -1,0 +1,43 @@
+// What moved, by scene and value.
+#include "experiments/baseline/roll_up.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace taut {
+namespace {
+
+Change moved(const char* scene, const char* value, double before, double now) {
+  Change c;
+  c.id = scene, c.scene = scene, c.value = value, c.before = before, c.now = now;
+  return c;
+}
+
+TEST(RollUp, TheWorstOfEveryValueIsNamedAndTheWorstValueIsFirst) {
+  Comparison comparison;
+  comparison.findings = {moved("hang", "stretch.rms", 0.01, 0.0101),
+                         moved("hang", "stretch.rms", 0.01, 0.0098),
+                         moved("ball", "penetration.max", 0.001, 0.002)};
+  comparison.findings.push_back({Change::Kind::status_changed, "hang", "", "status ok -> crash"});
+  const auto all = roll_up(comparison);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].value, "penetration.max");
+  EXPECT_EQ(text(all[0], "m"), "+100 % (0.001 -> 0.002 m)");
+  EXPECT_EQ(all[1].cases, 2u);
+  EXPECT_EQ(text(all[1], "1"), "-2 % (0.01 -> 0.0098)");
+}
+
+TEST(RollUp, FromNothingIsWorseThanAnyPerCent) {
+  Comparison comparison;
+  comparison.findings = {moved("hang", "a", 1, 5), moved("hang", "b", 0, 1e-9),
+                         moved("hang", "c", 1, std::numeric_limits<double>::quiet_NaN())};
+  const auto all = roll_up(comparison);
+  EXPECT_EQ(all[0].value, "b");
+  EXPECT_EQ(all[1].value, "c");
+  EXPECT_EQ(text(all[1], "1"), "1 -> nan");
+  EXPECT_EQ(all[2].value, "a");
+}
+
+}  // namespace
+}  // namespace taut

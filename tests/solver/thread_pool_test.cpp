@@ -1,0 +1,62 @@
+#include "core/solver/thread_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <vector>
+
+namespace taut {
+
+namespace {
+
+/// Long enough for the others to come in time.
+void dawdle() {
+  volatile int work = 0;
+  for (int n = 0; n < 300; ++n) work = work + 1;
+}
+
+/// More threads than cores, so that some are always late.
+TEST(ThreadPool, DoesEveryItemOfEveryRoundOnce) {
+  ThreadPool pool(6);
+  std::vector<int> visits(50, 0);
+  std::vector<int> expected(50, 0);
+  for (std::size_t round = 0; round < 4000; ++round) {
+    const std::size_t count = round % 51;
+    pool.run(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) ++visits[i], dawdle();
+    });
+    for (std::size_t i = 0; i < count; ++i) ++expected[i];
+    ASSERT_EQ(visits, expected) << "round " << round;
+  }
+}
+
+TEST(ThreadPool, RoundsDoNotOverlap) {
+  ThreadPool pool(4);
+  std::vector<std::size_t> value(97);
+  std::iota(value.begin(), value.end(), std::size_t{0});
+  std::vector<std::size_t> next(value.size());
+  for (int round = 0; round < 2000; ++round) {  // each item reads what another one wrote before
+    pool.run(value.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) dawdle(), next[i] = value[(i + 1) % value.size()];
+    });
+    pool.run(value.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) value[i] = next[i];
+    });
+  }
+  for (std::size_t i = 0; i < value.size(); ++i) ASSERT_EQ(value[i], (i + 2000) % value.size());
+}
+
+TEST(ThreadPool, OfOneIsTheCaller) {
+  ThreadPool pool(1);
+  const auto caller = std::this_thread::get_id();
+  std::size_t done = 0;
+  pool.run(7, [&](std::size_t begin, std::size_t end) {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    done += end - begin;
+  });
+  EXPECT_EQ(done, 7U);
+}
+
+}  // namespace
+
+}  // namespace taut

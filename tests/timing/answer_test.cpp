@@ -1,0 +1,87 @@
+// Who is recommended, and how sure that is.
+#include "experiments/timing/answer.hpp"
+
+#include <gtest/gtest.h>
+
+namespace taut {
+namespace {
+
+/// A finalist whose samples are `cost` [CPU s per step of 1 s] with a ripple of one per cent.
+BenchedCase finalist(const std::string& solver, double cost, double error) {
+  BenchedCase c;
+  c.record.solver = solver;
+  c.record.spec.solver = solver;
+  c.record.dt = 1;
+  c.record.values["e"] = error;
+  for (int i = 0; i < 16; ++i) c.timing.samples.push_back(cost * (1 + 0.01 * (i * 7 % 5 - 2)));
+  return c;
+}
+
+SceneBench bench(std::vector<BenchedCase> cases, double noise = 0.01) {
+  return {"scene", {1 - noise, 1, 1 + noise}, std::move(cases)};
+}
+
+TEST(Answer, TheCheapestWithinTheErrorWinsAndTheRivalIsAnotherSolver) {
+  const SceneBench b = bench({finalist("a", 2, 0.009), finalist("a", 1, 0.01),
+                              finalist("b", 3, 0.001), finalist("c", 0.1, 0.02)});
+  const Answer found = answer(b, {0.01, {}}, "e", 0.05);
+  EXPECT_EQ(found.best, 1u);
+  EXPECT_EQ(found.runner_up, 2u);
+  EXPECT_NEAR(found.ratio->mid, 3, 1e-9);
+  EXPECT_EQ(found.certainty, Certainty::clear);
+}
+
+TEST(Answer, EqualCostsAreATie) {
+  const Answer found =
+      answer(bench({finalist("a", 1, 0.01), finalist("b", 1, 0.01)}), {0.01, {}}, "e", 0.05);
+  EXPECT_EQ(found.certainty, Certainty::a_tie);
+}
+
+TEST(Answer, ANoisyMachineIsNeverClear) {
+  const Answer found =
+      answer(bench({finalist("a", 1, 0.01), finalist("b", 3, 0.01)}, 0.3), {0.01, {}}, "e", 0.05);
+  EXPECT_EQ(found.certainty, Certainty::likely);
+}
+
+TEST(Answer, ABudgetBuysTheSmallestErrorAndIsClearOnlyIfTheWholeIntervalFits) {
+  const SceneBench b =
+      bench({finalist("a", 1, 0.01), finalist("b", 2, 0.001), finalist("c", 9, 0)});
+  EXPECT_EQ(answer(b, {{}, 4}, "e", 0.05).best, 1u);
+  EXPECT_EQ(answer(b, {{}, 4}, "e", 0.05).certainty, Certainty::clear);
+  EXPECT_EQ(answer(b, {{}, 2.0001}, "e", 0.05).certainty, Certainty::likely);
+}
+
+TEST(Answer, NobodyIsRecommendedForWhatNobodyReaches) {
+  EXPECT_FALSE(answer(bench({finalist("a", 1, 0.01)}), {1e-9, {}}, "e", 0.05).best);
+  EXPECT_EQ(answer(bench({finalist("a", 1, 0.01)}), {1, {}}, "e", 0.05).certainty,
+            Certainty::unopposed);
+}
+
+TEST(Answer, EverySolverIsNamedWithWhatItCostsOrHowNearItCame) {
+  SceneBench b = bench({finalist("jakobsen", 1, 0.01), finalist("bullet", 3, 0.001),
+                        finalist("xpbd", 0.1, 0.02), finalist("mass-spring", 0.01, 0.001)});
+  b.cases[3].record.status.kind = Status::Kind::exploded;  // a fast failure never ranks
+  const Answer found = answer(b, {0.01, {}}, "e");
+  EXPECT_EQ(found.best, 0u);
+  EXPECT_EQ(found.solvers[1].at, 1u);
+  EXPECT_NEAR(found.solvers[1].times->mid, 3, 1e-9);
+  EXPECT_EQ(found.solvers[2].at, std::nullopt);
+  const std::string said = text(found, b, "e");
+  for (const char* part :
+       {"e <= 0.01: jakobsen, e 0.01, 1e+03", "; clear\n", "  bullet: 3",
+        "  xpbd: never; nearest: xpbd, e 0.02", "  mass-spring: never; every case failed\n"})
+    EXPECT_NE(said.find(part), std::string::npos) << part << " in\n" << said;
+  EXPECT_NE(text(answer(b, {1e-9, {}}, "e"), b, "e").find("never reached"), std::string::npos);
+}
+
+TEST(Answer, EverySolverSendsItsBestToTheFinal) {
+  const std::vector<Candidate> tried{{"a", "a1", {0.9, 1, 99}, 0.01},
+                                     {"a", "a2", {0.2, 2, 20}, 0.01},
+                                     {"a", "a3", {0.1, 3, 10}, 0.01},
+                                     {"b", "b1", {0.01, 9, 9}, 0.01},
+                                     {"c", "c1", {0.01, 1, 1}, 0.5}};
+  EXPECT_EQ(finalists(tried, {0.01, {}}, 3), (std::vector<std::size_t>{0, 3, 1}));
+}
+
+}  // namespace
+}  // namespace taut
