@@ -168,7 +168,8 @@ TEST(Model, AFilmSaysWhetherItShowsWhatTheSentenceIsAbout) {
       clip.panels.push_back({r.solver, "16 sweeps", r.key});
   input.media = {{.scene = "ball", .clips = {clip}, .duration = 2.5}};
   const auto claim = [&](const std::string& id) {
-    for (const Json& one : model_of(input)["claims"])
+    const Json model = model_of(input);
+    for (const Json& one : model["claims"])
       if (one["id"] == id) return one;
     return Json();
   };
