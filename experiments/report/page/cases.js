@@ -27,7 +27,8 @@ function caseFilter(text) {
     const column = caseColumns.find((c) => c.numeric && c.name.toLowerCase() === name);
     if (!column || !Number.isFinite(Number(limit))) return ({words}) => words.includes(word);
     const compare = {'<': (a, b) => a < b, '>': (a, b) => a > b, '<=': (a, b) => a <= b, '>=': (a, b) => a >= b}[sign];
-    return ({entry}) => Number.isFinite(column.value(entry)) && compare(column.value(entry) * column.scale, Number(limit));
+    const of = (entry) => column.value(entry) * column.scale;
+    return ({entry}) => Number.isFinite(of(entry)) && compare(of(entry), Number(limit));
   });
   return (row) => tests.every((test) => test(row));
 }
@@ -63,8 +64,8 @@ const rowsAtFirst = 100;
 function casesSection() {
   const body = el('tbody'), said = el('p', {className: 'note', role: 'status'});
   const choose = (name, title, values) => values.length < 2 ? null : el('label', {}, title + ' ',
-    el('select', {name, onchange: (event) => state.set({[name]: event.target.value}, false)}, el('option', {value: ''}, 'all'),
-       values.map((value) => el('option', {value}, short(value, 40)))));
+    el('select', {name, onchange: (event) => state.set({[name]: event.target.value}, false)},
+       el('option', {value: ''}, 'all'), values.map((value) => el('option', {value}, short(value, 40)))));
   const find = el('input', {type: 'search', name: 'find', placeholder: 'words, or dt<=5', autocomplete: 'off',
                             oninput: () => state.set({find: find.value}, false)});
   const heads = caseColumns.map((column) => el('th', {scope: 'col', className: column.numeric ? 'numeric' : ''},
@@ -72,14 +73,16 @@ function casesSection() {
       const now = state.get('sort');
       state.set({sort: now === column.name ? '-' + column.name : now === '-' + column.name ? '' : column.name}, false);
     }}, short(column.title, 48))));
-  const table = el('table', {}, el('caption', {className: 'hidden'}, 'All cases'), el('thead', {}, el('tr', {}, heads)), body);
+  const table = el('table', {}, el('caption', {className: 'hidden'}, 'All cases'),
+                   el('thead', {}, el('tr', {}, heads)), body);
   const more = el('button', {type: 'button'});
-  const save = el('a', {className: 'button', href: '#cases', download: 'cases.csv'}, 'download what is shown (CSV, SI units)');
+  const save = el('a', {className: 'button', href: '#cases', download: 'cases.csv'},
+                  'download what is shown (CSV, SI units)');
   let rows = [];
-  const row = (entry) => el('tr', {}, caseColumns.map((column) => el(column.head ? 'th' : 'td',
-    {scope: column.head ? 'row' : undefined, className: column.numeric ? 'numeric' : ''}, column.cell(entry))));
+  const line = (entry) => el('tr', {}, caseColumns.map((column) => el(column.head ? 'th' : 'td',
+    {scope: column.head && 'row', className: column.numeric ? 'numeric' : ''}, column.cell(entry))));
   const fill = (upTo) => {
-    body.replaceChildren(...rows.slice(0, upTo).map(row));
+    body.replaceChildren(...rows.slice(0, upTo).map(line));
     more.hidden = rows.length <= upTo;
     more.textContent = `show all ${rows.length}`;
   };
@@ -92,7 +95,7 @@ function casesSection() {
     choose('study', 'study', [...new Set(model.cases.flatMap((c) => c.studies))])];
   let last = null;
   state.watch(() => {
-    const asked = JSON.stringify(['find', 'in', 'ended', 'study', 'sort'].map(state.get).concat(state.params().getAll('off')));
+    const asked = JSON.stringify([...['find', 'in', 'ended', 'study', 'sort'].map(state.get), ...state.params().getAll('off')]);
     if (asked === last) return;
     last = asked;
     rows = chosenCases();
@@ -107,39 +110,47 @@ function casesSection() {
   });
   return el('section', {id: 'cases'}, el('h2', {}, 'All cases'),
     el('div', {className: 'filters'}, el('label', {}, 'find ', find), selects, save), said,
-    el('div', {className: 'card scroll tall', tabIndex: 0, role: 'region', 'aria-label': 'Table of cases'}, table), more,
+    el('div', {className: 'card scroll tall', tabIndex: 0, role: 'region', 'aria-label': 'Table of cases'}, table),
+    more,
     el('p', {className: 'print-only'}, 'The table of all cases is on the screen; it is too wide for paper.'));
+}
+
+/** What a case measured: value, and window or interval. */
+function caseValues(entry) {
+  const line = (quantity, text, remark) => {
+    const node = row(quantity.title, text, remark);
+    node.firstChild.title = quantity.help;
+    return node;
+  };
+  const rows = Object.entries(entry.values).map(([name, value]) =>
+    line(metric(name), shown(value, metric(name), 4), metric(name).window));
+  const cost = entry.cost?.['cpu.per_second'], unit = metric('cpu.per_second');
+  if (cost)
+    rows.push(line(unit, `${shown(cost.mid, unit, 4)} (${interval(cost.low, cost.high, unit)})`, `95 %, n = ${cost.n}`));
+  return rows.length ? tableOf('Values', ['value', 'measured', 'window'], rows) : el('p', {}, 'It has no values.');
 }
 
 /** The dialog of one case: how it ended, its settings, its values, its film, and the command that runs it again. */
 function fillCase(dialog, entry) {
   const status = statusOf(entry.status), film = films.get(entry.film);
-  const close = () => state.set({case: ''});
-  const cost = entry.cost?.['cpu.per_second'];
-  const values = Object.entries(entry.values).map(([name, value]) =>
-    el('tr', {}, el('th', {scope: 'row', title: metric(name).help}, metric(name).title), el('td', {}, shown(value, metric(name), 4)),
-       el('td', {}, metric(name).window)));
-  if (cost) values.push(el('tr', {}, el('th', {scope: 'row'}, metric('cpu.per_second').title),
-    el('td', {}, `${shown(cost.mid, metric('cpu.per_second'), 4)} (${interval(cost.low, cost.high, metric('cpu.per_second'))})`),
-    el('td', {}, `95 %, n = ${cost.n}`)));
   const [, settings = ''] = entry.settings.match(/^[^:]*:(.*)$/s) ?? [];
-  const facts = [['status', [glyphBox(entry.status), ` ${status.title}${entry.reason ? `: ${entry.reason}` : ''}`,
-      entry.step >= 0 && `, step ${entry.step}`, entry.vertex >= 0 && `, vertex ${entry.vertex}`]],
-    ['time step', [shown(entry.dt, metric('dt'), 4)]], ['steps', [entry.steps]],
-    ['cloth', [`${count(entry.vertices, 'vertex', 'vertices')}, ${count(entry.links, 'link')}`]],
-    ['work', [`${entry.projections} projections per step`]],
-    ...settings.split(',').filter(Boolean).map((part) => part.split(/=(.*)/s)).map(([name, value]) => [name, [value ?? '']]),
-    ['studies', [entry.studies.join(', ')]], ['case', [el('code', {}, entry.id)]]];
+  const pairs = settings.split(',').filter(Boolean).map((part) => part.split(/=(.*)/s));
+  const facts = [
+    {name: 'status', value: [glyphBox(entry.status), ` ${status.title}${entry.reason ? `: ${entry.reason}` : ''}`,
+      entry.step >= 0 && `, step ${entry.step}`, entry.vertex >= 0 && `, vertex ${entry.vertex}`]},
+    {name: 'time step', value: shown(entry.dt, metric('dt'), 4)}, {name: 'steps', value: entry.steps},
+    {name: 'cloth', value: `${count(entry.vertices, 'vertex', 'vertices')}, ${count(entry.links, 'link')}`},
+    {name: 'work', value: `${entry.projections} projections per step`},
+    ...pairs.map(([name, value]) => ({name: short(name), value})),
+    {name: 'studies', value: entry.studies.join(', ')}, {name: 'case', value: el('code', {}, entry.id)}];
   dialog.setAttribute('aria-labelledby', 'case-title');
   dialog.replaceChildren(
-    el('header', {}, el('h2', {id: 'case-title'}, named(entry.solver), ` ${short(entry.brief, 80)} on ${short(entry.scene, 60)}`),
-       el('button', {type: 'button', onclick: close, 'aria-label': 'close the case'}, 'close')),
-    el('div', {className: 'columns'},
-      el('dl', {className: 'facts'}, facts.map(([name, text]) => [el('dt', {}, short(name, 60)), el('dd', {}, text)])),
-      values.length ? el('table', {}, el('caption', {className: 'hidden'}, 'Values'), el('thead', {}, el('tr', {},
-        ['value', 'measured', 'window'].map((text) => el('th', {scope: 'col'}, text)))), el('tbody', {}, values))
-        : el('p', {}, 'It has no values.')),
-    film ? el('p', {}, choice({scene: film.scene, at: 'film', case: ''}, {}, 'see its film')) : el('p', {className: 'note'}, 'No film shows this case.'),
+    el('header', {},
+       el('h2', {id: 'case-title'}, named(entry.solver), ` ${short(entry.brief, 80)} on ${short(entry.scene)}`),
+       el('button', {type: 'button', onclick: () => state.set({case: ''}), 'aria-label': 'close the case'}, 'close')),
+    el('div', {className: 'columns'}, factList(facts), caseValues(entry)),
+    film ? el('p', {}, choice({scene: film.scene, at: 'film', case: ''}, {}, 'see its film'))
+         : note('No film shows this case.'),
     el('p', {}, 'This runs it again, from any folder:'), command(entry.command));
 }
 

@@ -21,7 +21,7 @@ const markers = {circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.
 const markerPath = (name, size) => d3.symbol().type(markers[name] ?? d3.symbolCircle).size(size)();
 /** Dashes of a solver's further settings. */
 const variantDashes = ['', '7 4', '2 3', '10 3 2 3', '16 4', '4 2', '10 3 2 3 2 3', '2 6'];
-const dashOf = (series) => series.variant ? variantDashes[series.variant % variantDashes.length] : solverOf(series.solver).dash;
+const dashOf = ({solver, variant}) => variant ? variantDashes[variant % variantDashes.length] : solverOf(solver).dash;
 
 /** Pixels: of a chart, above and below its plot, and of a row of failed cases. */
 const box = {height: 250, top: 10, bottom: 22, row: 13};
@@ -35,6 +35,7 @@ function scaleOf(kind, values, range) {
     return d3.scaleLog().domain([low / air, high * air]).range(range);
   }
   if (low >= 0 && low < 0.5 * high) low = 0;
+  if (low === 0 && high === 0) high = 1;
   const air = (high - low || Math.abs(high) || 1) * 0.05;
   return d3.scaleLinear().domain([low === 0 ? 0 : low - air, high + air]).range(range);
 }
@@ -71,6 +72,11 @@ function pointLines(spec, series, point) {
           ...caseLines(point.status, undefined, point.case)];
 }
 
+/** Draws when a plot gets its width and whenever that changes, save for paper. */
+function watchWidth(plot, draw) {
+  new ResizeObserver(() => { if (!document.body.classList.contains('printing')) draw(); }).observe(plot);
+}
+
 /** Charts that are on the page: they are drawn again when the page is printed. */
 const drawn = new Set();
 
@@ -78,7 +84,8 @@ const drawn = new Set();
 function swatch(series) {
   const svg = d3.create('svg').attr('class', 'swatch').attr('viewBox', '0 0 30 12').attr('aria-hidden', 'true');
   svg.append('line').attr('x2', 30).attr('y1', 6).attr('y2', 6).attr('stroke-width', 2)
-      .style('stroke', series.colour ?? solverColour(series.solver)).attr('stroke-dasharray', series.dash ?? dashOf(series));
+      .style('stroke', series.colour ?? solverColour(series.solver))
+      .attr('stroke-dasharray', series.dash ?? dashOf(series));
   if (series.solver)
     svg.append('path').attr('transform', 'translate(15,6)').attr('d', markerPath(solverOf(series.solver).marker, 45))
         .style('fill', solverColour(series.solver));
@@ -88,8 +95,8 @@ function swatch(series) {
 /** The key: series, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
 function chartKey(spec, kind) {
   const points = spec.series.flatMap((s) => s.points), grey = (dash) => swatch({colour: 'var(--muted)', dash});
-  const failed = [...new Set(points.filter((p) => p.failed).map((p) => p.status))].map(statusOf);
-  const unfinished = [...new Set(points.filter((p) => !p.failed && p.status !== 'ok').map((p) => p.status))].map(statusOf);
+  const statusesOf = (which) => [...new Set(points.filter(which).map((p) => p.status))].map(statusOf);
+  const failed = statusesOf((p) => p.failed), unfinished = statusesOf((p) => !p.failed && p.status !== 'ok');
   const entry = (sign, text, order) => el('li', {'data-s': order}, sign, el('span', {}, text));
   return el('ul', {className: 'key'},
     spec.series.map((s) => entry(swatch(s), short(s.label, 60), solverOf(s.solver).order)),
@@ -113,7 +120,8 @@ function chartFigure(spec) {
               el('p', {}, `Every value is exactly zero (${count(points.length, 'case')}).`));
   const view = {kind: spec.y.axis, transform: d3.zoomIdentity, clip: `clip-${drawn.size}`};
   const plot = el('div', {className: 'plot'}), key = el('div'), bar = el('div', {className: 'tools'});
-  const svg = d3.select(plot).append('svg').attr('role', 'group').attr('aria-label', short(`${spec.title}: points`, 160));
+  const svg = d3.select(plot).append('svg').attr('role', 'group')
+      .attr('aria-label', short(`${spec.title}: points`, 160));
   const reset = rove(plot, '.point');
   const draw = (width) => {
     if (!width) return;
@@ -131,8 +139,10 @@ function chartFigure(spec) {
       })
       .on('zoom', () => { view.transform = d3.event.transform; again(); });
   svg.call(zoom).style('touch-action', 'pan-x pan-y');
-  const tool = (text, label, act) => el('button', {type: 'button', title: label, 'aria-label': label, onclick: act}, text);
-  bar.append(tool('+', 'Zoom in', () => svg.call(zoom.scaleBy, 1.6)), tool('−', 'Zoom out', () => svg.call(zoom.scaleBy, 1 / 1.6)),
+  const tool = (text, label, act) =>
+    el('button', {type: 'button', title: label, 'aria-label': label, onclick: act}, text);
+  bar.append(tool('+', 'Zoom in', () => svg.call(zoom.scaleBy, 1.6)),
+             tool('−', 'Zoom out', () => svg.call(zoom.scaleBy, 1 / 1.6)),
              tool('⟲', 'Whole range', () => svg.call(zoom.transform, d3.zoomIdentity)));
   const keyOf = () => key.replaceChildren(chartKey(spec, view.kind));
   if (points.some((p) => p.y > 0)) {
@@ -148,7 +158,7 @@ function chartFigure(spec) {
     bar.append(flip);
   }
   keyOf();
-  new ResizeObserver(() => { if (!document.body.classList.contains('printing')) again(); }).observe(plot);
+  watchWidth(plot, again);
   drawn.add({plot, draw, zoom, svg});
   return el('figure', {className: 'card chart', id: `chart-${spec.id}`}, el('figcaption', {}, heading, bar, note), key,
             el('div', {className: 'y-title'}, titled(spec.y)), plot, el('div', {className: 'x-title'}, titled(spec.x)),
@@ -161,20 +171,29 @@ function drawChart(svg, spec, view, width) {
   const strip = failing.length ? failing.length * box.row + 6 : 0;
   const floor = view.kind === 'log' && flat.some((p) => p.zero) ? 12 : 0;
   const [yLow, yHigh] = [box.height - box.bottom - floor, box.top + strip];
-  const base = scaleOf(view.kind, flat.filter((p) => !p.failed && p.y !== null)
-      .flatMap((p) => [p.y, p.low, p.high].filter((v) => v !== null && v !== undefined)).map((v) => v * y.scale), [yLow, yHigh]);
-  const ys = view.transform.rescaleY(base);
-  svg.attr('viewBox', `0 0 ${width} ${box.height}`).attr('width', width).attr('height', box.height).selectAll('*').remove();
+  const numbers = (list, scale) => list.filter((v) => typeof v === 'number').map((v) => v * scale);
+  const up = numbers(flat.filter((p) => !p.failed).flatMap((p) => [p.y, p.low, p.high]), y.scale);
+  const across = numbers(flat.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale);
+  const ys = view.transform.rescaleY(scaleOf(view.kind, up, [yLow, yHigh]));
+  svg.attr('viewBox', `0 0 ${width} ${box.height}`).attr('width', width).attr('height', box.height);
+  svg.selectAll('*').remove();
   const axisY = svg.append('g').attr('class', 'axis y');
-  axisY.call(d3.axisLeft(ys).tickValues(ticksOf(ys, {...y, values: undefined}, view.kind, 5)).tickFormat((v) => number(v)).tickSize(0)
-      .tickPadding(6));
-  const left = Math.ceil(axisY.node().getBBox().width) + 4, right = 12;
+  axisY.call(d3.axisLeft(ys).tickValues(ticksOf(ys, {...y, values: undefined}, view.kind, 5))
+      .tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
+  const left = Math.ceil(axisY.node().getBBox().width) + 4;
   axisY.attr('transform', `translate(${left},0)`);
-  const xs = view.transform.rescaleX(scaleOf(x.axis, flat.flatMap((p) => [p.x, p.x_low, p.x_high])
-      .filter((v) => v !== null && v !== undefined).map((v) => v * x.scale), [left + 8, width - right]));
-  axisY.selectAll('.tick line').attr('x2', width - left - right);
   const axisX = svg.append('g').attr('class', 'axis x').attr('transform', `translate(0,${box.height - box.bottom})`);
-  axisX.call(d3.axisBottom(xs).tickValues(ticksOf(xs, x, x.axis, width / 90)).tickFormat((v) => number(v)).tickSize(4).tickPadding(4));
+  const drawX = (margin) => {
+    const scale = view.transform.rescaleX(scaleOf(x.axis, across, [left + 8, width - margin]));
+    axisX.call(d3.axisBottom(scale).tickValues(ticksOf(scale, x, x.axis, width / 90))
+        .tickFormat((v) => number(v)).tickSize(4).tickPadding(4));
+    return scale;
+  };
+  let right = 12, xs = drawX(right);
+  const end = (node) => node.getBoundingClientRect().right;
+  const over = d3.max(axisX.selectAll('text').nodes(), end) - end(svg.node());
+  if (over > 0) xs = drawX(right += Math.ceil(over));
+  axisY.selectAll('.tick line').attr('x2', width - left - right);
   axisX.select('.domain').attr('d', `M${left},0H${width - right}`);
   thin(axisX.selectAll('text').nodes());
   svg.append('clipPath').attr('id', view.clip).append('rect').attr('x', left).attr('y', yHigh - 4)
@@ -184,7 +203,8 @@ function drawChart(svg, spec, view, width) {
   const usable = (p) => !p.failed && typeof p.y === 'number' && (view.kind !== 'log' || p.y > 0);
   const line = d3.line().defined(usable).x((p) => px(p.x)).y((p) => py(p.y));
   if (spec.front)
-    area.append('path').attr('class', 'front').attr('d', d3.line().x((p) => px(p.x)).y((p) => py(p.y)).curve(d3.curveStepAfter)(spec.front.filter(usable)));
+    area.append('path').attr('class', 'front').attr('d', line.curve(d3.curveStepAfter)(spec.front.filter(usable)));
+  line.curve(d3.curveLinear);
   if (spec.theory && (view.kind === 'log') === (x.axis === 'log')) {
     const ends = xs.domain().map((v) => v / x.scale);
     area.append('path').attr('class', 'theory')
@@ -193,16 +213,19 @@ function drawChart(svg, spec, view, width) {
   if (spec.floor) area.append('path').attr('class', 'floor').attr('d', `M${left},${py(spec.floor.y)}H${width - right}`);
   const inside = (v) => v >= left && v <= width - right + 1;
   spec.series.forEach((s, order) => {
-    const solver = solverOf(s.solver), colour = solverColour(s.solver), dodge = (order - (spec.series.length - 1) / 2) * 7;
+    const solver = solverOf(s.solver), colour = solverColour(s.solver);
+    const dodge = (order - (spec.series.length - 1) / 2) * 7;
     const lines = area.append('g').attr('data-s', solver.order).style('stroke', colour).style('fill', 'none');
     if (s.join) lines.append('path').attr('class', 'line').attr('stroke-dasharray', dashOf(s)).attr('d', line(s.points));
-    lines.append('path').attr('class', 'error').attr('d', s.points.filter(usable).map((p) => errorBar(p, px, py, view.kind)).join(''));
+    lines.append('path').attr('class', 'error')
+        .attr('d', s.points.filter(usable).map((p) => errorBar(p, px, py, view.kind)).join(''));
     const group = svg.append('g').attr('data-s', solver.order).style('color', colour);
     s.points.forEach((p, i) => {
       const floored = p.zero && view.kind === 'log';
       if (!p.failed && !floored && !usable(p)) return;
       const cx = px(p.x) + (floored ? dodge : 0);
-      const cy = p.failed ? box.top + 4 + failing.indexOf(s) * box.row : floored ? box.height - box.bottom - 5 : py(p.y);
+      const cy = p.failed ? box.top + 4 + failing.indexOf(s) * box.row
+                          : floored ? box.height - box.bottom - 5 : py(p.y);
       if (!inside(cx) || (!p.failed && !floored && (cy < yHigh - 4 || cy > yLow + 4))) return;
       drawPoint(group, {spec, series: s, point: p, place: `${order}-${i}`, order, cx, cy, floored});
     });
@@ -219,7 +242,8 @@ function errorBar(p, px, py, kind) {
     d += `M${cx},${low}V${high}M${cx - cap},${low}h${2 * cap}M${cx - cap},${high}h${2 * cap}`;
   }
   if (typeof p.x_low === 'number' && typeof p.x_high === 'number')
-    d += `M${px(p.x_low)},${cy}H${px(p.x_high)}M${px(p.x_low)},${cy - cap}v${2 * cap}M${px(p.x_high)},${cy - cap}v${2 * cap}`;
+    d += `M${px(p.x_low)},${cy}H${px(p.x_high)}` +
+         [p.x_low, p.x_high].map((v) => `M${px(v)},${cy - cap}v${2 * cap}`).join('');
   return d;
 }
 
@@ -251,9 +275,12 @@ function nameBest(svg, spec) {
   const texts = svg.selectAll('.point .name').nodes();
   if (!spec.front) return texts.forEach((text) => text.remove());
   const best = new Set(spec.front.map((p) => p.case));
-  const owner = (text) => { const [s, i] = text.parentNode.dataset.place.split('-'); return spec.series[s].points[i].case; };
+  const owner = (text) => {
+    const [s, i] = text.parentNode.dataset.place.split('-');
+    return spec.series[s].points[i].case;
+  };
   const frame = svg.node().getBoundingClientRect();
   const fits = (text) => best.has(owner(text)) && text.getBoundingClientRect().right <= frame.right;
   for (const text of texts.filter((text) => !fits(text))) text.remove();
-  thin(texts.filter((text) => text.isConnected), [...svg.selectAll('.dot').nodes(), ...svg.selectAll('.axis text').nodes()]);
+  thin(texts.filter((text) => text.isConnected), svg.selectAll('.dot, .axis text').nodes());
 }

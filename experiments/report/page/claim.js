@@ -32,6 +32,9 @@ function sentence({sentence: text, strong}) {
   return [...nodes, plain];
 }
 
+/** Entries of an object by solver, in the order of the solvers. */
+const bySolver = (counts) => Object.entries(counts).sort(([a], [b]) => solverOf(a).order - solverOf(b).order);
+
 /** One number that went in: a failure says so instead of a value. */
 function evidenceValue(value, quantity) {
   const text = value.value === null ? statusOf(value.status).title : value.text ?? shown(value.value, quantity);
@@ -43,10 +46,10 @@ function evidenceValue(value, quantity) {
 
 function evidence(entry) {
   const quantity = metric(entry.metric), group = d3.nest().key((value) => value.scene).entries(entry.values ?? []);
-  const statusText = Object.entries(entry.statuses ?? {}).map(([solver, counts]) =>
+  const statusText = bySolver(entry.statuses ?? {}).map(([solver, counts]) =>
     `${solverOf(solver).title}: ${Object.entries(counts).map(([s, n]) => `${n} ${statusOf(s).title}`).join(', ')}`);
   const rows = [
-    ['metric', [`${quantity.title}${entry.window ? `, ${entry.window}` : ''}${quantity.help ? `: ${quantity.help}` : ''}`]],
+    ['metric', [quantity.title, entry.window && `, ${entry.window}`, quantity.help && `: ${quantity.help}`]],
     ['rule', [entry.rule]],
     ['settings', (entry.settings ?? []).map(({solver, text}) => el('div', {}, named(solver), ' ', text))],
     ...group.map(({key, values}) => [key || 'values', values.map((value) => evidenceValue(value, quantity))]),

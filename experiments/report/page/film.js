@@ -4,7 +4,8 @@
 /** A data URI as a blob: it may be played while the page may ask for nothing from a network. */
 function blobUrl(uri) {
   const [head, body] = uri.split(',', 2);
-  return URL.createObjectURL(new Blob([Uint8Array.from(atob(body), (c) => c.charCodeAt(0))], {type: head.slice(5).split(';')[0]}));
+  const bytes = Uint8Array.from(atob(body), (letter) => letter.charCodeAt(0));
+  return URL.createObjectURL(new Blob([bytes], {type: head.slice(5).split(';')[0]}));
 }
 
 const seconds = (t) => t.toFixed(2) + '\u00A0s';
@@ -17,8 +18,9 @@ function timeChart(track, seek, until) {
     key.append(el('li', {'data-s': solverOf(s.solver).order}, swatch(s), el('span', {}, short(s.label, 60)), output));
     return output;
   });
-  const svg = d3.select(plot).append('svg').attr('role', 'img').attr('aria-label', short(`${track.title} over time`, 160));
-  const span = until ?? d3.max(track.series, (s) => s.t[s.t.length - 1]), h = 154, foot = 26;
+  const svg = d3.select(plot).append('svg').attr('role', 'img')
+      .attr('aria-label', short(`${track.title} over time`, 160));
+  const span = until ?? d3.max(track.series, (s) => s.t[s.t.length - 1]), h = 132, foot = 26;
   let xs = null, cursor = null, time = 0;
   const draw = (width) => {
     if (!width) return;
@@ -26,7 +28,7 @@ function timeChart(track, seek, until) {
     const values = track.series.flatMap((s) => s.y).filter((v) => v !== null).map((v) => v * quantity.scale);
     const ys = scaleOf('linear', values.length ? [0, ...values] : [], [h - foot, 8]);
     const axis = svg.append('g').attr('class', 'axis y')
-        .call(d3.axisLeft(ys).tickValues(ys.ticks(4)).tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
+        .call(d3.axisLeft(ys).tickValues(ys.ticks(3)).tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
     const left = Math.ceil(axis.node().getBBox().width) + 4;
     axis.attr('transform', `translate(${left},0)`).selectAll('.tick line').attr('x2', width - left - 12);
     xs = d3.scaleLinear([0, span], [left, width - 12]);
@@ -34,8 +36,8 @@ function timeChart(track, seek, until) {
         .call(d3.axisBottom(xs).ticks(width / 80).tickSize(4).tickPadding(7).tickFormat((v) => number(v) + ' s'));
     thin(svg.selectAll('.axis.x text').nodes());
     for (const s of track.series)
-      svg.append('path').attr('class', 'line').attr('data-s', solverOf(s.solver).order).attr('stroke-dasharray', dashOf(s))
-          .style('stroke', solverColour(s.solver))
+      svg.append('path').attr('class', 'line').attr('data-s', solverOf(s.solver).order)
+          .attr('stroke-dasharray', dashOf(s)).style('stroke', solverColour(s.solver))
           .attr('d', d3.line().defined((v, i) => v !== null && s.t[i] <= span).x((v, i) => xs(s.t[i]))
               .y((v) => ys(v * quantity.scale))(s.y));
     cursor = svg.append('path').attr('class', 'cursor');
@@ -54,11 +56,12 @@ function timeChart(track, seek, until) {
   };
   svg.node().addEventListener('pointerdown', point);
   svg.node().addEventListener('pointermove', point);
-  new ResizeObserver(() => { if (!document.body.classList.contains('printing')) draw(plot.clientWidth); }).observe(plot);
+  watchWidth(plot, () => draw(plot.clientWidth));
   drawn.add({plot, draw});
   show(0);
-  return {node: el('figure', {className: 'track'}, el('figcaption', {}, el('h4', {}, titled({...quantity, title: track.title || quantity.title})),
-                   quantity.window && el('span', {className: 'note'}, ' over time')), key, plot), show, span};
+  const heading = el('h4', {}, titled({...quantity, title: track.title || quantity.title}));
+  const node = el('figure', {className: 'track'}, el('figcaption', {}, heading), key, plot);
+  return {node, show, span};
 }
 
 /** A chart over time without a film: its slider moves the cursor. */
@@ -70,12 +73,14 @@ function seriesFigure(spec) {
   const line = timeChart(track, seek);
   slider.max = line.span;
   seek(line.span);
-  return el('div', {className: 'card chart', id: `chart-${spec.id}`}, line.node, slider, el('p', {className: 'note'}, spec.caption));
+  return el('div', {className: 'card chart', id: `chart-${spec.id}`}, line.node, slider, note(spec.caption));
 }
 
 function colourBar(bar) {
-  return el('div', {className: 'colour-bar', role: 'img', 'aria-label': `Colours: ${bar.title}, ${bar.ticks.map((t) => t.text).join(', ')}`},
-    el('span', {}, bar.title), el('i', {style: `background:linear-gradient(90deg,${bar.stops.filter((s) => /^#[0-9a-f]{6}$/i.test(s)).join(',')})`}),
+  const stops = bar.stops.filter((stop) => /^#[0-9a-f]{6}$/i.test(stop)).join(',');
+  const label = `Colours: ${bar.title}, ${bar.ticks.map((t) => t.text).join(', ')}`;
+  return el('div', {className: 'colour-bar', role: 'img', 'aria-label': label},
+    el('span', {}, bar.title), el('i', {style: `background:linear-gradient(90deg,${stops})`}),
     el('div', {className: 'ticks'}, bar.ticks.map((t) => el('span', {style: `left:${100 * t.at}%`}, t.text))));
 }
 
@@ -90,10 +95,12 @@ function player(scene, list) {
   const pictures = playable.map((film) => {
     const size = {alt: film.alt, className: 'picture'};
     if (!film.type.startsWith('video/')) return el('img', {...size, src: film.src});
-    return el('video', {className: 'picture', poster: film.poster, muted: true, playsInline: true, preload: 'none', 'aria-label': film.alt});
+    return el('video', {className: 'picture', poster: film.poster, muted: true, playsInline: true, preload: 'none',
+                        'aria-label': film.alt});
   });
   const videos = pictures.filter((p) => p.tagName === 'VIDEO');
-  const tracks = playable.flatMap((film) => film.tracks ?? []).map((track) => timeChart(track, (t) => seek(t), lead?.duration));
+  const tracks = playable.flatMap((film) => film.tracks ?? [])
+      .map((track) => timeChart(track, (t) => seek(t), lead?.duration));
   let time = lead?.poster_t ?? playable[0]?.poster_t ?? 0, touched = false;
   const label = el('span', {}, 'play'), clock = el('output', {className: 'clock'}, seconds(time));
   const slider = el('input', {type: 'range', min: 0, 'aria-label': `Time of the film of ${short(scene.title)} [s]`,
@@ -111,7 +118,8 @@ function player(scene, list) {
   });
   /** A frame is sought a little after its beginning: rounding must not show the one before. */
   const place = (video) => {
-    if (video.readyState) video.currentTime = Math.min(video.duration, (time + (time > 0 ? lead.frame / 8 : 0)) / lead.speed);
+    const into = (time + (time > 0 ? lead.frame / 8 : 0)) / lead.speed;
+    if (video.readyState) video.currentTime = Math.min(video.duration, into);
   };
   const pause = () => {
     for (const video of videos) video.pause();
@@ -130,8 +138,8 @@ function player(scene, list) {
   const follow = () => {
     if (videos[0].paused) return;
     time = videos[0].currentTime * lead.speed;
-    for (const video of videos)
-      if (Math.abs(video.currentTime - videos[0].currentTime) > 2 * lead.frame / lead.speed) video.currentTime = videos[0].currentTime;
+    const behind = (video) => Math.abs(video.currentTime - videos[0].currentTime) > 2 * lead.frame / lead.speed;
+    for (const video of videos.filter(behind)) video.currentTime = videos[0].currentTime;
     show();
     requestAnimationFrame(follow);
   };
@@ -149,11 +157,13 @@ function player(scene, list) {
   const box = el('div', {className: 'card player', 'data-at': 'film', tabIndex: lead ? 0 : undefined, role: 'group',
                          'aria-label': `Film of ${short(scene.title)}`},
     el('div', {className: 'stage'},
-      el('div', {className: 'pictures'}, playable.map((film, i) => el('div', {className: 'film'}, panels(film), pictures[i]))),
+      el('div', {className: 'pictures'},
+         playable.map((film, i) => el('div', {className: 'film'}, panels(film), pictures[i]))),
       playable[0]?.bar && colourBar(playable[0].bar),
-      lead && el('div', {className: 'controls'}, el('button', {type: 'button', className: 'play', onclick: toggle}, label),
+      lead && el('div', {className: 'controls'},
+        el('button', {type: 'button', className: 'play', onclick: toggle}, label),
         button('◂', 'One frame back', () => step(-1)), button('▸', 'One frame forward', () => step(1)), slider, clock,
-        el('span', {className: 'hint'}, `${lead.speed < 1 ? `${number(lead.speed, 2)} of real time · ` : ''}space, ← →`))),
+        el('span', {className: 'hint'}, lead.speed < 1 && `${number(lead.speed, 2)} of real time · `, 'space, ← →'))),
     el('div', {className: 'beside'}, tracks.map((track) => track.node),
       list.map((film) => el('p', {className: 'note'}, film.left_out ?? film.caption))));
   if (lead) {

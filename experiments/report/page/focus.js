@@ -11,7 +11,8 @@ function showTip(anchor, lines) {
   tip.hidden = false;
   const at = anchor.getBoundingClientRect(), size = tip.getBoundingClientRect(), gap = 8;
   const below = at.bottom + gap + size.height < innerHeight || at.top < size.height + gap;
-  tip.style.left = Math.max(gap, Math.min(innerWidth - size.width - gap, at.left + at.width / 2 - size.width / 2)) + 'px';
+  const left = Math.min(innerWidth - size.width - gap, at.left + at.width / 2 - size.width / 2);
+  tip.style.left = Math.max(gap, left) + 'px';
   tip.style.top = (below ? at.bottom + gap : at.top - gap - size.height) + 'px';
 }
 const hideTip = () => { tip.hidden = true; };
@@ -60,7 +61,8 @@ function rove(box, selector) {
     const groups = d3.nest().key((item) => item.dataset.group).entries(items());
     const mine = groups.findIndex((group) => group.key === here.dataset.group);
     const row = (groups[mine]?.values ?? []).sort((a, b) => at(a) - at(b)), place = row.indexOf(here);
-    const next = {ArrowLeft: row[place - 1], ArrowRight: row[place + 1], Home: row[0], End: row[row.length - 1]}[event.key];
+    const next = {ArrowLeft: row[place - 1], ArrowRight: row[place + 1], Home: row[0], End: row[row.length - 1]}
+        [event.key];
     const other = groups[mine + {ArrowUp: -1, ArrowDown: 1}[event.key]];
     (next ?? (other && d3.least(other.values, (item) => Math.abs(at(item) - at(here)))))?.focus();
   });

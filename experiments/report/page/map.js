@@ -4,7 +4,7 @@
 /** Statuses with their glyphs, as far as `used` has them. */
 function statusKey(used, extra) {
   return el('ul', {className: 'key'}, model.statuses.filter(({id}) => used.has(id)).map((status) =>
-    el('li', {title: status.help}, glyphBox(status.id), el('span', {}, `${status.title}${status.help ? `: ${status.help}` : ''}`))),
+    item(glyphBox(status.id), el('span', {}, [status.title, status.help].filter(Boolean).join(': ')))),
     extra);
 }
 
@@ -21,7 +21,8 @@ function mapCell(map, cell, row, column) {
     'data-group': row, style: `--c:var(--c${i});--i:var(--i${i})`}, statusOf(cell.status).glyph);
   if (known) button.onclick = () => state.set({case: cell.case});
   else button.setAttribute('aria-disabled', true);
-  const settings = `${map.x.title} ${shown(map.x.values[column], map.x, 4)}, ${map.y.title} ${shown(map.y.values[row], map.y, 4)}`;
+  const at = (axis, place) => `${axis.title} ${shown(axis.values[place], axis, 4)}`;
+  const settings = `${at(map.x, column)}, ${at(map.y, row)}`;
   describe(button, [`${map.label}: ${settings}`,
     ...(cell.inferred ? [`status: ${statusOf(cell.status).title} (not run, inferred from its neighbours)`]
                       : caseLines(cell.status, cell.reason, cell.case))]);

@@ -21,13 +21,30 @@ function el(name, props = {}, ...children) {
   return node;
 }
 
+const note = (...content) => el('p', {className: 'note'}, content);
+const item = (...content) => el('li', {}, content);
+const folded = (title, ...content) => el('details', {className: 'card'}, el('summary', {}, title), content);
+/** A row of a table: its head and its cells. */
+const row = (head, ...cells) =>
+  el('tr', {}, el('th', {scope: 'row'}, head), cells.map((cell) => el('td', {}, cell)));
+
+/** A table that scrolls in its box where it is too wide. */
+function tableOf(title, columns, rows) {
+  return el('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': short(title, 100)},
+    el('table', {}, el('caption', {className: 'hidden'}, short(title, 120)),
+       el('thead', {}, el('tr', {}, columns.map((text) => el('th', {scope: 'col'}, text)))), el('tbody', {}, rows)));
+}
+
+/** Names and values. */
+const factList = (facts) => facts?.length
+  ? el('dl', {className: 'facts'}, facts.map(({name, value}) => [el('dt', {}, name), el('dd', {}, value)])) : null;
+
 /** A text as a heading or a chip can hold it. */
 function short(text, length = 60) {
   const letters = [...String(text)];
   return letters.length > length ? letters.slice(0, length - 1).join('') + '…' : String(text);
 }
 
-const superscripts = {'-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹'};
 
 /** 0.012345 as "0.0123", 5e-5 as "5×10⁻⁵", no value as "–". */
 function number(value, digits = 3) {
@@ -38,7 +55,7 @@ function number(value, digits = 3) {
     return String(size >= 10 ** digits ? Math.round(value) : Number(value.toPrecision(digits)))
         .replace('-', '−').replace(/\B(?=(\d{3})+$)/g, size >= 1e4 ? '\u202F' : '');
   const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
-  const power = String(Number(exponent)).replace(/./g, (c) => superscripts[c]);
+  const power = String(Number(exponent)).replace(/./g, (c) => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
   const factor = String(Number(mantissa)).replace('-', '−');
   return factor === '1' ? '10' + power : factor + '×10' + power;
 }

@@ -1,0 +1,89 @@
+'use strict';
+// The sections about all scenes. One without content is not made.
+
+const section = (id, title, ...content) => el('section', {id}, el('h2', {}, title), content);
+const list = (title, items) => items?.length ? [el('h3', {}, title), el('ul', {}, items)] : null;
+
+/** A cell of a table of the model: a text, or one with a case, a note and how sure it is. */
+function tableCell(cell) {
+  if (typeof cell !== 'object' || cell === null) return String(cell);
+  return [cell.case ? caseLink(cell.case, cell.text) : cell.text, cell.note && el('small', {}, ' ', cell.note),
+          cell.sure && [' ', el('small', {className: 'sure', 'data-sure': cell.sure}, cell.sure)]];
+}
+
+function tableNode(table, heading = 'h4') {
+  const rows = table.rows.map((cells) => row(...cells.map(tableCell)));
+  return el('div', {className: 'card', id: `table-${table.id}`}, el(heading, {}, short(table.title, 120)),
+            note(table.caption), tableOf(`${table.title} (${table.id})`, table.columns.map((c) => c.title), rows));
+}
+
+/** The first screen: the question, the headlines, the tiles, and what else is to be known. */
+function answerSection() {
+  const {meta} = model, of = meta.cases < meta.planned ? ` of ${meta.planned}` : '';
+  return el('section', {id: 'answer'},
+    note(el('b', {}, 'taut'), ' report · ',
+         [`${meta.cases}${of} cases`, meta.preset, meta.made, meta.machine].filter(Boolean).join(' · ')),
+    el('h1', {}, meta.question || meta.title), meta.question && note(meta.title),
+    claimList(model.claims.filter((claim) => claim.kind === 'headline')),
+    el('div', {className: 'tiles'}, model.claims.filter((claim) => claim.kind === 'tile').map(tileNode)),
+    claimList(claimsAbout(['note'], ['all', 'only', 'failures'])));
+}
+
+function differencesSection() {
+  const both = model.differences;
+  return both && section('differences', 'What differs', note(`A: ${both.a}; B: ${both.b}`),
+    claimList(all(both.claims, claims)), all(both.tables, tables).map((table) => tableNode(table, 'h3')));
+}
+
+function costSection() {
+  const {cost} = model;
+  return cost && section('cost', 'What accuracy costs',
+    note(`CPU time on ${cost.machine}; the charts stand with their scenes.`),
+    claimList(all(cost.claims, claims).filter((claim) => claim.kind === 'note')),
+    all(cost.tables, tables).map((table) => tableNode(table, 'h3')));
+}
+
+function truthsSection() {
+  const {truths} = model;
+  if (!truths) return null;
+  const columns = ['closed form or published number', 'solver', 'expected', 'measured', 'verdict'];
+  const line = (r) => row([r.statement, el('small', {}, ` ${r.source}`)], r.subject, r.expected, r.measured,
+                          [r.verdict, r.why && `: ${r.why}`]);
+  const part = (title, rows, open) => el('details', {open}, el('summary', {}, `${title} (${rows.length})`),
+                                         tableOf(title, columns, rows.map(line)));
+  const apart = truths.rows.filter((r) => r.verdict !== 'passed');
+  const counts = Object.entries(truths.verdicts).map(([verdict, n]) => `${n} ${verdict}`).join(', ');
+  return section('truths', 'Checked against theory', el('div', {className: 'card'},
+    el('p', {}, el('b', {}, truths.verdicts.broken ? `${truths.verdicts.broken} broken. ` : 'None is broken. '),
+       `${count(truths.truths, 'statement')}, ${count(truths.findings, 'number')} compared: ${counts}.`),
+    apart.length ? part('where a solver differs, and why', apart, apart.length <= 6) : null,
+    part('each statement, with the number nearest to its tolerance', truths.rows, false)));
+}
+
+function regressionSection() {
+  const found = model.regressions, rows = (found?.rows ?? []).map((r) => row(r.case, r.study, r.change));
+  const result = rows.length ? `${count(rows.length, 'differs', 'differ')}.` : 'none left its tolerance.';
+  return found && section('regressions', 'Regressions', el('div', {className: 'card'},
+    el('p', {}, `${count(found.values, 'value')} of ${count(found.cases, 'case')} compared with the committed ` +
+       `baselines: ${result}`),
+    rows.length ? tableOf('Regressions', ['case', 'study', 'change'], rows) : null));
+}
+
+function methodSection() {
+  const {method, missing, left_out: leftOut} = model;
+  const refused = ({reason, scenes: on}) => el('div', {}, `${on.join(', ')}: ${reason}`);
+  const solver = (s) => row(named(s.id), s.summary, s.source, s.settings, s.unsupported?.map(refused) ?? '–');
+  const study = (s) => item(el('b', {}, s.name), `: ${s.question} `, el('span', {className: 'note'},
+    `(${s.cases}${s.cases < s.planned ? ` of ${s.planned}` : ''} cases)`), s.unequal && el('p', {}, s.unequal));
+  const glossary = Object.values(model.metrics).filter((m) => m.help).map((m) => row(m.title, m.help, m.unit, m.window));
+  const build = Object.entries(model.meta.build ?? {}).map(([name, value]) => ({name, value}));
+  return section('method', 'Method and limits', el('div', {className: 'card'},
+    tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver)),
+    method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,
+    el('p', {}, 'This makes it all again:'), command(model.meta.command)),
+    folded('Metrics, build and machine', tableOf('Metrics', ['metric', 'definition', 'unit', 'window'], glossary),
+           factList([...(method.facts ?? []), ...build])),
+    list('What this does not show', method.limits?.map((text) => item(text))),
+    list('What was not made', missing?.map((m) => item(m.text, m.command && [' ', el('code', {}, m.command)]))),
+    list('Left out', leftOut?.map((f) => item(el('code', {}, f.file), `: ${f.why}`))));
+}
