@@ -31,7 +31,7 @@ set = ["cloth.grid=[12, 12]", "time.duration=1"]
 
 # What varies: parameters of solvers, or keys of the scene, whose names have a dot and stand in
 # quotes. A list, or a range such as { from = 1, to = 64, steps = 7, scale = "log" }.
-[sweep]
+[axes]
 iterations = [1, 4, 16]
 # "time.dt" = ["1/60", "1/120"]
 
