@@ -282,12 +282,6 @@ class StudyReader {
 
 }  // namespace
 
-std::vector<std::string> shipped_maps() {
-  std::vector<std::string> names = shipped("studies");
-  std::erase_if(names, [](const std::string& name) { return !name.starts_with("map-"); });
-  return names;
-}
-
 Study load_study(const std::string& name_or_path, const std::string& preset) {
   Study study;
   study.file = find_study(name_or_path);

@@ -49,9 +49,6 @@ struct Study {
 /// study lacks replaces nothing. Throws InputError with every diagnostic at once.
 Study load_study(const std::string& name_or_path, const std::string& preset = "");
 
-/// Names of the shipped studies of where solvers break ("map-..."), sorted.
-std::vector<std::string> shipped_maps();
-
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
 /// wrong with any of the scenes, or if it would be more than 100 000.
 std::vector<Case> cases_of(const Study&);

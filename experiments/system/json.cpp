@@ -12,8 +12,6 @@ std::string to_text(const Json& json, int indent) {
 
 Json parse_json(std::string_view text) { return Json::parse(text); }
 
-Json try_parse_json(std::string_view text) { return Json::parse(text, nullptr, false); }
-
 Json parse_json_of(std::string_view text, const std::string& file, int line) try {
   return Json::parse(text);
 } catch (const Json::exception& error) {

@@ -18,8 +18,6 @@ using Json = nlohmann::ordered_json;
 std::string to_text(const Json&, int indent = -1);
 /// Throws Json::exception.
 Json parse_json(std::string_view);
-/// is_discarded() if the text is not JSON.
-Json try_parse_json(std::string_view);
 
 /// A value of a JSON text that a program wrote and this one reads back. Whatever is not there or of
 /// another type is an InputError with file, line and the place within the text ("scenes[0].cases").

@@ -320,9 +320,10 @@ def films(checks):
             const end = Date.now() + 5000, look = () => {video}.currentTime > 0 && !{video}.paused ? done({video}.currentTime)
                 : Date.now() > end ? done(null) : setTimeout(look, 10);
             look(); }})""")
+    page.run(f"{video}.addEventListener('playing', () => {{ window.first = {video}.currentTime; }}, {{once: true}})")
     click()
-    first = moving()
-    checks.true(first is not None and first < 1, "a click plays it from its beginning", first)
+    first = page.run("window.first") if moving() is not None else None
+    checks.true(first is not None and first < 0.5, "a click plays it from its beginning", first)
     click()
     page.settle()
     checks.true(page.run(f"{video}.paused"), "another one stops it")

@@ -18,9 +18,9 @@ SANITIZED = "asan" in BINARIES.name  # its allocator knows no limit on address s
 
 
 class FaultySolvers(CommandLine):
-    def run_modes(self, *modes):
+    def run_modes(self, *modes, seconds=1):
         study = self.study(solvers=["jakobsen:precision=double"] + [f"faulty:mode={mode}" for mode in modes])
-        run = self.taut("run", study, "--timeout", 1, "--memory", 300, "-j", 2, program="taut-faulty")
+        run = self.taut("run", study, "--timeout", seconds, "--memory", 300, "-j", 2, program="taut-faulty")
         self.assertIn(f"{len(modes) + 1}/{len(modes) + 1} cases", run.err)
         statuses = {r["params"].get("mode", "jakobsen"): r["status"] for r in self.records()}
         self.assertEqual(statuses["jakobsen"]["kind"], "ok")
@@ -45,17 +45,17 @@ class FaultySolvers(CommandLine):
     def test_eating_memory(self):
         if SANITIZED:
             self.skipTest("the sanitizer's allocator knows no limit on address space")
-        status = self.run_modes("memory")["memory"]
+        status = self.run_modes("memory", seconds=20)["memory"]
         self.assertEqual((status["kind"], status["reason"]), ("oom", "more than the limit of 300 MB (taut run --memory raises it)"))
 
     def test_a_scene_that_does_not_fit_into_memory(self):
         if SANITIZED:
             self.skipTest("the sanitizer's allocator knows no limit on address space")
-        study = self.study(rest='set = ["cloth.grid=[1000, 1000]"]\n')
-        self.taut("run", study, "--memory", 128)
+        study = self.study(rest='set = ["cloth.grid=[700, 700]"]\n')
+        self.taut("run", study, "--memory", 100)
         record, = self.records()
         self.assertEqual((record["status"]["kind"], record["status"]["reason"]),
-                         ("oom", "more than the limit of 128 MB (taut run --memory raises it)"))
+                         ("oom", "more than the limit of 100 MB (taut run --memory raises it)"))
 
     def test_none_leaves_its_process_group_or_its_folder(self):
         status = self.run_modes("exit74", "exit127", "chdir", "fork", "fewer", "far", "forge")
@@ -274,16 +274,6 @@ class Store(CommandLine):
         self.addCleanup(subprocess.run, ["umount", place])
         study = self.study(rest="axes.iterations = { from = 1, to = 60, steps = 60 }\n")
         whole = self.store_digest(self.taut("run", study))
-        with open(place / "filler", "wb") as filler:  # full at the manifest: it is not there in part, and no merge stumbles
-            subprocess.run(["mount", "-o", "remount,size=300k", place], check=True)
-            self.taut("run", study, "--shard", "1/60", "--out", "disk/results")
-            sessions = set((place / "results/sessions").iterdir())
-            filler.write(bytes(os.statvfs(place).f_bavail * os.statvfs(place).f_frsize - 4096 * 5))
-            filler.flush()
-            self.assertIn("No space left", self.taut("run", study, "--out", "disk/results", expect=2).err)
-            self.assertEqual(set((place / "results/sessions").iterdir()), sessions)
-        (place / "filler").unlink()
-        shutil.rmtree(place / "results")
         for kilobytes in range(300, 348, 8):  # the disk is full at another moment of a case each time
             subprocess.run(["mount", "-o", f"remount,size={kilobytes}k", place], check=True)
             run = self.taut("run", study, "--out", "disk/results", expect=2)

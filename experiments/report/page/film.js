@@ -169,7 +169,7 @@ function player(scene, list) {
   if (lead) {
     slider.max = lead.duration;
     slider.step = lead.frame;
-    for (const video of videos) video.onclick = toggle;  // the click also gives the box the focus, and so the keys
+    for (const video of videos) video.onclick = () => { box.focus({preventScroll: true}); toggle(); };
     videos[0].addEventListener('ended', pause);
     box.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest('button, a, input')) return;
