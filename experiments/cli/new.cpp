@@ -52,7 +52,7 @@ constexpr const char* kScene =
 # Look at it:   taut render ./@.toml --solver jakobsen
 # Run it:       taut case ./@.toml jakobsen
 
-summary = "A sheet hung by two corners above a ball"
+summary = "A sheet hung by two corners that the wind blows against a ball"
 
 [cloth]
 grid = [16, 16]               # vertices along x and down
@@ -70,13 +70,13 @@ bend = false
 gravity = [0, -9.81, 0]
 damping = 0.1                 # 1/s
 
-# [wind]
-# velocity = [0, 0, 2]
-# strength = 0.1
+[wind]
+velocity = [0, 0, 4]
+strength = 0.1
 
 [[collider]]
 type = "ball"                 # or "plane", "box"
-center = [0.5, -0.5, 0.1]
+center = [0.5, -0.6, 0.5]
 radius = 0.3
 friction = 0.3
 

@@ -10,6 +10,7 @@
 #include "experiments/report/format.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/stored.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::verb::plot {
 
@@ -104,6 +105,7 @@ int run(const Options& options) {
     for (const std::string& name : {spec.x, spec.y})
       if (!name.empty()) report::check_value_name(name, result.records);
   }
+  make_folder(out);  // what cannot be written is said once, not for every scene
   std::vector<std::string> files;
   try {
     for (const PlotSpec& spec : specs)

@@ -292,6 +292,7 @@ std::vector<Claim> cost_claims(const ReportInput& input, const Rivals& rivals) {
   for (const SceneBench& scene : input.bench->scenes)
     for (const std::string& solver : solvers_of(scene))
       if (std::ranges::find(names, solver) == names.end()) names.push_back(solver);
+  if (names.empty()) return claims;  // nothing was timed
   const std::string first = rivals.all.empty() || !std::ranges::count(names, rivals.all[0].solver)
                                 ? names.front()
                                 : rivals.all[0].solver;

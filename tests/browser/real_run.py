@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""A real run, small enough for a test, ends in a report whose model says what was run.
+"""A real run, small enough for a test, ends in a report; the browser then uses it as report.py does.
 
-    real_run.py BINARIES OUT        exit 0: all is well; 1: it is not
+    real_run.py BINARIES OUT        exit 0: all is well; 1: it is not; 77: there is no Chromium
 """
 
-import json
 import os
 import pathlib
 import subprocess
 import sys
+
+import chromium
+import report
 
 STUDY = """question = "Does a small run give a whole report?"
 scenes = ["hang", "ball"]
@@ -22,6 +24,9 @@ iterations = [1, 4, 16]
 
 
 def main(binaries, out):
+    if chromium.find() is None:
+        print("SKIPPED: no chromium on this machine")
+        return 77
     folder = pathlib.Path(out).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "small.toml").write_text(STUDY)
@@ -36,32 +41,21 @@ def main(binaries, out):
     taut("run", "./small.toml", "--out", "results")
     taut("verify", "--section", "1", "--quiet", "--out", "results/verify.json")
     page = folder / taut("report", "./small.toml", "--results", "results", "--film", "disc", "--film", "twist")[-1]
-    model = json.loads(page.read_text().split('id="model">')[1].split("</script>")[0])
-    scenes = {scene["id"]: scene for scene in model["scenes"]}
-    films = {film["id"]: film for film in model["films"]}
-    cases = {case["key"]: case for case in model["cases"]}
-    claims = {claim["id"]: claim for claim in model["claims"]}
-    missing = {one["section"]: one["command"] for one in model["missing"]}
-    own = [cases[panel["case"]] for panel in films["film-ball"]["panels"]]
-    again = subprocess.run(["sh", "-c", own[0]["command"].replace("taut", os.path.abspath(binaries) + "/taut", 1) +
-                            " --json"], cwd="/", capture_output=True, text=True)
+    text = page.read_text()
     for what, holds in {
-        "each scene has its film": all(scene.get("films") for scene in scenes.values()) and len(films) == 4,
-        "what no study ran is shown apart": [scenes[s]["studied"] for s in ("ball", "disc", "twist")] == [1, 0, 0],
-        "who refuses a scene says why": any("self" in r["reason"] for r in scenes["twist"]["refusals"]),
-        "panels name substeps and sweeps": [p["settings"][:6] for p in films["film-ball"]["panels"]] == ["5 × 16", "1 × 16"],
-        "work that is not equal is said": "unequal work" in claims["stretch"]["sentence"],
-        "a film shows what the sentence is about": claims["stretch-ball"]["film"] == "film-ball",
-        "both engines are in every comparison": all(name in claims["depth"]["sentence"] for name in ("Jakobsen", "Bullet")),
-        "the truths are there": model["truths"]["verdicts"].get("broken", 0) == 0 < model["truths"]["truths"],
-        "what was not made names its command": missing.get("regressions") == "taut check --record",
-        "a case's command makes it again, in any folder": json.loads(again.stdout)["values"].items() >= own[0]["values"].items(),
-        "the page heads with its question": model["meta"]["question"].startswith("Does a small run"),
+        "each scene has its film": text.count("<video") == 4,
+        "what no study ran is shown apart": 'id="film-disc"' in text and 'id="film-twist"' in text,
+        "who refuses a scene says why": "cannot run this scene</p><p>self-collision" in text,
+        "both engines are in it": "Jakobsen" in text and "Bullet" in text,
+        "captions name sweeps and substeps": "iterations · 5 substeps" in text and "iterations · 1 substep<" in text,
+        "that substeps differ is said": "their substeps differ" in text and "not equal work" in text,
+        "the truths are filled": "No truth is broken" in text,
+        "what was not made names its command": "taut check --record" in text,
     }.items():
         print(("ok      " if holds else "FAILED  ") + what)
         if not holds:
             return 1
-    return 0
+    return report.main(str(page), str(folder))
 
 
 if __name__ == "__main__":

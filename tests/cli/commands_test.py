@@ -371,7 +371,7 @@ class Verbs(CommandLine):
         fixed = [float(line.split()[-1]) for line in out.splitlines() if line.startswith("jakobsen:")]
         self.assertGreater(len(fixed), 8)
         self.assertGreaterEqual(min(fixed), 0)  # 0.00 where other programs slowed the sweeps
-        traffic = re.search(r"loads and stores, .*: ([\d.]+) ns in float, ([\d.]+) ns in double", out)
+        traffic = re.search(r"loaded and stored .*: ([\d.]+) ns in float, ([\d.]+) ns in double", out)
         self.assertGreater(min(map(float, traffic.groups())), 0)
         cores = re.search(r"two threads: ([\d.]+) .* sheets at once: ([\d.]+) .* get ([\d.]+) ", out)
         self.assertGreater(min(map(float, cores.groups())), 0)

@@ -30,6 +30,12 @@ class Plots : public ::testing::Test {
     for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
     return n;
   }
+  static std::size_t fields(const std::string& line) {  // of CSV
+    bool quoted = false;
+    std::size_t n = 1;
+    for (const char c : line) quoted = quoted != (c == '"'), n += !quoted && c == ',';
+    return n;
+  }
   std::ptrdiff_t files() const {
     return std::distance(fs::directory_iterator(dir_), fs::directory_iterator());
   }
@@ -53,8 +59,8 @@ TEST_F(Plots, EveryKindGivesFourFilesAndACsvWithOneHeader) {
     EXPECT_EQ(csv.find("\n\n"), std::string::npos) << "a block";
     std::size_t lines = 0;
     for (std::size_t from = 0; from < csv.size(); from = csv.find('\n', from) + 1, ++lines)
-      EXPECT_EQ(count(csv.substr(from, csv.find('\n', from) - from), ","),
-                count(csv.substr(0, csv.find('\n')), ","));
+      EXPECT_EQ(fields(csv.substr(from, csv.find('\n', from) - from)),
+                fields(csv.substr(0, csv.find('\n'))));
     EXPECT_GT(lines, 50U) << kind.name;
   }
 }

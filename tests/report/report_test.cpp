@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 #include "core/model/input_error.hpp"
@@ -169,7 +168,8 @@ TEST(Model, AFilmSaysWhetherItShowsWhatTheSentenceIsAbout) {
       clip.panels.push_back({r.solver, "16 sweeps", r.key});
   input.media = {{.scene = "ball", .clips = {clip}, .duration = 2.5}};
   const auto claim = [&](const std::string& id) {
-    for (const Json& one : model_of(input)["claims"])
+    const Json model = model_of(input);
+    for (const Json& one : model["claims"])
       if (one["id"] == id) return one;
     return Json();
   };
@@ -221,42 +221,6 @@ TEST(Files, WhatCannotBeWrittenIsSaidBeforeAnythingIsDone) {
   test_writable(file);
   EXPECT_TRUE(fs::is_empty(file.parent_path()));
   fs::remove_all(file.parent_path());
-}
-
-/// A test picture as video, if ffmpeg is here; tests/browser uses it to try the slider.
-std::string test_video(const fs::path& path) {
-  const std::string command =
-      "ffmpeg -v error -y -f lavfi -i testsrc=size=320x180:rate=30:duration=2 "
-      "-pix_fmt yuv420p -g 15 '" +
-      path.string() + "' </dev/null";
-  if (std::system(command.c_str()) != 0) return "";
-  const std::string bytes = read_text(path);
-  fs::remove(path);
-  return bytes;
-}
-
-// Not a test by itself: writes the page that tests/browser/report.py opens.
-TEST(Report, SampleForTheBrowser) {
-  const char* path = getenv("TAUT_SAMPLE_REPORT");
-  if (path == nullptr) GTEST_SKIP() << "TAUT_SAMPLE_REPORT names no file";
-  ReportInput input = example();
-  if (const std::string video = test_video(std::string(path) + ".mp4"); !video.empty()) {
-    const Clip clip{.type = "video/mp4",
-                    .bytes = video,
-                    .alt = "A sheet on a ball, two solvers",
-                    .panels = {{"jakobsen", "1 × 16"}, {"bullet", "1 × 16"}}};
-    input.media = {{.scene = "ball", .clips = {clip}, .duration = 2.5, .speed = 1.25}};
-    input.media.front().poster = 1, input.media.front().frame = 1.25 / 30;
-    SceneMedia more{
-        .scene = "twist", .clips = {clip}, .duration = 2, .summary = "A strip, wound up"};
-    more.poster = 0.5, more.refused = {{"bullet", "self-collision is not what it does"}};
-    input.media.push_back(more);
-    input.series.push_back(
-        {"twist", "jakobsen", "Jakobsen", "stretch.rms", {0, 1, 2}, {0, 0.1, 0}});
-  }
-  test_writable(path);
-  write_file(path, make_report(input));
-  EXPECT_TRUE(fs::exists(path));
 }
 
 }  // namespace

@@ -14,8 +14,9 @@ count. Files on which more than --widest objects depend are left out, and counte
 the tree for one error is for the long run (--sample 1000 --widest 999). The same seed plants the
 same errors in the same sources.
 
-The goal of the project is 92 % noticed, no layer below 85 %. --goal is the share below which the run
-fails, by more than chance: two standard deviations of a sample of this size.
+The aim is 92 % noticed, no layer below 85 %. --goal is the share below which the run fails, by more than chance: two
+standard deviations of a sample of this size. The tests ask for 0.7 for now: of 70 errors that somebody planted by hand all
+over the tree 48 were noticed (69 %), before tests were strengthened; this tool has not been run on a large sample yet.
 """
 import argparse
 import concurrent.futures
@@ -282,7 +283,7 @@ def main():
     parser.add_argument("--minutes", type=float, default=1e9, help="plant no more after this time")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     parser.add_argument("--layer", action="append", choices=LAYERS)
-    parser.add_argument("--goal", type=float, default=0.92)
+    parser.add_argument("--goal", type=float, default=0.92, help="least share noticed")
     parser.add_argument("--widest", type=int, default=12)
     parser.add_argument("--list", action="store_true", help="only print what would be planted")
     options = parser.parse_args()

@@ -35,6 +35,7 @@ function scaleOf(kind, values, range) {
     return d3.scaleLog().domain([low / air, high * air]).range(range);
   }
   if (low >= 0 && low < 0.5 * high) low = 0;
+  if (low === 0 && high === 0) high = 1;
   const air = (high - low || Math.abs(high) || 1) * 0.05;
   return d3.scaleLinear().domain([low === 0 ? 0 : low - air, high + air]).range(range);
 }

@@ -20,7 +20,7 @@ function timeChart(track, seek, until) {
   });
   const svg = d3.select(plot).append('svg').attr('role', 'img')
       .attr('aria-label', short(`${track.title} over time`, 160));
-  const span = until ?? d3.max(track.series, (s) => s.t[s.t.length - 1]), h = 154, foot = 26;
+  const span = until ?? d3.max(track.series, (s) => s.t[s.t.length - 1]), h = 132, foot = 26;
   let xs = null, cursor = null, time = 0;
   const draw = (width) => {
     if (!width) return;
@@ -28,7 +28,7 @@ function timeChart(track, seek, until) {
     const values = track.series.flatMap((s) => s.y).filter((v) => v !== null).map((v) => v * quantity.scale);
     const ys = scaleOf('linear', values.length ? [0, ...values] : [], [h - foot, 8]);
     const axis = svg.append('g').attr('class', 'axis y')
-        .call(d3.axisLeft(ys).tickValues(ys.ticks(4)).tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
+        .call(d3.axisLeft(ys).tickValues(ys.ticks(3)).tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
     const left = Math.ceil(axis.node().getBBox().width) + 4;
     axis.attr('transform', `translate(${left},0)`).selectAll('.tick line').attr('x2', width - left - 12);
     xs = d3.scaleLinear([0, span], [left, width - 12]);
@@ -169,7 +169,7 @@ function player(scene, list) {
   if (lead) {
     slider.max = lead.duration;
     slider.step = lead.frame;
-    for (const video of videos) video.onclick = () => { box.focus({preventScroll: true}); toggle(); };
+    for (const video of videos) video.onclick = toggle;  // the click also gives the box the focus, and so the keys
     videos[0].addEventListener('ended', pause);
     box.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest('button, a, input')) return;

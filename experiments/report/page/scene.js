@@ -2,7 +2,8 @@
 // What there is of one scene, and the scenes one at a time.
 
 function fairness({caption, columns, rows}) {
-  const heads = ['setting', ...columns.map((c) => [named(c.solver), ' ', caseLink(c.case, short(c.text, 60))])];
+  const who = ({solver, text}) => text.startsWith(solverOf(solver).title) ? mark(solver) : [named(solver), ' '];
+  const heads = ['setting', ...columns.map((c) => [who(c), caseLink(c.case, short(c.text, 60))])];
   const line = ({name, differs, values}) => {
     const sign = differs && el('span', {className: 'differ', title: 'differs'}, ' ≠');
     const node = row([name, sign], ...values);
