@@ -36,7 +36,7 @@ class Maker {
     }
     ReportInput input;
     input.studies = {sweeps, steps};
-    if (chance(0.7)) input.bench = bench(names, scenes);
+    if (chance(0.1)) input.bench = bench(names, scenes);  // its intervals take the time
     return input;
   }
 
