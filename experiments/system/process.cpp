@@ -67,14 +67,16 @@ struct Pipes {
   }
 };
 
+/// Ends the child between fork and exec; the parent reads from the pipe why.
+[[noreturn]] void give_up(const Pipes& pipes) {
+  const int error = errno;
+  [[maybe_unused]] const auto written = write(pipes.child_failed.get(), &error, sizeof error);
+  _exit(127);
+}
+
 /// Everything here runs between fork and exec: system calls only.
 [[noreturn]] void become(char* const* argv, const ProcessOptions& options, const Pipes& pipes,
                          int errors_file, pid_t parent) {
-  const auto give_up = [&] {
-    const int error = errno;
-    [[maybe_unused]] const auto written = write(pipes.child_failed.get(), &error, sizeof error);
-    _exit(127);
-  };
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
@@ -103,9 +105,9 @@ struct Pipes {
   connect(options.output, pipes.child_output.get(), STDOUT_FILENO);
   connect(options.errors, pipes.child_output.get(), STDERR_FILENO);
   if (errors_file >= 0) dup2(errors_file, STDERR_FILENO);
-  if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) give_up();
+  if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) give_up(pipes);
   execvp(argv[0], argv);
-  give_up();
+  give_up(pipes);
 }
 
 int milliseconds_until(std::chrono::steady_clock::time_point end, double seconds) {
