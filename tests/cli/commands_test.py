@@ -4,6 +4,7 @@
 import csv
 import hashlib
 import json
+import math
 import pathlib
 import re
 import struct
@@ -370,7 +371,7 @@ class Verbs(CommandLine):
         self.assertIn("fixed: what a step costs without a sweep", out)
         fixed = [float(line.split()[-1]) for line in out.splitlines() if line.startswith("jakobsen:")]
         self.assertGreater(len(fixed), 8)
-        self.assertGreaterEqual(min(fixed), 0)  # 0.00 where other programs slowed the sweeps
+        self.assertTrue(all(map(math.isfinite, fixed)))  # a difference: below 0 where other programs slowed the sweeps
         traffic = re.search(r"loaded and stored .*: ([\d.]+) ns in float, ([\d.]+) ns in double", out)
         self.assertGreater(min(map(float, traffic.groups())), 0)
         cores = re.search(r"two threads: ([\d.]+) .* sheets at once: ([\d.]+) .* get ([\d.]+) ", out)
