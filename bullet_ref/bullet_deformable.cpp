@@ -14,6 +14,7 @@
 
 #include "bullet_ref/bullet_solver.hpp"
 #include "bullet_ref/convert.hpp"
+#include "core/model/index.hpp"
 #include "core/model/wind.hpp"
 
 namespace taut::solver::bullet_deformable {
@@ -133,7 +134,9 @@ class BulletDeformable final : World, public BulletSolver {
 
  private:
   std::vector<PassCost> solve_cost() const override;
-  std::size_t wind_bytes() const override { return 3 * body_->m_nodes.size() * sizeof(Vec3); }
+  std::size_t wind_bytes() const override {
+    return 3 * to_index(body_->m_nodes.size()) * sizeof(Vec3);
+  }
 
   /// The implicit scheme starts from m_vn, the explicit one from m_v.
   static void set_velocity(btSoftBody::Node& n, const btVector3& v) { n.m_v = n.m_vn = v; }

@@ -248,7 +248,7 @@ StepMap step_map(const std::vector<const Rival*>& rivals, const std::string& sce
   map.cases.resize(rivals.size());
   std::map<Column, std::set<double>> columns;
   for (const auto& [at, record] : tried.front())
-    if (std::ranges::all_of(tried, [&](const auto& own) { return own.contains(at); }))
+    if (std::ranges::all_of(tried, [&, at = at](const auto& own) { return own.contains(at); }))
       columns[at.second].insert(at.first);
   for (const auto& [column, steps] : columns) {
     if (steps.size() < kLeastSteps || *steps.rbegin() < kLeastRange * *steps.begin()) continue;

@@ -77,7 +77,8 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
   Sheet sheet;
   const bool log_x = chart.x.logarithmic && any_positive(chart, false),
              log_y = chart.y.logarithmic && any_positive(chart, true);
-  double low = INFINITY, high = -INFINITY, left = INFINITY, right = -INFINITY;
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+  double low = kUnbounded, high = -kUnbounded, left = kUnbounded, right = -kUnbounded;
   for (const Curve& curve : chart.curves)
     for (const Point& p : curve.points) {
       if (std::isfinite(p.x) && (!log_x || p.x > 0))

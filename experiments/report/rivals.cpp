@@ -32,7 +32,7 @@ Rival choose(const std::string& solver, const std::vector<const Record*>& cases)
       std::ranges::max_element(groups, {}, [](const auto& g) { return g.second.size(); });
   Rival rival{solver, solver_title(solver), most->second};
   for (const auto& [name, value] : most->first)
-    if (std::ranges::any_of(groups, [&](const auto& g) {
+    if (std::ranges::any_of(groups, [&, name = name, value = value](const auto& g) {
           const auto other = g.first.find(name);
           return other == g.first.end() || other->second != value;
         }))
