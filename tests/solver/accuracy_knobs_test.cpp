@@ -28,9 +28,10 @@ TEST(AccuracyKnobs, AreParametersAndTheirValuesAreAccepted) {
     EXPECT_NE(knobs.sweeps.empty(), knobs.stiffness.parameters.empty())
         << name << ": one of the two is what substeps are weighed against";
     for (const std::string_view number : {knobs.substeps, knobs.sweeps})
-      if (!number.empty())
+      if (!number.empty()) {
         EXPECT_EQ(parse_solver(name + ":" + std::string(number) + "=64").params.integer(number),
                   64);
+      }
     std::vector<AccuracyKnobs::Ladder> ladders(knobs.alternatives.begin(),
                                                knobs.alternatives.end());
     ladders.push_back(knobs.stiffness);
