@@ -11,8 +11,9 @@ namespace taut {
 namespace {
 
 double relative_change(const Change& c) {
-  const double share = (c.now - c.before) / std::abs(c.before);
-  return std::isfinite(share) ? share : std::numeric_limits<double>::infinity();
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const double share = c.before == 0 ? kNone : (c.now - c.before) / std::abs(c.before);
+  return std::isfinite(share) ? share : kNone;
 }
 
 }  // namespace
