@@ -437,7 +437,8 @@ class Reader {
     each(" Too noisy to judge on ",
          [&](double change, double stray) { EXPECT_LE(std::abs(change), stray + 1e-9); });
     each(" No difference that can be told on ", [](double, double) {});
-    const double mean = std::exp(sum / static_cast<double>(ratios.size()));
+    const double mean = ratios.empty() ? std::nan("")  // and no sentence may state one
+                                       : std::exp(sum / static_cast<double>(ratios.size()));
     const auto factor = matches(
         text_,
         pattern("([A-Z][A-Za-z]+) uses #(\u00A0%)? of the CPU time of ([A-Z][A-Za-z]+) \\([^;]*; "
