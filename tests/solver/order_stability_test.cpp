@@ -13,6 +13,7 @@
 #include <complex>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "core/reference/dense.hpp"
 #include "core/solver/layout/order.hpp"

@@ -117,7 +117,7 @@ TESTED = {
 
 
 def compile_command(build, unit):
-    """How `unit` is compiled, by itself or in a batch of files (TAUT_UNITY)."""
+    """How `unit` is compiled, by itself or in a batch of files (TAUT_BATCH_SIZE)."""
     for entry in json.loads((build / "compile_commands.json").read_text()):
         file = pathlib.Path(entry["file"])
         if file == ROOT / unit or "Unity" in file.parts and f'"{ROOT / unit}"' in file.read_text():
