@@ -28,8 +28,7 @@ if(TAUT_WERROR)
 endif()
 if(TAUT_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
-  # g++ 12 takes the sanitizer's own code for uses before initialisation (inside std::regex).
-  target_compile_options(taut_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+  target_compile_options(taut_flags INTERFACE
     -fsanitize=address,undefined,float-divide-by-zero -fno-sanitize-recover=all -fno-omit-frame-pointer
     -D_GLIBCXX_ASSERTIONS)
   target_link_options(taut_flags INTERFACE -fsanitize=address,undefined)
