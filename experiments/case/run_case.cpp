@@ -19,14 +19,14 @@ class Instruments {
       if (auto metric = entry->make(scene)) watching_.push_back({entry, std::move(metric)});
   }
 
-  void observe(const Moment& moment) {
+  void observe(const Snapshot& moment) {
     for (auto& [entry, metric] : watching_) metric->observe(moment);
   }
   bool follow_path() const {
     return std::any_of(watching_.begin(), watching_.end(),
                        [](const Watching& w) { return w.entry->follows_path; });
   }
-  void observe_within(const Moment& moment) {
+  void observe_within(const Snapshot& moment) {
     for (auto& [entry, metric] : watching_)
       if (entry->follows_path) metric->observe_within(moment);
   }
@@ -39,7 +39,7 @@ class Instruments {
     return columns;
   }
 
-  std::vector<double> series_row(const Moment& moment) const {
+  std::vector<double> series_row(const Snapshot& moment) const {
     std::vector<double> row{static_cast<double>(moment.step), moment.t};
     for (const auto& [entry, metric] : watching_) {
       const std::vector<double> now = metric->now(moment);
@@ -105,7 +105,7 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
   if (options.series_rows > 0) run.series.columns = instruments.series_columns();
   const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));
   State state;
-  bool sound = true;
+  bool stable = true;
   int step = 0;
   if (instruments.follow_path())
     solver->visit_substeps([&](double t) {
@@ -115,18 +115,18 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
   for (; step <= scene.steps; ++step) {
     if (step > 0) solver->step((step - 1) * scene.dt, scene.dt);
     solver->store(state);
-    const Moment moment{step, step * scene.dt, state};
-    sound = verdict.observe(step, moment.t, state);
-    if (!sound) break;
+    const Snapshot moment{step, step * scene.dt, state};
+    stable = verdict.observe(step, moment.t, state);
+    if (!stable) break;
     instruments.observe(moment);
     if (options.series_rows > 0 && (step % stride == 0 || step == scene.steps))
       run.series.rows.push_back(instruments.series_row(moment));
     if (options.watch) options.watch(moment);
     run.last = state;
   }
-  if (sound) verdict.finish();
+  if (stable) verdict.finish();
   record.status = verdict.status();
-  record.values = instruments.values(sound);
+  record.values = instruments.values(stable);
   record.digest = digest(run.last);
   return run;
 }

@@ -20,7 +20,8 @@ struct Series {
 struct RunOptions {
   int series_rows = 0;  ///< about this many rows, evenly spaced, first and last included; 0: none
   bool measure = true;  ///< let all metrics() observe; without them `values` stays empty
-  std::function<void(const Moment&)> watch;  ///< also sees every sound boundary, the start included
+  std::function<void(const Snapshot&)>
+      watch;  ///< also sees every stable boundary, the start included
 };
 
 /// What became of a case: the record and what is too big for it.
@@ -28,7 +29,7 @@ struct CaseRun {
   Record
       record;  ///< key and id are empty; run_case of a Case (experiments/case/case.hpp) sets them
   Series series;
-  State last;  ///< the last sound boundary: the final state, or the last before an explosion
+  State last;  ///< the last stable boundary: the final state, or the last before an explosion
 };
 
 /// Runs one case in this process, step by step: load, then for every step `step` and `store`, with

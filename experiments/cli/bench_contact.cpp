@@ -5,7 +5,7 @@
 #include "experiments/bench/contact.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/plot.hpp"
+#include "experiments/report/plot/plot.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::verb::contact {

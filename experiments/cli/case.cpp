@@ -55,7 +55,7 @@ std::unique_ptr<TrajectoryWriter> start_trajectory(const std::string& file, cons
                              .triangles = one.scene->mesh.triangles});
 }
 
-void tell(const Moment& m, int steps) {
+void tell(const Snapshot& m, int steps) {
   if (m.step % std::max(1, steps / 20) != 0) return;
   double fastest = 0;
   for (const Vec3& v : m.state.v) fastest = std::max(fastest, v.norm());
@@ -70,7 +70,7 @@ int run(const Options& options) try {
 
   const auto trajectory = start_trajectory(options.trajectory, one);
   const CaseRun result = run_case(
-      one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Moment& m) {
+      one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Snapshot& m) {
               if (trajectory) trajectory->append(m.t, m.state);
               if (options.verbose) tell(m, one.scene->steps);
             }});
@@ -94,7 +94,7 @@ std::function<int()> bind(CLI::App& app) {
   options->which.bind(app);
   app.add_flag("--json", options->json, "Print the record as JSON");
   app.add_option("--final-state", options->final_state,
-                 "Write vertex,x,y,z,vx,vy,vz of the last sound state, full precision (CSV)");
+                 "Write vertex,x,y,z,vx,vy,vz of the last stable state, full precision (CSV)");
   app.add_option("--trajectory", options->trajectory, "Write every step's positions");
   app.add_option("--series", options->series, "Write values over time (CSV)");
   app.add_flag("--verbose", options->verbose, "Say on stderr how far it is and what is effective");

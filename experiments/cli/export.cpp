@@ -9,7 +9,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/report/format.hpp"
+#include "experiments/report/chart/format.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/bench.hpp"

@@ -1,4 +1,4 @@
-#include "experiments/report/plot.hpp"
+#include "experiments/report/plot/plot.hpp"
 
 #include <filesystem>
 #include <iostream>
@@ -7,8 +7,8 @@
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/format.hpp"
-#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/plot/gnuplot.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/system/files.hpp"
 

@@ -15,7 +15,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/film/film.hpp"
 #include "experiments/report/findings.hpp"
-#include "experiments/report/model.hpp"
+#include "experiments/report/model/model.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/main_job.hpp"
 #include "experiments/system/data.hpp"
@@ -145,7 +145,7 @@ std::function<int()> bind(CLI::App& app) {
       ->allow_extra_args(false);
   app.add_flag("--no-media", options->no_media, "Without pictures and videos");
   add_json(app, options->json,
-           "The model of the page (experiments/report/MODEL.md), without pictures");
+           "The model of the page (experiments/report/model/MODEL.md), without pictures");
   app.add_option("-o,--out", options->out, "The page (default: report.html)");
   return [options] { return run(*options); };
 }

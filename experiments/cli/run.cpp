@@ -7,7 +7,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/plot.hpp"
+#include "experiments/report/plot/plot.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/main_job.hpp"
 #include "experiments/study/table.hpp"

@@ -70,10 +70,10 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
   const auto work = [&] {
     for (std::size_t i = next++; i < chosen.size(); i = next++) {
       const auto start = std::chrono::steady_clock::now();
-      Ledger ledger(options.solvers);
-      chosen[i]->check(ledger);
+      Findings findings(options.solvers);
+      chosen[i]->check(findings);
       outcomes[i] = {
-          chosen[i], ledger.findings(),
+          chosen[i], findings.all(),
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
       const std::lock_guard lock(mutex);
       countdown(++done, chosen.size());

@@ -14,7 +14,7 @@
 #include "experiments/film/recorded_runs.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/render/picture/media.hpp"
-#include "experiments/report/rivals.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -157,7 +157,7 @@ std::vector<report::TimeSeries> watched(const Film& film, const RunSet& set,
     report::TimeSeries series{film.scene, solver_name(set.runs[k]), film.labels[k], value, {}, {}};
     int step = 0;
     for (const TrajectoryReader::Frame& frame : set.runs[k].trajectory.frames) {
-      const Moment moment{step++, frame.t, frame.state};
+      const Snapshot moment{step++, frame.t, frame.state};
       watch->observe(moment);
       series.t.push_back(frame.t);
       series.y.push_back(watch->now(moment)[index]);
@@ -210,7 +210,7 @@ FilmResult make_film(const Film& film) {
     report::MaterialRow& row = result.media.material.emplace_back();
     row.solver = solver_name(set.runs[k]);
     for (const Media::Flat& flat : media.material[k])
-      row.moments.push_back({flat.t, flat.rms, flat.png});
+      row.stills.push_back({flat.t, flat.rms, flat.png});
   }
   for (std::size_t k = 0; !film.studied && k < set.runs.size(); ++k)
     result.series.push_back({film.scene, solver_name(set.runs[k]), film.labels[k], "stretch.rms",

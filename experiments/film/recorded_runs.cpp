@@ -6,7 +6,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/report/palette.hpp"
+#include "experiments/report/chart/palette.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"

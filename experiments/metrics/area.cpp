@@ -5,10 +5,11 @@ namespace taut::metric::area {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"area.rms", kShare, "area strain A/A0 - 1 of the faces, RMS over faces and the last second",
+    {"area.rms", kErrorShare,
+     "area strain A/A0 - 1 of the faces, RMS over faces and the last second", true},
+    {"area.max", kErrorShare, "largest growth of a face in the last second", true},
+    {"area.loss", kErrorShare, "largest loss of area of a face in the last second (1: collapsed)",
      true},
-    {"area.max", kShare, "largest growth of a face in the last second", true},
-    {"area.loss", kShare, "largest loss of area of a face in the last second (1: collapsed)", true},
     {"area.total", kSignedShare, "area strain of the whole cloth, mean over the last second", true},
 };
 
@@ -25,7 +26,7 @@ class Area final : public Metric {
     for (const Triangle& face : faces_) rest_.push_back(area(face, scene.mesh.rest));
   }
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     const bool at_end = end_.contains(m.step);
     const Strains s = measure(m.state);
     square_.add(m.step, at_end, s.mean_square);
@@ -35,7 +36,7 @@ class Area final : public Metric {
   std::vector<double> finish() override {
     return {std::sqrt(square_.mean()), growth_.max(), loss_.max(), total_.mean()};
   }
-  std::vector<double> now(const Moment& m) const override {
+  std::vector<double> now(const Snapshot& m) const override {
     const Strains s = measure(m.state);
     return {std::sqrt(s.mean_square), s.growth, s.loss, s.total};
   }

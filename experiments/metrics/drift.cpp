@@ -16,12 +16,12 @@ class Drift final : public Metric {
  public:
   explicit Drift(const Scene& scene) : mass_(scene.mesh.mass), end_(scene) {}
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     if (m.step == 0) start_ = center(m.state);
     distance_.add(m.step, end_.contains(m.step), (center(m.state) - start_).norm());
   }
   std::vector<double> finish() override { return {distance_.peak(), distance_.mean()}; }
-  std::vector<double> now(const Moment& m) const override {
+  std::vector<double> now(const Snapshot& m) const override {
     return {Summary::kNone, (center(m.state) - start_).norm()};
   }
 

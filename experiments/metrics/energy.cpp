@@ -23,13 +23,13 @@ class Energy final : public Metric {
     unit_ = total * gravity_.norm() * extent(scene);
   }
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     const auto [kinetic, total] = measure(m.state);
     kinetic_.add(m.step, end_.contains(m.step), kinetic);
     total_.add(m.step, end_.contains(m.step), total);
   }
   std::vector<double> finish() override { return {total_.mean(), kinetic_.mean(), total_.peak()}; }
-  std::vector<double> now(const Moment& m) const override {
+  std::vector<double> now(const Snapshot& m) const override {
     const auto [kinetic, total] = measure(m.state);
     return {total, kinetic, Summary::kNone};
   }

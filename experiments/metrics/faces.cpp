@@ -6,22 +6,22 @@ namespace taut::metric::faces {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"face.max", kLength,
+    {"face.max", kErrorLength,
      "largest depth of a point of a face below the surface of a ball or box, thickness not "
      "counted, in the last second",
      true},
-    {"face.peak", kLength, "the same over the run", false, Window::run,
+    {"face.peak", kErrorLength, "the same over the run", false, Window::run,
      "peak penetration of faces"},
     {"face.geometry", kLength,
      "the part of a face's depth in a ball that is geometry: how deep it would be if its corners "
      "lay exactly at the scene's thickness, l^2/(4R) for a right triangle with legs l; largest in "
      "the last second",
      true},
-    {"face.excess", kLength,
+    {"face.excess", kErrorLength,
      "largest depth of a face below a ball's surface beyond its geometric part, in the last second",
      true},
-    {"face.ball", kLength, "face.max of the balls alone"},
-    {"face.box", kLength, "face.max of the boxes alone"},
+    {"face.ball", kErrorLength, "face.max of the balls alone"},
+    {"face.box", kErrorLength, "face.max of the boxes alone"},
 };
 
 class Faces final : public Metric {
@@ -36,7 +36,7 @@ class Faces final : public Metric {
       if (!std::holds_alternative<Plane>(c.shape)) colliders_.push_back(c);
   }
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     const bool at_end = end_.contains(m.step);
     const Depths d = measure(m);
     any_.add(m.step, at_end, std::max(d.ball, d.box));
@@ -49,7 +49,7 @@ class Faces final : public Metric {
   std::vector<double> finish() override {
     return {any_.max(), any_.peak(), geometry_.max(), excess_.max(), ball_.max(), box_.max()};
   }
-  std::vector<double> now(const Moment& m) const override {
+  std::vector<double> now(const Snapshot& m) const override {
     constexpr double none = Summary::kNone;
     const Depths d = measure(m);
     const bool ball = has<Ball>();
@@ -68,7 +68,7 @@ class Faces final : public Metric {
                        [](const Collider& c) { return std::holds_alternative<T>(c.shape); });
   }
 
-  Depths measure(const Moment& m) const {
+  Depths measure(const Snapshot& m) const {
     Depths depths;
     for (const Collider& collider : colliders_) {
       const Shape shape = shape_at(collider, m.t);

@@ -15,13 +15,13 @@ class Jitter final : public Metric {
  public:
   explicit Jitter(const Scene& scene) : free_(free_vertices(scene)), end_(scene) {}
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     if (!end_.contains(m.step)) return;
     square_.add(m.step, true, mean_square_speed(m.state, free_));
     fastest_.add(m.step, true, fastest(m.state));
   }
   std::vector<double> finish() override { return {std::sqrt(square_.mean()), fastest_.max()}; }
-  std::vector<double> now(const Moment& m) const override {
+  std::vector<double> now(const Snapshot& m) const override {
     return {std::sqrt(mean_square_speed(m.state, free_)), fastest(m.state)};
   }
 

@@ -12,7 +12,7 @@ namespace taut {
 
 /// One step boundary as a metric sees it: the scene's time and the state, never the solver that
 /// made it.
-struct Moment {
+struct Snapshot {
   int step = 0;  ///< 0: the start
   double t = 0;  ///< s
   const State& state;
@@ -23,12 +23,17 @@ struct Unit {
   std::string_view si;     ///< "1" if dimensionless
   std::string_view shown;  ///< "%", "mm", ...
   double scale = 1;
-  bool logarithmic = true;  ///< which axis suits it
+  bool logarithmic = true;      ///< which axis suits it
+  bool less_is_better = false;  ///< of an error: the distance from what must hold
 };
 inline constexpr Unit kNumber{"1", ""}, kCount{"1", "", 1, false}, kShare{"1", "%", 100},
     kSignedShare{"1", "%", 100, false}, kLength{"m", "mm", 1e3},
     kSignedLength{"m", "mm", 1e3, false}, kTime{"s", "s", 1, false}, kSpeed{"m/s", "m/s"},
     kAcceleration{"m/s^2", "m/s\u00B2"};
+/// The same of errors, which are never below 0.
+inline constexpr Unit kErrorCount{"1", "", 1, false, true}, kErrorShare{"1", "%", 100, true, true},
+    kErrorLength{"m", "mm", 1e3, true, true},
+    kErrorAcceleration{"m/s^2", "m/s\u00B2", 1, true, true};
 
 /// Of which part of a run a value speaks.
 enum class Window { last_second, run, end, none };
@@ -56,13 +61,13 @@ struct ValueSpec {
 class Metric {
  public:
   virtual ~Metric() = default;
-  virtual void observe(const Moment&) = 0;
+  virtual void observe(const Snapshot&) = 0;
   /// The ends of the substeps between two boundaries, in order: the moment's step is the one that
   /// they lead to. Only called if `follows_path`.
-  virtual void observe_within(const Moment&) {}
+  virtual void observe_within(const Snapshot&) {}
   virtual std::vector<double> finish() = 0;
   /// The values of this very moment, for series; same order, NaN where `in_series` is false.
-  virtual std::vector<double> now(const Moment&) const = 0;
+  virtual std::vector<double> now(const Snapshot&) const = 0;
 };
 
 /// How a metric introduces itself: one per file, found by its TAUT_METRIC line.

@@ -8,24 +8,25 @@ namespace taut::metric::penetration {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"penetration.max", kLength,
+    {"penetration.max", kErrorLength,
      "largest depth of a free vertex below a collider's surface, thickness not counted, in the "
      "last second",
      true},
-    {"penetration.peak", kLength, "the same over the run", false, Window::run,
+    {"penetration.peak", kErrorLength, "the same over the run", false, Window::run,
      "peak penetration of vertices"},
-    {"penetration.mean", kLength,
+    {"penetration.mean", kErrorLength,
      "mean depth of the vertices that are below a surface, mean over the last second"},
-    {"penetration.plane.max", kLength, "penetration.max of planes alone", true},
-    {"penetration.plane.peak", kLength, "penetration.peak of planes alone", false, Window::run},
-    {"penetration.plane.mean", kLength, "penetration.mean of planes alone"},
-    {"penetration.ball.max", kLength, "penetration.max of balls alone", true},
-    {"penetration.ball.peak", kLength, "penetration.peak of balls alone", false, Window::run},
-    {"penetration.ball.mean", kLength, "penetration.mean of balls alone"},
-    {"penetration.box.max", kLength, "penetration.max of boxes alone", true},
-    {"penetration.box.peak", kLength, "penetration.peak of boxes alone", false, Window::run},
-    {"penetration.box.mean", kLength, "penetration.mean of boxes alone"},
-    {"penetration.share", kShare,
+    {"penetration.plane.max", kErrorLength, "penetration.max of planes alone", true},
+    {"penetration.plane.peak", kErrorLength, "penetration.peak of planes alone", false,
+     Window::run},
+    {"penetration.plane.mean", kErrorLength, "penetration.mean of planes alone"},
+    {"penetration.ball.max", kErrorLength, "penetration.max of balls alone", true},
+    {"penetration.ball.peak", kErrorLength, "penetration.peak of balls alone", false, Window::run},
+    {"penetration.ball.mean", kErrorLength, "penetration.mean of balls alone"},
+    {"penetration.box.max", kErrorLength, "penetration.max of boxes alone", true},
+    {"penetration.box.peak", kErrorLength, "penetration.peak of boxes alone", false, Window::run},
+    {"penetration.box.mean", kErrorLength, "penetration.mean of boxes alone"},
+    {"penetration.share", kErrorShare,
      "share of the free vertices that are below a surface, mean over the last second", true},
     {"penetration.gap", kSignedLength,
      "least distance of a free vertex to a collider minus the scene's thickness, mean over the "
@@ -56,7 +57,7 @@ class Penetration final : public Metric {
     for (const Collider& c : colliders_) exists_[c.shape.index()] = true;
   }
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     const bool at_end = end_.contains(m.step);
     const Contact contact = measure(m);
     const auto add = [&](Kind& kind, const Depths& d) {
@@ -77,7 +78,7 @@ class Penetration final : public Metric {
     return values;
   }
 
-  std::vector<double> now(const Moment& m) const override {
+  std::vector<double> now(const Snapshot& m) const override {
     constexpr double none = Summary::kNone;
     const Contact contact = measure(m);
     std::vector<double> values{contact.any.max, none, none};
@@ -93,7 +94,7 @@ class Penetration final : public Metric {
     std::array<Depths, kKinds> kinds;
     double least = std::numeric_limits<double>::infinity();  ///< m, signed distance
   };
-  Contact measure(const Moment& m) const {
+  Contact measure(const Snapshot& m) const {
     Contact contact;
     std::vector<double> nearest(free_.size(), std::numeric_limits<double>::infinity());
     for (const Collider& collider : colliders_) {

@@ -18,7 +18,7 @@ class Popping final : public Metric {
   explicit Popping(const Scene& scene)
       : free_(free_vertices(scene)), dt_(scene.dt), g_(scene.gravity.norm()), end_(scene) {}
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     if (m.step >= 2) {
       double square = 0;
       for (const std::size_t i : free_)
@@ -30,7 +30,9 @@ class Popping final : public Metric {
     last_ = m.state.x;
   }
   std::vector<double> finish() override { return {pop_.max(), pop_.peak()}; }
-  std::vector<double> now(const Moment&) const override { return {Summary::kNone, Summary::kNone}; }
+  std::vector<double> now(const Snapshot&) const override {
+    return {Summary::kNone, Summary::kNone};
+  }
 
  private:
   std::vector<std::size_t> free_;

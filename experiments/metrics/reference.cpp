@@ -11,14 +11,14 @@ namespace taut::metric::reference {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"reference.rms", kLength,
+    {"reference.rms", kErrorLength,
      "distance of the free vertices from the static reference, RMS over vertices and the last "
      "second",
      true, Window::last_second, "distance from the reference (RMS)"},
-    {"reference.max", kLength,
+    {"reference.max", kErrorLength,
      "largest distance of a free vertex from the static reference, in the last second", true,
      Window::last_second, "largest distance from the reference"},
-    {"reference.motion", kLength,
+    {"reference.motion", kErrorLength,
      "distance of the free vertices from the dynamic reference, RMS over vertices, at its moment "
      "(0.5 s)",
      false, Window::end, "distance from the reference in motion (RMS)"},
@@ -44,7 +44,7 @@ class Distance final : public Metric {
       }
   }
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     if (known_.rest && end_.contains(m.step)) {
       const Gap gap = from(*known_.rest, m.state);
       rms_.add(m.step, true, gap.mean_square);
@@ -61,7 +61,7 @@ class Distance final : public Metric {
             strain_,
             known_.motion ? known_.motion->floor : Summary::kNone};
   }
-  std::vector<double> now(const Moment& m) const override {
+  std::vector<double> now(const Snapshot& m) const override {
     constexpr double none = Summary::kNone;
     if (!known_.rest) return {none, none, none, none, none, none};
     const Gap gap = from(*known_.rest, m.state);

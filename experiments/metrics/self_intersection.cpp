@@ -6,12 +6,12 @@ namespace taut::metric::self_intersection {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"self.crossings", kCount,
+    {"self.crossings", kErrorCount,
      "pairs of faces that share no vertex and cross or coincide (nearer than 1 % of the radius: "
      "layers that lie in one plane cross nowhere), at the end",
      true, Window::end, "crossing faces"},
-    {"self.crossings.max", kCount, "the same, largest of ten moments of the last second"},
-    {"self.crossings.peak", kCount, "the same, largest of those and twenty moments of the run",
+    {"self.crossings.max", kErrorCount, "the same, largest of ten moments of the last second"},
+    {"self.crossings.peak", kErrorCount, "the same, largest of those and twenty moments of the run",
      false, Window::run},
     {"self.gap", kSignedLength,
      "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
@@ -28,7 +28,7 @@ class SelfIntersection final : public Metric {
         steps_(scene.steps),
         end_(scene) {}
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     const bool at_end = end_.samples(m.step);
     if (!at_end && m.step % std::max(1, steps_ / 20) != 0) return;
     const double count = pairs(m.state.x);
@@ -39,7 +39,7 @@ class SelfIntersection final : public Metric {
   std::vector<double> finish() override {
     return {final_, count_.max(), count_.peak(), 0 - overlap_.max()};
   }
-  std::vector<double> now(const Moment& m) const override {
+  std::vector<double> now(const Snapshot& m) const override {
     return {pairs(m.state.x), Summary::kNone, Summary::kNone, least_gap(m.state.x, rest_, radius_)};
   }
 

@@ -18,12 +18,12 @@ class Settle final : public Metric {
       : free_(free_vertices(scene)),
         threshold_square_(1e-6 * scene.gravity.norm() * extent(scene)) {}
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     if (m.step == 0) return;  // the speed of the start is the scene's, often 0 by construction
     if (!(mean_square_speed(m.state, free_) <= threshold_square_)) last_ = m.t;
   }
   std::vector<double> finish() override { return {last_}; }
-  std::vector<double> now(const Moment&) const override { return {Summary::kNone}; }
+  std::vector<double> now(const Snapshot&) const override { return {Summary::kNone}; }
 
  private:
   std::vector<std::size_t> free_;

@@ -5,11 +5,11 @@ namespace taut::metric::slip {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"slip.error", kAcceleration,
+    {"slip.error", kErrorAcceleration,
      "distance of the centre of mass's acceleration along the plane from what Coulomb's law makes "
      "of the normal force that acted, mean over the last second"},
-    {"slip.error.peak", kAcceleration, "the same, largest over the run", false, Window::run},
-    {"slip.distance", kLength,
+    {"slip.error.peak", kErrorAcceleration, "the same, largest over the run", false, Window::run},
+    {"slip.distance", kErrorLength,
      "how far the centre of mass is along the plane from where a block would be that felt the same "
      "normal forces, at the end",
      true, Window::end, "distance from Coulomb's law"},
@@ -37,7 +37,7 @@ class Slip final : public Metric {
         dt_(scene.dt),
         end_(scene) {}
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     const Vec3 center = mean(m.state.x);
     if (m.step == 0) {
       velocity_ = block_ = mean(m.state.v);
@@ -53,7 +53,7 @@ class Slip final : public Metric {
     center_ = center;
   }
   std::vector<double> finish() override { return {error_.mean(), error_.peak(), apart_.norm()}; }
-  std::vector<double> now(const Moment&) const override {
+  std::vector<double> now(const Snapshot&) const override {
     return {Summary::kNone, Summary::kNone, apart_.norm()};
   }
 

@@ -7,26 +7,27 @@ namespace taut::metric::stretch {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"stretch.rms", kShare,
+    {"stretch.rms", kErrorShare,
      "strain (d - r)/r of the structural and shear links, RMS over links and the last second",
      true},
-    {"stretch.max", kShare, "largest stretch of a structural or shear link in the last second",
+    {"stretch.max", kErrorShare, "largest stretch of a structural or shear link in the last second",
      true},
-    {"stretch.p95", kShare,
+    {"stretch.p95", kErrorShare,
      "95th percentile of |strain| of those links, mean of ten moments of the last second"},
-    {"stretch.peak", kShare, "largest stretch of a structural or shear link over the run", false,
+    {"stretch.peak", kErrorShare, "largest stretch of a structural or shear link over the run",
+     false, Window::run},
+    {"compression.max", kErrorShare, "largest shortening of those links in the last second", true},
+    {"compression.peak", kErrorShare, "largest shortening of those links over the run", false,
      Window::run},
-    {"compression.max", kShare, "largest shortening of those links in the last second", true},
-    {"compression.peak", kShare, "largest shortening of those links over the run", false,
-     Window::run},
-    {"structural.rms", kShare, "strain of the structural links, RMS over the last second", true},
-    {"structural.max", kShare, "their largest stretch in the last second", true},
-    {"structural.p95", kShare, "95th percentile of their |strain|, mean of ten moments"},
-    {"structural.compression", kShare, "their largest shortening in the last second"},
-    {"shear.rms", kShare, "strain of the shear links, RMS over the last second", true},
-    {"shear.max", kShare, "their largest stretch in the last second", true},
-    {"shear.p95", kShare, "95th percentile of their |strain|, mean of ten moments"},
-    {"shear.compression", kShare, "their largest shortening in the last second"},
+    {"structural.rms", kErrorShare, "strain of the structural links, RMS over the last second",
+     true},
+    {"structural.max", kErrorShare, "their largest stretch in the last second", true},
+    {"structural.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
+    {"structural.compression", kErrorShare, "their largest shortening in the last second"},
+    {"shear.rms", kErrorShare, "strain of the shear links, RMS over the last second", true},
+    {"shear.max", kErrorShare, "their largest stretch in the last second", true},
+    {"shear.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
+    {"shear.compression", kErrorShare, "their largest shortening in the last second"},
     {"bend.rms", kShare, "strain of the bend links, RMS over the last second", true},
     {"bend.max", kShare, "their largest stretch in the last second", true},
     {"bend.p95", kShare, "95th percentile of their |strain|, mean of ten moments"},
@@ -83,7 +84,7 @@ class Stretch final : public Metric {
     in_plane_.exists = families_[0].exists || families_[1].exists;
   }
 
-  void observe(const Moment& m) override {
+  void observe(const Snapshot& m) override {
     const bool at_end = end_.contains(m.step), sampled = end_.samples(m.step);
     std::array<Strain, kFamilies.size()> strains;
     for (const Link& link : links_) {
@@ -109,7 +110,7 @@ class Stretch final : public Metric {
     return values;
   }
 
-  std::vector<double> now(const Moment& m) const override {
+  std::vector<double> now(const Snapshot& m) const override {
     constexpr double none = Summary::kNone;
     std::array<Strain, kFamilies.size()> strains;
     for (const Link& link : links_) strains[index(link)].add(strain(link, m.state));

@@ -8,14 +8,16 @@ namespace taut::metric::tunnelling {
 namespace {
 
 constexpr ValueSpec kValues[] = {
-    {"tunnelling.count", kCount,
+    {"tunnelling.count", kErrorCount,
      "free vertices that end on the other side of a ball or box: in through one side and out "
      "through the opposite one, even within one substep; their path is straight from substep to "
      "substep",
      true, Window::end, "vertices on the other side"},
-    {"tunnelling.share", kShare, "the same as a share of the free vertices", false, Window::end},
-    {"tunnelling.events", kCount, "passages through a ball or box over the run, returns included",
-     false, Window::run, "passages through a collider"},
+    {"tunnelling.share", kErrorShare, "the same as a share of the free vertices", false,
+     Window::end},
+    {"tunnelling.events", kErrorCount,
+     "passages through a ball or box over the run, returns included", false, Window::run,
+     "passages through a collider"},
 };
 
 /// Where a straight path enters and leaves a solid, as outward unit normals.
@@ -134,8 +136,8 @@ class Tunnelling final : public Metric {
       if (!std::holds_alternative<Plane>(c.shape)) watches_.emplace_back(c, free_.size());
   }
 
-  void observe_within(const Moment& m) override { observe(m); }
-  void observe(const Moment& m) override {
+  void observe_within(const Snapshot& m) override { observe(m); }
+  void observe(const Snapshot& m) override {
     for (Watch& watch : watches_) {
       watch.place(m.t);
       for (std::size_t k = 0; k < free_.size(); ++k) {
@@ -150,7 +152,7 @@ class Tunnelling final : public Metric {
   std::vector<double> finish() override {
     return {count(), count() / static_cast<double>(free_.size()), static_cast<double>(events_)};
   }
-  std::vector<double> now(const Moment&) const override {
+  std::vector<double> now(const Snapshot&) const override {
     return {count(), Summary::kNone, Summary::kNone};
   }
 

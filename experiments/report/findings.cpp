@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/format.hpp"
+#include "experiments/report/chart/format.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 

@@ -72,13 +72,13 @@ struct ColourBar {
 
 /// One solver's cloth laid flat at a few moments, in order of time.
 struct MaterialRow {
-  struct Moment {
+  struct Still {
     double t = 0;     ///< s
     double rms = 0;   ///< RMS strain
     std::string png;  ///< colours of the bar, without light
   };
   std::string solver;
-  std::vector<Moment> moments;
+  std::vector<Still> stills;
 };
 
 /// What was rendered of a scene. Videos of one scene start together and last equally long.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "experiments/report/format.hpp"
-#include "experiments/report/model.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/model/model.hpp"
 #include "experiments/report/page.hpp"
 
 namespace taut::report {

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/curves.hpp"
-#include "experiments/report/palette.hpp"
-#include "experiments/report/quantity.hpp"
-#include "experiments/report/rivals.hpp"
+#include "experiments/report/chart/curves.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {

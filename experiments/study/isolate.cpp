@@ -151,7 +151,7 @@ int run_into(const Case& one, const fs::path& folder) try {
   std::optional<Heartbeat> heartbeat;
   if (!write([&] { heartbeat.emplace(folder / "heartbeat"); })) return kCannotWrite;
   const CaseRun run = run_case(one, {.series_rows = kSeriesRows,
-                                     .watch = [&](const Moment& m) { heartbeat->beat(m.step); }});
+                                     .watch = [&](const Snapshot& m) { heartbeat->beat(m.step); }});
   const bool written = write([&] {
     write_durably(folder / "series.csv", to_csv(run.series));
     write_durably(folder / "case.json", to_json(run.record, 1) + "\n");

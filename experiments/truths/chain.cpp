@@ -24,13 +24,13 @@ Scene hanging(int n, double mass, double dt, double g = kG) {
   return s;
 }
 
-void elastic_chain(Ledger& ledger) {
+void elastic_chain(Findings& findings) {
   const int n = 8;
   const double stiffness = 1000, mass = 0.1;
   const auto check = [&](const std::string& solver, int links, double tolerance) {
     Scene s = hanging(links, mass, 1.0 / 1024);
     s.damping = solver.starts_with("mass-spring") ? 0 : 8;
-    if (!claims(ledger, solver, s)) return;
+    if (!claims(findings, solver, s)) return;
     Probe probe(s, solver);
     settle(probe, 1e-12, 64, 64 * 400);
     const std::vector<double> e = strains(s, probe.state());
@@ -39,10 +39,10 @@ void elastic_chain(Ledger& ledger) {
       const double expected = (links - j + 1) * mass * kG / stiffness;
       worst = std::max(worst, std::abs(e[static_cast<std::size_t>(j - 1)] - expected));
     }
-    ledger.below(solver, "distance of a link's extension from (N-j+1) m g/K", "m", worst,
-                 tolerance);
-    ledger.equal(solver, "extension of the tip, m g N(N+1)/(2K)", "m", -probe.x(links).y() - 1,
-                 mass * kG * links * (links + 1) / (2 * stiffness), links * tolerance);
+    findings.below(solver, "distance of a link's extension from (N-j+1) m g/K", "m", worst,
+                   tolerance);
+    findings.equal(solver, "extension of the tip, m g N(N+1)/(2K)", "m", -probe.x(links).y() - 1,
+                   mass * kG * links * (links + 1) / (2 * stiffness), links * tolerance);
   };
   for (const char* integrator : {"explicit-euler", "symplectic-euler", "verlet"})
     check(mass_spring(integrator, stiffness, 5), n, 1e-10);
@@ -50,7 +50,7 @@ void elastic_chain(Ledger& ledger) {
   check(jakobsen(3, "exact", "structural_stiffness=1000"), 1, 1e-10);
 }
 
-void spring_chain_modes(Ledger& ledger) {
+void spring_chain_modes(Findings& findings) {
   const int n = 16;
   const double stiffness = 50, mass = 0.2, dt = 1.0 / 64;
   const auto w = reference::spring_chain_frequencies(n, stiffness, mass);
@@ -58,7 +58,7 @@ void spring_chain_modes(Ledger& ledger) {
     const std::string solver = mass_spring(integrator, stiffness);
     Scene s = bare::chain(n, n, mass);
     s.dt = dt;
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     double worst = 0;
     for (int j = 1; j <= n; ++j) {
       Scene mode = s;
@@ -71,12 +71,12 @@ void spring_chain_modes(Ledger& ledger) {
       const double measured = std::sqrt(2 - two_term_recurrence(y)[0]) / dt;
       worst = std::max(worst, std::abs(measured / w[static_cast<std::size_t>(j - 1)] - 1));
     }
-    ledger.below(solver, "relative distance from 2 sqrt(K/m) sin((2j-1) pi/(2(2N+1))), 16 modes",
-                 "1", worst, 1e-8);
+    findings.below(solver, "relative distance from 2 sqrt(K/m) sin((2j-1) pi/(2(2N+1))), 16 modes",
+                   "1", worst, 1e-8);
   }
 }
 
-void hanging_modes(Ledger& ledger) {
+void hanging_modes(Findings& findings) {
   const double printed[2][2] = {{3.70910, 8.52202}, {3.73712, 8.58035}};
   std::vector<double> lengths, errors;
   for (const int n : {16, 32, 64, 128}) {
@@ -85,17 +85,17 @@ void hanging_modes(Ledger& ledger) {
     errors.push_back(reference::hanging_rope_frequency(1, 1, kG) - w[0]);
     for (const int mode : {0, 1})
       if (n <= 32)
-        ledger.equal("closed form",
-                     "mode " + std::to_string(mode + 1) + " of " + std::to_string(n) + " links",
-                     "rad/s", w[static_cast<std::size_t>(mode)], printed[n / 32][mode], 5e-6);
+        findings.equal("closed form",
+                       "mode " + std::to_string(mode + 1) + " of " + std::to_string(n) + " links",
+                       "rad/s", w[static_cast<std::size_t>(mode)], printed[n / 32][mode], 5e-6);
   }
-  ledger.equal("closed form", "Bessel limit, mode 1", "rad/s",
-               reference::hanging_rope_frequency(1, 1, kG), 3.76607, 5e-6);
-  ledger.equal("closed form", "Bessel limit, mode 2", "rad/s",
-               reference::hanging_rope_frequency(2, 1, kG), 8.64470, 5e-6);
+  findings.equal("closed form", "Bessel limit, mode 1", "rad/s",
+                 reference::hanging_rope_frequency(1, 1, kG), 3.76607, 5e-6);
+  findings.equal("closed form", "Bessel limit, mode 2", "rad/s",
+                 reference::hanging_rope_frequency(2, 1, kG), 8.64470, 5e-6);
   const Slope order = log_slope(lengths, errors);
-  ledger.slope("closed form", "order in the link length", order.value, order.error, 1, 0.02);
-  if (!ledger.wants(kShake)) return;
+  findings.slope("closed form", "order in the link length", order.value, order.error, 1, 0.02);
+  if (!findings.wants(kShake)) return;
   const int n = 16;
   const double dt = 1.0 / 256;
   for (const int mode : {1, 2}) {
@@ -110,8 +110,8 @@ void hanging_modes(Ledger& ledger) {
     reference::Shake shake(s, dt);
     std::vector<double> y;
     for (int k = 0; k < 400; ++k) shake.step(), y.push_back(shake.state().x.back().x());
-    ledger.equal(kShake, "mode " + std::to_string(mode) + " of 16 links in motion", "rad/s",
-                 std::sqrt(2 - two_term_recurrence(y)[0]) / dt, printed[0][mode - 1], 1e-4);
+    findings.equal(kShake, "mode " + std::to_string(mode) + " of 16 links in motion", "rad/s",
+                   std::sqrt(2 - two_term_recurrence(y)[0]) / dt, printed[0][mode - 1], 1e-4);
   }
 }
 
@@ -134,13 +134,13 @@ double sag(const std::vector<Vec3>& x) {
   return -lowest;
 }
 
-void catenary(Ledger& ledger) {
+void catenary(Findings& findings) {
   const int n = 16;
   const double mass = 0.02, exact = 0.265991492135;
-  ledger.equal("closed form", "sag, L = 1, D = 0.8, 16 links", "m",
-               reference::discrete_catenary(n, 0.8, 1.0 / n, mass * kG).sag(), exact, 5e-13);
-  ledger.equal("closed form", "sag of the continuum", "m", reference::continuum_sag(1, 0.8),
-               0.265437509140, 5e-13);
+  findings.equal("closed form", "sag, L = 1, D = 0.8, 16 links", "m",
+                 reference::discrete_catenary(n, 0.8, 1.0 / n, mass * kG).sag(), exact, 5e-13);
+  findings.equal("closed form", "sag of the continuum", "m", reference::continuum_sag(1, 0.8),
+                 0.265437509140, 5e-13);
   std::vector<double> lengths, errors;
   for (const int links : {16, 32, 64, 128}) {
     lengths.push_back(1.0 / links);
@@ -148,16 +148,16 @@ void catenary(Ledger& ledger) {
                      reference::continuum_sag(1, 0.8));
   }
   const Slope order = log_slope(lengths, errors);
-  ledger.slope("closed form", "order in the link length", order.value, order.error, 2, 0.02);
+  findings.slope("closed form", "order in the link length", order.value, order.error, 2, 0.02);
   const Scene s = catenary_scene(mass);
-  if (ledger.wants(kStatic)) {
+  if (findings.wants(kStatic)) {
     const auto e = reference::static_equilibrium(s);
-    ledger.equal(kStatic, "sag", "m", e.unique ? sag(e.x) : std::nan(""), exact, 5e-13);
+    findings.equal(kStatic, "sag", "m", e.unique ? sag(e.x) : std::nan(""), exact, 5e-13);
   }
   // However many sweeps, they start g dt^2 below: their directions, hence the shape at rest, are
   // off in second order.
   for (const std::string& solver : {jakobsen(1200), jakobsen(1200, "sqrt-free"), bullet(1200)}) {
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     std::vector<double> dts, off;
     for (const double rate : {64.0, 128.0, 256.0}) {
       Scene finer = s;
@@ -167,19 +167,20 @@ void catenary(Ledger& ledger) {
       dts.push_back(finer.dt), off.push_back(std::abs(sag(probe.state().x) - exact));
     }
     const Slope slope = log_slope(dts, off);
-    ledger.slope(solver, "order in dt of the sag at rest, 1200 sweeps", slope.value, slope.error, 2,
-                 0.1);
-    ledger.below(solver, "error of the sag at dt = 1/256 s", "m", off.back(), 3e-5);
+    findings.slope(solver, "order in dt of the sag at rest, 1200 sweeps", slope.value, slope.error,
+                   2, 0.1);
+    findings.below(solver, "error of the sag at dt = 1/256 s", "m", off.back(), 3e-5);
   }
   const double stiffness = 200;
   const std::string springs = mass_spring("verlet", stiffness, 0.05);
   Scene elastic = s;
   elastic.damping = 0, elastic.dt = 1.0 / 1024;
-  if (!claims(ledger, springs, elastic)) return;
+  if (!claims(findings, springs, elastic)) return;
   Probe probe(elastic, springs);
   settle(probe, 1e-12, 256, 256 * 400);
-  ledger.equal(springs, "sag of the elastic chain, link length l + T/K", "m", sag(probe.state().x),
-               reference::discrete_catenary(n, 0.8, 1.0 / n, mass * kG, stiffness).sag(), 1e-9);
+  findings.equal(springs, "sag of the elastic chain, link length l + T/K", "m",
+                 sag(probe.state().x),
+                 reference::discrete_catenary(n, 0.8, 1.0 / n, mass * kG, stiffness).sag(), 1e-9);
 }
 
 /// Strains [m] of the hanging chain at rest under k sweeps, from an unstrained start.
@@ -206,9 +207,9 @@ double recurrence_gap(const std::vector<double>& e, Sweep sweep, int k, double a
   return worst / exact.maxCoeff();
 }
 
-void chain_under_sweeps(Ledger& ledger) {
+void chain_under_sweeps(Findings& findings) {
   const std::string subject = jakobsen(1);
-  if (claims(ledger, subject, hanging(4, 1, 1.0 / 64))) {
+  if (claims(findings, subject, hanging(4, 1, 1.0 / 64))) {
     double worst = 0;
     for (const int n : {16, 32, 64, 128})
       for (const int k : {1, 4, 16, 64, 256})
@@ -217,13 +218,13 @@ void chain_under_sweeps(Ledger& ledger) {
     for (const double rate : {30.0, 60.0, 120.0, 240.0, 480.0})
       worst = std::max(worst, recurrence_gap(settled_strains(jakobsen(4), 16, 4, 1 / rate),
                                              Sweep::gauss_seidel, 4, kG / rate / rate));
-    ledger.below(subject,
-                 "relative distance from (I - G^k)^-1 G^k a delta_1: N 16..128, k 1..256, "
-                 "dt 1/30..1/480",
-                 "1", worst, 1e-6);
+    findings.below(subject,
+                   "relative distance from (I - G^k)^-1 G^k a delta_1: N 16..128, k 1..256, "
+                   "dt 1/30..1/480",
+                   "1", worst, 1e-6);
     const std::vector<double> once = settled_strains(subject, 16, 1, 1.0 / 64);
-    ledger.equal(subject, "k = 1: strain of the top link, (N-1) g dt^2", "m", once[0],
-                 15 * kG / 4096, 1e-9);
+    findings.equal(subject, "k = 1: strain of the top link, (N-1) g dt^2", "m", once[0],
+                   15 * kG / 4096, 1e-9);
   }
   // Bullet and XPBD leave their square-root-free or substep form in the linear range: small g.
   const double g = 1e-3;
@@ -232,23 +233,23 @@ void chain_under_sweeps(Ledger& ledger) {
     for (const std::string& solver :
          {bullet(k), jakobsen(k, "sqrt-free"),
           "xpbd:substeps=1,precision=double,iterations=" + std::to_string(k)})
-      if (claims(ledger, solver, hanging(4, 1, 1.0 / 64)))
-        ledger.below(solver, "relative distance from the recurrence, N = 16, " + sweeps, "1",
-                     recurrence_gap(settled_strains(solver, 16, k, 1.0 / 64, g),
-                                    Sweep::gauss_seidel, k, g / 4096),
-                     2e-4);
+      if (claims(findings, solver, hanging(4, 1, 1.0 / 64)))
+        findings.below(solver, "relative distance from the recurrence, N = 16, " + sweeps, "1",
+                       recurrence_gap(settled_strains(solver, 16, k, 1.0 / 64, g),
+                                      Sweep::gauss_seidel, k, g / 4096),
+                       2e-4);
   }
   // n substeps of one sweep against one step of n sweeps: a factor n.
   const std::string substeps = jakobsen(1, "exact", "substeps=16");
-  if (!claims(ledger, substeps, hanging(4, 1, 1.0 / 64))) return;
+  if (!claims(findings, substeps, hanging(4, 1, 1.0 / 64))) return;
   Scene s = hanging(16, 0.1, 1.0 / 64);
   Probe probe(s, substeps);
   probe.step(1200);
-  ledger.equal(substeps, "top strain of one sweep each, over (N-1) g (dt/16)^2", "1",
-               largest(strains(s, probe.state())) / (15 * kG / 4096 / 256), 1, 1e-6);
+  findings.equal(substeps, "top strain of one sweep each, over (N-1) g (dt/16)^2", "1",
+                 largest(strains(s, probe.state())) / (15 * kG / 4096 / 256), 1, 1e-6);
 }
 
-void chain_slopes(Ledger& ledger) {
+void chain_slopes(Findings& findings) {
   struct Row {
     int n;
     double printed[4];
@@ -257,7 +258,7 @@ void chain_slopes(Ledger& ledger) {
   for (const Row& row :
        {Row{16, {-1.036, -1.086, -1.216, -1.834}}, Row{128, {-1.004, -1.009, -1.019, -1.040}}}) {
     std::vector<double> exact, measured;
-    const bool run = claims(ledger, jakobsen(1), hanging(4, 1, 1.0 / 64));
+    const bool run = claims(findings, jakobsen(1), hanging(4, 1, 1.0 / 64));
     for (const int k : ks) {
       const auto g = reference::chain_sweep(row.n, Sweep::gauss_seidel);
       exact.push_back(reference::steady_strain(g, k, kG / 4096).maxCoeff());
@@ -267,22 +268,22 @@ void chain_slopes(Ledger& ledger) {
       const std::string name = "slope in k, " + std::to_string(ks[i]) + " to " +
                                std::to_string(ks[i + 1]) + ", N = " + std::to_string(row.n);
       const double span = std::log(4.0);
-      ledger.equal("closed form", name, "1", std::log(exact[i + 1] / exact[i]) / span,
-                   row.printed[i], 1e-3);
-      if (run)
-        ledger.equal(jakobsen(1), name, "1", std::log(measured[i + 1] / measured[i]) / span,
+      findings.equal("closed form", name, "1", std::log(exact[i + 1] / exact[i]) / span,
                      row.printed[i], 1e-3);
+      if (run)
+        findings.equal(jakobsen(1), name, "1", std::log(measured[i + 1] / measured[i]) / span,
+                       row.printed[i], 1e-3);
     }
   }
   for (const std::string& solver : {jakobsen(4), bullet(4)}) {
-    if (!claims(ledger, solver, hanging(4, 1, 1.0 / 64))) continue;
+    if (!claims(findings, solver, hanging(4, 1, 1.0 / 64))) continue;
     std::vector<double> dt, e;
     for (const double rate : {32.0, 64.0, 128.0, 256.0, 512.0}) {
       dt.push_back(1 / rate);
       e.push_back(largest(settled_strains(solver, 16, 4, 1 / rate, 1e-3)));
     }
     const Slope slope = log_slope(dt, e);
-    ledger.slope(solver, "slope in dt", slope.value, slope.error, 2, 5e-4);
+    findings.slope(solver, "slope in dt", slope.value, slope.error, 2, 5e-4);
   }
   // One curve in k/dt^2: the large-N sum, within O(1/N).
   for (const int n : {64, 128}) {
@@ -292,43 +293,43 @@ void chain_slopes(Ledger& ledger) {
           reference::steady_strain(reference::chain_sweep(n, Sweep::gauss_seidel), k, 1).maxCoeff();
       worst = std::max(worst, std::abs(exact_max / reference::collapsed_strain(n, k, 1) - 1));
     }
-    ledger.below(
+    findings.below(
         "closed form",
         "relative distance of e_max from the collapsed curve, k >= 16, N = " + std::to_string(n),
         "1", worst, 0.08);
   }
 }
 
-void softer_sweeps(Ledger& ledger) {
+void softer_sweeps(Findings& findings) {
   const int n = 64, k = 16;
   const std::string base = jakobsen(k);
-  if (!claims(ledger, with(base, "method=jacobi"), hanging(n, 1, 1.0 / 64))) return;
+  if (!claims(findings, with(base, "method=jacobi"), hanging(n, 1, 1.0 / 64))) return;
   const auto tip = [&](const std::vector<double>& e) {
     return std::accumulate(e.begin(), e.end(), 0.0);
   };
   const auto gauss_seidel = settled_strains(base, n, k, 1.0 / 64);
   const std::string plain = with(base, "method=jacobi");
   const auto jacobi = settled_strains(plain, n, k / 2, 1.0 / 64);
-  ledger.below(plain, "relative distance from the recurrence, N = 64", "1",
-               recurrence_gap(jacobi, Sweep::jacobi, k, kG / 4096), 1e-6);
-  ledger.equal(plain, "extension of the tip over Gauss-Seidel's", "1",
-               tip(jacobi) / tip(gauss_seidel), 2, 0.1);
-  ledger.deviates(
+  findings.below(plain, "relative distance from the recurrence, N = 64", "1",
+                 recurrence_gap(jacobi, Sweep::jacobi, k, kG / 4096), 1e-6);
+  findings.equal(plain, "extension of the tip over Gauss-Seidel's", "1",
+                 tip(jacobi) / tip(gauss_seidel), 2, 0.1);
+  findings.deviates(
       plain, "largest strain over Gauss-Seidel's", "1", largest(jacobi) / largest(gauss_seidel), 2,
       4, 0.1, "its eigenvalues come in pairs +-mu: an alternating strain of equal size adds up");
   const std::string averaged = with(base, "method=jacobi-averaged");
   const auto mean = settled_strains(averaged, n, k / 4, 1.0 / 64);
-  ledger.equal(averaged, "extension of the tip over Gauss-Seidel's", "1",
-               tip(mean) / tip(gauss_seidel), 4, 0.2);
+  findings.equal(averaged, "extension of the tip over Gauss-Seidel's", "1",
+                 tip(mean) / tip(gauss_seidel), 4, 0.2);
 }
 
-void chain_tension(Ledger& ledger) {
+void chain_tension(Findings& findings) {
   const int n = 16;
   const double mass = 0.1;
   for (const int k : {1, 3, 16}) {
     const std::string solver = jakobsen(k);
     const Scene s = hanging(n, mass, 1.0 / 64);
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(20000 / k);
     Textbook<double> textbook(s, k);
@@ -339,8 +340,8 @@ void chain_tension(Ledger& ledger) {
       worst =
           std::max(worst, std::abs(textbook.lambda()[static_cast<std::size_t>(j)] / s.dt / s.dt -
                                    (n - j) * mass * kG));
-    ledger.below(solver, "distance of lambda/dt^2 from the weight below the link", "N", worst,
-                 1e-8);
+    findings.below(solver, "distance of lambda/dt^2 from the weight below the link", "N", worst,
+                   1e-8);
   }
 }
 

@@ -37,15 +37,15 @@ std::vector<Vec3> columns_below_a_catenary(const Scene& s, double span) {
   return x;
 }
 
-void draped_sheet(Ledger& ledger) {
+void draped_sheet(Findings& findings) {
   const double span = 0.8;
-  if (ledger.wants(kStatic)) {
+  if (findings.wants(kStatic)) {
     const Scene s = two_corners(20, span);
     const auto e = reference::static_equilibrium(s);
-    ledger.equal(kStatic, "has one answer, 20x20, D = 0.8", "1", e.unique, 1, 0);
+    findings.equal(kStatic, "has one answer, 20x20, D = 0.8", "1", e.unique, 1, 0);
     if (e.unique) {
-      ledger.below(kStatic, "distance from the closed form, 20x20, D = 0.8", "m",
-                   max_distance(e.x, columns_below_a_catenary(s, span)), 1e-14);
+      findings.below(kStatic, "distance from the closed form, 20x20, D = 0.8", "m",
+                     max_distance(e.x, columns_below_a_catenary(s, span)), 1e-14);
       double reaction = 0, weight = 0;
       for (std::size_t j = 0; j < s.links.size(); ++j)
         for (const int pin : s.pins)
@@ -57,14 +57,15 @@ void draped_sheet(Ledger& ledger) {
       const auto w = inverse_masses(s);
       for (std::size_t i = 0; i < w.size(); ++i)
         if (w[i] > 0) weight += s.mesh.mass[i] * kG;
-      ledger.equal(kStatic, "pin reactions over the free weight", "1", reaction / weight, 1, 1e-10);
+      findings.equal(kStatic, "pin reactions over the free weight", "1", reaction / weight, 1,
+                     1e-10);
     }
   }
   const int n = 8;
   for (const std::string& solver : {jakobsen(40), jakobsen(40, "sqrt-free"), bullet(40)}) {
     Scene s = two_corners(n, span);
     s.damping = 4;
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     const auto exact = columns_below_a_catenary(s, span);
     s.start.x = exact;  // other starts end in other shapes: links that must not buckle do
     std::vector<double> dt, distance;
@@ -75,14 +76,14 @@ void draped_sheet(Ledger& ledger) {
       dt.push_back(s.dt), distance.push_back(max_distance(probe.state().x, exact));
     }
     const Slope order = log_slope(dt, distance);
-    ledger.slope(solver, "order in dt of the distance from the closed form, 8x8, 40 sweeps",
-                 order.value, order.error, 2, 0.1);
-    ledger.below(solver, "distance from the closed form at 1/256 s", "m", distance.back(), 1e-3);
+    findings.slope(solver, "order in dt of the distance from the closed form, 8x8, 40 sweeps",
+                   order.value, order.error, 2, 0.1);
+    findings.below(solver, "distance from the closed form at 1/256 s", "m", distance.back(), 1e-3);
   }
 }
 
-void two_edges(Ledger& ledger) {
-  if (!ledger.wants(kStatic)) return;
+void two_edges(Findings& findings) {
+  if (!findings.wants(kStatic)) return;
   const int n = 9;
   const double span = 0.8, l = 1.0 / (n - 1);
   Scene s = bare::sheet(n, n);
@@ -93,7 +94,7 @@ void two_edges(Ledger& ledger) {
   for (Vec3& x : s.start.x) x = Vec3(span * x.x(), 0, x.y());  // flat, gravity across
   s.gravity = {0, -kG, 0};
   const auto e = reference::static_equilibrium(s);
-  ledger.equal(kStatic, "has one answer, 9x9", "1", e.unique, 1, 0);
+  findings.equal(kStatic, "has one answer, 9x9", "1", e.unique, 1, 0);
   if (!e.unique) return;
   const auto row = reference::discrete_catenary(n - 1, span, l, 1);
   double worst = 0;
@@ -102,10 +103,11 @@ void two_edges(Ledger& ledger) {
       worst = std::max(worst, (e.x[to_index(s.mesh.grid->index(i, j))] -
                                Vec3(row.x[to_index(i)], row.y[to_index(i)], -j * l))
                                   .norm());
-  ledger.below(kStatic, "distance of every section from the discrete catenary", "m", worst, 1e-13);
+  findings.below(kStatic, "distance of every section from the discrete catenary", "m", worst,
+                 1e-13);
 }
 
-void top_edge(Ledger& ledger) {
+void top_edge(Findings& findings) {
   const int n = 8, rows = n + 1;
   const double g = 0.01;  // small, so that the square-root-free form is in its linear range
   for (const int k : {1, 4, 16})
@@ -113,7 +115,7 @@ void top_edge(Ledger& ledger) {
       Scene s = bare::sheet(6, rows, {}, Lumping::equal);
       for (int i = 0; i < 6; ++i) s.pins.push_back(i);
       s.gravity = {0, -g, 0};
-      if (!claims(ledger, solver, s)) continue;
+      if (!claims(findings, solver, s)) continue;
       Probe probe(s, solver);
       probe.step(4000 / k + 100);
       const auto exact = reference::steady_strain(
@@ -125,9 +127,9 @@ void top_edge(Ledger& ledger) {
                            probe.x(s.mesh.grid->index(i, j + 1)).y() - 1.0 / n;
           worst = std::max(worst, std::abs(e - exact[j]));
         }
-      ledger.below(solver, "relative distance of every column from the chain's recurrence", "1",
-                   worst / exact.maxCoeff(),
-                   solver.find("exact") != std::string::npos ? 1e-6 : 1e-3);
+      findings.below(solver, "relative distance of every column from the chain's recurrence", "1",
+                     worst / exact.maxCoeff(),
+                     solver.find("exact") != std::string::npos ? 1e-6 : 1e-3);
     }
 }
 
@@ -163,35 +165,35 @@ Scene square(const LinkChoice& links) {
   return s;
 }
 
-void flat_square(Ledger& ledger) {
+void flat_square(Findings& findings) {
   const Scene s = square({.shear = true});
   const std::function<std::string(int)> ours = [](int k) { return jakobsen(k); }, theirs = bullet;
   for (const auto& solver : {ours, theirs}) {
-    if (!claims(ledger, solver(8), s)) continue;
+    if (!claims(findings, solver(8), s)) continue;
     const SquareSlopes slopes = square_slopes(s, solver);
-    ledger.slope(solver(8), "slope in k of the RMS strain, 8 to 64 sweeps", slopes.strain.value,
-                 slopes.strain.error, -1, 0.1);
+    findings.slope(solver(8), "slope in k of the RMS strain, 8 to 64 sweeps", slopes.strain.value,
+                   slopes.strain.error, -1, 0.1);
     // Diagonals carry the middle of the upper edge, so that it sags with the strain itself; the
     // catalogue's k^-1/2 needs an edge that only its own tension carries.
-    ledger.slope(solver(8), "slope in k of the distance from the flat square",
-                 slopes.distance.value, slopes.distance.error, -1, 0.1);
-    ledger.slope(solver(8), "slope in k of the asymmetry at rest", slopes.asymmetry.value,
-                 slopes.asymmetry.error, -1, 0.25);
+    findings.slope(solver(8), "slope in k of the distance from the flat square",
+                   slopes.distance.value, slopes.distance.error, -1, 0.1);
+    findings.slope(solver(8), "slope in k of the asymmetry at rest", slopes.asymmetry.value,
+                   slopes.asymmetry.error, -1, 0.25);
   }
 }
 
-void locked_sheet(Ledger& ledger) {
-  if (!ledger.wants(kStatic)) return;
+void locked_sheet(Findings& findings) {
+  if (!findings.wants(kStatic)) return;
   const auto refused = [](const Scene& s) { return !reference::static_equilibrium(s).unique; };
-  ledger.equal(kStatic, "refuses structural + shear with D < width", "1",
-               refused(two_corners(8, 0.8, {.shear = true})), 1, 0);
-  ledger.equal(kStatic, "refuses bending links", "1", refused(two_corners(8, 0.8, {.bend = true})),
-               1, 0);
+  findings.equal(kStatic, "refuses structural + shear with D < width", "1",
+                 refused(two_corners(8, 0.8, {.shear = true})), 1, 0);
+  findings.equal(kStatic, "refuses bending links", "1",
+                 refused(two_corners(8, 0.8, {.bend = true})), 1, 0);
   Scene ball = two_corners(8, 0.8);
   ball.colliders.push_back({Ball{Vec3(0.5, -0.5, 0), 0.2}, {}, 0});
-  ledger.equal(kStatic, "refuses contact", "1", refused(ball), 1, 0);
-  ledger.equal(kStatic, "accepts the flat square, D = width", "1",
-               !refused(two_corners(8, 1, {.shear = true})), 1, 0);
+  findings.equal(kStatic, "refuses contact", "1", refused(ball), 1, 0);
+  findings.equal(kStatic, "accepts the flat square, D = width", "1",
+                 !refused(two_corners(8, 1, {.shear = true})), 1, 0);
 }
 
 /// Predicted and measured largest strain of a draped sheet at rest under one sweep at 3840 Hz.
@@ -227,7 +229,7 @@ SmallStrain small_strain_of(Scene s, const std::string& solver) {
   return result;
 }
 
-void small_strain(Ledger& ledger) {
+void small_strain(Findings& findings) {
   // One sweep: what link i is left with is what the links after it undo, e = dt^2 U f.
   Scene s = two_corners(20, 0.8);
   s.mesh.mass.assign(s.mesh.mass.size(), 0.2 / 400);
@@ -235,16 +237,16 @@ void small_strain(Ledger& ledger) {
   s.dt = 1.0 / 3840;
   s.damping = 12;
   const std::string solver = jakobsen(1);
-  if (!claims(ledger, solver, s)) return;
+  if (!claims(findings, solver, s)) return;
   const SmallStrain strain = small_strain_of(s, solver);
-  ledger.equal(solver, "largest predicted strain, 20x20, 3840 Hz, k = 1", "1", strain.predicted,
-               2.79e-3, 1e-5);
-  ledger.equal(solver, "largest measured strain", "1", strain.measured, 2.77e-3, 1e-5);
-  ledger.below(solver, "largest distance of a link from dt^2 U f, relative", "1",
-               strain.worst / strain.predicted, 0.02);
+  findings.equal(solver, "largest predicted strain, 20x20, 3840 Hz, k = 1", "1", strain.predicted,
+                 2.79e-3, 1e-5);
+  findings.equal(solver, "largest measured strain", "1", strain.measured, 2.77e-3, 1e-5);
+  findings.below(solver, "largest distance of a link from dt^2 U f, relative", "1",
+                 strain.worst / strain.predicted, 0.02);
 }
 
-void ball_drape(Ledger& ledger) {
+void ball_drape(Findings& findings) {
   const double radius = 0.5, l = 0.05;
   const Ball ball{Vec3(1, 2, 3), radius};
   // Two vertices on the ball, l apart, and a right triangle with legs l: its deepest point is the
@@ -255,15 +257,15 @@ void ball_drape(Ledger& ledger) {
     const Vec3 b = ball.center + radius * Vec3(-std::sin(half), std::cos(half), 0);
     return -surface(Shape(ball), (a + b) / 2).distance;
   };
-  ledger.equal("model:surface", "depth of an edge, R = 0.5, l = 0.05", "m", depth_of_middle(l),
-               0.6254e-3, 5e-8);
-  ledger.equal("model:surface", "the same against R - sqrt(R^2 - l^2/4)", "m", depth_of_middle(l),
-               radius - std::sqrt(radius * radius - l * l / 4), 1e-15);
-  ledger.equal("model:surface", "depth of a face, about l^2/(4R)", "m",
-               depth_of_middle(l * std::sqrt(2.0)), 1.2516e-3, 5e-8);
+  findings.equal("model:surface", "depth of an edge, R = 0.5, l = 0.05", "m", depth_of_middle(l),
+                 0.6254e-3, 5e-8);
+  findings.equal("model:surface", "the same against R - sqrt(R^2 - l^2/4)", "m", depth_of_middle(l),
+                 radius - std::sqrt(radius * radius - l * l / 4), 1e-15);
+  findings.equal("model:surface", "depth of a face, about l^2/(4R)", "m",
+                 depth_of_middle(l * std::sqrt(2.0)), 1.2516e-3, 5e-8);
 }
 
-void mirror_symmetry(Ledger& ledger) {
+void mirror_symmetry(Findings& findings) {
   const int n = 9;
   Scene s = two_corners(n, 1, {.shear = true, .bend = true});
   for (std::size_t i = 0; i < s.start.v.size(); ++i)  // a symmetric push out of the plane
@@ -282,18 +284,18 @@ void mirror_symmetry(Ledger& ledger) {
     return worst;
   };
   for (const char* method : {"method=jacobi-averaged", "method=jacobi-underrelaxed"})
-    if (const std::string solver = jakobsen(8, "exact", method); claims(ledger, solver, s))
-      ledger.below(solver, "asymmetry after 2 s", "m", asymmetry(solver), 1e-11);
-  if (const std::string springs = mass_spring("verlet", 0.1); claims(ledger, springs, s))
-    ledger.below(springs, "asymmetry after 2 s", "m", asymmetry(springs), 1e-11);
+    if (const std::string solver = jakobsen(8, "exact", method); claims(findings, solver, s))
+      findings.below(solver, "asymmetry after 2 s", "m", asymmetry(solver), 1e-11);
+  if (const std::string springs = mass_spring("verlet", 0.1); claims(findings, springs, s))
+    findings.below(springs, "asymmetry after 2 s", "m", asymmetry(springs), 1e-11);
   // Gauss-Seidel: at rest the asymmetry follows the residual (flat-square measures its slope). In
   // motion it does not: converged sweeps still pick one of many sets of redundant multipliers.
-  if (const std::string many = jakobsen(1024); claims(ledger, many, s))
-    ledger.equal(many, "in motion converged Gauss-Seidel stays asymmetric", "1",
-                 asymmetry(many) > 1e-4, 1, 0);
+  if (const std::string many = jakobsen(1024); claims(findings, many, s))
+    findings.equal(many, "in motion converged Gauss-Seidel stays asymmetric", "1",
+                   asymmetry(many) > 1e-4, 1, 0);
 }
 
-void centre_of_mass(Ledger& ledger) {
+void centre_of_mass(Findings& findings) {
   Scene s = bare::sheet(8, 8, {.shear = true, .bend = true});
   s.gravity = {0, -kG, 0};
   for (std::size_t i = 0; i < s.start.v.size(); ++i)
@@ -323,13 +325,13 @@ void centre_of_mass(Ledger& ledger) {
        {jakobsen(4), jakobsen(4, "sqrt-free"), jakobsen(4, "exact", "method=jacobi-underrelaxed"),
         jakobsen(4, "exact", "omega=1.3"), bullet(4), xpbd(1, "structural=0.1"),
         mass_spring("verlet", 0.1)})
-    if (claims(ledger, solver, s))
-      ledger.below(solver, "distance of the centre of mass from the parabola over 1 s", "m",
-                   gap(solver), 1e-11);
+    if (claims(findings, solver, s))
+      findings.below(solver, "distance of the centre of mass from the parabola over 1 s", "m",
+                     gap(solver), 1e-11);
   const std::string averaged = jakobsen(4, "exact", "method=jacobi-averaged");
-  if (claims(ledger, averaged, s))
-    ledger.equal(averaged, "averaging per particle does not conserve momentum", "1",
-                 gap(averaged) > 1e-6, 1, 0);
+  if (claims(findings, averaged, s))
+    findings.equal(averaged, "averaging per particle does not conserve momentum", "1",
+                   gap(averaged) > 1e-6, 1, 0);
 }
 
 }  // namespace

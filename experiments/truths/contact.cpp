@@ -20,31 +20,31 @@ Scene above_plane(double height, const Vec3& normal, double friction) {
   return s;
 }
 
-void plane_rest(Ledger& ledger) {
-  ledger.equal("closed form", "depth before projection at rest, 60 Hz", "m", kG / 3600, 2.725e-3,
-               5e-7);
+void plane_rest(Findings& findings) {
+  findings.equal("closed form", "depth before projection at rest, 60 Hz", "m", kG / 3600, 2.725e-3,
+                 5e-7);
   for (const std::string& solver :
        {jakobsen(3), jakobsen(3, "exact", "contact=before"), jakobsen(3, "exact", "contact=after"),
         jakobsen(3, "exact", "contact=discrete"), xpbd(1), bullet(3)}) {
     Scene s = above_plane(0, Vec3::UnitY(), 0);
     s.start.v = {Vec3(0, -1, 0), Vec3(0, -1, 0)};
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(2);
     const double speed = probe.v(0).norm();
     probe.step(254);
     const double hover = probe.x(0).y();
     if (solver.starts_with("bullet")) {
-      ledger.deviates(solver, "height at rest", "m", hover, 0, kG * s.dt * s.dt, 1e-5,
-                      "a contact is only seen at the predicted place, so it rests at + g dt^2");
+      findings.deviates(solver, "height at rest", "m", hover, 0, kG * s.dt * s.dt, 1e-5,
+                        "a contact is only seen at the predicted place, so it rests at + g dt^2");
       continue;
     }
-    ledger.below(solver, "speed two steps after the impact", "m/s", speed, 1e-12);
-    ledger.below(solver, "height at rest", "m", std::abs(hover), 1e-15);
+    findings.below(solver, "speed two steps after the impact", "m/s", speed, 1e-12);
+    findings.below(solver, "height at rest", "m", std::abs(hover), 1e-15);
   }
 }
 
-void incline(Ledger& ledger) {
+void incline(Findings& findings) {
   const double slope = 30 * kDegree, mu = 0.3;
   const Vec3 normal(std::sin(slope), std::cos(slope), 0);
   const Vec3 downhill(std::cos(slope), -std::sin(slope), 0);
@@ -52,7 +52,7 @@ void incline(Ledger& ledger) {
        {jakobsen(3), jakobsen(3, "exact", "contact=before"), jakobsen(3, "exact", "contact=after"),
         xpbd(1), with(bullet(3), "friction=refuse")}) {
     const Scene s = above_plane(0, normal, mu);
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     Probe probe(s, solver);
     double worst = 0;
     for (int n = 1; n <= 64; ++n) {
@@ -61,15 +61,15 @@ void incline(Ledger& ledger) {
           kG * (std::sin(slope) - mu * std::cos(slope)) * s.dt * s.dt * n * (n + 1) / 2;
       worst = std::max(worst, (probe.x(0) - expected * downhill).norm());
     }
-    ledger.below(solver, "distance from g (sin - mu cos) dt^2 n(n+1)/2, 30 deg, mu = 0.3", "m",
-                 worst, 1e-12);
+    findings.below(solver, "distance from g (sin - mu cos) dt^2 n(n+1)/2, 30 deg, mu = 0.3", "m",
+                   worst, 1e-12);
     for (const double factor : {0.99, 1.01}) {
       Probe edge(above_plane(0, normal, factor * std::tan(slope)), solver);
       edge.step(64);
       const bool moved = edge.x(0).norm() > 1e-9;
-      ledger.equal(solver,
-                   factor < 1 ? "slides at mu = 0.99 tan(slope)" : "sticks at mu = 1.01 tan(slope)",
-                   "1", moved == (factor < 1), 1, 0);
+      findings.equal(
+          solver, factor < 1 ? "slides at mu = 0.99 tan(slope)" : "sticks at mu = 1.01 tan(slope)",
+          "1", moved == (factor < 1), 1, 0);
     }
     // On the level: v falls by mu g dt a step, so the distance is v0^2/(2 mu g) to first order.
     Scene level = above_plane(0, Vec3::UnitY(), mu);
@@ -77,8 +77,8 @@ void incline(Ledger& ledger) {
     Probe skid(level, solver);
     skid.step(128);
     const double stopping = 4 / (2 * mu * kG);
-    ledger.equal(solver, "stopping distance from 2 m/s, v0^2/(2 mu g)", "m", skid.x(0).x(),
-                 stopping, 2 * level.dt);
+    findings.equal(solver, "stopping distance from 2 m/s, v0^2/(2 mu g)", "m", skid.x(0).x(),
+                   stopping, 2 * level.dt);
   }
 }
 
@@ -99,7 +99,7 @@ double missed(const std::string& solver, const Collider& collider, double travel
   return static_cast<double>(through) / count;
 }
 
-void tunnelling(Ledger& ledger) {
+void tunnelling(Findings& findings) {
   const double thickness = 0.02, travel = 0.05;
   const Collider plate{Box{Vec3::Zero(), Vec3(2, thickness / 2, 2)}, {}, 0};
   const Collider ball{Ball{Vec3::Zero(), thickness / 2}, {}, 0};
@@ -108,23 +108,23 @@ void tunnelling(Ledger& ledger) {
   s.colliders = {plate};
   for (const std::string& solver :
        {jakobsen(1, "exact", "contact=discrete"), jakobsen(1, "exact", "contact=after"), xpbd(1)}) {
-    if (!claims(ledger, solver, s)) continue;
-    ledger.equal(solver, "share that misses a plate of 0.4 travels, max(0, 1 - D/s)", "1",
-                 missed(solver, plate, travel), 1 - thickness / travel, 0.006);
-    ledger.equal(solver, "share that misses a ball of 2R = 0.4 s along its axis", "1",
-                 missed(solver, ball, travel), 1 - thickness / travel, 0.006);
-    ledger.below(solver, "share that misses a plate thicker than the travel", "1",
-                 missed(solver, thick, travel), 0);
+    if (!claims(findings, solver, s)) continue;
+    findings.equal(solver, "share that misses a plate of 0.4 travels, max(0, 1 - D/s)", "1",
+                   missed(solver, plate, travel), 1 - thickness / travel, 0.006);
+    findings.equal(solver, "share that misses a ball of 2R = 0.4 s along its axis", "1",
+                   missed(solver, ball, travel), 1 - thickness / travel, 0.006);
+    findings.below(solver, "share that misses a plate thicker than the travel", "1",
+                   missed(solver, thick, travel), 0);
   }
   const std::string continuous = jakobsen(1, "exact", "contact=continuous");
-  if (!claims(ledger, continuous, s)) return;
+  if (!claims(findings, continuous, s)) return;
   for (const auto& [what, collider] : {std::pair("plate", plate), std::pair("ball", ball)})
-    ledger.deviates(continuous, std::string("share that misses a ") + what + " of 0.4 travels", "1",
-                    missed(continuous, collider, travel), 1 - thickness / travel, 0, 0,
-                    "its contact tests the path, so that nothing is missed");
+    findings.deviates(continuous, std::string("share that misses a ") + what + " of 0.4 travels",
+                      "1", missed(continuous, collider, travel), 1 - thickness / travel, 0, 0,
+                      "its contact tests the path, so that nothing is missed");
 }
 
-void capstan(Ledger& ledger) {
+void capstan(Findings& findings) {
   const double mu = 0.3, wrap = std::numbers::pi;
   std::vector<double> links, errors;
   for (const int n : {8, 16, 32, 64, 128}) {
@@ -132,10 +132,10 @@ void capstan(Ledger& ledger) {
     errors.push_back(reference::capstan_ratio(mu, wrap, wrap / n) - std::exp(mu * wrap));
   }
   const Slope order = log_slope(links, errors);
-  ledger.slope("closed form", "order in the link angle of T2/T1 - exp(mu phi)", order.value,
-               order.error, 2, 0.02);
-  ledger.equal("closed form", "T2/T1 for half a turn at mu = 0.3, 128 links", "1",
-               reference::capstan_ratio(mu, wrap, wrap / 128), std::exp(mu * wrap), 2e-4);
+  findings.slope("closed form", "order in the link angle of T2/T1 - exp(mu phi)", order.value,
+                 order.error, 2, 0.02);
+  findings.equal("closed form", "T2/T1 for half a turn at mu = 0.3, 128 links", "1",
+                 reference::capstan_ratio(mu, wrap, wrap / 128), std::exp(mu * wrap), 2e-4);
   // Over a ball: a light rope of 24 links over its top, heavier at one end; held below the ratio.
   const int n = 24;
   const double radius = 0.5, angle = wrap / n, l = 2 * radius * std::sin(angle / 2);
@@ -160,11 +160,11 @@ void capstan(Ledger& ledger) {
   };
   const std::string solver = jakobsen(100);
   Scene rough = above_plane(1, Vec3::UnitY(), mu);
-  if (!claims(ledger, solver, rough)) return;
+  if (!claims(findings, solver, rough)) return;
   const double ratio = reference::capstan_ratio(mu, wrap, angle);
   const double held = slip(solver, 0.6 * ratio), slid = slip(solver, 1.6 * ratio);
-  ledger.equal(solver, "the rope slides ten times further at 1.6 of the ratio than at 0.6", "1",
-               slid > 10 * held, 1, 0);
+  findings.equal(solver, "the rope slides ten times further at 1.6 of the ratio than at 0.6", "1",
+                 slid > 10 * held, 1, 0);
 }
 
 }  // namespace

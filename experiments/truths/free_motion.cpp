@@ -26,12 +26,12 @@ std::vector<std::string> verlet_like() {
           mass_spring("symplectic-euler", 1)};
 }
 
-void free_fall(Ledger& ledger) {
+void free_fall(Findings& findings) {
   const auto check = [&](const std::string& solver, const char* quantity, double offset,
                          const Vec3& correction) {
     Scene s = thrown();
     for (Vec3& v : s.start.v) v += correction;
-    if (!claims(ledger, solver, s)) return;
+    if (!claims(findings, solver, s)) return;
     Probe probe(s, solver);
     double worst = 0;
     for (int n = 1; n <= 64; ++n) {
@@ -40,7 +40,7 @@ void free_fall(Ledger& ledger) {
       const Vec3 expected = kThrow * t + kGravity * (t * t / 2 + offset * t * s.dt / 2);
       worst = std::max(worst, (probe.x(0) - expected).norm());
     }
-    ledger.below(solver, quantity, "m", worst, 1e-12);
+    findings.below(solver, quantity, "m", worst, 1e-12);
   };
   for (const std::string& solver : verlet_like()) {
     check(solver, "distance from v0 t + g t^2/2 + g t dt/2 over 1 s", 1, Vec3::Zero());
@@ -51,36 +51,36 @@ void free_fall(Ledger& ledger) {
         Vec3::Zero());
   const std::string in_float = "jakobsen:substeps=1,order=mesh,precision=float";
   Scene s = thrown();
-  if (!claims(ledger, in_float, s)) return;
+  if (!claims(findings, in_float, s)) return;
   Probe probe(s, in_float);
   probe.step(64);
-  ledger.below(in_float, "distance from v0 t + g t^2/2 + g t dt/2 at 1 s", "m",
-               (probe.x(0) - (kThrow + kGravity * (0.5 + 1.0 / 128))).norm(), 1e-4);
+  findings.below(in_float, "distance from v0 t + g t^2/2 + g t dt/2 at 1 s", "m",
+                 (probe.x(0) - (kThrow + kGravity * (0.5 + 1.0 / 128))).norm(), 1e-4);
 }
 
 /// In float, x + (x - x') is a whole number of units in the last place of x, so that every step
 /// adds gravity's g dt^2 rounded to such units: not noise, but another gravity in each binade.
-void float_gravity(Ledger& ledger) {
+void float_gravity(Findings& findings) {
   const std::string solver = "jakobsen:substeps=1,order=mesh,precision=float";
   Scene s = bare::scene({Vec3(0, -4.5, 0), Vec3(1, -4.5, 0)}, {1, 1}, {});
   s.gravity = kGravity;
   s.dt = 1.0 / 1024;
-  if (!claims(ledger, solver, s)) return;
+  if (!claims(findings, solver, s)) return;
   const int n = 800;
   Probe probe(s, solver);
   probe.step(n);
   const double unit = 0x1p-21;  // of coordinates from 4 m to 8 m
   const double step = kG * s.dt * s.dt, fallen = n * (n + 1) / 2.0;
-  ledger.deviates(solver, "way fallen in 800 steps of 1/1024 s from 4.5 m off the origin", "m",
-                  -4.5 - probe.x(0).y(), fallen * step, fallen * std::round(step / unit) * unit,
-                  1e-12, "g dt^2 = 19.6 units in the last place of the coordinates counts as 20");
+  findings.deviates(solver, "way fallen in 800 steps of 1/1024 s from 4.5 m off the origin", "m",
+                    -4.5 - probe.x(0).y(), fallen * step, fallen * std::round(step / unit) * unit,
+                    1e-12, "g dt^2 = 19.6 units in the last place of the coordinates counts as 20");
 }
 
-void damping(Ledger& ledger) {
+void damping(Findings& findings) {
   for (const std::string& solver : verlet_like()) {
     Scene s = thrown();
     s.damping = 3;
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     const double q = std::exp(-s.damping * s.dt);
     Probe probe(s, solver);
     double worst = 0;
@@ -92,11 +92,11 @@ void damping(Ledger& ledger) {
       worst = std::max(worst, (probe.x(0) - expected).norm());
     }
     const bool is_bullet = solver.starts_with("bullet");
-    ledger.below(solver, "distance from the closed form of x + q (x - x') + g dt^2 over 1 s", "m",
-                 worst, is_bullet ? 1e-9 : 1e-12);
+    findings.below(solver, "distance from the closed form of x + q (x - x') + g dt^2 over 1 s", "m",
+                   worst, is_bullet ? 1e-9 : 1e-12);
     probe.step(64 * 14);
-    ledger.equal(solver, "terminal speed g dt/(1 - q)", "m/s", -probe.v(0).y(), kG * s.dt / (1 - q),
-                 1e-9);
+    findings.equal(solver, "terminal speed g dt/(1 - q)", "m/s", -probe.v(0).y(),
+                   kG * s.dt / (1 - q), 1e-9);
   }
 }
 
@@ -111,11 +111,11 @@ Scene face(double strength, Wind::Law law) {
 
 constexpr double kArea = 0.25, kMass = 0.3;
 
-void wind_on_a_face(Ledger& ledger) {
+void wind_on_a_face(Findings& findings) {
   for (const std::string& solver : verlet_like()) {
     const double c = 8;
     const Scene s = face(c, Wind::Law::relative);
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     const double rate = c * kArea * s.dt / kMass, terminal = kMass * kG / (c * kArea);
     Probe probe(s, solver);
     double worst = 0;
@@ -124,9 +124,9 @@ void wind_on_a_face(Ledger& ledger) {
       const double speed = terminal * (1 - std::pow(1 - rate, n));
       for (int i = 0; i < 3; ++i) worst = std::max(worst, (probe.v(i) - Vec3(0, -speed, 0)).norm());
     }
-    ledger.below(solver, "distance from (m g/cA)(1 - (1 - cA dt/m)^n)", "m/s", worst, 1e-11);
+    findings.below(solver, "distance from (m g/cA)(1 - (1 - cA dt/m)^n)", "m/s", worst, 1e-11);
     probe.step(1000);
-    ledger.equal(solver, "terminal speed m g/(cA)", "m/s", -probe.v(0).y(), terminal, 1e-11);
+    findings.equal(solver, "terminal speed m g/(cA)", "m/s", -probe.v(0).y(), terminal, 1e-11);
 
     // Stable while cA dt/m < 2: the factor 1 - rate per step is measured on both sides.
     double factors[2];
@@ -140,22 +140,22 @@ void wind_on_a_face(Ledger& ledger) {
       fast.step();
       factors[above] = std::abs(fast.v(0).y() / first);
     }
-    ledger.equal(solver, "growth per step at cA dt/m = 1.999", "1", factors[0], 0.999, 1e-9);
-    ledger.equal(solver, "growth per step at cA dt/m = 2.001", "1", factors[1], 1.001, 1e-9);
+    findings.equal(solver, "growth per step at cA dt/m = 1.999", "1", factors[0], 0.999, 1e-9);
+    findings.equal(solver, "growth per step at cA dt/m = 2.001", "1", factors[1], 1.001, 1e-9);
   }
 }
 
-void literal_wind(Ledger& ledger) {
+void literal_wind(Findings& findings) {
   for (const std::string& solver : verlet_like()) {
     Scene s = face(0.4, Wind::Law::literal);
     s.wind->velocity = Vec3(0, 2, 1);
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(640);
     // c (n . d) n A/m upwards, whatever the speed
     const double a = 0.4 * 2 * kArea / kMass - kG;
-    ledger.equal(solver, "speed after 10 s: no terminal speed", "m/s", probe.v(0).y(), 10 * a,
-                 1e-9);
+    findings.equal(solver, "speed after 10 s: no terminal speed", "m/s", probe.v(0).y(), 10 * a,
+                   1e-9);
   }
 }
 
@@ -180,17 +180,17 @@ Scene strip(double wind_speed, double strength, double area_density) {
   return s;
 }
 
-void wind_tilt(Ledger& ledger) {
+void wind_tilt(Findings& findings) {
   const double speed = 4, c = 0.25, density = 0.1;  // c U = 1 N/m^2 against 0.981 N/m^2
   const double expected = std::atan(c * speed / (density * kG)) * 180 / std::numbers::pi;
-  ledger.equal("closed form", "tilt where the wind weighs 1/0.981 of the cloth", "deg", expected,
-               45.5495, 5e-5);
+  findings.equal("closed form", "tilt where the wind weighs 1/0.981 of the cloth", "deg", expected,
+                 45.5495, 5e-5);
   const auto check = [&](const std::string& solver) {
     const Scene s = strip(speed, c, density);
-    if (!claims(ledger, solver, s)) return;
+    if (!claims(findings, solver, s)) return;
     Probe probe(s, solver);
     if (!settle(probe, 1e-9, 64, 64 * 100)) {
-      ledger.equal(solver, "comes to rest", "1", 0, 1, 0);
+      findings.equal(solver, "comes to rest", "1", 0, 1, 0);
       return;
     }
     double flattest = 1e300, steepest = 0;
@@ -202,8 +202,8 @@ void wind_tilt(Ledger& ledger) {
       }
     // Stretched faces catch more wind: strain e adds e cos(tilt) sin(tilt) rad.
     const double slack = 1e-6 + max_strain(s, probe.state()) * 90 / std::numbers::pi;
-    ledger.equal(solver, "smallest tilt of a row", "deg", flattest, expected, slack);
-    ledger.equal(solver, "largest tilt of a row", "deg", steepest, expected, slack);
+    findings.equal(solver, "smallest tilt of a row", "deg", flattest, expected, slack);
+    findings.equal(solver, "largest tilt of a row", "deg", steepest, expected, slack);
   };
   check(jakobsen(400));
   check(jakobsen(400, "sqrt-free"));

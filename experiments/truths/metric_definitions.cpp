@@ -45,7 +45,7 @@ State still(std::vector<Vec3> x) {
   return {std::move(x), std::vector<Vec3>(n, Vec3::Zero())};
 }
 
-void stretch(Ledger& ledger) {
+void stretch(Findings& findings) {
   const Scene s = sheet();
   std::vector<Vec3> wide = s.mesh.rest, narrow = s.mesh.rest;
   for (Vec3& x : wide) x *= 1.1;
@@ -53,17 +53,17 @@ void stretch(Ledger& ledger) {
   const auto stretched = measure("stretch", s, {still(wide), still(wide)});
   for (const char* name : {"stretch.rms", "stretch.max", "stretch.p95", "stretch.peak",
                            "structural.rms", "shear.max", "bend.rms"})
-    ledger.equal("metric:stretch", std::string(name) + " of a sheet 10 % too large", "1",
-                 value(stretched, name), 0.1, 1e-14);
+    findings.equal("metric:stretch", std::string(name) + " of a sheet 10 % too large", "1",
+                   value(stretched, name), 0.1, 1e-14);
   const auto pressed = measure("stretch", s, {still(narrow), still(narrow)});
-  ledger.equal("metric:stretch", "compression.max of a sheet 20 % too small", "1",
-               value(pressed, "compression.max"), 0.2, 1e-14);
+  findings.equal("metric:stretch", "compression.max of a sheet 20 % too small", "1",
+                 value(pressed, "compression.max"), 0.2, 1e-14);
   const auto area = measure("area", s, {still(wide), still(wide)});
-  ledger.equal("metric:area", "area.rms of a sheet 10 % too large", "1", value(area, "area.rms"),
-               0.21, 1e-13);
+  findings.equal("metric:area", "area.rms of a sheet 10 % too large", "1", value(area, "area.rms"),
+                 0.21, 1e-13);
 }
 
-void energy(Ledger& ledger) {
+void energy(Findings& findings) {
   Scene s = sheet();
   s.steps = 128;
   std::vector<State> falling;
@@ -75,40 +75,40 @@ void energy(Ledger& ledger) {
     falling.push_back(state);
   }
   const auto values = measure("energy", s, falling);
-  ledger.below("metric:energy", "energy of a body in free fall, per m g L", "1",
-               std::abs(value(values, "energy.mean")), 1e-13);
+  findings.below("metric:energy", "energy of a body in free fall, per m g L", "1",
+                 std::abs(value(values, "energy.mean")), 1e-13);
   // mean of (g t)^2/2 over the last second, in m g L with L = sqrt(2)
   double kinetic = 0;
   int count = 0;
   for (int n = 65; n <= 128; ++n, ++count) kinetic += std::pow(kG * n * s.dt, 2) / 2;
-  ledger.equal("metric:energy", "its kinetic part over the last second", "1",
-               value(values, "energy.kinetic"), kinetic / count / (kG * std::sqrt(2.0)), 1e-9);
+  findings.equal("metric:energy", "its kinetic part over the last second", "1",
+                 value(values, "energy.kinetic"), kinetic / count / (kG * std::sqrt(2.0)), 1e-9);
 }
 
-void motion(Ledger& ledger) {
+void motion(Findings& findings) {
   const Scene s = sheet();
   State steady = s.start;
   for (Vec3& v : steady.v) v = Vec3(0.3, 0, 0.4);
   const auto jitter = measure("jitter", s, {steady, steady, steady});
-  ledger.equal("metric:jitter", "jitter.rms of a sheet at 0.5 m/s", "m/s",
-               value(jitter, "jitter.rms"), 0.5, 1e-14);
+  findings.equal("metric:jitter", "jitter.rms of a sheet at 0.5 m/s", "m/s",
+                 value(jitter, "jitter.rms"), 0.5, 1e-14);
   std::vector<State> jump(4, s.start);
   for (Vec3& x : jump[2].x) x.z() += 0.01;  // out and back within a step
   const auto popping = measure("popping", s, jump);
-  ledger.equal("metric:popping", "popping.peak of a jump by 1 cm and back", "m/s^2",
-               value(popping, "popping.peak"), 0.02 / s.dt / s.dt - kG, 1e-9);
+  findings.equal("metric:popping", "popping.peak of a jump by 1 cm and back", "m/s^2",
+                 value(popping, "popping.peak"), 0.02 / s.dt / s.dt - kG, 1e-9);
   std::vector<State> moved(2, s.start);
   for (Vec3& x : moved[1].x) x += Vec3(3, 0, 4);
-  ledger.equal("metric:drift", "drift.max of a sheet moved by 5 m", "m",
-               value(measure("drift", s, moved), "drift.max"), 5, 1e-13);
+  findings.equal("metric:drift", "drift.max of a sheet moved by 5 m", "m",
+                 value(measure("drift", s, moved), "drift.max"), 5, 1e-13);
   std::vector<State> slows(65, s.start);
   for (std::size_t n = 0; n < 32; ++n)
     for (Vec3& v : slows[n].v) v.x() = 1;
-  ledger.equal("metric:settle", "settle.time of a sheet that stops after step 31", "s",
-               value(measure("settle", s, slows), "settle.time"), 31 * s.dt, 1e-14);
+  findings.equal("metric:settle", "settle.time of a sheet that stops after step 31", "s",
+                 value(measure("settle", s, slows), "settle.time"), 31 * s.dt, 1e-14);
 }
 
-void penetration(Ledger& ledger) {
+void penetration(Findings& findings) {
   Scene s = bare::scene({Vec3(0, 0.47, 0), Vec3(0, 2, 0)}, {1, 1}, {});
   s.gravity = {0, -kG, 0};
   const auto depth = [&](const Shape& shape) {
@@ -116,16 +116,16 @@ void penetration(Ledger& ledger) {
     with_shape.colliders.push_back({shape, {}, 0});
     return value(measure("penetration", with_shape, {s.start, s.start}), "penetration.max");
   };
-  ledger.equal("metric:penetration", "depth of a vertex 3 cm inside a ball", "m",
-               depth(Ball{Vec3::Zero(), 0.5}), 0.03, 1e-14);
-  ledger.equal("metric:penetration", "3 cm below a plane", "m", depth(Plane{Vec3::UnitY(), 0.5}),
-               0.03, 1e-14);
-  ledger.equal("metric:penetration", "3 cm inside a box", "m",
-               depth(Box{Vec3::Zero(), Vec3(1, 0.5, 1)}), 0.03, 1e-14);
-  ledger.below("metric:penetration", "none outside", "m", depth(Ball{Vec3(0, -1, 0), 0.5}), 0);
+  findings.equal("metric:penetration", "depth of a vertex 3 cm inside a ball", "m",
+                 depth(Ball{Vec3::Zero(), 0.5}), 0.03, 1e-14);
+  findings.equal("metric:penetration", "3 cm below a plane", "m", depth(Plane{Vec3::UnitY(), 0.5}),
+                 0.03, 1e-14);
+  findings.equal("metric:penetration", "3 cm inside a box", "m",
+                 depth(Box{Vec3::Zero(), Vec3(1, 0.5, 1)}), 0.03, 1e-14);
+  findings.below("metric:penetration", "none outside", "m", depth(Ball{Vec3(0, -1, 0), 0.5}), 0);
 }
 
-void face_geometry(Ledger& ledger) {
+void face_geometry(Findings& findings) {
   // A right triangle with legs l and its corners on a ball of radius R.
   const double radius = 0.5, l = 0.05, half = l / std::sqrt(2.0);
   const double height = std::sqrt(radius * radius - half * half);
@@ -135,25 +135,25 @@ void face_geometry(Ledger& ledger) {
   s.gravity = {0, -kG, 0};
   s.colliders.push_back({Ball{Vec3::Zero(), radius}, {}, 0});
   const auto values = measure("faces", s, {s.start, s.start});
-  ledger.equal("metric:faces", "face.max of a face with its corners on a ball", "m",
-               value(values, "face.max"), 1.2516e-3, 5e-8);
-  ledger.equal("metric:faces", "face.geometry of the same face", "m",
-               value(values, "face.geometry"), radius - height, 1e-12);
-  ledger.below("metric:faces", "face.excess of the same face", "m",
-               std::abs(value(values, "face.excess")), 1e-12);
+  findings.equal("metric:faces", "face.max of a face with its corners on a ball", "m",
+                 value(values, "face.max"), 1.2516e-3, 5e-8);
+  findings.equal("metric:faces", "face.geometry of the same face", "m",
+                 value(values, "face.geometry"), radius - height, 1e-12);
+  findings.below("metric:faces", "face.excess of the same face", "m",
+                 std::abs(value(values, "face.excess")), 1e-12);
 }
 
-void passing_through(Ledger& ledger) {
+void passing_through(Findings& findings) {
   Scene s = bare::scene({Vec3(0, 1, 0), Vec3(3, 1, 0)}, {1, 1}, {});
   s.gravity = {0, -kG, 0};
   s.colliders.push_back({Ball{Vec3::Zero(), 0.3}, {}, 0});
   std::vector<State> states(2, s.start);
   for (Vec3& x : states[1].x) x.y() = -1;  // one through the middle, one past it
-  ledger.equal("metric:tunnelling", "tunnelling.count of one vertex through and one past", "1",
-               value(measure("tunnelling", s, states), "tunnelling.count"), 1, 0);
+  findings.equal("metric:tunnelling", "tunnelling.count of one vertex through and one past", "1",
+                 value(measure("tunnelling", s, states), "tunnelling.count"), 1, 0);
 }
 
-void crossing_faces(Ledger& ledger) {
+void crossing_faces(Findings& findings) {
   Scene s = bare::scene({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.2, 0.2, -1),
                          Vec3(0.2, 0.2, 1), Vec3(-1, -1, 3)},
                         std::vector<double>(6, 1.0), {});
@@ -163,10 +163,10 @@ void crossing_faces(Ledger& ledger) {
   State apart = s.start;
   for (const std::size_t i : {3u, 4u, 5u}) apart.x[i].z() += 10;
   const auto clear = measure("self_intersection", s, {apart, apart});
-  ledger.equal("metric:self_intersection", "self.crossings of two crossing faces", "1",
-               value(crossing, "self.crossings"), 1, 0);
-  ledger.equal("metric:self_intersection", "of two faces apart", "1",
-               value(clear, "self.crossings"), 0, 0);
+  findings.equal("metric:self_intersection", "self.crossings of two crossing faces", "1",
+                 value(crossing, "self.crossings"), 1, 0);
+  findings.equal("metric:self_intersection", "of two faces apart", "1",
+                 value(clear, "self.crossings"), 0, 0);
 }
 
 }  // namespace

@@ -41,33 +41,34 @@ double worst_over_strains(const F& error) {
   return worst;
 }
 
-void exact_form(Ledger& ledger) {
+void exact_form(Findings& findings) {
   const auto check = [&](const std::string& solver, double tolerance) {
-    if (!claims(ledger, solver, bare::pair(1, 1))) return;
-    ledger.below(solver, "strain left by one projection, -90 % to +2000 %", "1",
-                 worst_over_strains([&](double e) { return projected(solver, e); }), tolerance);
+    if (!claims(findings, solver, bare::pair(1, 1))) return;
+    findings.below(solver, "strain left by one projection, -90 % to +2000 %", "1",
+                   worst_over_strains([&](double e) { return projected(solver, e); }), tolerance);
   };
   check(jakobsen(1), 32 * kEpsilon);
   check(in_float("exact"), 32 * kFloatEpsilon);
   check(xpbd(1), 32 * kEpsilon);
 }
 
-void sqrt_free_form(Ledger& ledger) {
+void sqrt_free_form(Findings& findings) {
   const auto check = [&](const std::string& solver, double tolerance) {
-    if (!claims(ledger, solver, bare::pair(1, 1))) return;
-    ledger.below(solver, "distance from -e^2/(2 + 2e + e^2), -90 % to +2000 %", "1",
-                 worst_over_strains([&](double e) { return projected(solver, e) - sqrt_free(e); }),
-                 tolerance);
+    if (!claims(findings, solver, bare::pair(1, 1))) return;
+    findings.below(
+        solver, "distance from -e^2/(2 + 2e + e^2), -90 % to +2000 %", "1",
+        worst_over_strains([&](double e) { return projected(solver, e) - sqrt_free(e); }),
+        tolerance);
   };
   check(jakobsen(1, "sqrt-free"), 32 * kEpsilon);
   check(in_float("sqrt-free"), 32 * kFloatEpsilon);
   check(bullet(1), 32 * kEpsilon);
 }
 
-void repeated_sqrt_free(Ledger& ledger) {
+void repeated_sqrt_free(Findings& findings) {
   for (const bool is_bullet : {false, true}) {
     const auto solver = [&](int n) { return is_bullet ? bullet(n) : jakobsen(n, "sqrt-free"); };
-    if (!claims(ledger, solver(4), bare::pair(1, 1))) continue;
+    if (!claims(findings, solver(4), bare::pair(1, 1))) continue;
     double worst = 0;
     for (int n = 1; n <= 5; ++n)
       for (const double e : {-0.5, 0.1, 0.5, 1.0, 4.0}) {
@@ -75,29 +76,29 @@ void repeated_sqrt_free(Ledger& ledger) {
         const double expected = std::tanh(std::ldexp(u0, n)) - 1;
         worst = std::max(worst, std::abs(projected(solver(n), e) - expected));
       }
-    ledger.below(solver(4), "distance from tanh(2^n u0) - 1, n = 1 to 5", "1", worst, 1e-14);
+    findings.below(solver(4), "distance from tanh(2^n u0) - 1, n = 1 to 5", "1", worst, 1e-14);
   }
 }
 
-void relative_correction(Ledger& ledger) {
+void relative_correction(Findings& findings) {
   const std::string exact = jakobsen(1), approximate = jakobsen(1, "sqrt-free");
-  if (!claims(ledger, exact, bare::pair(1, 1))) return;
-  ledger.below(exact, "sqrt-free / exact correction against 1 + e/(2 + 2e + e^2)", "1",
-               worst_over_strains([&](double e) {
-                 const double ratio = (e - projected(approximate, e)) / (e - projected(exact, e));
-                 return ratio - (1 + e / (2 + 2 * e + e * e));
-               }),
-               1e-12);  // at e = 1e-3 the strains carry three digits less
+  if (!claims(findings, exact, bare::pair(1, 1))) return;
+  findings.below(exact, "sqrt-free / exact correction against 1 + e/(2 + 2e + e^2)", "1",
+                 worst_over_strains([&](double e) {
+                   const double ratio = (e - projected(approximate, e)) / (e - projected(exact, e));
+                   return ratio - (1 + e / (2 + 2 * e + e * e));
+                 }),
+                 1e-12);  // at e = 1e-3 the strains carry three digits less
 }
 
-void far_overshoot(Ledger& ledger) {
+void far_overshoot(Findings& findings) {
   for (const std::string& solver : {jakobsen(1, "sqrt-free"), bullet(1)})
-    if (claims(ledger, solver, bare::pair(1, 1)))
-      ledger.equal(solver, "length after one projection from five rest lengths", "r",
-                   1 + projected(solver, 4), 5.0 / 13, 1e-15);
+    if (claims(findings, solver, bare::pair(1, 1)))
+      findings.equal(solver, "length after one projection from five rest lengths", "r",
+                     1 + projected(solver, 4), 5.0 / 13, 1e-15);
 }
 
-void wrong_signs(Ledger& ledger) {
+void wrong_signs(Findings& findings) {
   const char* const flipped = "printed listing, opposite sign";
   const char* const literal = "printed listing, diff = (d - r)/d";
   double worst_flipped = 0, worst_literal = 0, least_growth = 1e300;
@@ -109,11 +110,11 @@ void wrong_signs(Ledger& ledger) {
     worst_literal = std::max(worst_literal, std::abs(l - (e + e * e * (2 + e) / (2 * s))));
     if (e > 0) least_growth = std::min(least_growth, f / e);
   }
-  ledger.below(flipped, "distance from (4e + 5e^2 + 2e^3)/(2 + 2e + e^2)", "1", worst_flipped,
-               1e-14);
-  ledger.below(literal, "distance from e + e^2 (2 + e)/(2 (2 + 2e + e^2)) = e + e^2/2 + ...", "1",
-               worst_literal, 1e-14);
-  ledger.equal(flipped, "least growth of a stretch per pass", "1", least_growth, 2, 0.01);
+  findings.below(flipped, "distance from (4e + 5e^2 + 2e^3)/(2 + 2e + e^2)", "1", worst_flipped,
+                 1e-14);
+  findings.below(literal, "distance from e + e^2 (2 + e)/(2 (2 + 2e + e^2)) = e + e^2/2 + ...", "1",
+                 worst_literal, 1e-14);
+  findings.equal(flipped, "least growth of a stretch per pass", "1", least_growth, 2, 0.01);
   // Where the corrected form leaves nothing of a stretch of 1 % after three passes, both grow.
   double corrected = 0.01, a = 0.01, b = 0.01;
   for (int pass = 0; pass < 10; ++pass) {
@@ -121,16 +122,17 @@ void wrong_signs(Ledger& ledger) {
     a = printed_strain(PrintedReading::opposite_sign, a);
     b = printed_strain(PrintedReading::literal, b);
   }
-  ledger.below("corrected form", "strain of 1 % after ten passes", "1", std::abs(corrected), 1e-15);
-  ledger.equal(flipped, "diverges: strain of 1 % after ten passes exceeds", "1", a > 10, 1, 0);
-  ledger.equal(literal, "diverges: strain of 1 % after ten passes exceeds 1 %", "1", b > 0.01, 1,
-               0);
+  findings.below("corrected form", "strain of 1 % after ten passes", "1", std::abs(corrected),
+                 1e-15);
+  findings.equal(flipped, "diverges: strain of 1 % after ten passes exceeds", "1", a > 10, 1, 0);
+  findings.equal(literal, "diverges: strain of 1 % after ten passes exceeds 1 %", "1", b > 0.01, 1,
+                 0);
 }
 
-void mass_weighted(Ledger& ledger) {
+void mass_weighted(Findings& findings) {
   // Each end moves by its share of the inverse masses; the centre of mass stays.
   for (const std::string& solver : {bullet(1), jakobsen(1, "sqrt-free"), jakobsen(1), xpbd(1)}) {
-    if (!claims(ledger, solver, bare::pair(1, 1))) continue;
+    if (!claims(findings, solver, bare::pair(1, 1))) continue;
     double worst = 0;
     for (const double ratio : {1.0, 3.0, 100.0})
       for (const double e : kStrains) {
@@ -139,15 +141,16 @@ void mass_weighted(Ledger& ledger) {
         probe.step();
         worst = std::max(worst, (probe.x(0) + ratio * probe.x(1) - start).norm() / (1 + ratio));
       }
-    ledger.below(solver, "motion of the centre of mass, mass ratios 1, 3, 100", "m", worst, 1e-14);
+    findings.below(solver, "motion of the centre of mass, mass ratios 1, 3, 100", "m", worst,
+                   1e-14);
   }
   const std::string twin = jakobsen(1, "sqrt-free");
-  if (!claims(ledger, bullet(1), bare::pair(1, 1))) return;
-  ledger.below(bullet(1), "distance from our square-root-free projection", "1",
-               worst_over_strains([&](double e) {
-                 return projected(bullet(1), e, 1, 3) - projected(twin, e, 1, 3);
-               }),
-               32 * kEpsilon);
+  if (!claims(findings, bullet(1), bare::pair(1, 1))) return;
+  findings.below(bullet(1), "distance from our square-root-free projection", "1",
+                 worst_over_strains([&](double e) {
+                   return projected(bullet(1), e, 1, 3) - projected(twin, e, 1, 3);
+                 }),
+                 32 * kEpsilon);
 }
 
 }  // namespace

@@ -21,12 +21,12 @@ Scene oscillator(double dt, double out) {
 
 double displacement(const Probe& probe) { return -probe.x(1).y() - 1; }
 
-void hooke_oscillator(Ledger& ledger) {
+void hooke_oscillator(Findings& findings) {
   for (const char* integrator : {"verlet", "symplectic-euler"}) {
     const std::string solver = mass_spring(integrator, kStiffness);
     const double dt = 1.0 / 64, x0 = 0.1;
     Scene s = oscillator(dt, x0);
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     // Start on the branch x_n = x0 cos(n W dt): v0 = (x_0 - x_-1)/dt.
     const double phase = 2 * std::asin(kOmega * dt / 2);
     s.start.v[1].y() = -(x0 - x0 * std::cos(phase)) / dt;
@@ -40,10 +40,10 @@ void hooke_oscillator(Ledger& ledger) {
       least = std::min(least, energy), most = std::max(most, energy);
       before = x;
     }
-    ledger.below(solver, "distance from x0 cos(n W dt), sin(W dt/2) = w dt/2, 1000 steps", "m",
-                 worst, 1e-11);
-    ledger.below(solver, "drift of ((x'-x)/dt)^2/2 + w^2 x x'/2 over 1000 steps, relative", "1",
-                 (most - least) / most, 1e-11);
+    findings.below(solver, "distance from x0 cos(n W dt), sin(W dt/2) = w dt/2, 1000 steps", "m",
+                   worst, 1e-11);
+    findings.below(solver, "drift of ((x'-x)/dt)^2/2 + w^2 x x'/2 over 1000 steps, relative", "1",
+                   (most - least) / most, 1e-11);
     std::vector<double> steps, errors;
     for (int r = 5; r <= 9; ++r) {
       const double h = std::ldexp(1, -r);
@@ -55,7 +55,7 @@ void hooke_oscillator(Ledger& ledger) {
     }
     const Slope order =
         log_slope({steps.begin() + 1, steps.end()}, {errors.begin() + 1, errors.end()});
-    ledger.slope(solver, "order in dt of the frequency", order.value, order.error, 2, 0.02);
+    findings.slope(solver, "order in dt of the frequency", order.value, order.error, 2, 0.02);
   }
 }
 
@@ -68,7 +68,7 @@ double multiplier(const std::string& solver, double dt) {
   return displacement(probe) / before;
 }
 
-void spring_step_limit(Ledger& ledger) {
+void spring_step_limit(Findings& findings) {
   // Without drag the limit is where the roots leave the unit circle, at trace = -2.
   const auto undamped = [&](const std::string& solver) {
     const double limit = sign_change(1.9 / kOmega, 2.1 / kOmega, 1e-9, [&](double dt) {
@@ -77,35 +77,35 @@ void spring_step_limit(Ledger& ledger) {
       for (int n = 0; n < 8; ++n) probe.step(), y.push_back(displacement(probe));
       return two_term_recurrence(y)[0] + 2;
     });
-    ledger.equal(solver, "largest stable dt w/2", "1", limit * kOmega / 2, 1, 1e-6);
+    findings.equal(solver, "largest stable dt w/2", "1", limit * kOmega / 2, 1, 1e-6);
   };
   for (const char* integrator : {"verlet", "symplectic-euler"})
     if (const std::string solver = mass_spring(integrator, kStiffness);
-        claims(ledger, solver, oscillator(1.0 / 64, 0)))
+        claims(findings, solver, oscillator(1.0 / 64, 0)))
       undamped(solver);
   // With drag one root reaches -1 alone.
   const double zeta = 0.5, drag = 2 * zeta * kOmega * kSpringMass;
   const double shrunk = std::sqrt(1 + zeta * zeta) - zeta;
   const auto damped = [&](const std::string& solver, double expected) {
-    if (!claims(ledger, solver, oscillator(1.0 / 64, 0))) return;
+    if (!claims(findings, solver, oscillator(1.0 / 64, 0))) return;
     const double limit = sign_change(0.9 * expected * 2 / kOmega, 1.1 * expected * 2 / kOmega,
                                      1e-10, [&](double dt) { return multiplier(solver, dt) + 1; });
-    ledger.equal(solver, "largest stable dt w/2 with damping ratio 0.5", "1", limit * kOmega / 2,
-                 expected, 1e-6);
+    findings.equal(solver, "largest stable dt w/2 with damping ratio 0.5", "1", limit * kOmega / 2,
+                   expected, 1e-6);
   };
   damped(mass_spring("symplectic-euler", kStiffness, drag), shrunk);
   damped(mass_spring("verlet", kStiffness, drag), shrunk);
   damped(with(mass_spring("verlet", kStiffness, drag), "drag-at=central"), 1);
   // Explicit Euler grows by sqrt(1 + w^2 dt^2) at every dt.
   const std::string euler = mass_spring("explicit-euler", kStiffness);
-  if (!claims(ledger, euler, oscillator(1.0 / 64, 0))) return;
+  if (!claims(findings, euler, oscillator(1.0 / 64, 0))) return;
   const double dt = 1.0 / 1024;
   Probe probe(oscillator(dt, 1e-6), euler);
   std::vector<double> y;
   for (int n = 0; n < 200; ++n) probe.step(), y.push_back(displacement(probe));
-  ledger.equal(euler, "growth per step at w dt = 0.02: never stable", "1",
-               std::sqrt(-two_term_recurrence(y)[1]), std::sqrt(1 + std::pow(kOmega * dt, 2)),
-               1e-9);
+  findings.equal(euler, "growth per step at w dt = 0.02: never stable", "1",
+                 std::sqrt(-two_term_recurrence(y)[1]), std::sqrt(1 + std::pow(kOmega * dt, 2)),
+                 1e-9);
 }
 
 /// Largest displacement of a perturbed flat grid after 600 steps, over the first.
@@ -120,7 +120,7 @@ double growth(const std::string& solver, double dt, const LinkChoice& links) {
   return max_distance(probe.state().x, s.mesh.rest) / 1e-9;
 }
 
-void spring_grid_limit(Ledger& ledger) {
+void spring_grid_limit(Findings& findings) {
   struct Case {
     LinkChoice links;
     const char* name;
@@ -131,14 +131,14 @@ void spring_grid_limit(Ledger& ledger) {
                         Case{{.shear = true, .bend = true}, "+ bend", 9.987}}) {
     const double value = reference::spring_grid_eigenvalue(20, c.links.shear, c.links.bend);
     const std::string name = c.name;
-    ledger.equal("closed form", "largest eigenvalue times m/k, 20x20 " + name, "1", value,
-                 c.eigenvalue, 5e-4);
-    if (!claims(ledger, solver, bare::sheet(2, 2))) continue;
+    findings.equal("closed form", "largest eigenvalue times m/k, 20x20 " + name, "1", value,
+                   c.eigenvalue, 5e-4);
+    if (!claims(findings, solver, bare::sheet(2, 2))) continue;
     const double limit = 2 / std::sqrt(value);
     const double below = growth(solver, 0.998 * limit, c.links),
                  above = growth(solver, 1.002 * limit, c.links);
-    ledger.equal(solver, "stays bounded at 0.998 of dt_max, " + name, "1", below < 100, 1, 0);
-    ledger.equal(solver, "blows up at 1.002 of dt_max, " + name, "1", !(above < 1e4), 1, 0);
+    findings.equal(solver, "stays bounded at 0.998 of dt_max, " + name, "1", below < 100, 1, 0);
+    findings.equal(solver, "blows up at 1.002 of dt_max, " + name, "1", !(above < 1e4), 1, 0);
   }
 }
 

@@ -73,26 +73,26 @@ Convergence converge(const std::function<double(double)>& value, double exact, i
   return {log_slope(dt, error), fine + (fine - coarse) / (std::exp2(order) - 1)};
 }
 
-void pendulum_period(Ledger& ledger) {
+void pendulum_period(Findings& findings) {
   const std::pair<double, double> printed[] = {
       {10, 2.009892627}, {90, 2.367841948}, {170, 4.893524274}};
   for (const auto& [degrees, seconds] : printed) {
     const double amplitude = degrees * kDegree;
     const double exact = reference::pendulum_quarter(1, kG, amplitude);
     const std::string at = " at " + std::to_string(static_cast<int>(degrees)) + " deg";
-    ledger.equal("closed form", "period" + at, "s", 4 * exact, seconds, 5e-10);
-    if (ledger.wants(kShake)) {
+    findings.equal("closed form", "period" + at, "s", 4 * exact, seconds, 5e-10);
+    if (findings.wants(kShake)) {
       const Convergence c =
           converge([&](double dt) { return shake_quarter(amplitude, dt); }, exact, 6, 10, 2);
-      ledger.slope(kShake, "order in dt of the quarter period" + at, c.order.value, c.order.error,
-                   2, 0.05);
-      ledger.equal(kShake, "quarter period for dt -> 0" + at, "s", c.limit, exact, 1e-6);
+      findings.slope(kShake, "order in dt of the quarter period" + at, c.order.value, c.order.error,
+                     2, 0.05);
+      findings.equal(kShake, "quarter period for dt -> 0" + at, "s", c.limit, exact, 1e-6);
     }
     for (const std::string& solver : {jakobsen(1), jakobsen(1, "sqrt-free"), xpbd(1), bullet(1)}) {
-      if (!claims(ledger, solver, pendulum(amplitude, 1.0 / 64))) continue;
+      if (!claims(findings, solver, pendulum(amplitude, 1.0 / 64))) continue;
       const Convergence quarter = converge(
           [&](double dt) { return solver_quarter(solver, amplitude, dt); }, exact, 8, 12, 1);
-      ledger.equal(solver, "quarter period for dt -> 0" + at, "s", quarter.limit, exact, 1e-5);
+      findings.equal(solver, "quarter period for dt -> 0" + at, "s", quarter.limit, exact, 1e-5);
       // Small swings lose height in first order but keep time in second; near the top the height
       // is not yet asymptotic at these steps, the time is.
       const bool small = degrees < 100;
@@ -101,11 +101,11 @@ void pendulum_period(Ledger& ledger) {
                            amplitude, 8, 12, 1)
                       .order
                 : quarter.order;
-      ledger.slope(solver,
-                   (small ? "order in dt of the angle on the other side"
-                          : "order in dt of the quarter period") +
-                       at,
-                   order.value, order.error, 1, 0.05);
+      findings.slope(solver,
+                     (small ? "order in dt of the angle on the other side"
+                            : "order in dt of the quarter period") +
+                         at,
+                     order.value, order.error, 1, 0.05);
     }
   }
 }
@@ -115,20 +115,20 @@ std::vector<std::string> converged() {
   return {jakobsen(1), jakobsen(8, "sqrt-free"), xpbd(1), bullet(8)};
 }
 
-void small_swings(Ledger& ledger) {
+void small_swings(Findings& findings) {
   const double dt = 1.0 / 64;
   const auto check = [&](const std::string& solver, const std::string& what, Scene scene, int mass,
                          double w, double tolerance) {
-    if (!claims(ledger, solver, scene)) return;
+    if (!claims(findings, solver, scene)) return;
     Probe probe(scene, solver);
     std::vector<double> y;
     for (int n = 0; n < 100; ++n) probe.step(), y.push_back(probe.x(mass).x());
     const auto [p, q] = two_term_recurrence(y);
     const double radius = std::sqrt(-q);
-    ledger.equal(solver, "decay rate, " + what, "1/s", -std::log(radius) / dt,
-                 std::log1p(w * w * dt * dt) / (2 * dt), tolerance);
-    ledger.equal(solver, "frequency, " + what, "rad/s", std::acos(p / 2 / radius) / dt,
-                 std::atan(w * dt) / dt, tolerance);
+    findings.equal(solver, "decay rate, " + what, "1/s", -std::log(radius) / dt,
+                   std::log1p(w * w * dt * dt) / (2 * dt), tolerance);
+    findings.equal(solver, "frequency, " + what, "rad/s", std::acos(p / 2 / radius) / dt,
+                   std::atan(w * dt) / dt, tolerance);
   };
   for (const std::string& solver : converged())
     check(solver, "pendulum", pendulum(1e-5, dt), 1, std::sqrt(kG), 1e-6);
@@ -136,7 +136,7 @@ void small_swings(Ledger& ledger) {
 
 /// The chain's modes: implicit Euler exactly for one link only. In a chain the corrections of a
 /// step act along links that are still turning while the sweeps go on.
-void chain_swings(Ledger& ledger) {
+void chain_swings(Findings& findings) {
   const int n = 8, k = 1500;
   const double dt = 1.0 / 64, a = kG * dt * dt;
   const auto w = reference::hanging_chain_frequencies(n, 1, kG);
@@ -155,27 +155,27 @@ void chain_swings(Ledger& ledger) {
           1e-7 * shape[i - 1] / shape.cwiseAbs().maxCoeff();
     const std::string name = "mode " + std::to_string(mode + 1) + " of 8 links";
     for (const std::string& solver : {jakobsen(k), bullet(k)}) {
-      if (!claims(ledger, solver, s)) continue;
+      if (!claims(findings, solver, s)) continue;
       Probe probe(s, solver);
       std::vector<double> y;
       for (int i = 0; i < 60; ++i) probe.step(), y.push_back(probe.x(n).x());
       const auto [p, q] = two_term_recurrence(y);
-      ledger.equal(solver, "2 mu of z^2 - 2 mu z + mu, " + name, "1", p, 2 * mu, 1e-6);
-      ledger.equal(solver, "mu of z^2 - 2 mu z + mu, " + name, "1", -q, mu, 1e-6);
-      ledger.deviates(solver, "decay rate, " + name, "1/s", -std::log(std::sqrt(-q)) / dt,
-                      -std::log(implicit) / (2 * dt), -std::log(mu) / (2 * dt), 1e-4,
-                      "the links turn while the sweeps go on: not exactly implicit Euler");
+      findings.equal(solver, "2 mu of z^2 - 2 mu z + mu, " + name, "1", p, 2 * mu, 1e-6);
+      findings.equal(solver, "mu of z^2 - 2 mu z + mu, " + name, "1", -q, mu, 1e-6);
+      findings.deviates(solver, "decay rate, " + name, "1/s", -std::log(std::sqrt(-q)) / dt,
+                        -std::log(implicit) / (2 * dt), -std::log(mu) / (2 * dt), 1e-4,
+                        "the links turn while the sweeps go on: not exactly implicit Euler");
     }
   }
 }
 
-void stick(Ledger& ledger) {
+void stick(Findings& findings) {
   const double dt = static_cast<double>(1.0F / 60), start = 2 * std::numbers::pi * dt;
   for (const std::string& solver : converged()) {
     Scene s = bare::chain(1, 1, 1, Vec3::UnitX());
     s.dt = dt;
     s.start.v[1] = (s.start.x[1] - Vec3(std::cos(start), -std::sin(start), 0)) / dt;
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     Probe probe(s, solver);
     double phi = start, worst = 0, angle = 0, before = 0;
     for (int n = 0; n < 120; ++n) {
@@ -187,9 +187,9 @@ void stick(Ledger& ledger) {
       worst = std::max(worst, std::abs(turned - phi));
     }
     const double turned = std::remainder(angle - before, 2 * std::numbers::pi);
-    ledger.below(solver, "distance of the angle per step from the recurrence over 2 s", "rad",
-                 worst, 1e-12);
-    ledger.equal(solver, "rate after 2 s, from 2 pi", "rad/s", turned / dt, 3.2953, 5e-5);
+    findings.below(solver, "distance of the angle per step from the recurrence over 2 s", "rad",
+                   worst, 1e-12);
+    findings.equal(solver, "rate after 2 s, from 2 pi", "rad/s", turned / dt, 3.2953, 5e-5);
   }
 }
 
@@ -203,7 +203,7 @@ Scene double_pendulum(double dt) {
   return s;
 }
 
-void double_pendulum_truth(Ledger& ledger) {
+void double_pendulum_truth(Findings& findings) {
   const Vec3 printed[2][2] = {
       {{-0.9986224057, -0.0524718108, 0}, {-0.7505341127, -1.0212092359, 0}},
       {{0.9139048043, -0.4059285759, 0}, {0.4635538327, -1.2987801886, 0}}};
@@ -211,17 +211,18 @@ void double_pendulum_truth(Ledger& ledger) {
     const auto exact = reference::double_pendulum({120 * kDegree, -10 * kDegree}, t);
     const std::string at = " at t = " + std::to_string(t) + " s";
     for (const int i : {0, 1})
-      ledger.below("closed form",
-                   "distance of mass " + std::to_string(i + 1) + " from the table" + at, "m",
-                   (exact[static_cast<std::size_t>(i)] - printed[t - 1][i]).norm(), 1e-10);
-    if (ledger.wants(kShake)) {
+      findings.below("closed form",
+                     "distance of mass " + std::to_string(i + 1) + " from the table" + at, "m",
+                     (exact[static_cast<std::size_t>(i)] - printed[t - 1][i]).norm(), 1e-10);
+    if (findings.wants(kShake)) {
       const auto motion = reference::converged_motion(double_pendulum(1.0 / 512),
                                                       {static_cast<double>(t)}, 1.0 / 512);
-      ledger.below(kShake, "distance of mass 2 from Runge-Kutta" + at, "m",
-                   motion.unique ? (motion.states[0].x[2] - exact[1]).norm() : std::nan(""), 1e-6);
+      findings.below(kShake, "distance of mass 2 from Runge-Kutta" + at, "m",
+                     motion.unique ? (motion.states[0].x[2] - exact[1]).norm() : std::nan(""),
+                     1e-6);
     }
     for (const std::string& solver : {jakobsen(60), bullet(60)}) {
-      if (!claims(ledger, solver, double_pendulum(1.0 / 512))) continue;
+      if (!claims(findings, solver, double_pendulum(1.0 / 512))) continue;
       std::vector<double> dts, errors;
       std::vector<Vec3> ends;
       for (int r = 10; r <= 13; ++r) {
@@ -232,9 +233,9 @@ void double_pendulum_truth(Ledger& ledger) {
         errors.push_back((probe.x(2) - exact[1]).norm());
       }
       const Slope order = log_slope(dts, errors);
-      ledger.slope(solver, "order in dt of mass 2" + at, order.value, order.error, 1, 0.1);
-      ledger.below(solver, "distance of mass 2 for dt -> 0" + at, "m",
-                   (2 * ends[3] - ends[2] - exact[1]).norm(), t == 1 ? 1e-4 : 1e-2);
+      findings.slope(solver, "order in dt of mass 2" + at, order.value, order.error, 1, 0.1);
+      findings.below(solver, "distance of mass 2 for dt -> 0" + at, "m",
+                     (2 * ends[3] - ends[2] - exact[1]).norm(), t == 1 ? 1e-4 : 1e-2);
     }
   }
 }

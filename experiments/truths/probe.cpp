@@ -32,8 +32,8 @@ void Probe::load(const State& state) {
   solver_->load(state_);
 }
 
-bool claims(Ledger& ledger, std::string_view solver, const Scene& scene) {
-  if (!ledger.wants(solver)) return false;
+bool claims(Findings& findings, std::string_view solver, const Scene& scene) {
+  if (!findings.wants(solver)) return false;
   std::vector<std::string> reasons;
   try {
     const SolverChoice choice = parse_solver(solver);
@@ -42,7 +42,7 @@ bool claims(Ledger& ledger, std::string_view solver, const Scene& scene) {
   } catch (const InputError& error) {  // a solver or a precision that this program does not have
     reasons = {error.what()};
   }
-  if (!reasons.empty()) ledger.not_claimed(solver, reasons.front());
+  if (!reasons.empty()) findings.not_claimed(solver, reasons.front());
   return reasons.empty();
 }
 

@@ -30,8 +30,8 @@ class Probe {
 };
 
 /// Whether the solver was asked for, exists in this program and can do the scene; if it was asked
-/// for but cannot, the ledger gets "not claimed" with the reasons.
-bool claims(Ledger&, std::string_view solver, const Scene&);
+/// for but cannot, the findings get "not claimed" with the reasons.
+bool claims(Findings&, std::string_view solver, const Scene&);
 
 constexpr const char* kStatic = "reference:static";  ///< core/reference/static_equilibrium
 constexpr const char* kShake = "reference:shake";    ///< core/reference/shake

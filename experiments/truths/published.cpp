@@ -22,7 +22,7 @@ double peak_stretch(const Scene& s, const std::string& solver) {
   return peak;
 }
 
-void small_steps(Ledger& ledger) {
+void small_steps(Findings& findings) {
   Scene s = bare::chain(20, 0.2, 1);
   s.mesh.mass.back() = 1e5;
   s.gravity = {0, -kG, 0};
@@ -33,27 +33,27 @@ void small_steps(Ledger& ledger) {
   constexpr double kPrinted = 322.1 / 3.2, kDigits = 322.15 / 3.15 - kPrinted;
   constexpr double kHere = 99.6;  // what Jakobsen's exact projection and XPBD both give here
   const auto ratio = [&](const std::string& iterations, const std::string& substeps) {
-    if (!claims(ledger, iterations, s) || !claims(ledger, substeps, s)) return;
+    if (!claims(findings, iterations, s) || !claims(findings, substeps, s)) return;
     const double measured = peak_stretch(s, iterations) / peak_stretch(s, substeps);
-    ledger.equal(substeps, "stretch of 100 iterations over that of 100 substeps, as printed", "1",
-                 measured, kPrinted, kDigits);
-    ledger.equal(substeps, "the same, as reproduced here", "1", measured, kHere, 0.15);
+    findings.equal(substeps, "stretch of 100 iterations over that of 100 substeps, as printed", "1",
+                   measured, kPrinted, kDigits);
+    findings.equal(substeps, "the same, as reproduced here", "1", measured, kHere, 0.15);
   };
   ratio(jakobsen(100), jakobsen(1, "exact", "substeps=100"));
   ratio("xpbd:iterations=100,substeps=1,precision=double", xpbd(100));
   const std::string theirs = bullet(100);
-  if (claims(ledger, theirs, s)) {
+  if (claims(findings, theirs, s)) {
     const double measured =
         peak_stretch(s, theirs) / peak_stretch(s, with(bullet(1), "substeps=100"));
-    ledger.deviates(theirs, "stretch of 100 iterations over that of 100 substeps", "1", measured,
-                    kHere,
-                    peak_stretch(s, jakobsen(100, "sqrt-free")) /
-                        peak_stretch(s, jakobsen(1, "sqrt-free", "substeps=100")),
-                    0.5, "the square-root-free form at stretches of thousands of per cent");
+    findings.deviates(theirs, "stretch of 100 iterations over that of 100 substeps", "1", measured,
+                      kHere,
+                      peak_stretch(s, jakobsen(100, "sqrt-free")) /
+                          peak_stretch(s, jakobsen(1, "sqrt-free", "substeps=100")),
+                      0.5, "the square-root-free form at stretches of thousands of per cent");
   }
 }
 
-void xpbd_spring(Ledger& ledger) {
+void xpbd_spring(Findings& findings) {
   // alpha = 0.001 m/N, 1 kg, released at x0 = 1.5 from a rest length of 1 (figure 2 of the paper).
   const double alpha = 0.001, dt = 1.0 / 64, w2 = 1 / alpha;
   for (const int k : {1, 5, 50}) {
@@ -61,39 +61,40 @@ void xpbd_spring(Ledger& ledger) {
         "xpbd:iterations=" + std::to_string(k) + ",substeps=1,structural=0.001,precision=double";
     Scene s = bare::chain(1, 1, 1);
     s.start.x[1].y() = -1.5;
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     Probe probe(s, solver);
     std::vector<double> y{0.5};
     for (int n = 0; n < 12; ++n) probe.step(), y.push_back(-probe.x(1).y() - 1);
     const auto [p, q] = two_term_recurrence(y);
-    ledger.equal(solver, "implicit Euler whatever the sweeps: 2/(1 + w^2 dt^2)", "1", p,
-                 2 / (1 + w2 * dt * dt), 1e-10);
-    ledger.equal(solver, "and -1/(1 + w^2 dt^2)", "1", q, -1 / (1 + w2 * dt * dt), 1e-10);
+    findings.equal(solver, "implicit Euler whatever the sweeps: 2/(1 + w^2 dt^2)", "1", p,
+                   2 / (1 + w2 * dt * dt), 1e-10);
+    findings.equal(solver, "and -1/(1 + w^2 dt^2)", "1", q, -1 / (1 + w2 * dt * dt), 1e-10);
   }
 }
 
-void xpbd_chain_force(Ledger& ledger) {
-  ledger.not_claimed("xpbd",
-                     "force error of 6 / 2 / 0.5 % at 50 / 100 / 1000 iterations (figure 3a): the "
-                     "chain's link length, start and time of comparison are not in the paper");
+void xpbd_chain_force(Findings& findings) {
+  findings.not_claimed(
+      "xpbd",
+      "force error of 6 / 2 / 0.5 % at 50 / 100 / 1000 iterations (figure 3a): the "
+      "chain's link length, start and time of comparison are not in the paper");
   // What can be held: at rest the corrections carry the exact weight, for any number of sweeps.
   for (const int k : {1, 50}) {
     const std::string solver =
         "xpbd:iterations=" + std::to_string(k) + ",substeps=1,precision=double";
     Scene s = bare::chain(20, 20, 1);
     s.gravity = {0, -kG, 0};
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(12000 / k);
     Textbook<double> textbook(s, k);
     textbook.load(probe.state());
     textbook.step();
-    ledger.equal(solver, "force of the top link of 20 at rest over the weight", "1",
-                 textbook.lambda()[0] / s.dt / s.dt / (20 * kG), 1, 1e-6);
+    findings.equal(solver, "force of the top link of 20 at rest over the weight", "1",
+                   textbook.lambda()[0] / s.dt / s.dt / (20 * kG), 1, 1e-6);
   }
 }
 
-void tetrahedron(Ledger& ledger) {
+void tetrahedron(Findings& findings) {
   // "3 or 4 iterations should be enough": six links, a vertex pushed out by a fifth. Enough is a
   // tenth of the strain: the paper gives no number.
   const std::vector<Vec3> x{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
@@ -106,29 +107,29 @@ void tetrahedron(Ledger& ledger) {
   for (const auto& [few, four] :
        {std::pair(jakobsen(1, "sqrt-free"), jakobsen(4, "sqrt-free")),
         std::pair(jakobsen(1), jakobsen(4)), std::pair(bullet(1), bullet(4))}) {
-    if (!claims(ledger, few, s)) continue;
+    if (!claims(findings, few, s)) continue;
     Probe probe(s, four);
     probe.step();
-    ledger.below(four, "share of the strain that four passes leave", "1",
-                 max_strain(s, probe.state()) / start, 0.1);
+    findings.below(four, "share of the strain that four passes leave", "1",
+                   max_strain(s, probe.state()) / start, 0.1);
   }
 }
 
-void three_sweeps(Ledger& ledger) {
+void three_sweeps(Findings& findings) {
   // "3 iterations suffice": by how much, on the sheet that Vasilovici shows.
   for (const std::string& solver : {jakobsen(3, "sqrt-free"), bullet(3)}) {
     Scene s = bare::sheet(16, 16, {.shear = true});
     s.pins = {0, 15};
     s.gravity = {0, -kG, 0};
     s.damping = 1;
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     Probe probe(s, solver);
     probe.step(640);
     const double rms = rms_strain(s, probe.state());
-    ledger.deviates(solver, "RMS strain of a 16x16 sheet on two corners, 1/64 s", "1", rms, 0, 0.06,
-                    0.03,
-                    "three sweeps suffice to look right, not to hold lengths; 6 % is what they "
-                    "leave here");
+    findings.deviates(solver, "RMS strain of a 16x16 sheet on two corners, 1/64 s", "1", rms, 0,
+                      0.06, 0.03,
+                      "three sweeps suffice to look right, not to hold lengths; 6 % is what they "
+                      "leave here");
   }
 }
 

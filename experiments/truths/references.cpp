@@ -22,25 +22,25 @@ Scene swung(int n, double degrees) {
   return s;
 }
 
-void static_floor(Ledger& ledger) {
-  if (!ledger.wants(kStatic)) return;
+void static_floor(Findings& findings) {
+  if (!findings.wants(kStatic)) return;
   Scene s = bare::sheet(12, 12);
   s.pins = {0, 11};
   s.start.x[11].x() = 0.7;
   s.gravity = {0, -kG, 0};
   const auto e = reference::static_equilibrium(s);
-  ledger.equal(kStatic, "has one answer", "1", e.unique, 1, 0);
-  ledger.below(kStatic, "distance between two starts and penalties: the floor", "m", e.floor,
-               1e-13);
-  ledger.below(kStatic, "largest violation of a length", "m", e.violation, 1e-15);
-  ledger.below(kStatic, "largest unbalanced force, of 2 N in all", "N", e.unbalanced, 1e-13);
+  findings.equal(kStatic, "has one answer", "1", e.unique, 1, 0);
+  findings.below(kStatic, "distance between two starts and penalties: the floor", "m", e.floor,
+                 1e-13);
+  findings.below(kStatic, "largest violation of a length", "m", e.violation, 1e-15);
+  findings.below(kStatic, "largest unbalanced force, of 2 N in all", "N", e.unbalanced, 1e-13);
 }
 
-void shake_order(Ledger& ledger) {
-  if (!ledger.wants(kShake)) return;
+void shake_order(Findings& findings) {
+  if (!findings.wants(kShake)) return;
   const Scene s = swung(6, 60);
   const auto converged = reference::converged_motion(s, {0.25}, 1.0 / 1024);
-  ledger.equal(kShake, "has one answer", "1", converged.unique, 1, 0);
+  findings.equal(kShake, "has one answer", "1", converged.unique, 1, 0);
   if (!converged.unique) return;
   std::vector<double> dt, error;
   for (const int rate : {256, 512, 1024}) {
@@ -50,16 +50,16 @@ void shake_order(Ledger& ledger) {
     error.push_back(max_distance(shake.state().x, converged.states[0].x));
   }
   const Slope order = log_slope(dt, error);
-  ledger.slope(kShake, "order in dt, 6x6 swung from 60 deg", order.value, order.error, 2, 0.05);
-  ledger.below(kShake, "its floor after extrapolation", "m", converged.floor[0], 1e-7);
+  findings.slope(kShake, "order in dt, 6x6 swung from 60 deg", order.value, order.error, 2, 0.05);
+  findings.below(kShake, "its floor after extrapolation", "m", converged.floor[0], 1e-7);
 }
 
-void projection_tends_to_shake(Ledger& ledger) {
+void projection_tends_to_shake(Findings& findings) {
   // Fully converged sweeps follow the same motion in first order.
   const Scene s = swung(5, 45);
   const auto converged = reference::converged_motion(s, {0.25}, 1.0 / 1024);
   for (const std::string& solver : {jakobsen(150), bullet(150)}) {
-    if (!claims(ledger, solver, s)) continue;
+    if (!claims(findings, solver, s)) continue;
     std::vector<double> dt, error;
     for (const int rate : {256, 512, 1024}) {
       Scene finer = s;
@@ -71,8 +71,8 @@ void projection_tends_to_shake(Ledger& ledger) {
                                        : std::nan(""));
     }
     const Slope order = log_slope(dt, error);
-    ledger.slope(solver, "order in dt of the distance from SHAKE, 5x5 swung from 45 deg",
-                 order.value, order.error, 1, 0.15);
+    findings.slope(solver, "order in dt of the distance from SHAKE, 5x5 swung from 45 deg",
+                   order.value, order.error, 1, 0.15);
   }
 }
 

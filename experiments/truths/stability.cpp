@@ -35,12 +35,12 @@ std::array<double, 2> measured_recurrence(const Scene& s, const std::string& sol
   return two_term_recurrence(y);
 }
 
-void sweep_eigenvalue(Ledger& ledger) {
+void sweep_eigenvalue(Findings& findings) {
   // Every real eigenvalue of a sweep, started in its eigenvector: e'' = 2 mu e' - mu e.
   const int n = 7;
   for (const bool jacobi : {false, true}) {
     const std::string solver = with(jakobsen(1), jacobi ? "method=jacobi" : "");
-    if (!claims(ledger, solver, bare::chain(n, n, 1))) continue;
+    if (!claims(findings, solver, bare::chain(n, n, 1))) continue;
     const reference::Modes modes =
         reference::modes(reference::chain_sweep(n, jacobi ? Sweep::jacobi : Sweep::gauss_seidel));
     double worst = 0;
@@ -54,17 +54,17 @@ void sweep_eigenvalue(Ledger& ledger) {
       worst = std::max({worst, std::abs(p - 2 * mu), std::abs(q + mu)});
       ++count;
     }
-    ledger.below(solver,
-                 "distance of z^2 - 2 mu z + mu, " + std::to_string(count) + " modes of 7 links",
-                 "1", worst, 1e-6);
+    findings.below(solver,
+                   "distance of z^2 - 2 mu z + mu, " + std::to_string(count) + " modes of 7 links",
+                   "1", worst, 1e-6);
   }
   // Stable between mu = -1/3 and 1: one link under omega has mu = 1 - omega.
-  ledger.equal("closed form", "|z| at mu = -1/3", "1", std::abs(reference::verlet_root(-1.0 / 3)),
-               1, 1e-12);
-  ledger.equal("closed form", "|z| at mu = 1", "1", std::abs(reference::verlet_root(1)), 1, 1e-7);
+  findings.equal("closed form", "|z| at mu = -1/3", "1", std::abs(reference::verlet_root(-1.0 / 3)),
+                 1, 1e-12);
+  findings.equal("closed form", "|z| at mu = 1", "1", std::abs(reference::verlet_root(1)), 1, 1e-7);
 }
 
-void gauss_seidel_decay(Ledger& ledger) {
+void gauss_seidel_decay(Findings& findings) {
   const int n = 16;
   const double rho = reference::chain_radius(n, Sweep::gauss_seidel);
   for (const int k : {1, 4}) {
@@ -73,29 +73,30 @@ void gauss_seidel_decay(Ledger& ledger) {
           "xpbd:substeps=1,precision=double,iterations=" + std::to_string(k)}) {
       Eigen::VectorXd strain = Eigen::VectorXd::Constant(n, 1e-6);
       const Scene s = strained_chain(strain);
-      if (!claims(ledger, solver, s)) continue;
+      if (!claims(findings, solver, s)) continue;
       const auto [p, q] = measured_recurrence(s, solver, 800 / k, 400 / k);
       const double radius = std::sqrt(-q), turn = std::acos(p / 2 / radius);
       const std::string at = ", k = " + std::to_string(k);
-      ledger.equal(solver, "|z| = rho^(k/2)" + at, "1", radius, std::pow(rho, k / 2.0), 1e-5);
-      ledger.equal(solver, "period 2 pi/acos(rho^(k/2))" + at, "steps", 2 * std::numbers::pi / turn,
-                   2 * std::numbers::pi / std::acos(std::pow(rho, k / 2.0)), 0.05);
+      findings.equal(solver, "|z| = rho^(k/2)" + at, "1", radius, std::pow(rho, k / 2.0), 1e-5);
+      findings.equal(solver, "period 2 pi/acos(rho^(k/2))" + at, "steps",
+                     2 * std::numbers::pi / turn,
+                     2 * std::numbers::pi / std::acos(std::pow(rho, k / 2.0)), 0.05);
       const double settling = -1 / std::log(radius);
-      ledger.equal(solver, "settling time over 8 N^2/(pi^2 k)" + at, "1",
-                   settling / (8.0 * n * n / (std::numbers::pi * std::numbers::pi * k)), 1, 0.01);
+      findings.equal(solver, "settling time over 8 N^2/(pi^2 k)" + at, "1",
+                     settling / (8.0 * n * n / (std::numbers::pi * std::numbers::pi * k)), 1, 0.01);
     }
   }
   for (const int links : {2, 7, 16, 64})
     for (const Sweep sweep : {Sweep::gauss_seidel, Sweep::jacobi}) {
       const double radius = reference::spectral_radius(reference::chain_sweep(links, sweep));
-      ledger.equal("closed form",
-                   std::string(sweep == Sweep::jacobi ? "rho_J = cos" : "rho_GS = cos^2") +
-                       "(pi/2N), N = " + std::to_string(links),
-                   "1", radius, reference::chain_radius(links, sweep), 1e-6);
+      findings.equal("closed form",
+                     std::string(sweep == Sweep::jacobi ? "rho_J = cos" : "rho_GS = cos^2") +
+                         "(pi/2N), N = " + std::to_string(links),
+                     "1", radius, reference::chain_radius(links, sweep), 1e-6);
     }
 }
 
-void plain_jacobi(Ledger& ledger) {
+void plain_jacobi(Findings& findings) {
   const int n = 32;
   const std::string solver = jakobsen(1, "exact", "method=jacobi");
   Eigen::VectorXd strain(n);
@@ -104,26 +105,26 @@ void plain_jacobi(Ledger& ledger) {
   const double bound = 1 + std::numbers::sqrt2;
   const double expected =
       std::abs(reference::verlet_root(-reference::chain_radius(n, Sweep::jacobi)));
-  ledger.equal("closed form", "growth per step of the fastest mode for many links", "1",
-               std::abs(reference::verlet_root(-1)), bound, 1e-12);
-  if (!claims(ledger, solver, s)) return;
+  findings.equal("closed form", "growth per step of the fastest mode for many links", "1",
+                 std::abs(reference::verlet_root(-1)), bound, 1e-12);
+  if (!claims(findings, solver, s)) return;
   Probe probe(s, solver);
   probe.step(20);
   const double before = max_strain(s, probe.state());
   probe.step();
-  ledger.equal(solver, "growth per step of a chain of 32 links, k = 1", "1",
-               max_strain(s, probe.state()) / before, expected, 0.02);
+  findings.equal(solver, "growth per step of a chain of 32 links, k = 1", "1",
+                 max_strain(s, probe.state()) / before, expected, 0.02);
   for (const char* cure : {"method=jacobi-averaged", "method=jacobi-underrelaxed"}) {
     const std::string stable = jakobsen(1, "exact", cure);
-    if (!claims(ledger, stable, s)) continue;
+    if (!claims(findings, stable, s)) continue;
     Probe calm(s, stable);
     calm.step(5000);
-    ledger.below(stable, "strain after 5000 steps from 1e-12", "1", max_strain(s, calm.state()),
-                 1e-12);
+    findings.below(stable, "strain after 5000 steps from 1e-12", "1", max_strain(s, calm.state()),
+                   1e-12);
   }
 }
 
-void over_relaxation(Ledger& ledger) {
+void over_relaxation(Findings& findings) {
   const auto growth = [](const std::string& solver) {
     const Scene s = strained_chain(Eigen::VectorXd::Constant(1, 1e-9));
     Probe probe(s, solver);
@@ -138,18 +139,18 @@ void over_relaxation(Ledger& ledger) {
                        : jakobsen(1, "exact", "omega=" + std::string(omega));
     };
     const Scene s = strained_chain(Eigen::VectorXd::Constant(1, 1e-9));
-    if (!claims(ledger, solver("1.33"), s)) continue;
+    if (!claims(findings, solver("1.33"), s)) continue;
     for (const char* omega : {"1.33", "1.34"}) {
       // |strain| alternates within its envelope where the roots are complex; here both are real.
       const double expected = std::abs(reference::verlet_root(1 - std::stod(omega)));
-      ledger.equal(solver(omega), "growth per step", "1", growth(solver(omega)), expected, 2e-3);
+      findings.equal(solver(omega), "growth per step", "1", growth(solver(omega)), expected, 2e-3);
     }
-    ledger.equal(solver("1.33"), "stable", "1", growth(solver("1.33")) < 1, 1, 0);
-    ledger.equal(solver("1.34"), "unstable", "1", growth(solver("1.34")) > 1, 1, 0);
+    findings.equal(solver("1.33"), "stable", "1", growth(solver("1.33")) < 1, 1, 0);
+    findings.equal(solver("1.34"), "unstable", "1", growth(solver("1.34")) > 1, 1, 0);
   }
 }
 
-void legitimate_strain(Ledger& ledger) {
+void legitimate_strain(Findings& findings) {
   const int n = 32;
   const double dt = static_cast<double>(1.0F / 60), l = 1.0 / n;
   Scene s = bare::chain(n, 1, 0.1);
@@ -171,21 +172,21 @@ void legitimate_strain(Ledger& ledger) {
       }
       return strain;
     };
-    if (claims(ledger, jakobsen(k), s)) {
+    if (claims(findings, jakobsen(k), s)) {
       const Strain strain = measure(jakobsen(k));
-      ledger.equal(jakobsen(k), "strain at rest over (N-1) g dt^2/(k l)" + at, "1",
-                   strain.rest / scale, 1, 0.1);
-      ledger.equal(jakobsen(k), "peak over (N-1) g dt^2/(k l)" + at, "1", strain.peak / scale, 1.8,
-                   0.2);
+      findings.equal(jakobsen(k), "strain at rest over (N-1) g dt^2/(k l)" + at, "1",
+                     strain.rest / scale, 1, 0.1);
+      findings.equal(jakobsen(k), "peak over (N-1) g dt^2/(k l)" + at, "1", strain.peak / scale,
+                     1.8, 0.2);
       if (k == 1)
-        ledger.equal(jakobsen(k), "peak on the way to rest, N = 32, 60 Hz, k = 1", "1", strain.peak,
-                     5, 0.5);
+        findings.equal(jakobsen(k), "peak on the way to rest, N = 32, 60 Hz, k = 1", "1",
+                       strain.peak, 5, 0.5);
     }
-    if (claims(ledger, bullet(k), s))
-      ledger.deviates(bullet(k), "peak over (N-1) g dt^2/(k l)" + at, "1",
-                      measure(bullet(k)).peak / scale, 1.8,
-                      measure(jakobsen(k, "sqrt-free")).peak / scale, 0.01,
-                      "a square-root-free pass overcorrects large stretches, as ours does");
+    if (claims(findings, bullet(k), s))
+      findings.deviates(bullet(k), "peak over (N-1) g dt^2/(k l)" + at, "1",
+                        measure(bullet(k)).peak / scale, 1.8,
+                        measure(jakobsen(k, "sqrt-free")).peak / scale, 0.01,
+                        "a square-root-free pass overcorrects large stretches, as ours does");
   }
 }
 

@@ -25,13 +25,13 @@ std::string_view section_title(int section) {
   return titles[static_cast<std::size_t>(section - 1)];
 }
 
-bool Ledger::wants(std::string_view subject) const {
+bool Findings::wants(std::string_view subject) const {
   if (only_.empty()) return true;
   std::string_view name = subject.substr(0, subject.find(':'));
   return std::any_of(only_.begin(), only_.end(), [&](const std::string& o) { return o == name; });
 }
 
-void Ledger::add(Finding f) {
+void Findings::add(Finding f) {
   if (wants(f.subject)) findings_.push_back(std::move(f));
 }
 
@@ -53,26 +53,26 @@ Finding finding(std::string_view subject, std::string_view quantity, std::string
 
 }  // namespace
 
-void Ledger::equal(std::string_view subject, std::string_view quantity, std::string_view unit,
-                   double measured, double expected, double tolerance) {
+void Findings::equal(std::string_view subject, std::string_view quantity, std::string_view unit,
+                     double measured, double expected, double tolerance) {
   add(finding(subject, quantity, unit, measured, expected, tolerance));
 }
 
-void Ledger::below(std::string_view subject, std::string_view quantity, std::string_view unit,
-                   double measured, double limit) {
+void Findings::below(std::string_view subject, std::string_view quantity, std::string_view unit,
+                     double measured, double limit) {
   add(finding(subject, quantity, unit, measured, 0, limit));
 }
 
-void Ledger::slope(std::string_view subject, std::string_view quantity, double measured,
-                   double uncertainty, double expected, double tolerance) {
+void Findings::slope(std::string_view subject, std::string_view quantity, double measured,
+                     double uncertainty, double expected, double tolerance) {
   Finding f = finding(subject, quantity, "1", measured, expected, tolerance);
   f.uncertainty = uncertainty;
   add(std::move(f));
 }
 
-void Ledger::deviates(std::string_view subject, std::string_view quantity, std::string_view unit,
-                      double measured, double expected, double explained, double tolerance,
-                      std::string_view why) {
+void Findings::deviates(std::string_view subject, std::string_view quantity, std::string_view unit,
+                        double measured, double expected, double explained, double tolerance,
+                        std::string_view why) {
   Finding f = finding(subject, quantity, unit, measured, expected, tolerance);
   const bool agrees = f.verdict == TruthVerdict::passed;
   if (!within(measured, explained, tolerance))
@@ -83,7 +83,7 @@ void Ledger::deviates(std::string_view subject, std::string_view quantity, std::
   add(std::move(f));
 }
 
-void Ledger::not_claimed(std::string_view subject, std::string_view why) {
+void Findings::not_claimed(std::string_view subject, std::string_view why) {
   Finding f;
   f.subject = subject, f.verdict = TruthVerdict::not_claimed, f.why = why;
   f.measured = f.expected = std::nan("");

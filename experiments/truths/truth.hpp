@@ -30,10 +30,10 @@ struct Finding {
 };
 
 /// Collects the findings of one truth and knows which solvers were asked for.
-class Ledger {
+class Findings {
  public:
   /// `only`: names of solvers; empty: all subjects. References count as "reference".
-  explicit Ledger(std::vector<std::string> only = {}) : only_(std::move(only)) {}
+  explicit Findings(std::vector<std::string> only = {}) : only_(std::move(only)) {}
 
   /// Whether this subject's solver was asked for: spares the work if not.
   bool wants(std::string_view subject) const;
@@ -54,7 +54,7 @@ class Ledger {
                 std::string_view why);
   void not_claimed(std::string_view subject, std::string_view why);
 
-  const std::vector<Finding>& findings() const { return findings_; }
+  const std::vector<Finding>& all() const { return findings_; }
 
  private:
   void add(Finding);
@@ -71,7 +71,7 @@ struct TruthEntry {
   int row = 0;                 ///< within the section, from 1
   std::string_view statement;  ///< what must hold, one sentence with the formula
   std::string_view source;     ///< paper, book or derivation
-  void (*check)(Ledger&);
+  void (*check)(Findings&);
 };
 
 /// All truths (generated; see cmake/registry.cmake).

@@ -32,39 +32,41 @@ Gap gap(const Scene& scene, std::string_view a, std::string_view b) {
   return g;
 }
 
-void twin(Ledger& ledger) {
+void twin(Findings& findings) {
   const Scene scene = hanging_sheet(1.0 / 64);
   const std::string theirs = bullet(kSweeps), ours = jakobsen(kSweeps, "sqrt-free");
-  if (!claims(ledger, theirs, scene)) return;
+  if (!claims(findings, theirs, scene)) return;
   const Gap g = gap(scene, ours, theirs);
-  ledger.below(theirs, "distance from jakobsen after one step, 20x20, 8 sweeps", "m", g.first,
-               2e-15);
-  ledger.below(theirs, "largest distance over 600 steps (10 s)", "m", g.largest, 1e-8);
+  findings.below(theirs, "distance from jakobsen after one step, 20x20, 8 sweeps", "m", g.first,
+                 2e-15);
+  findings.below(theirs, "largest distance over 600 steps (10 s)", "m", g.largest, 1e-8);
 }
 
-void twin_float(Ledger& ledger) {
+void twin_float(Findings& findings) {
   const Scene scene = hanging_sheet(1.0 / 64);
   const std::string theirs = "bullet:iterations=8,precision=float";
-  if (!claims(ledger, theirs, scene)) return;
+  if (!claims(findings, theirs, scene)) return;
   const Gap g =
       gap(scene, "jakobsen:iterations=8,substeps=1,order=mesh,projection=sqrt-free,precision=float",
           theirs);
-  ledger.below(theirs, "distance from jakobsen in float after one step", "m", g.first, 1e-6);
-  ledger.below(theirs, "largest distance over 600 steps: amplified rounding", "m", g.largest, 0.1);
+  findings.below(theirs, "distance from jakobsen in float after one step", "m", g.first, 1e-6);
+  findings.below(theirs, "largest distance over 600 steps: amplified rounding", "m", g.largest,
+                 0.1);
 }
 
-void binary32_dt(Ledger& ledger) {
+void binary32_dt(Findings& findings) {
   const Scene sixty = hanging_sheet(1.0 / 60);
   const std::string theirs = bullet(kSweeps), ours = jakobsen(kSweeps, "sqrt-free");
-  if (!claims(ledger, theirs, sixty)) return;
+  if (!claims(findings, theirs, sixty)) return;
   const Gap g = gap(sixty, ours, theirs);
   const double cast_dt = static_cast<double>(1.0F / 60);
-  ledger.deviates(theirs, "distance from jakobsen after one step of 1/60 s in double", "m", g.first,
-                  0, kG * (cast_dt * cast_dt - sixty.dt * sixty.dt), 2e-12,
-                  "Bullet casts dt to float even in its double build");
+  findings.deviates(theirs, "distance from jakobsen after one step of 1/60 s in double", "m",
+                    g.first, 0, kG * (cast_dt * cast_dt - sixty.dt * sixty.dt), 2e-12,
+                    "Bullet casts dt to float even in its double build");
   const Gap cast = gap(hanging_sheet(cast_dt), ours, theirs);
-  ledger.below(theirs, "the same with float(1/60) for both", "m", cast.first, 2e-15);
-  ledger.below(theirs, "largest distance over 600 steps with float(1/60)", "m", cast.largest, 1e-8);
+  findings.below(theirs, "the same with float(1/60) for both", "m", cast.first, 2e-15);
+  findings.below(theirs, "largest distance over 600 steps with float(1/60)", "m", cast.largest,
+                 1e-8);
 }
 
 }  // namespace

@@ -16,16 +16,16 @@ Baseline study() {
     for (const int rate : {240, 120, 60, 30})
       for (const int k : {1, 2, 4}) {
         const std::string dt = "dt=1/" + std::to_string(rate);
-        const bool sound = rate * k >= 60;
+        const bool stable = rate * k >= 60;
         const double dt2 = 1.0 / (rate * rate), none = std::nan("");
         BaselineRow row;
         row.spec = {"hang", {"time." + dt}, solver + ":iterations=" + std::to_string(k)};
         row.id = "hang " + dt + " " + row.spec.solver;
         row.scene = "content of hang at " + dt;
-        row.status = sound ? "ok" : "exploded (energy)";
+        row.status = stable ? "ok" : "exploded (energy)";
         row.projections = static_cast<std::size_t>(100 * k);
-        row.values = {{"stretch.max", sound ? 300 * dt2 / k : none},
-                      {"penetration.max", sound ? 9.81 * dt2 : none}};
+        row.values = {{"stretch.max", stable ? 300 * dt2 / k : none},
+                      {"penetration.max", stable ? 9.81 * dt2 : none}};
         rows.push_back(row);
       }
   return rows;

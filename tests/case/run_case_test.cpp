@@ -73,7 +73,7 @@ TEST(DivergenceDetector, NotANumberIsAnExplosionAtItsStepAndVertex) {
   EXPECT_EQ(run.record.status.reason, "nonfinite");
   EXPECT_EQ(run.record.status.step, 7);
   EXPECT_EQ(run.record.status.vertex, 5);
-  EXPECT_NEAR(run.last.x[1].y(), -0.006, 1e-12) << "the last sound state is that after step 6";
+  EXPECT_NEAR(run.last.x[1].y(), -0.006, 1e-12) << "the last stable state is that after step 6";
   EXPECT_GT(run.record.values.size(), 10u);
   for (const auto& [name, value] : run.record.values) EXPECT_TRUE(std::isnan(value)) << name;
 }

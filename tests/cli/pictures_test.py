@@ -120,14 +120,14 @@ class Pictures(CommandLine):
         frames = (len(data) - first) // size
         for k in range(frames // 2, frames):
             struct.pack_into("<f" if real == 4 else "<d", data, first + k * size + 8, float("nan"))
-        self.render("--trajectory", "run.traj", *SMALL, "-o", "sound.png")
+        self.render("--trajectory", "run.traj", *SMALL, "-o", "stable.png")
         file.write_bytes(data)
         self.render("--trajectory", "run.traj", *SMALL, "-o", "exploded.png")
-        self.assertNotEqual((self.folder / "sound.png").read_bytes(), (self.folder / "exploded.png").read_bytes())
+        self.assertNotEqual((self.folder / "stable.png").read_bytes(), (self.folder / "exploded.png").read_bytes())
         struct.pack_into("<d", data, first + 8, float("nan"))
         file.write_bytes(data)
         done = self.render("--trajectory", "run.traj", *SMALL, "-o", "a.png", expect=2)
-        self.assertIn("no sound frame", done.err)
+        self.assertIn("no stable frame", done.err)
 
     def test_an_empty_or_headless_motion_names_file_and_byte(self):
         file = self.kept("jakobsen")

@@ -218,9 +218,9 @@ TEST(SceneRenderer, SunkenClothStaysVisible) {
   SceneRendererOptions options = small();
   options.range = 100;  // no colour of its own
   const SceneRenderer renderer(scene, runs, options);
-  const Image sound = renderer.panel(0, 1), sank = renderer.panel(1, 1);
-  EXPECT_LT(difference(sound, sank).mean, 4);
-  EXPECT_GT(difference(sound, sank).largest, 20);  // the hatch
+  const Image stable = renderer.panel(0, 1), sank = renderer.panel(1, 1);
+  EXPECT_LT(difference(stable, sank).mean, 4);
+  EXPECT_GT(difference(stable, sank).largest, 20);  // the hatch
 }
 
 TEST(GlContext, SaysWhatItTriedIfThereIsNone) {
@@ -288,7 +288,7 @@ TEST(SceneRenderer, ARunThatBlewUpLeavesTheOthersTheirColours) {
   EXPECT_DOUBLE_EQ(SceneRenderer(scene, runs, small()).scale().high, 0.06);
   runs.erase(runs.begin());
   EXPECT_DOUBLE_EQ(SceneRenderer(scene, runs, small()).scale().high, 1)
-      << "none is sound: 100 % at most";
+      << "none is stable: 100 % at most";
 }
 
 TEST(RecordedRun, AnExplodedPanelIsMarked) {

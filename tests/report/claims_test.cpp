@@ -7,8 +7,8 @@
 #include <regex>
 #include <set>
 
-#include "experiments/report/claim.hpp"
-#include "experiments/report/model.hpp"
+#include "experiments/report/claims/claim.hpp"
+#include "experiments/report/model/model.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
 

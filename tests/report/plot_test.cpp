@@ -1,5 +1,5 @@
 // Plots: failures are drawn, zeros stay, text is taken as it is, files appear whole or not at all.
-#include "experiments/report/plot.hpp"
+#include "experiments/report/plot/plot.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/format.hpp"
-#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/plot/gnuplot.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
 

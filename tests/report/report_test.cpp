@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/model.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/model/model.hpp"
 #include "experiments/report/page.hpp"
-#include "experiments/report/palette.hpp"
-#include "experiments/report/rivals.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"

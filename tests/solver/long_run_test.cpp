@@ -37,7 +37,7 @@ struct LongRun {
 LongRun million(Scene scene, const std::string& solver) {
   scene.steps = kSteps;
   LongRun run;
-  const auto watch = [&](const Moment& m) {
+  const auto watch = [&](const Snapshot& m) {
     Tenth& tenth = run.tenths[static_cast<std::size_t>(std::min(9, m.step / (kSteps / 10)))];
     double energy = 0;
     for (std::size_t i = 0; i < m.state.x.size(); ++i) {

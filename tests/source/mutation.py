@@ -50,7 +50,7 @@ MUTATIONS = {
 
 SIMD = [f"core/solver/simd/{isa}.cpp" for isa in ("scalar", "sse2", "avx2", "avx512")]
 RESPONSES = ["core/solver/contact/responses.cpp"]
-CLAIMS = [f"experiments/report/{name}.cpp" for name in ("claim", "cost_claims", "physics_claims")]
+CLAIMS = [f"experiments/report/claims/{name}.cpp" for name in ("claim", "cost_claims", "physics_claims")]
 SEARCH = ["tests/solver/self_collision_test.cpp"]  # which instantiates the templates itself
 
 # name: (file, what is there, what is planted, units to recompile, tests that must break)
@@ -96,22 +96,22 @@ TESTED = {
                                  "SelfCollision.*"),
     "the lighter one stays": ("core/solver/contact/self_collision.hpp", "wa / (wa + wb)",
                               "wb / (wa + wb)", RESPONSES, "SelfCollision.*"),
-    "last second for peak": ("experiments/report/physics_claims.cpp", '"penetration.peak"',
+    "last second for peak": ("experiments/report/claims/physics_claims.cpp", '"penetration.peak"',
                              '"penetration.max"', CLAIMS, "Claims.*"),
-    "vertices for faces": ("experiments/report/physics_claims.cpp", '"face.peak"',
+    "vertices for faces": ("experiments/report/claims/physics_claims.cpp", '"face.peak"',
                            '"penetration.peak"', CLAIMS, "Claims.*"),
-    "mean over failures": ("experiments/report/claim.cpp", "completed(r) && std::isfinite(value)",
+    "mean over failures": ("experiments/report/claims/claim.cpp", "completed(r) && std::isfinite(value)",
                            "std::isfinite(value)", CLAIMS, "Claims.*"),
-    "a failure not counted": ("experiments/report/physics_claims.cpp",
+    "a failure not counted": ("experiments/report/claims/physics_claims.cpp",
                               "if (completed(*r) || r->status", "if (true || r->status", CLAIMS,
                               "Claims.*"),
-    "a failed step skipped": ("experiments/report/physics_claims.cpp",
+    "a failed step skipped": ("experiments/report/claims/physics_claims.cpp",
                               "return completed(*r); })) break;",
                               "return completed(*r); })) continue;", CLAIMS, "Claims.*"),
-    "tethers among what both have": ("experiments/report/cost_claims.cpp",
+    "tethers among what both have": ("experiments/report/claims/cost_claims.cpp",
                                      "theirs : ours).empty()", "theirs : ours).size() < 9", CLAIMS,
                                      "Claims.*"),
-    "noise ignored": ("experiments/report/claim.cpp", "change <= std::log1p(noise)", "false",
+    "noise ignored": ("experiments/report/claims/claim.cpp", "change <= std::log1p(noise)", "false",
                       CLAIMS, "Claims.*"),
 }
 

@@ -1,4 +1,4 @@
-// The catalogue of truths as a whole, its ledger, and the references that are kept.
+// The catalogue of truths as a whole, how findings are judged, and the references that are kept.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,27 +36,27 @@ TEST(Truths, TheProgramHasEverySolverThatTheyBind) {
     EXPECT_NO_THROW(find_solver(name));
 }
 
-TEST(Ledger, JudgesByTheToleranceAndNeverPassesNan) {
-  Ledger ledger;
-  ledger.equal("a", "q", "m", 1.0, 1.1, 0.2);
-  ledger.equal("a", "q", "m", 1.0, 1.3, 0.2);
-  ledger.below("a", "q", "m", std::nan(""), 1);
-  ledger.deviates("a", "q", "m", 2.0, 1.0, 2.1, 0.2, "known");
-  ledger.deviates("a", "q", "m", 2.0, 1.0, 3.0, 0.2, "known");
-  ledger.deviates("a", "q", "m", 2.0, 1.9, 2.1, 0.2, "known");
+TEST(Findings, JudgesByTheToleranceAndNeverPassesNan) {
+  Findings findings;
+  findings.equal("a", "q", "m", 1.0, 1.1, 0.2);
+  findings.equal("a", "q", "m", 1.0, 1.3, 0.2);
+  findings.below("a", "q", "m", std::nan(""), 1);
+  findings.deviates("a", "q", "m", 2.0, 1.0, 2.1, 0.2, "known");
+  findings.deviates("a", "q", "m", 2.0, 1.0, 3.0, 0.2, "known");
+  findings.deviates("a", "q", "m", 2.0, 1.9, 2.1, 0.2, "known");
   std::vector<TruthVerdict> verdicts;
-  for (const Finding& f : ledger.findings()) verdicts.push_back(f.verdict);
+  for (const Finding& f : findings.all()) verdicts.push_back(f.verdict);
   EXPECT_EQ(verdicts,
             (std::vector{TruthVerdict::passed, TruthVerdict::broken, TruthVerdict::broken,
                          TruthVerdict::deviates, TruthVerdict::broken, TruthVerdict::passed}));
 }
 
-TEST(Ledger, KeepsOnlyTheSolversAskedFor) {
-  Ledger ledger({"bullet"});
-  EXPECT_TRUE(ledger.wants("bullet:iterations=3"));
-  EXPECT_FALSE(ledger.wants("jakobsen:iterations=3"));
-  ledger.equal("jakobsen", "q", "m", 0, 1, 0);
-  EXPECT_TRUE(ledger.findings().empty());
+TEST(Findings, KeepsOnlyTheSolversAskedFor) {
+  Findings findings({"bullet"});
+  EXPECT_TRUE(findings.wants("bullet:iterations=3"));
+  EXPECT_FALSE(findings.wants("jakobsen:iterations=3"));
+  findings.equal("jakobsen", "q", "m", 0, 1, 0);
+  EXPECT_TRUE(findings.all().empty());
 }
 
 TEST(Fit, SlopesAndRecurrencesOfExactData) {

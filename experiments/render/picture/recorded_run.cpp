@@ -51,7 +51,7 @@ RecordedRun recorded_run(const Scene& scene, Trajectory trajectory, double reach
   frames.erase(bad, frames.end());
   if (frames.empty())
     throw InputError("the trajectory of '" + trajectory.header.solver +
-                     "' has no sound frame: there is nothing to draw");
+                     "' has no stable frame: there is nothing to draw");
   add_velocities(scene, frames);
   const double slack = 1.5 * std::max(trajectory.header.frame_dt, scene.dt);
   if (exploded || frames.back().t < scene.duration() - slack)

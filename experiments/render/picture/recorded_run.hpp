@@ -9,10 +9,11 @@
 
 namespace taut {
 
-/// One solver's run of a scene as the renderer shows it: sound frames only, and why they end early.
+/// One solver's run of a scene as the renderer shows it: stable frames only, and why they end
+/// early.
 struct RecordedRun {
   struct Stop {
-    double t = 0;     ///< s, of the last sound frame
+    double t = 0;     ///< s, of the last stable frame
     std::string why;  ///< "exploded"
   };
   std::string title;     ///< "Jakobsen"
@@ -27,7 +28,7 @@ struct RecordedRun {
 
 /// Drops everything from the first frame that is not finite or lies more than `reach` extents of
 /// the scene from where the cloth started, and says so in `stop`; so it does when the file ends
-/// before the scene does. Throws InputError if no sound frame is left.
+/// before the scene does. Throws InputError if no stable frame is left.
 RecordedRun recorded_run(const Scene&, Trajectory, double reach = 50);
 
 /// Settings as a caption says them: "jakobsen:iterations=8,projection=exact" gives

@@ -30,16 +30,16 @@ std::vector<double> SceneRenderer::sampled_times() const {
 }
 
 /// The bar ends at a round number that 98 of 100 vertices do not exceed. A run that blew up has no
-/// say beside sound ones, and strain ends at 100 %: else all that is sound would look unstrained.
+/// say beside stable ones, and strain ends at 100 %: else all that is stable would look unstrained.
 void SceneRenderer::choose_scale() {
   if (scale_.high > 0) return;
   constexpr double kMostStrain = 1;
-  const auto sound = [](const RecordedRun& run) { return !run.stop; };
-  const bool any_sound = std::ranges::any_of(runs_, sound);
+  const auto stable = [](const RecordedRun& run) { return !run.stop; };
+  const bool any_stable = std::ranges::any_of(runs_, stable);
   std::vector<double> magnitudes;
   for (const double t : sampled_times())
     for (const RecordedRun& run : runs_) {
-      if (any_sound && !sound(run)) continue;
+      if (any_stable && !stable(run)) continue;
       for (const double v : vertex_values(scene_, scale_.quantity, run.at(t).state, run.at(t).t))
         if (std::isfinite(v)) magnitudes.push_back(std::abs(v));
     }

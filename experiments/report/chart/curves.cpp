@@ -1,4 +1,4 @@
-#include "experiments/report/curves.hpp"
+#include "experiments/report/chart/curves.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
-#include "experiments/report/palette.hpp"
-#include "experiments/report/quantity.hpp"
-#include "experiments/report/rivals.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/claims/rivals.hpp"
 
 namespace taut::report {
 

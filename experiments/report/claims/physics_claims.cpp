@@ -2,9 +2,9 @@
 #include <cmath>
 #include <set>
 
-#include "experiments/report/claim.hpp"
-#include "experiments/report/format.hpp"
-#include "experiments/report/palette.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/claims/claim.hpp"
 
 namespace taut::report {
 

@@ -1,4 +1,4 @@
-#include "experiments/report/quantity.hpp"
+#include "experiments/report/chart/quantity.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "experiments/metrics/metric.hpp"
-#include "experiments/report/format.hpp"
+#include "experiments/report/chart/format.hpp"
 
 namespace taut::report {
 

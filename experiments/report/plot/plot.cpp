@@ -1,4 +1,4 @@
-#include "experiments/report/plot.hpp"
+#include "experiments/report/plot/plot.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/format.hpp"
-#include "experiments/report/gnuplot.hpp"
-#include "experiments/report/palette.hpp"
-#include "experiments/report/rivals.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/plot/gnuplot.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {

@@ -1,7 +1,7 @@
-#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/plot/gnuplot.hpp"
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/format.hpp"
+#include "experiments/report/chart/format.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
 

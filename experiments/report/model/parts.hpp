@@ -6,9 +6,9 @@
 #include <set>
 #include <string>
 
-#include "experiments/report/charts.hpp"
-#include "experiments/report/claim.hpp"
-#include "experiments/report/rivals.hpp"
+#include "experiments/report/chart/charts.hpp"
+#include "experiments/report/claims/claim.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {

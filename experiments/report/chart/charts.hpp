@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/curves.hpp"
+#include "experiments/report/chart/curves.hpp"
+#include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/input.hpp"
-#include "experiments/report/quantity.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut::report {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/quantity.hpp"
-#include "experiments/report/rivals.hpp"
+#include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/timing/bench.hpp"
 
 namespace taut::report {

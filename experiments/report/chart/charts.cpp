@@ -1,4 +1,4 @@
-#include "experiments/report/charts.hpp"
+#include "experiments/report/chart/charts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/format.hpp"
-#include "experiments/report/palette.hpp"
-#include "experiments/report/rivals.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/claims/rivals.hpp"
 
 namespace taut::report {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/report/charts.hpp"
+#include "experiments/report/chart/charts.hpp"
 
 namespace taut::report {
 

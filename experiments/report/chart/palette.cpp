@@ -1,4 +1,4 @@
-#include "experiments/report/palette.hpp"
+#include "experiments/report/chart/palette.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "experiments/report/claim.hpp"
+#include "experiments/report/claims/claim.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "experiments/report/format.hpp"
+#include "experiments/report/chart/format.hpp"
 
 namespace taut::report {
 

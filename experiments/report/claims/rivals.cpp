@@ -1,4 +1,4 @@
-#include "experiments/report/rivals.hpp"
+#include "experiments/report/claims/rivals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/report/palette.hpp"
-#include "experiments/report/quantity.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/quantity.hpp"
 
 namespace taut::report {
 

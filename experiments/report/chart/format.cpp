@@ -1,4 +1,4 @@
-#include "experiments/report/format.hpp"
+#include "experiments/report/chart/format.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,189 @@
+#include <limits>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/model/parts.hpp"
+#include "experiments/timing/answer.hpp"
+
+namespace taut::report {
+
+namespace {
+
+std::string span_text(const Interval& i, const Quantity& q) {
+  const int decimals = decimals_for((i.high - i.low) * q.scale);
+  const auto number = [&](double v) { return fixed(v * q.scale, decimals); };
+  return number(i.mid) + "\u00A0" + q.unit + " (" + number(i.low) + "–" + number(i.high) + ")";
+}
+
+/// Settings of one solver on one scene that a table speaks of.
+struct CostScene {
+  const SceneBench& bench;
+  const std::vector<Record>& records;
+  References& refs;
+
+  std::string setting(std::size_t at) const {
+    const std::string label = knob_label(bench.cases[at].record, records);
+    return label.empty() ? work_of(bench.cases[at].record).text() : label;
+  }
+  Json cell(std::size_t at, const std::string& text) const {
+    const BenchedCase& c = bench.cases[at];
+    const Interval cost = c.cost();
+    return {{"text", text},
+            {"value", cost.mid},
+            {"low", cost.low},
+            {"high", cost.high},
+            {"case", refs.key(c.record)}};
+  }
+  /// "not reached by the settings tried (at best 0.12 %)".
+  std::string never(const std::string& solver) const {
+    const std::vector<Candidate> candidates = bench.candidates(kPricedMetric);
+    const auto nearest =
+        best_for({.budget = std::numeric_limits<double>::infinity()}, candidates, solver);
+    return nearest ? "not reached by the settings tried (at best " +
+                         quantity(kPricedMetric).text(candidates[*nearest].error) + ")"
+                   : "no case completed";
+  }
+};
+
+/// How a solver's cheapest compares with the cheapest of all.
+void add_ratio(Json& cell, const Interval& times, const Interval& control) {
+  const auto sure = judge_ratio(times, control);
+  const int decimals = decimals_for(times.high - times.low);
+  cell["note"] = fixed(times.mid, decimals) + " × the cheapest (" + fixed(times.low, decimals) +
+                 "–" + fixed(times.high, decimals) + ")" +
+                 (!sure                      ? ", no difference that can be told"
+                  : *sure == Sure::too_noisy ? ", too noisy to judge"
+                                             : "");
+  if (sure) cell["sure"] = to_string(*sure);
+}
+
+Json levels_table(const CostScene& scene) {
+  const Quantity q = quantity(kPricedMetric), cpu = quantity("cpu.per_second");
+  Json table{{"id", "cost-levels-" + scene.bench.scene},
+             {"title", "Cost of an error"},
+             {"caption",
+              "CPU time per simulated second, its 95 % interval, and the setting; "
+              "every setting tried."},
+             {"columns", Json::array()}};
+  table["columns"].push_back({{"title", "to reach"}, {"metric", kPricedMetric}});
+  for (const std::string& solver : solvers_of(scene.bench))
+    table["columns"].push_back({{"title", solver_title(solver)}, {"metric", cpu.name}});
+  for (const double level : kErrorLevels) {
+    Json row = Json::array();
+    row.push_back({{"text", q.text(level, 1)}, {"value", level}});
+    for (const SolverAnswer& r : answer(scene.bench, {.error = level}, kPricedMetric).solvers) {
+      if (!r.at) {
+        row.push_back(scene.never(r.solver));
+        continue;
+      }
+      Json cell = scene.cell(
+          *r.at, span_text(scene.bench.cases[*r.at].cost(), cpu) + ", " + scene.setting(*r.at));
+      if (r.times && r.times->mid > 1) add_ratio(cell, *r.times, scene.bench.control);
+      row.push_back(std::move(cell));
+    }
+    table["rows"].push_back(std::move(row));
+  }
+  return table;
+}
+
+Json budgets_table(const CostScene& scene) {
+  const Quantity q = quantity(kPricedMetric), ms{"", "", "ms", 1e3 * kFrame};
+  Json table{{"id", "cost-budgets-" + scene.bench.scene},
+             {"title", "Error within a budget"},
+             {"caption",
+              "The least error within a budget of CPU time per frame of 1/60 s, what it "
+              "costs and with which setting."},
+             {"columns", Json::array()}};
+  table["columns"].push_back({{"title", "within, per frame"}});
+  const std::vector<Candidate> candidates = scene.bench.candidates(kPricedMetric);
+  for (const std::string& solver : solvers_of(scene.bench))
+    table["columns"].push_back({{"title", solver_title(solver)}, {"metric", kPricedMetric}});
+  for (const double budget : kFrameBudgets) {
+    Json row = Json::array();
+    row.push_back({{"text", significant(1e3 * budget, 2) + "\u00A0ms"}, {"value", budget}});
+    for (const std::string& solver : solvers_of(scene.bench)) {
+      const auto at = best_for({.budget = budget / kFrame}, candidates, solver);
+      if (!at) {
+        row.push_back("nothing that cheap");
+        continue;
+      }
+      row.push_back({{"text", q.text(candidates[*at].error) + " for " +
+                                  span_text(candidates[*at].cost, ms) + ", " + scene.setting(*at)},
+                     {"value", candidates[*at].error},
+                     {"case", scene.refs.key(scene.bench.cases[*at].record)}});
+    }
+    table["rows"].push_back(std::move(row));
+  }
+  return table;
+}
+
+/// Who is cheapest for the priced error, by how much, and how to ask again.
+Json answer_row(const CostScene& scene) {
+  const SceneBench& bench = scene.bench;
+  std::string again = "taut advise " + bench.scene + " --error 1%";
+  if (!bench.cases.empty())
+    for (const std::string& value : bench.cases.front().record.spec.overrides)
+      again += " --set '" + value + "'";
+  const auto best = best_for({.error = kPricedError}, bench.candidates(kPricedMetric));
+  if (!best) return {bench.scene, "not reached by the settings tried", "–", "–", again};
+  const BenchedCase& c = bench.cases[*best];
+  std::string others;
+  for (const SolverAnswer& r : answer(bench, {.error = kPricedError}, kPricedMetric).solvers) {
+    if (r.at == best) continue;
+    others += (others.empty() ? "" : "; ") + solver_title(r.solver) + " ";
+    if (!r.at || !r.times) {
+      others += scene.never(r.solver);
+      continue;
+    }
+    Json cell;
+    add_ratio(cell, *r.times, bench.control);
+    others += cell["note"].get<std::string>() + " with " + scene.setting(*r.at);
+  }
+  return {bench.scene, solver_title(c.record.solver) + " " + scene.setting(*best),
+          scene.cell(*best, span_text(c.cost(), quantity("cpu.per_second"))),
+          others.empty() ? "no other solver can run this scene" : others, again};
+}
+
+}  // namespace
+
+Json json_of_cost(const BenchSession& session, References& refs, Json& charts, Json& tables) {
+  Json cost{{"machine", session.machine}};
+  Json answers{{"id", "cost-answers"},
+               {"title", "Cheapest setting for " + quantity(kPricedMetric).text(kPricedError, 1) +
+                             " " + quantity(kPricedMetric).title},
+               {"columns", Json::array()}};
+  for (const char* title :
+       {"scene", "cheapest setting", "CPU time per simulated second", "the others", "ask again"})
+    answers["columns"].push_back({{"title", title}});
+  refs.use("cpu.per_second"), refs.use("cpu.per_step");
+  for (const SceneBench& bench : session.scenes) {
+    const std::vector<Record> records = BenchSession{"", "", {bench}}.records();
+    const CostScene scene{bench, records, refs};
+    Json one{
+        {"scene", bench.scene},
+        {"control", json_interval(bench.control,
+                                  bench.cases.empty() ? 0 : bench.cases[0].timing.samples.size())},
+        {"noisy", strayed(bench.control) > kAlike - 1},
+        {"noise", "timing noise: two runs of identical code differed by up to " +
+                      significant(100 * strayed(bench.control), 2) + "\u00A0%"}};
+    try {
+      const Chart chart = cost_chart(bench, records);
+      charts.push_back(json_of(chart, refs));
+      one["charts"].push_back(chart.id);
+    } catch (const InputError&) {
+      // nothing completed: the tables say so
+    }
+    for (Json& table : std::vector{levels_table(scene), budgets_table(scene)}) {
+      one["tables"].push_back(table["id"]);
+      tables.push_back(std::move(table));
+    }
+    answers["rows"].push_back(answer_row(scene));
+    cost["scenes"].push_back(std::move(one));
+  }
+  cost["tables"].push_back("cost-answers");
+  tables.push_back(std::move(answers));
+  return cost;
+}
+
+}  // namespace taut::report
