@@ -57,7 +57,7 @@ class Jakobsen final : public Solver {
         pool_(params.integer("threads")),
         pins_(scene) {
     const std::vector<double> w = inverse_masses(scene);
-    const RelaxationSettings settings = relaxation_settings(scene, params);
+    const RelaxationSettings settings = relaxation_settings(params);
     Relaxation<Real> links = make_relaxation<Real>(scene, w, settings, pool_);
     p_ = Particles<Real>(std::move(links.layout));
     p_.w.assign(w.begin(), w.end());
@@ -200,8 +200,6 @@ constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"}
 LinearModel linear_model(const Scene&, const Params& params) {
   const bool jacobi = params.is("method", "jacobi");
   if ((!jacobi && !params.is("method", "gauss-seidel")) || !params.is("order", "mesh")) return {};
-  for (const char* family : {"structural_stiffness", "shear_stiffness", "bend_stiffness"})
-    if (params.value(family) != "inf") return {};
   return LinearSweeps{jacobi, params.real("omega"), params.integer("iterations"),
                       params.integer("substeps")};
 }

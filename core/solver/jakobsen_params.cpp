@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
@@ -12,7 +11,6 @@ namespace taut {
 namespace {
 
 using Kind = ParamSpec::Kind;
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 constexpr ParamSpec kSpecs[] = {
     {.name = "iterations",
@@ -56,27 +54,6 @@ constexpr ParamSpec kSpecs[] = {
      .min = 0,
      .max = 2,
      .help = "relaxation factor: below 1 under-, above 1 over-relaxed"},
-    {.name = "structural_stiffness",
-     .kind = Kind::real,
-     .unit = "N/m",
-     .default_value = "inf",
-     .min = 0,
-     .max = kInf,
-     .help = "of a structural link, whatever the time step and the sweeps; inf: rigid"},
-    {.name = "shear_stiffness",
-     .kind = Kind::real,
-     .unit = "N/m",
-     .default_value = "inf",
-     .min = 0,
-     .max = kInf,
-     .help = "of a shear link"},
-    {.name = "bend_stiffness",
-     .kind = Kind::real,
-     .unit = "N/m",
-     .default_value = "inf",
-     .min = 0,
-     .max = kInf,
-     .help = "of a bend link"},
     {.name = "contact",
      .kind = Kind::choice,
      .default_value = "continuous",
@@ -178,21 +155,16 @@ Simd simd_of(const Params& params) {
   return widest();
 }
 
-RelaxationSettings relaxation_settings(const Scene& scene, const Params& params) {
-  return {
-      .projection = value_of(params, "projection", kProjections),
-      .jacobi = value_of(params, "method", kMethods),
-      .order = value_of(params, "order", kOrders),
-      .seed = static_cast<std::uint32_t>(params.integer("seed")),
-      .layout = value_of(params, "layout", kLayouts),
-      .stiffness = {.of_family = {params.real("structural_stiffness"),
-                                  params.real("shear_stiffness"), params.real("bend_stiffness")},
-                    .omega = params.real("omega"),
-                    .substep = scene.dt / params.integer("substeps"),
-                    .iterations = params.integer("iterations")},
-      .levels = params.integer("levels"),
-      .tethers = params.is("tethers", "on"),
-      .simd = simd_of(params)};
+RelaxationSettings relaxation_settings(const Params& params) {
+  return {.projection = value_of(params, "projection", kProjections),
+          .jacobi = value_of(params, "method", kMethods),
+          .order = value_of(params, "order", kOrders),
+          .seed = static_cast<std::uint32_t>(params.integer("seed")),
+          .layout = value_of(params, "layout", kLayouts),
+          .omega = params.real("omega"),
+          .levels = params.integer("levels"),
+          .tethers = params.is("tethers", "on"),
+          .simd = simd_of(params)};
 }
 
 ContactSettings contact_settings(const Params& params) {

@@ -10,7 +10,7 @@ namespace taut {
 extern const std::span<const ParamSpec> kJakobsenParams;
 
 Simd simd_of(const Params&);  ///< throws InputError if this machine does not have it
-RelaxationSettings relaxation_settings(const Scene&, const Params&);
+RelaxationSettings relaxation_settings(const Params&);
 ContactSettings contact_settings(const Params&);
 
 ResolvedSettings jakobsen_settings(const Scene&, const Params&);

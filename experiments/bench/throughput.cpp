@@ -3,7 +3,6 @@
 // that stay in registers; and particles that are moved for projections that are left out.
 #include <algorithm>
 #include <ctime>
-#include <limits>
 
 #include "core/solver/layout/colour_batches.hpp"
 #include "experiments/bench/kernels.hpp"
@@ -89,11 +88,8 @@ double projection() {
 template <class Real>
 double traffic(const Scene& scene) {
   const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.links, scene.mesh));
-  constexpr double kRigid = std::numeric_limits<double>::infinity();
-  const ColourBatches<Real> batches(
-      colour(scene.links, scene.mesh), inverse_masses(scene),
-      {.of_family = {kRigid, kRigid, kRigid}, .omega = 1, .substep = scene.dt, .iterations = 1},
-      layout);
+  const ColourBatches<Real> batches(colour(scene.links, scene.mesh), inverse_masses(scene), 1,
+                                    layout);
   std::vector<Real> x(layout.length());
   const auto load_and_store = kernels<Real>(widest()).load_and_store;
   const auto sweep = [&](Real) {

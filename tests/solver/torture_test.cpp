@@ -34,7 +34,6 @@ class Extremes {
                        ",projection=" + (coin() ? "exact" : "sqrt-free") +
                        ",precision=" + (coin() ? "float" : "double");
     if (method == 0) text += std::string(",order=") + kOrders[below(4)];
-    if (below(4) == 0) text += ",structural_stiffness=" + std::to_string(decades(1e-3, 1e9));
     return listing(text);
   }
 

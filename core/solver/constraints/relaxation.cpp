@@ -177,7 +177,7 @@ template <class Real, Projection kind>
 std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const double> w,
                                             const RelaxationSettings& settings) {
   const std::vector<Link> links = ordered(scene.links, scene.mesh, settings.order, settings.seed);
-  auto constraints = make_distance_constraints<Real>(links, w, settings.stiffness);
+  auto constraints = make_distance_constraints<Real>(links, w, settings.omega);
   auto costs = family_costs(links, w, constraints.size() * sizeof constraints[0]);
   if (settings.jacobi)
     return std::make_unique<JacobiPass<Real, kind>>(*settings.jacobi, std::move(constraints),
@@ -213,14 +213,14 @@ Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
     return {Layout::packed(n), std::move(pass)};
   }
   if (const auto links = regular(scene, settings.layout)) {
-    InterleavedSheet<Real> sheet(*links, w, settings.stiffness);
+    InterleavedSheet<Real> sheet(*links, w, settings.omega);
     auto costs = family_costs(scene.links, w, sheet.bytes());
     return {interleaved_layout(links->grid),
             std::make_unique<SheetPass<Real>>(std::move(sheet), std::move(costs), projection,
                                               settings.simd, pool)};
   }
   Layout layout = Layout::packed(n, tile_ranks(scene.links, scene.mesh));
-  ColourBatches<Real> batches(colour(scene.links, scene.mesh), w, settings.stiffness, layout);
+  ColourBatches<Real> batches(colour(scene.links, scene.mesh), w, settings.omega, layout);
   auto costs = family_costs(scene.links, w, batches.bytes());
   return {std::move(layout), std::make_unique<BatchPass<Real>>(std::move(batches), std::move(costs),
                                                                projection, settings.simd, pool)};

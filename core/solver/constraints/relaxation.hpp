@@ -36,8 +36,8 @@ struct RelaxationSettings {
   Order order = Order::coloured;
   std::uint32_t seed = 1;  ///< of Order::random
   LinkLayout layout = LinkLayout::automatic;
-  Stiffness stiffness;
-  int levels = 1;  ///< of the hierarchy; 1: the cloth alone
+  double omega = 1;  ///< relaxation factor: the share of a correction that is made
+  int levels = 1;    ///< of the hierarchy; 1: the cloth alone
   bool tethers = false;
   Simd simd = Simd::scalar;
 };

@@ -7,12 +7,12 @@ namespace taut {
 
 template <class Real>
 ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<const double> w,
-                                   const Stiffness& stiffness, const Layout& layout) {
+                                   double omega, const Layout& layout) {
   phase_.push_back(0), tile_.push_back(0);
   for (const Phase& phase : phases) {
     for (const Tile& tile : phase) {
       for (const Colour& colour : tile)
-        add_colour(make_distance_constraints<Real>(colour, w, stiffness), layout);
+        add_colour(make_distance_constraints<Real>(colour, w, omega), layout);
       tile_.push_back(runs_.size());
     }
     phase_.push_back(tile_.size() - 1);

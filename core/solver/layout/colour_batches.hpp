@@ -19,7 +19,7 @@ template <class Real>
 class ColourBatches {
  public:
   /// layout: packed.
-  ColourBatches(const std::vector<Phase>&, std::span<const double> w, const Stiffness&,
+  ColourBatches(const std::vector<Phase>&, std::span<const double> w, double omega,
                 const Layout& layout);
   ColourBatches(ColourBatches&&) = default;
   ColourBatches(const ColourBatches&) = delete;  // it points into itself

@@ -78,7 +78,7 @@ Layout interleaved_layout(const Grid& grid) {
 
 template <class Real>
 InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<const double> w,
-                                         const Stiffness& stiffness)
+                                         double omega)
     : links_(links) {
   const Grid& grid = links.grid;
   const int lanes = sweep_.lanes = lanes_of(grid);
@@ -98,12 +98,11 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
           .equal_share = 0,
           .row = nullptr};
     std::map<Real, int> votes;  // equal shares, by how many links have them
-    const auto shares = [&, kind = family](int i, int j, bool left) {  // clang 14: no binding
+    const auto shares = [&](int i, int j, bool left) {
       const double wl = w[to_index(grid.index(i, j + to.left))],
                    wr = w[to_index(grid.index(i + to.columns, j + to.right))];
       if (wl + wr == 0) return Real(0);
-      return static_cast<Real>(relaxation_weight(stiffness, kind, wl + wr) *
-                               ((left ? wl : wr) / (wl + wr)));
+      return static_cast<Real>(omega * ((left ? wl : wr) / (wl + wr)));
     };
     for (int j = 0; j < to.rows; ++j) {
       std::vector<Real> row(to_index(2 * lanes * sweep_.vectors), Real(0));

@@ -37,7 +37,7 @@ Layout interleaved_layout(const Grid&);
 template <class Real>
 class InterleavedSheet {
  public:
-  InterleavedSheet(const RegularLinks&, std::span<const double> w, const Stiffness&);
+  InterleavedSheet(const RegularLinks&, std::span<const double> w, double omega);
   InterleavedSheet(InterleavedSheet&&) = default;
   InterleavedSheet(const InterleavedSheet&) = delete;  // it points into itself
 

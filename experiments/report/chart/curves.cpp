@@ -14,9 +14,8 @@ namespace taut::report {
 
 namespace {
 
-constexpr const char* kKnobs[] = {
-    "substeps", "iterations", "newton",  "stiffness", "structural_stiffness",
-    "omega",    "order",      "tethers", "levels",    "precision"};
+constexpr const char* kKnobs[] = {"substeps", "iterations", "newton", "stiffness", "omega",
+                                  "order",    "tethers",    "levels", "precision"};
 
 }  // namespace
 
