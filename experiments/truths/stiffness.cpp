@@ -35,7 +35,7 @@ double worst(const Scene& s, const State& state, double stiffness) {
   return most / (kMass * kG / stiffness);
 }
 
-void stiffness(Ledger& ledger) {
+void stiffness(Findings& findings) {
   for (const double k : {500.0, 5000.0, 50000.0}) {
     const std::string springs = ",precision=double,structural=" + shortest(k),
                       compliant = ",precision=double,structural=" + shortest(1 / k),
@@ -47,17 +47,17 @@ void stiffness(Ledger& ledger) {
           "bullet-deformable:substeps=16" + implicit})
       for (const int columns : {1, 3}) {
         const Scene s = hung(columns);
-        if (!claims(ledger, solver, s)) continue;
+        if (!claims(findings, solver, s)) continue;
         Probe probe(s, solver);
         settle(probe, 1e-10, 16, 20 * 64);
-        ledger.below(solver,
-                     "distance of an extension from (N-j+1) m g/K, in m g/K, columns: " +
-                         std::to_string(columns),
-                     "1", worst(s, probe.state(), k), 1e-9);
+        findings.below(solver,
+                       "distance of an extension from (N-j+1) m g/K, in m g/K, columns: " +
+                           std::to_string(columns),
+                       "1", worst(s, probe.state(), k), 1e-9);
       }
   }
   for (const char* solver : {"jakobsen", "bullet"})
-    if (ledger.wants(solver)) ledger.not_claimed(solver, "its links are rigid");
+    if (findings.wants(solver)) findings.not_claimed(solver, "its links are rigid");
 }
 
 }  // namespace

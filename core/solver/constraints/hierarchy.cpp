@@ -88,8 +88,7 @@ std::vector<Level> make_hierarchy(const Scene& scene, std::span<const double> w,
     }
     if (level.vertices.size() == vertices.size()) break;
     links = coarse_links(scene, links, neighbours, coarse, vertices);
-    level.links =
-        make_distance_constraints<double>(links, w, {.of_family = {INFINITY, INFINITY, INFINITY}});
+    level.links = make_distance_constraints<double>(links, w, 1);
     vertices = level.vertices;
     hierarchy.insert(hierarchy.begin(), std::move(level));
   }

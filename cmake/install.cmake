@@ -1,0 +1,71 @@
+# What `cmake --install` puts where: the program with its data, and the library. `cpack -G DEB` makes a package of each.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS taut taut-f32 COMPONENT program)
+install(FILES ${PROJECT_BINARY_DIR}/taut.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+install(FILES ${PROJECT_BINARY_DIR}/taut.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+        RENAME taut COMPONENT program)
+install(FILES experiments/main-job.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
+install(DIRECTORY experiments/scenes experiments/studies results/references
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
+
+# The library: taut::model, taut::io, taut::solver, taut::metrics, taut::case and what they need.
+set(libraries case metrics system io solver model fingerprint)
+foreach(library IN LISTS libraries)
+  set_target_properties(taut_${library} PROPERTIES EXPORT_NAME ${library})
+  target_include_directories(taut_${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  install(TARGETS taut_${library} EXPORT taut COMPONENT development)
+endforeach()
+# find_solver() asks for solvers(), which is in the library of the solvers: a cycle, which CMake puts on the link line.
+target_link_libraries(taut_model INTERFACE $<INSTALL_INTERFACE:taut::solver>)
+
+# core/model/scene.hpp becomes <taut/model/scene.hpp>, also where headers include each other.
+set(headers core/io/mesh_io.hpp core/io/scene_io.hpp experiments/metrics/metric.hpp experiments/metrics/summary.hpp
+            experiments/case/digest.hpp experiments/case/record.hpp experiments/case/record_io.hpp
+            experiments/case/run_case.hpp experiments/case/trajectory.hpp)
+file(GLOB model CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} core/model/*.hpp)
+install(CODE "
+  foreach(header IN ITEMS ${model} ${headers})
+    file(READ \"${PROJECT_SOURCE_DIR}/\${header}\" text)
+    string(REGEX REPLACE \"(#include \\\")(core|experiments)/\" \"\\\\1taut/\" text \"\${text}\")
+    string(REGEX REPLACE \"^(core|experiments)/\" \"\" header \"\${header}\")
+    file(WRITE \"${PROJECT_BINARY_DIR}/include/taut/\${header}\" \"\${text}\")
+  endforeach()" COMPONENT development)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/include/taut DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/taut)
+configure_package_config_file(cmake/package/taut-config.cmake.in taut-config.cmake INSTALL_DESTINATION ${package})
+write_basic_package_version_file(taut-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/taut-config.cmake ${PROJECT_BINARY_DIR}/taut-config-version.cmake
+        DESTINATION ${package} COMPONENT development)
+install(EXPORT taut NAMESPACE taut:: FILE taut-targets.cmake DESTINATION ${package} COMPONENT development)
+
+# taut.pc finds itself, so that an installed folder may move; an absolute folder of libraries or headers stays.
+file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+cmake_path(APPEND pc_libdir "\${prefix}" ${CMAKE_INSTALL_LIBDIR})
+cmake_path(APPEND pc_includedir "\${prefix}" ${CMAKE_INSTALL_INCLUDEDIR})
+list(TRANSFORM libraries PREPEND "-ltaut_" OUTPUT_VARIABLE pc_libraries)
+list(JOIN pc_libraries " " pc_libraries)
+configure_file(cmake/package/taut.pc.in taut.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/taut.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+
+set(CPACK_PACKAGE_CONTACT "The taut developers")
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_LICENSE MIT)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME taut)
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "testbed for cloth solvers
+ Runs cloth solvers side by side on identical scenes and says what each
+ costs, how far it is off and when it breaks.")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libosmesa6, gnuplot-nox, fonts-dejavu-core, ffmpeg")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtaut-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "testbed for cloth solvers, library
+ Scenes, solvers, metrics and the run of one case, to be called from a
+ program of one's own.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libtomlplusplus-dev, libssl-dev")
+include(CPack)
