@@ -158,7 +158,7 @@ class Verbs(CommandLine):
         named = re.findall(r"^  ([a-z]+) ", verbs, re.MULTILINE)
         self.assertGreater(len(named), 12)
         self.assertEqual(len(named), len(set(named)))
-        for verb in [[name] for name in named] + [["bench", inner] for inner in ["kernels", "contact", "scaling"]]:
+        for verb in [[name] for name in named] + [["bench", inner] for inner in ["kernels", "contact", "effects", "scaling"]]:
             self.assertIn("Example:\n  taut " + " ".join(verb), self.taut(*verb, "--help").out)
 
     def test_the_help_shows_verbs_in_groups_a_line_each(self):
@@ -379,6 +379,20 @@ class Verbs(CommandLine):
         out = self.taut("bench", "contact", *short).out
         for text in ["contact=continuous,order=mesh", "self=grid,order=coloured", "8 x 8, 64 particles"]:
             self.assertIn(text, out)
+
+    def test_effects_are_timed_beside_the_links_of_hang(self):
+        short = ["--rounds", "2", "--seconds", "0.0001", "--json"]
+        rows = json.loads(self.taut("bench", "effects", "flag", "chain", *short).out)
+        self.assertEqual([(row["scene"], row["effects"]) for row in rows], [("hang", ""), ("flag", "wind"), ("chain", "")])
+        for row in rows:
+            self.assertEqual((len(row["ns"]), len(row["links_alone_ns"])), (4, 4))
+            self.assertGreater(min(row["ns"] + row["links_alone_ns"]), 0)
+        rows = json.loads(self.taut("bench", "effects", "crumple", "chain", "--sizes", "20,24", *short).out)
+        self.assertEqual([(row["scene"], row["vertices"]) for row in rows],
+                         [("hang", 400), ("crumple", 400), ("hang", 576), ("crumple", 576)])  # a chain is no sheet
+        solver = "jakobsen:iterations=1,substeps=1000000"
+        out = self.taut("bench", "effects", "ball", "--solver", solver, "--rounds", "1").out
+        self.assertIn("not timed: in float, gravity's move", out)
 
     def test_the_same_scene_under_another_name_is_the_same_case(self):
         (self.folder / "copy.toml").write_text((self.folder / "small.toml").read_text())

@@ -1,0 +1,116 @@
+#include "experiments/bench/effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/timing/timing.hpp"
+
+namespace taut {
+
+namespace {
+
+/// Nothing if the scene is no sheet and a side is asked for.
+std::optional<Scene> scene_of(const std::string& name, int side) {
+  const auto file = find_scene(name);
+  Scene scene = load_scene(file);
+  if (side == 0) return scene;
+  if (!scene.mesh.grid || std::min(scene.mesh.grid->nu, scene.mesh.grid->nv) < 2) return {};
+  const std::string n = std::to_string(side);
+  std::vector<std::string> changes{"cloth.grid=[" + n + "," + n + "]"};
+  if (scene.self_collision) {
+    const int least = std::min(scene.mesh.grid->nu, scene.mesh.grid->nv);
+    changes.push_back("self_collision.radius=" +
+                      std::to_string(scene.self_collision->radius * (least - 1) / (side - 1)));
+  }
+  return load_scene(file, changes);
+}
+
+std::string effects_of(const Scene& scene) {
+  std::vector<std::string> all;
+  if (!scene.mesh.grid) all.emplace_back("any mesh");
+  if (scene.wind) all.emplace_back("wind");
+  for (const Collider& c : scene.colliders) all.emplace_back(type_name(c.shape));
+  if (scene.self_collision) all.emplace_back("itself");
+  std::string text;
+  for (const std::string& one : all) text += (text.empty() ? "" : ", ") + one;
+  return text;
+}
+
+Scene without_effects(Scene scene) {
+  scene.wind.reset(), scene.colliders.clear(), scene.self_collision.reset();
+  return scene;
+}
+
+/// One scene, with its effects and without them.
+class TimedScene {
+ public:
+  TimedScene(const Scene& scene, const EffectBenchOptions& options) : wall_(options.wall) {
+    const SolverChoice choice = parse_solver(options.solver);
+    row_ = {.scene = scene.name,
+            .effects = effects_of(scene),
+            .vertices = scene.start.x.size(),
+            .dt = scene.dt,
+            .refused = {},
+            .whole = {},
+            .bare = {}};
+    if (const auto reasons = choice.entry->unsupported(scene, choice.params); !reasons.empty()) {
+      row_.refused = reasons.front();
+      return;
+    }
+    whole_ = choice.entry->make(scene, choice.params);
+    bare_ = choice.entry->make(without_effects(scene), choice.params);
+    run_.emplace(scene, *whole_, scene.steps);
+    State end;
+    whole_->store(end);
+    if (!std::ranges::all_of(end.x, [](const Vec3& x) { return x.allFinite(); })) {
+      row_.refused = "it exploded";
+      return;
+    }
+    const StepTime step = run_->whole();
+    steps_ = std::clamp(static_cast<int>(options.seconds / (wall_ ? step.wall : step.cpu)), 1,
+                        scene.steps);
+  }
+
+  void sample() {
+    if (!row_.refused.empty()) return;
+    row_.whole.push_back(time(*whole_));
+    row_.bare.push_back(time(*bare_));
+  }
+
+  EffectRow take() { return std::move(row_); }
+
+ private:
+  double time(Solver& solver) const {
+    const StepTime step = run_->sample(solver, steps_);
+    return 1e9 * (wall_ ? step.wall : step.cpu) / static_cast<double>(row_.vertices);
+  }
+
+  EffectRow row_;
+  bool wall_;
+  std::unique_ptr<Solver> whole_, bare_;
+  std::optional<CheckpointedRun> run_;
+  int steps_ = 1;
+};
+
+}  // namespace
+
+std::vector<EffectRow> bench_effects(const EffectBenchOptions& options) {
+  std::vector<TimedScene> subjects;
+  for (const std::string& name : options.scenes)
+    if (const auto scene = scene_of(name, options.side)) subjects.emplace_back(*scene, options);
+  for (int round = 0; round < options.rounds; ++round) {
+    for (TimedScene& subject : subjects) subject.sample();
+    for (auto s = subjects.rbegin(); s != subjects.rend(); ++s) s->sample();
+    options.progress(static_cast<std::size_t>(round) + 1, static_cast<std::size_t>(options.rounds));
+  }
+  std::vector<EffectRow> rows;
+  for (TimedScene& subject : subjects) rows.push_back(subject.take());
+  return rows;
+}
+
+}  // namespace taut

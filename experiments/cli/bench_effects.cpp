@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "experiments/bench/effects.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut::verb::effects {
+
+namespace {
+
+constexpr const char* kUnit = "hang";  ///< the scene of links alone that the others are held to
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::string solver = "jakobsen:iterations=1,substeps=15";
+  std::vector<int> sizes{0};
+  int rounds = 11;
+  double seconds = 0.01;
+  bool wall = false, json = false;
+};
+
+std::string text(const Interval& i) {
+  char words[64];
+  std::snprintf(words, sizeof words, "%6.2f [%.2f %.2f]", i.mid, i.low, i.high);
+  return words;
+}
+
+void print(const std::vector<EffectRow>& rows, const Options& options, int side) {
+  std::printf(
+      "\n%s%s; %s ns a vertex and step; times %s, a step and a simulated second, and times "
+      "the same cloth's links alone, with 95 %% intervals\n",
+      options.solver.c_str(),
+      side == 0 ? "" : (", " + std::to_string(side) + " x " + std::to_string(side)).c_str(),
+      options.wall ? "wall" : "CPU", kUnit);
+  std::printf("%-12s %-16s %8s %9s  %-22s %8s  %-20s\n", "", "", "vertices", "ns", "x hang, a step",
+              "a second", "x links alone");
+  const EffectRow& unit = rows.front();
+  for (const EffectRow& row : rows) {
+    std::printf("%-12s %-16s %8zu ", row.scene.c_str(), row.effects.c_str(), row.vertices);
+    if (!row.refused.empty()) {
+      std::printf("not timed: %s\n", row.refused.c_str());
+      continue;
+    }
+    const Interval times = row.times(unit);
+    std::printf("%9.1f  %-22s %8.2f  %-20s\n", row.cost().mid, text(times).c_str(),
+                times.mid * unit.dt / row.dt, text(row.times_bare()).c_str());
+  }
+  std::fflush(stdout);
+}
+
+Json json_of(const std::vector<EffectRow>& rows, int side) {
+  Json all = Json::array();
+  for (const EffectRow& row : rows)
+    all.push_back({{"scene", row.scene},
+                   {"effects", row.effects},
+                   {"side", side},
+                   {"vertices", row.vertices},
+                   {"dt", row.dt},
+                   {"refused", row.refused},
+                   {"ns", row.whole},
+                   {"links_alone_ns", row.bare}});
+  return all;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  app.add_option("SCENE", o->scenes, "Scenes beside hang (default: all that are shipped)");
+  app.add_option("--solver", o->solver, "The solver (default: jakobsen:iterations=1,substeps=15)");
+  app.add_option("--sizes", o->sizes,
+                 "Sheets of so many vertices along each side; 0: as they are (default: 0)")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 1024));
+  app.add_option("--rounds", o->rounds, "Rounds in alternating order (ABBA) (default: 11)")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--seconds", o->seconds, "Of one sample (default: 0.01)")->check(above_zero());
+  app.add_flag("--wall", o->wall, "Wall time instead of CPU time: for threads=2");
+  add_json(app, o->json, "Every row with its samples");
+  return [o] {
+    std::vector<std::string> scenes = o->scenes.empty() ? shipped("scenes") : o->scenes;
+    std::erase(scenes, kUnit);
+    scenes.insert(scenes.begin(), kUnit);
+    Json all = Json::array();
+    for (const int side : o->sizes) {
+      const auto rows = bench_effects({.scenes = scenes,
+                                       .solver = o->solver,
+                                       .side = side,
+                                       .wall = o->wall,
+                                       .rounds = o->rounds,
+                                       .seconds = o->seconds,
+                                       .progress = Countdown("timing round")});
+      if (o->json)
+        for (Json& row : json_of(rows, side)) all.push_back(std::move(row));
+      else
+        print(rows, *o, side);
+    }
+    if (o->json) std::cout << to_text(all, 1) << '\n';
+    return kPass;
+  };
+}
+
+}  // namespace
+}  // namespace taut::verb::effects
+
+TAUT_VERB(bench_effects) = {
+    .name = "bench effects",
+    .group = VerbGroup::cost,
+    .summary = "Measures what wind, contact and self-collision cost beside links alone",
+    .example =
+        "taut bench effects\n  taut bench effects ball box --sizes 64,128\n  "
+        "taut bench effects --solver jakobsen:iterations=1,substeps=15,threads=2 --wall",
+    .bind = taut::verb::effects::bind};
