@@ -62,10 +62,13 @@ class Jakobsen final : public Solver {
     p_ = Particles<Real>(std::move(links.layout));
     p_.w.assign(w.begin(), w.end());
     p_.x = p_.previous = Points<Real>(p_.layout);
-    add_forces(scene);
+    if (scene.wind) {
+      forces_.push_back(make_wind<Real>(scene, w, *p_.layout, simd_, pool_));
+      p_.a = Points<Real>(p_.layout);
+    }
     constraints_ = make_accelerators<Real>(scene, w, settings);
     if (links.pass) constraints_.push_back(std::move(links.pass));
-    contact_ = make_contact<Real>(scene, contact_settings(params));
+    contact_ = make_contact<Real>(scene, contact_settings(params), pool_);
   }
 
   /// The published TimeStep(), substeps times with dt / substeps.
@@ -149,12 +152,6 @@ class Jakobsen final : public Solver {
     pool_.run(p_.layout->length() / kGrain, [&](std::size_t begin, std::size_t end) {
       kernel(step, begin * kGrain, end * kGrain);
     });
-  }
-
-  void add_forces(const Scene& scene) {
-    if (!scene.wind) return;
-    forces_.push_back(std::make_unique<WindPass<Real>>(*scene.wind, scene.mesh.triangles));
-    p_.a = Points<Real>(p_.layout);
   }
 
   int iterations_;

@@ -20,10 +20,14 @@ class ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Calls work(begin, end) on parts of [0, count) at the same time; returns when all are done.
+  /// A pass over fewer particles is done before another thread has come.
+  static constexpr std::size_t kWorthSharing = 4096;
+
+  /// Calls work(begin, end) on parts of [0, count) at the same time, unless not `shared`; returns
+  /// when all are done.
   template <class Work>
-  void run(std::size_t count, const Work& work) {
-    if (threads_.empty() || count < 2) {
+  void run(std::size_t count, const Work& work, bool shared = true) {
+    if (threads_.empty() || count < 2 || !shared) {
       if (count > 0) work(std::size_t{0}, count);
       return;
     }

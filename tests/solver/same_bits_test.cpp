@@ -7,6 +7,7 @@
 
 #include "core/solver/layout/colour_batches.hpp"
 #include "core/solver/layout/interleaved_sheet.hpp"
+#include "core/solver/thread_pool.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut {
@@ -64,6 +65,24 @@ TEST(SameBits, ForEveryInstructionSetAndNumberOfThreads) {
         }
 }
 
+TEST(SameBits, OfWindForEveryInstructionSetAndNumberOfThreads) {
+  for (Scene& scene : scenes()) {
+    scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.2};
+    for (const char* precision : {"float", "double"})
+      for (const char* layout : {"auto", "batches"}) {
+        const std::string method =
+            std::string("jakobsen:iterations=2,precision=") + precision + ",layout=" + layout;
+        const State want = simulate(scene, method + ",simd=scalar", 5);
+        for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+          if (available(simd)) {
+            const std::string with = method + ",simd=" + std::string(to_string(simd));
+            EXPECT_TRUE(same_bits(simulate(scene, with, 5), want)) << with;
+          }
+        EXPECT_TRUE(same_bits(simulate(scene, method + ",threads=2", 5), want)) << method;
+      }
+  }
+}
+
 /// A plane, a ball and a turned box that rises and spins, where the sheet falls past them.
 std::vector<Collider> obstacles(const Scene& scene) {
   Vec3 middle = Vec3::Zero();
@@ -95,6 +114,19 @@ TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
             }
         }
       }
+  }
+}
+
+TEST(SameBits, OfWindAndContactThatThreadsShare) {
+  Scene scene = crumpled(hanging_sheet(68, 64), 0.005);
+  ASSERT_GE(scene.start.x.size(), ThreadPool::kWorthSharing);
+  scene.colliders = obstacles(scene);
+  scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.2};
+  for (const char* layout : {"auto", "batches"}) {
+    const std::string method = std::string("jakobsen:iterations=2,layout=") + layout;
+    const State want = simulate(scene, method, 4);
+    for (const char* threads : {",threads=2", ",threads=3"})
+      EXPECT_TRUE(same_bits(simulate(scene, method + threads, 4), want)) << method << threads;
   }
 }
 

@@ -13,7 +13,7 @@ core/solver              | core/(model|solver)/
 core/solver/simd         | core/solver/simd/
 core/solver/layout       | core/(model|solver/(simd|layout))/
 core/solver/constraints  | core/(model/|solver/((simd|layout|constraints)/|thread_pool))
-core/solver/contact      | core/(model|solver/(simd|layout|contact))/
+core/solver/contact      | core/(model/|solver/((simd|layout|contact)/|thread_pool))
 core/reference           | core/(model|reference)/
 bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/

@@ -113,11 +113,12 @@ class SheetPass final : public Pass<Real> {
         pool_(pool) {}
 
   void apply(Particles<Real>& p, double, double) override {
+    const RowBlocks blocks = sheet_.blocks();
     for (const int parity : {0, 1})
-      pool_.run(sheet_.blocks(parity), [&](std::size_t begin, std::size_t end) {
+      pool_.run(blocks.count(parity), [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block) {
-          const auto rows = sheet_.rows(parity, block);
-          project_(sheet_.sweep(), p.x.data(), rows.begin, rows.end);
+          const auto [from, to] = blocks.of(parity, block);
+          project_(sheet_.sweep(), p.x.data(), from, to);
         }
       });
   }

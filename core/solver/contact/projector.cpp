@@ -47,7 +47,12 @@ class ProjectorOf final : public Projector<Real> {
     contact_.motion = rounded<Real>(rigid_motion(collider_.motion, t, dt));
   }
 
-  void project(const ParticleSpan<Real>& span) const override { collide_(contact_, span); }
+  void project(const ParticleSpan<Real>& span, ThreadPool& pool) const override {
+    pool.run(
+        span.parts(),
+        [&](std::size_t begin, std::size_t end) { collide_(contact_, span, begin, end); },
+        span.particles >= ThreadPool::kWorthSharing);
+  }
 
  private:
   Collider collider_;

@@ -5,6 +5,7 @@
 #include "core/model/collider.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/simd/kernels.hpp"
+#include "core/solver/thread_pool.hpp"
 
 namespace taut {
 
@@ -61,7 +62,7 @@ class Projector {
   virtual ~Projector() = default;
   /// What follows belongs to the step [t, t + dt].
   virtual void begin(double t, double dt) = 0;
-  virtual void project(const ParticleSpan<Real>&) const = 0;
+  virtual void project(const ParticleSpan<Real>&, ThreadPool&) const = 0;
 };
 
 /// Keeps particles at `thickness` [m]; `continuous` also catches those that passed through the
@@ -73,9 +74,7 @@ std::unique_ptr<Projector<Real>> make_projector(const Collider&, double thicknes
 /// All particles at once, with x as the caller keeps it.
 template <class Real>
 ParticleSpan<Real> span_of(const Particles<Real>& p, Points<Real>& x) {
-  const std::size_t lanes = p.layout->stride();
-  return {x.data(), p.previous.data(), lanes,
-          lanes > 1 ? p.layout->length() / (3 * lanes) : p.size()};
+  return {x.data(), p.previous.data(), p.layout->sheet(), p.size()};
 }
 
 }  // namespace taut

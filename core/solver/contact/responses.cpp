@@ -14,8 +14,10 @@ namespace {
 template <class Real>
 class CollidePass final : public Pass<Real> {
  public:
-  CollidePass(const Collider& collider, const Scene& scene, bool continuous, Simd simd)
+  CollidePass(const Collider& collider, const Scene& scene, bool continuous, Simd simd,
+              ThreadPool& pool)
       : projector_(make_projector<Real>(collider, scene.thickness, continuous, simd)),
+        pool_(pool),
         kind_(type_name(collider.shape)),
         particles_(scene.start.x.size()),
         pins_(scene.pins.begin(), scene.pins.end()),
@@ -25,7 +27,7 @@ class CollidePass final : public Pass<Real> {
 
   void apply(Particles<Real>& p, double, double) override {
     for (std::size_t k = 0; k < pins_.size(); ++k) pinned_[k] = p.x[pins_[k]];
-    projector_->project(span_of(p, p.x));
+    projector_->project(span_of(p, p.x), pool_);
     for (std::size_t k = 0; k < pins_.size(); ++k) p.x.set(pins_[k], pinned_[k]);
   }
 
@@ -37,6 +39,7 @@ class CollidePass final : public Pass<Real> {
 
  private:
   std::unique_ptr<Projector<Real>> projector_;
+  ThreadPool& pool_;
   std::string kind_;
   std::size_t particles_;
   std::vector<std::size_t> pins_;
@@ -47,8 +50,8 @@ class CollidePass final : public Pass<Real> {
 template <class Real>
 class EnteringParticles {
  public:
-  EnteringParticles(const Collider& collider, double thickness, Simd simd)
-      : projector_(make_projector<Real>(collider, thickness, false, simd)) {}
+  EnteringParticles(const Collider& collider, double thickness, Simd simd, ThreadPool& pool)
+      : projector_(make_projector<Real>(collider, thickness, false, simd)), pool_(pool) {}
 
   void begin(double t, double dt) { projector_->begin(t, dt); }
 
@@ -56,7 +59,7 @@ class EnteringParticles {
   template <class Visit>
   void find(const Particles<Real>& p, const Visit& visit) {
     outside_ = p.x;
-    projector_->project(span_of(p, outside_));
+    projector_->project(span_of(p, outside_), pool_);
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] != 0 && outside_[i] != p.x[i]) visit(i, outside_[i]);
   }
@@ -65,6 +68,7 @@ class EnteringParticles {
 
  private:
   std::unique_ptr<Projector<Real>> projector_;
+  ThreadPool& pool_;
   Points<Real> outside_;
 };
 
@@ -74,8 +78,8 @@ class EnteringParticles {
 template <class Real>
 class FreezePass final : public Pass<Real> {
  public:
-  FreezePass(const Collider& collider, const Scene& scene, Simd simd)
-      : entering_(collider, scene.thickness, simd),
+  FreezePass(const Collider& collider, const Scene& scene, Simd simd, ThreadPool& pool)
+      : entering_(collider, scene.thickness, simd, pool),
         kind_(type_name(collider.shape)),
         frozen_(scene.start.x.size()) {}
 
@@ -121,8 +125,8 @@ class FreezePass final : public Pass<Real> {
 template <class Real>
 class HaltPass final : public Pass<Real> {
  public:
-  HaltPass(const Collider& collider, const Scene& scene, Simd simd)
-      : entering_(collider, scene.thickness, simd),
+  HaltPass(const Collider& collider, const Scene& scene, Simd simd, ThreadPool& pool)
+      : entering_(collider, scene.thickness, simd, pool),
         kind_(type_name(collider.shape)),
         skip_(scene.start.x.size()) {}
 
@@ -165,9 +169,9 @@ class HaltPass final : public Pass<Real> {
 
 template <class Real>
 void add_response(const Collider& collider, const Scene& scene, const ContactSettings& settings,
-                  ContactPasses<Real>& passes) {
+                  ThreadPool& pool, ContactPasses<Real>& passes) {
   const auto project = [&](bool continuous) {
-    return std::make_unique<CollidePass<Real>>(collider, scene, continuous, settings.simd);
+    return std::make_unique<CollidePass<Real>>(collider, scene, continuous, settings.simd, pool);
   };
   switch (settings.response) {
     case Response::continuous:
@@ -183,10 +187,12 @@ void add_response(const Collider& collider, const Scene& scene, const ContactSet
       passes.after.push_back(project(false));
       break;
     case Response::freeze:
-      passes.sweep.push_back(std::make_unique<FreezePass<Real>>(collider, scene, settings.simd));
+      passes.sweep.push_back(
+          std::make_unique<FreezePass<Real>>(collider, scene, settings.simd, pool));
       break;
     case Response::halt:
-      passes.before.push_back(std::make_unique<HaltPass<Real>>(collider, scene, settings.simd));
+      passes.before.push_back(
+          std::make_unique<HaltPass<Real>>(collider, scene, settings.simd, pool));
       break;
   }
 }
@@ -194,7 +200,8 @@ void add_response(const Collider& collider, const Scene& scene, const ContactSet
 }  // namespace
 
 template <class Real>
-ContactPasses<Real> make_contact(const Scene& scene, const ContactSettings& settings) {
+ContactPasses<Real> make_contact(const Scene& scene, const ContactSettings& settings,
+                                 ThreadPool& pool) {
   ContactPasses<Real> passes;
   if (scene.self_collision && settings.self == SelfCollisionMethod::grid)
     passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene, settings.simd));
@@ -205,11 +212,12 @@ ContactPasses<Real> make_contact(const Scene& scene, const ContactSettings& sett
         !scene.mesh.triangles.empty())
       passes.sweep.push_back(
           std::make_unique<FaceContactPass<Real>>(collider, scene.thickness, scene.mesh.triangles));
-  for (const Collider& collider : scene.colliders) add_response(collider, scene, settings, passes);
+  for (const Collider& collider : scene.colliders)
+    add_response(collider, scene, settings, pool, passes);
   return passes;
 }
 
-template ContactPasses<float> make_contact(const Scene&, const ContactSettings&);
-template ContactPasses<double> make_contact(const Scene&, const ContactSettings&);
+template ContactPasses<float> make_contact(const Scene&, const ContactSettings&, ThreadPool&);
+template ContactPasses<double> make_contact(const Scene&, const ContactSettings&, ThreadPool&);
 
 }  // namespace taut

@@ -6,6 +6,7 @@
 #include "core/model/scene.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/simd/kernels.hpp"
+#include "core/solver/thread_pool.hpp"
 
 namespace taut {
 
@@ -37,6 +38,6 @@ struct ContactPasses {
 };
 
 template <class Real>
-ContactPasses<Real> make_contact(const Scene&, const ContactSettings&);
+ContactPasses<Real> make_contact(const Scene&, const ContactSettings&, ThreadPool&);
 
 }  // namespace taut

@@ -33,27 +33,22 @@ class SelfCollidePass final : public Pass<Real> {
  public:
   SelfCollidePass(const Scene& scene, Simd simd)
       : diameter_(static_cast<Real>(2 * scene.self_collision->radius)),
+        kernels_(kernels<Real>(simd)),
         grid_(scene.start.x.size(), simd) {
     find_close_at_rest(scene);
   }
 
-  void restart() override { searched_at_.clear(); }
+  void restart() override { searched_ = false; }
 
   void begin(Particles<Real>& p, double, double) override {
     if (!placed_) place(p);
-    p.x.read([&](const auto& at) {
-      const auto motion_since = [&](const auto& then) {
-        return largest_motion([&](std::size_t i) { return at(p.x, i) - then(i); });
-      };
-      const Real motion = motion_since([&](std::size_t i) { return at(p.previous, i); });
-      if (8 * motion >= diameter_) {
-        stride_ == 1 ? search_step<true>(p, motion) : search_step<false>(p, motion);
-      } else if (searched_at_.empty() ||
-                 4 * motion_since([&](std::size_t i) { return searched_at_[i]; }) > skin_) {
-        search_steps(p, motion);
-        for (std::size_t i = 0; i < p.size(); ++i) searched_at_.push_back(at(p.x, i));
-      }
-    });
+    if (moved_more(p, p.previous, diameter_ / 8)) {
+      const Real motion = largest_motion(p, p.previous);
+      stride_ == 1 ? search_step<true>(p, motion) : search_step<false>(p, motion);
+    } else if (!searched_ || moved_more(p, searched_at_, skin_ / 4)) {
+      search_steps(p, largest_motion(p, p.previous));
+      searched_at_ = p.x, searched_ = true;
+    }
   }
 
   void apply(Particles<Real>& p, double, double) override {
@@ -63,8 +58,7 @@ class SelfCollidePass final : public Pass<Real> {
   std::vector<PassCost> cost() const override {
     return {{.pass = "self-collide",
              .items = pairs_.size(),
-             .bytes = sizeof(*this) + grid_.bytes() +
-                      searched_at_.capacity() * sizeof(Vec4T<Real>) +
+             .bytes = sizeof(*this) + grid_.bytes() + searched_at_.bytes() +
                       (close_.capacity() + pairs_.capacity()) * sizeof(Pair) +
                       crossing_.capacity() * sizeof(Crossing)}};
   }
@@ -160,7 +154,7 @@ class SelfCollidePass final : public Pass<Real> {
     });
   }
 
-  void forget_pairs() { pairs_.clear(), crossing_.clear(), searched_at_.clear(); }
+  void forget_pairs() { pairs_.clear(), crossing_.clear(), searched_ = false; }
 
   /// Whether a < b + c, of which the squares are given.
   static bool less(Real a2, Real b2, Real c2) {
@@ -176,19 +170,25 @@ class SelfCollidePass final : public Pass<Real> {
             wa == wb ? Real(0.5) : wa / (wa + wb)};
   }
 
-  /// The largest of a particle against the cloth as a whole, between two times [m]: no two move by
-  /// more than twice that against each other. The cloth moves as the middle of all motions.
-  template <class Moved>
-  Real largest_motion(const Moved& moved) const {
-    const std::size_t n = grid_.size();
-    Vec4T<Real> least = moved(0), most = least;
-    for (std::size_t i = 1; i < n; ++i)
-      least = lesser(least, moved(i)), most = greater(most, moved(i));
-    const Vec4T<Real> middle = Real(0.5) * (least + most);
-    Real largest2 = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      largest2 = std::max(largest2, squared_norm(moved(i) - middle));
-    return std::sqrt(largest2);
+  static ParticleSpan<Real> since(const Points<Real>& then, Particles<Real>& p) {
+    return {p.x.data(), then.data(), p.layout->sheet(), p.size()};
+  }
+
+  /// The largest motion of a particle against the cloth as a whole since it was at `then` [m]: no
+  /// two move by more than twice that against each other. The cloth moves as the middle of all
+  /// motions.
+  Real largest_motion(Particles<Real>& p, const Points<Real>& then) const {
+    const auto [least, most] = kernels_.motion_box(since(then, p));
+    return std::sqrt(kernels_.largest_motion2(since(then, p), Real(0.5) * (least + most)));
+  }
+
+  /// Whether that is at least `distance`. Mostly it lies far below, as half the diagonal of a box
+  /// around all motions says.
+  bool moved_more(Particles<Real>& p, const Points<Real>& then, Real distance) const {
+    const auto [least, most] = kernels_.motion_box(since(then, p));
+    if (norm(most - least) * Real(0.5001) < distance) return false;
+    const Vec3T<Real> middle = Real(0.5) * (least + most);
+    return kernels_.largest_motion2(since(then, p), middle) >= distance * distance;
   }
 
   void find_close_at_rest(const Scene& scene) {
@@ -210,11 +210,13 @@ class SelfCollidePass final : public Pass<Real> {
   static constexpr Real kNearby = Real(1.5);  ///< diameters within which a pair may touch in a step
   Real diameter_;                             ///< m
   std::size_t stride_ = 1;                    ///< of the particles' layout
+  const Kernels<Real>& kernels_;
   NeighbourGrid<Real> grid_;
-  std::vector<Pair> close_;               ///< at rest within kNearby diameters and not linked
-  bool placed_ = false;                   ///< until then by numbers of particles, not slots
-  Real skin_ = 0;                         ///< m
-  std::vector<Vec4T<Real>> searched_at_;  ///< [n] m; empty: to be searched
+  std::vector<Pair> close_;   ///< at rest within kNearby diameters and not linked
+  bool placed_ = false;       ///< until then by numbers of particles, not slots
+  Real skin_ = 0;             ///< m
+  Points<Real> searched_at_;  ///< m
+  bool searched_ = false;
   std::vector<Pair> pairs_;
   std::vector<Crossing> crossing_;
 };

@@ -22,18 +22,29 @@ constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::str
                                                               {2, 0, Family::bend, 0},
                                                               {0, 2, Family::bend, 0}}};
 
-int lanes_of(const Grid& grid) { return grid.nu >= 4 * kWide ? kWide : kNarrow; }
-int vectors_of(const Grid& grid) { return (grid.nu + lanes_of(grid) - 1) / lanes_of(grid); }
-/// One vector more than the row needs: rows of a power of two would share cache sets.
-std::size_t stride_of(const Grid& grid) {
-  return to_index((vectors_of(grid) + 1) * 3 * lanes_of(grid));
+/// One vector more than a row needs: rows of a power of two would share cache sets.
+SheetRows rows_of(const Grid& grid) {
+  const int lanes = grid.nu >= 4 * kWide ? kWide : kNarrow;
+  const int vectors = (grid.nu + lanes - 1) / lanes;
+  return {grid.nv, grid.nu, lanes, vectors, to_index((vectors + 1) * 3 * lanes)};
 }
 
 }  // namespace
 
+std::size_t RowBlocks::count(int parity) const {
+  const int all = (rows + kBlockRows - 1) / kBlockRows;
+  return to_index((all + 1 - parity) / 2);
+}
+
+RowBlocks::Rows RowBlocks::of(int parity, std::size_t block) const {
+  const int begin = (2 * static_cast<int>(block) + parity) * kBlockRows;
+  return {begin, std::min(begin + kBlockRows, rows)};
+}
+
 std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link> links) {
   if (!mesh.grid || mesh.grid->nu < kFewestColumns) return {};
   const Grid grid = *mesh.grid;
+  if (mesh.triangles != make_sheet({.nu = grid.nu, .nv = grid.nv}).triangles) return {};
   RegularLinks regular{grid, {}};
   std::array<std::vector<bool>, kDirections.size()> seen;
   std::array<std::size_t, kDirections.size()> count{};
@@ -65,15 +76,15 @@ std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link
 }
 
 Layout interleaved_layout(const Grid& grid) {
-  const int vectors = vectors_of(grid), lanes = lanes_of(grid);
+  const SheetRows sheet = rows_of(grid);
+  const auto [rows, columns, lanes, vectors, stride] = sheet;
   std::vector<std::uint32_t> slots;
   slots.reserve(to_index(grid.size()));
-  for (int j = 0; j < grid.nv; ++j)
-    for (int i = 0; i < grid.nu; ++i)
-      slots.push_back(static_cast<std::uint32_t>(to_index(j) * stride_of(grid) +
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i)
+      slots.push_back(static_cast<std::uint32_t>(to_index(j) * stride +
                                                  to_index(i % vectors * 3 * lanes + i / vectors)));
-  return Layout::interleaved(std::move(slots), to_index(lanes),
-                             to_index(grid.nv) * stride_of(grid));
+  return Layout::interleaved(std::move(slots), sheet);
 }
 
 template <class Real>
@@ -81,9 +92,10 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
                                          double omega)
     : links_(links) {
   const Grid& grid = links.grid;
-  const int lanes = sweep_.lanes = lanes_of(grid);
-  sweep_.vectors = vectors_of(grid);
-  sweep_.stride = stride_of(grid);
+  const SheetRows in_memory = rows_of(grid);
+  const int lanes = sweep_.lanes = in_memory.lanes;
+  sweep_.vectors = in_memory.vectors;
+  sweep_.stride = in_memory.stride;
   sweep_.directions = static_cast<int>(links.directions.size());
   std::map<std::vector<Real>, std::size_t> known;
   std::vector<std::size_t> table;  // of each row of each direction
@@ -143,25 +155,12 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
 }
 
 template <class Real>
-std::size_t InterleavedSheet<Real>::blocks(int parity) const {
-  const int all = (links_.grid.nv + kBlockRows - 1) / kBlockRows;
-  return to_index((all + 1 - parity) / 2);
-}
-
-template <class Real>
-typename InterleavedSheet<Real>::Rows InterleavedSheet<Real>::rows(int parity,
-                                                                   std::size_t block) const {
-  const int begin = (2 * static_cast<int>(block) + parity) * kBlockRows;
-  return {begin, std::min(begin + kBlockRows, links_.grid.nv)};
-}
-
-template <class Real>
 std::vector<Link> InterleavedSheet<Real>::order() const {
   const Grid& grid = links_.grid;
   std::vector<Link> links;
   for (const int parity : {0, 1})
-    for (std::size_t block = 0; block < blocks(parity); ++block)
-      visit_rows(sweep_, rows(parity, block).begin, rows(parity, block).end,
+    for (std::size_t block = 0; block < blocks().count(parity); ++block)
+      visit_rows(sweep_, blocks().of(parity, block).begin, blocks().of(parity, block).end,
                  [&](const SheetDirection<Real>& d, int j) {
                    const Family family =
                        links_.directions[static_cast<std::size_t>(&d - sweep_.direction)].family;

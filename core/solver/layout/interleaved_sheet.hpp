@@ -25,15 +25,26 @@ struct RegularLinks {
 
 /// What `links` are if an interleaved sheet can hold them: all six directions or some, each
 /// complete, without duplicates, of one length to 1e-9; at least 17 columns, below which lanes
-/// would overlap.
+/// would overlap; and the faces are those of make_sheet.
 std::optional<RegularLinks> regular_links(const Mesh&, std::span<const Link>);
+
+/// Blocks of rows, first the even ones, then the odd ones: those of one parity share no row, even
+/// if each reaches into the row after it or two of them, so that threads can take one each.
+struct RowBlocks {
+  struct Rows {
+    int begin, end;
+  };
+  std::size_t count(int parity) const;
+  Rows of(int parity, std::size_t block) const;
+  int rows;
+};
 
 /// Where an interleaved sheet (simd/kernels.hpp) keeps each vertex. Vertices past the last column
 /// are padding that falls freely and that nobody looks at.
 Layout interleaved_layout(const Grid&);
 
-/// A Gauss-Seidel sweep over an interleaved sheet: blocks of rows, first the even ones, then the
-/// odd ones; the directions one after the other within a block. Blocks of one parity share no row.
+/// A Gauss-Seidel sweep over an interleaved sheet, block after block; the directions one after the
+/// other within a block.
 template <class Real>
 class InterleavedSheet {
  public:
@@ -42,12 +53,7 @@ class InterleavedSheet {
   InterleavedSheet(const InterleavedSheet&) = delete;  // it points into itself
 
   const SheetSweep<Real>& sweep() const { return sweep_; }
-  /// Blocks of even or odd number.
-  std::size_t blocks(int parity) const;
-  struct Rows {
-    int begin, end;
-  };
-  Rows rows(int parity, std::size_t block) const;
+  RowBlocks blocks() const { return {links_.grid.nv}; }
 
   /// The links in the order in which the sweep visits them.
   std::vector<Link> order() const;

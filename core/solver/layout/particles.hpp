@@ -8,6 +8,7 @@
 
 #include "core/model/solver.hpp"
 #include "core/model/vec3.hpp"
+#include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/vectors.hpp"
 
 namespace taut {
@@ -19,23 +20,26 @@ class Layout {
  public:
   static constexpr std::size_t kGrain = 48;  ///< loops over all numbers take so many at a time
 
-  /// x y z 0 | x y z 0 | ..., particle i at place rank[i], or at i if there are no ranks; at least
-  /// two spare points at the end, which no particle owns.
+  /// x y z 0 | x y z 0 | ..., particle i at place rank[i], or at i if there are no ranks; at the
+  /// end at least two spare points, which no particle owns, and as many as fill the lanes.
   static Layout packed(std::size_t n, std::vector<std::uint32_t> rank = {}) {
     for (std::uint32_t& r : rank) r *= 4;
-    return Layout(n, 1, 4 * (n + 2), std::move(rank));
+    return Layout(n, 1, 4 * (n + kLanes), std::move(rank));
   }
-  /// Vectors of `lanes` coordinates x, y, z, x, ... (AoSoA); x of each particle at its slot.
-  static Layout interleaved(std::vector<std::uint32_t> slots, std::size_t lanes,
-                            std::size_t length) {
+  /// Vectors of coordinates x, y, z, x, ... (AoSoA); x of each particle at its slot.
+  static Layout interleaved(std::vector<std::uint32_t> slots, const SheetRows& sheet) {
     const std::size_t n = slots.size();
-    return Layout(n, lanes, length, std::move(slots));
+    Layout layout(n, static_cast<std::size_t>(sheet.lanes),
+                  static_cast<std::size_t>(sheet.rows) * sheet.stride, std::move(slots));
+    layout.sheet_ = sheet;
+    return layout;
   }
   Layout() = default;
 
   std::size_t size() const { return size_; }      ///< particles
   std::size_t length() const { return length_; }  ///< numbers in the array
   std::size_t stride() const { return stride_; }
+  const SheetRows& sheet() const { return sheet_; }  ///< one lane: packed
   [[gnu::always_inline]] std::size_t slot(std::size_t i) const {
     return slots_.empty() ? 4 * i : slots_[i];
   }
@@ -54,6 +58,7 @@ class Layout {
         length_((length + kGrain - 1) / kGrain * kGrain),
         slots_(std::move(slots)) {}
   std::size_t size_ = 0, stride_ = 1, length_ = 0;
+  SheetRows sheet_;
   std::vector<std::uint32_t> slots_;  ///< empty: 4 i
 };
 

@@ -33,21 +33,23 @@ struct Contact {
     return surface.clear(x, T(thickness));
   }
 
-  /// Moves x out to the nearest point at the scene's thickness, then against its slip since
-  /// `previous`. Says where it did: not where x was outside.
-  template <class T>
-  [[gnu::always_inline]] auto project(Vec3T<T>& x, const Vec3T<T>& previous) const {
-    auto inside = !clear(x);
+  /// Moves x, where it is `present`, out to the nearest point at the scene's thickness, then
+  /// against its slip since `previous`. Says where it did: not where x was outside.
+  template <class T, class Mask>
+  [[gnu::always_inline]] Mask project(Vec3T<T>& x, const Vec3T<T>& previous,
+                                      const Mask& present) const {
+    Mask inside = present && !clear(x);
     if (any(inside)) inside = push(x, motion(previous), surface.nearest(x), inside);
     return inside;
   }
 
   /// The same, but back to the side from which the particle came in, even if it has passed through
   /// since.
-  template <class T>
-  [[gnu::always_inline]] auto project_continuous(Vec3T<T>& x, const Vec3T<T>& previous) const {
+  template <class T, class Mask>
+  [[gnu::always_inline]] Mask project_continuous(Vec3T<T>& x, const Vec3T<T>& previous,
+                                                 const Mask& present) const {
     const Vec3T<T> from = motion(previous);
-    auto near = !surface.beyond(x, squared_norm(x - from), T(thickness));
+    Mask near = present && !surface.beyond(x, squared_norm(x - from), T(thickness));
     if (!any(near)) return near;
     const auto passing = near && !surface.misses(from, x);
     near = near && !clear(x);

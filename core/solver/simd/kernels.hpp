@@ -23,6 +23,14 @@ inline constexpr int kNarrow = 8, kWide = 16;
 /// Links of a batch.
 inline constexpr int kLanes = 8;
 
+/// The rows of an interleaved sheet in memory. Lanes past the last column and vectors past the last
+/// one are padding.
+struct SheetRows {
+  int rows = 0, columns = 0, lanes = 1;
+  int vectors = 0;         ///< K
+  std::size_t stride = 0;  ///< numbers from one row to the next
+};
+
 /// Links of one direction that start in one row.
 template <class Real>
 struct SheetRow {
@@ -76,22 +84,61 @@ struct VerletStep {
   const Real* g;  ///< [kGrain] m
 };
 
-/// `count` times the x, the y and the z of `lanes` particles of an interleaved sheet; lanes 1: x y
-/// z 0 of so many packed particles.
+/// Wind as the loops want it: core/model/wind.hpp in the solver's precision.
+template <class Real>
+struct WindStep {
+  const Real *x, *previous;  ///< [length]
+  Real* a;                   ///< the wind's acceleration is added
+  Vec3T<Real> velocity;      ///< m/s
+  Real per_moved;  ///< a face's velocity over the sum of its corners' motions; 0: not read
+  Real sixth;      ///< of the strength
+};
+/// The faces of an interleaved sheet, two in each quad.
+template <class Real>
+struct SheetFaces {
+  int vectors;               ///< K
+  std::size_t stride;        ///< numbers from one row to the next
+  const Real* diagonals[2];  ///< [K][lanes] of even and odd rows of quads: 1 if theirs begins at
+                             ///< (i, j), -1 if at (i + 1, j), 0 where there is no quad
+  const Real* w;             ///< [rows][K][lanes] 1/kg
+};
+/// kLanes faces of packed particles.
+template <class Real>
+struct FaceBatch {
+  std::uint32_t corner[3][kLanes];  ///< slots
+  Real w[3][kLanes];                ///< 1/kg
+};
+
+/// All particles: of an interleaved sheet, or, with one lane, packed ones.
 template <class Real>
 struct ParticleSpan {
   Real* x;
   const Real* previous;
-  std::size_t lanes, count;
+  SheetRows sheet;
+  std::size_t particles;
+
+  /// What can be computed with by itself: rows of a sheet, or kLanes packed particles each.
+  std::size_t parts() const {
+    return sheet.lanes > 1 ? static_cast<std::size_t>(sheet.rows)
+                           : (particles + kLanes - 1) / kLanes;
+  }
 };
-/// Puts out of the collider what is inside, or, continuous, has passed through it in this step.
+/// Puts out of the collider what is inside, or, continuous, has passed through it in this step; of
+/// the parts [begin, end).
 template <class Real, template <class> class SurfaceOf>
-using Collide = void (*)(const Contact<Real, SurfaceOf>&, const ParticleSpan<Real>&);
+using Collide = void (*)(const Contact<Real, SurfaceOf>&, const ParticleSpan<Real>&,
+                         std::size_t begin, std::size_t end);
 template <class Real>
 struct CollideKernels {
   Collide<Real, PlaneSurface> plane;
   Collide<Real, BallSurface> ball, ball_continuous;
   Collide<Real, BoxSurface> box, box_continuous;
+};
+
+/// Between which bounds the motions x - previous of all particles lie [m].
+template <class Real>
+struct MotionBox {
+  Vec3T<Real> least, most;
 };
 
 /// A search looks at up to so many particles at once.
@@ -139,6 +186,13 @@ struct Kernels {
   void (*wide_sheet[2])(const SheetSweep<Real>&, Real* x, int begin, int end);
   void (*batches[2])(const BatchRun<Real>&, Real* x);
   CollideKernels<Real> collide;
+  /// Rows [begin, end) of quads; they touch one row of particles more.
+  void (*narrow_wind)(const WindStep<Real>&, const SheetFaces<Real>&, int begin, int end);
+  void (*wide_wind)(const WindStep<Real>&, const SheetFaces<Real>&, int begin, int end);
+  void (*wind_on_faces)(const WindStep<Real>&, std::span<const FaceBatch<Real>>);
+  MotionBox<Real> (*motion_box)(const ParticleSpan<Real>&);
+  /// Square of the largest motion against `middle` [m^2].
+  Real (*largest_motion2)(const ParticleSpan<Real>&, const Vec3T<Real>& middle);
   FindPairs<Real> find_pairs;
   /// Projects independent pairs without loading or storing anything: what the arithmetic alone
   /// costs, for benchmarks. Says how many projections that were.

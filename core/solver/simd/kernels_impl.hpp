@@ -4,24 +4,17 @@
 // may be shared between them: everything depends on the lane type, which is private to the file.
 
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 #include "core/solver/simd/distance.hpp"
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/lanes.hpp"
+#include "core/solver/simd/load_particles.hpp"
 #include "core/solver/simd/neighbour_search_impl.hpp"
+#include "core/solver/simd/wind_impl.hpp"
 
 namespace taut {
-
-/// The particles of one vector of an interleaved sheet, or some of them.
-template <class T, int lanes, class Real>
-[[gnu::always_inline]] inline Vec3T<T> load_vec3(const Real* x) {
-  return {load<T>(x), load<T>(x + lanes), load<T>(x + 2 * lanes)};
-}
-template <class T, int lanes, class Real>
-[[gnu::always_inline]] inline void store_vec3(Real* x, const Vec3T<T>& p) {
-  store(x, p.x), store(x + lanes, p.y), store(x + 2 * lanes, p.z);
-}
 
 template <class T, class Real>
 void verlet(const VerletStep<Real>& s, std::size_t begin, std::size_t end) {
@@ -113,68 +106,6 @@ template <Projection kind, class Real>
   }
 }
 
-inline constexpr std::uint32_t kPacked[8] = {0, 4, 8, 12, 16, 20, 24, 28};
-
-/// T holds the x y z 0 of one particle, or of two.
-template <class T, class Real>
-[[gnu::always_inline]] inline T load_particles(const Real* x, const std::uint32_t* slot) {
-  if constexpr (kWidth<T> == 4)
-    return load<T>(x + slot[0]);
-  else
-    return T::join(load<typename T::Half>(x + slot[0]), load<typename T::Half>(x + slot[4]));
-}
-template <class T, class Real>
-[[gnu::always_inline]] inline void store_particles(Real* x, const std::uint32_t* slot, T t) {
-  if constexpr (kWidth<T> == 4)
-    store(x + slot[0], t);
-  else
-    store(x + slot[0], t.lower()), store(x + slot[4], t.upper());
-}
-
-/// The x, y and z of 4 or 8 particles: lane l is that of p[l % 4], of its half l / 4.
-template <class T>
-[[gnu::always_inline]] inline Vec3T<T> transposed(const T (&p)[4]) {
-  if constexpr (kWidth<T> == 4) {
-    const T xy01 = T::template shuffle<0, 4, 1, 5>(p[0], p[1]);
-    const T xy23 = T::template shuffle<0, 4, 1, 5>(p[2], p[3]);
-    const T z01 = T::template shuffle<2, 6, 3, 7>(p[0], p[1]);
-    const T z23 = T::template shuffle<2, 6, 3, 7>(p[2], p[3]);
-    return {T::template shuffle<0, 1, 4, 5>(xy01, xy23),
-            T::template shuffle<2, 3, 6, 7>(xy01, xy23), T::template shuffle<0, 1, 4, 5>(z01, z23)};
-  } else {
-    const T xy01 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(p[0], p[1]);
-    const T xy23 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(p[2], p[3]);
-    const T z01 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(p[0], p[1]);
-    const T z23 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(p[2], p[3]);
-    return {T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(xy01, xy23),
-            T::template shuffle<2, 3, 10, 11, 6, 7, 14, 15>(xy01, xy23),
-            T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(z01, z23)};
-  }
-}
-/// The way back.
-template <class T>
-[[gnu::always_inline]] inline void transpose(const Vec3T<T>& t, T (&p)[4]) {
-  const T none(0.0);
-  if constexpr (kWidth<T> == 4) {
-    const T xy01 = T::template shuffle<0, 4, 1, 5>(t.x, t.y);
-    const T xy23 = T::template shuffle<2, 6, 3, 7>(t.x, t.y);
-    const T z01 = T::template shuffle<0, 4, 1, 5>(t.z, none);
-    const T z23 = T::template shuffle<2, 6, 3, 7>(t.z, none);
-    p[0] = T::template shuffle<0, 1, 4, 5>(xy01, z01);
-    p[1] = T::template shuffle<2, 3, 6, 7>(xy01, z01);
-    p[2] = T::template shuffle<0, 1, 4, 5>(xy23, z23);
-    p[3] = T::template shuffle<2, 3, 6, 7>(xy23, z23);
-  } else {
-    const T xy01 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(t.x, t.y);
-    const T xy23 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(t.x, t.y);
-    const T z01 = T::template shuffle<0, 8, 1, 9, 4, 12, 5, 13>(t.z, none);
-    const T z23 = T::template shuffle<2, 10, 3, 11, 6, 14, 7, 15>(t.z, none);
-    p[0] = T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(xy01, z01);
-    p[1] = T::template shuffle<2, 3, 10, 11, 6, 7, 14, 15>(xy01, z01);
-    p[2] = T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(xy23, z23);
-    p[3] = T::template shuffle<2, 3, 10, 11, 6, 7, 14, 15>(xy23, z23);
-  }
-}
 /// x + y + z of each.
 template <class T>
 [[gnu::always_inline]] inline T sums(const T (&d)[4]) {
@@ -189,13 +120,6 @@ template <int l, class T>
     return T::template shuffle<l, l, l, l>(t, t);
   else
     return T::template shuffle<l, l, l, l, l + 4, l + 4, l + 4, l + 4>(t, t);
-}
-
-/// Calls f with 0, 1, 2 and 3 as constants, so that arrays of four stay in registers.
-template <class F>
-[[gnu::always_inline]] inline void four_times(const F& f) {
-  f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{});
-  f(std::integral_constant<int, 2>{}), f(std::integral_constant<int, 3>{});
 }
 
 /// Links g .. g + kWidth<T> - 1 of a batch; shares null: all are equal_share.
@@ -269,69 +193,115 @@ void load_and_store(const BatchRun<Real>& run, Real* x) {
   }
 }
 
-/// kWidth<T> packed particles, one after the other.
-template <class T, class Real>
-[[gnu::always_inline]] inline Vec3T<T> load_packed(const Real* x) {
-  if constexpr (kWidth<T> == 1) {
-    return {x[0], x[1], x[2]};
-  } else {
-    T p[4];
-    four_times([&](auto l) { p[l] = load_particles<T>(x, kPacked + l); });
-    return transposed(p);
-  }
-}
-template <class T, class Real>
-[[gnu::always_inline]] inline void store_packed(Real* x, const Vec3T<T>& t) {
-  if constexpr (kWidth<T> == 1) {
-    x[0] = t.x, x[1] = t.y, x[2] = t.z;
-  } else {
-    T p[4];
-    transpose(t, p);
-    four_times([&](auto l) { store_particles(x, kPacked + l, p[l]); });
-  }
-}
-
-/// Whether a particle moved.
-template <bool continuous, class Contact, class T>
-[[gnu::always_inline]] inline bool collide_points(const Contact& contact, Vec3T<T>& x,
-                                                  const Vec3T<T>& previous) {
-  if constexpr (continuous)
-    return any(contact.project_continuous(x, previous));
-  else
-    return any(contact.project(x, previous));
-}
-
-/// kWidth<T> particles at once, interleaved or packed.
-template <class T, bool continuous, class Real, template <class> class SurfaceOf>
-void collide(const Contact<Real, SurfaceOf>& contact, const ParticleSpan<Real>& span) {
-  constexpr std::size_t step = kWidth<T>;
-  const std::size_t lanes = span.lanes;
-  const bool packed = lanes == 1;
-  const auto load_vec = [&](const Real* r) __attribute__((always_inline)) {
-    return packed ? load_packed<T>(r)
-                  : Vec3T<T>{load<T>(r), load<T>(r + lanes), load<T>(r + 2 * lanes)};
+/// Calls f(place, present) for kWidth<T> particles after the other, of the parts [begin, end):
+/// `present` leaves out padding.
+template <class T, int lanes, class Real, class F>
+[[gnu::always_inline]] inline void visit_particles(const ParticleSpan<Real>& span,
+                                                   std::size_t begin, std::size_t end, const F& f) {
+  static constexpr Real kNumbers[kWide] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const auto from = [](std::size_t first, int l) __attribute__((always_inline)) {
+    return T(static_cast<Real>(first)) + load<T>(kNumbers + l);
   };
-  Real last_x[4 * step] = {}, last_previous[4 * step] = {};
-  std::size_t first = 0, lane = 0;
-  for (std::size_t left = span.count * lanes; left > 0; left -= left < step ? left : step) {
-    Real* at = span.x + first;
-    const Real* previous = span.previous + first;
-    if (left < step) {  // packed particles at the end go through a buffer
-      std::memcpy(last_x, at, 4 * left * sizeof(Real));
-      std::memcpy(last_previous, previous, 4 * left * sizeof(Real));
-      at = last_x, previous = last_previous;
-    }
-    Vec3T<T> x = load_vec(at);
-    if (collide_points<continuous>(contact, x, load_vec(previous))) {
-      if (packed)
-        store_packed(at, x);
-      else
-        store(at, x.x), store(at + lanes, x.y), store(at + 2 * lanes, x.z);
-    }
-    if (left < step) std::memcpy(span.x + first, last_x, 4 * left * sizeof(Real));
-    first += packed ? 4 * step : step, lane += step;
-    if (!packed && lane == lanes) first += 2 * lanes, lane = 0;
+  if constexpr (lanes == kPackedLanes) {
+    const T all(static_cast<Real>(span.particles));
+    for (std::size_t i = begin * kLanes; i < end * kLanes; i += kWidth<T>)
+      f(4 * i, from(i, 0) < all);
+  } else {
+    const SheetRows& sheet = span.sheet;
+    const T columns(static_cast<Real>(sheet.columns)), strip(static_cast<Real>(sheet.vectors));
+    for (std::size_t row = begin; row < end; ++row)
+      for (int k = 0; k < sheet.vectors; ++k)
+        for (int l = 0; l < lanes; l += kWidth<T>)
+          f(row * sheet.stride + static_cast<std::size_t>(3 * lanes * k + l),
+            strip * from(0, l) + T(static_cast<Real>(k)) < columns);
   }
+}
+
+/// Calls f with a lane type and the lanes of the span's layout as a constant.
+template <class Narrow, class Wide, class P, class Real, class F>
+[[gnu::always_inline]] inline void with_lanes(const ParticleSpan<Real>& span, const F& f) {
+  if (span.sheet.lanes == kWide)
+    f(Wide(0), std::integral_constant<int, kWide>{});
+  else if (span.sheet.lanes == kNarrow)
+    f(Narrow(0), std::integral_constant<int, kNarrow>{});
+  else
+    f(P(0), std::integral_constant<int, kPackedLanes>{});
+}
+
+template <class Narrow, class Wide, class P, bool continuous, class Real,
+          template <class> class SurfaceOf>
+void collide(const Contact<Real, SurfaceOf>& contact, const ParticleSpan<Real>& span,
+             std::size_t begin, std::size_t end) {
+  with_lanes<Narrow, Wide, P>(
+      span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
+        using T = decltype(t);
+        constexpr int lanes = of_layout;
+        const auto one = [&](std::size_t at, const auto& present) __attribute__((always_inline)) {
+          Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
+          const Vec3T<T> previous = load_vec3<T, lanes>(span.previous + at);
+          bool moved;
+          if constexpr (continuous)
+            moved = any(contact.project_continuous(x, previous, present));
+          else
+            moved = any(contact.project(x, previous, present));
+          if (moved) store_vec3<T, lanes>(span.x + at, x);
+        };
+        visit_particles<T, lanes>(span, begin, end, one);
+      });
+}
+
+/// What one lane after the other makes of `all`.
+template <class T, class Real, class F>
+[[gnu::always_inline]] inline Real over_lanes(const T& all, const F& f) {
+  Real numbers[kWidth<T>];
+  std::memcpy(numbers, &all, sizeof numbers);
+  Real result = numbers[0];
+  for (int l = 1; l < kWidth<T>; ++l) result = f(result, numbers[l]);
+  return result;
+}
+
+template <class Narrow, class Wide, class P, class Real>
+MotionBox<Real> motion_box(const ParticleSpan<Real>& span) {
+  MotionBox<Real> box{};
+  with_lanes<Narrow, Wide, P>(
+      span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
+        using T = decltype(t);
+        constexpr int lanes = of_layout;
+        constexpr Real kMost = std::numeric_limits<Real>::max();
+        Vec3T<T> least{T(kMost), T(kMost), T(kMost)}, most = T(-1) * least;
+        const auto one = [&](std::size_t at, const auto& present) __attribute__((always_inline)) {
+          const Vec3T<T> moved =
+              load_vec3<T, lanes>(span.x + at) - load_vec3<T, lanes>(span.previous + at);
+          const Vec3T<T> low = select(present, moved, least), high = select(present, moved, most);
+          least = {lesser(least.x, low.x), lesser(least.y, low.y), lesser(least.z, low.z)};
+          most = {greater(most.x, high.x), greater(most.y, high.y), greater(most.z, high.z)};
+        };
+        visit_particles<T, lanes>(span, 0, span.parts(), one);
+        const auto low = [](const T& all) { return over_lanes<T, Real>(all, lesser<Real>); };
+        const auto high = [](const T& all) { return over_lanes<T, Real>(all, greater<Real>); };
+        box = {{low(least.x), low(least.y), low(least.z)},
+               {high(most.x), high(most.y), high(most.z)}};
+      });
+  return box;
+}
+
+template <class Narrow, class Wide, class P, class Real>
+Real largest_motion2(const ParticleSpan<Real>& span, const Vec3T<Real>& middle) {
+  Real largest = 0;
+  with_lanes<Narrow, Wide, P>(
+      span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
+        using T = decltype(t);
+        constexpr int lanes = of_layout;
+        T most(0);
+        const auto one = [&](std::size_t at, const auto& present) __attribute__((always_inline)) {
+          const Vec3T<T> moved =
+              load_vec3<T, lanes>(span.x + at) - load_vec3<T, lanes>(span.previous + at);
+          most = greater(most, select(present, squared_norm(moved - spread_out<T>(middle)), T(0)));
+        };
+        visit_particles<T, lanes>(span, 0, span.parts(), one);
+        largest = over_lanes<T, Real>(most, greater<Real>);
+      });
+  return largest;
 }
 
 template <class T, Projection kind, class Real>
@@ -364,11 +334,16 @@ constexpr Kernels<Real> make_kernels() {
       {sweep_sheet<Narrow, kNarrow, exact, Real>, sweep_sheet<Narrow, kNarrow, sqrt_free, Real>},
       {sweep_sheet<Wide, kWide, exact, Real>, sweep_sheet<Wide, kWide, sqrt_free, Real>},
       {batches<P, exact, Real>, batches<P, sqrt_free, Real>},
-      {.plane = collide<P, false, Real, PlaneSurface>,
-       .ball = collide<P, false, Real, BallSurface>,
-       .ball_continuous = collide<P, true, Real, BallSurface>,
-       .box = collide<P, false, Real, BoxSurface>,
-       .box_continuous = collide<P, true, Real, BoxSurface>},
+      {.plane = collide<Narrow, Wide, P, false, Real, PlaneSurface>,
+       .ball = collide<Narrow, Wide, P, false, Real, BallSurface>,
+       .ball_continuous = collide<Narrow, Wide, P, true, Real, BallSurface>,
+       .box = collide<Narrow, Wide, P, false, Real, BoxSurface>,
+       .box_continuous = collide<Narrow, Wide, P, true, Real, BoxSurface>},
+      wind_on_sheet<Narrow, kNarrow, Real>,
+      wind_on_sheet<Wide, kWide, Real>,
+      wind_on_faces<P, Real>,
+      motion_box<Narrow, Wide, P, Real>,
+      largest_motion2<Narrow, Wide, P, Real>,
       find_pairs<Narrow, Real>,
       in_registers<Wide, sqrt_free, Real>,
       load_and_store<P, Real>};

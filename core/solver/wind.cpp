@@ -1,0 +1,137 @@
+#include "core/solver/wind.hpp"
+
+#include <algorithm>
+
+#include "core/model/index.hpp"
+#include "core/solver/layout/interleaved_sheet.hpp"
+
+namespace taut {
+
+namespace {
+
+/// What every wind has in common.
+template <class Real>
+class WindPass : public Pass<Real> {
+ public:
+  explicit WindPass(const Wind& wind) : wind_(wind) {}
+
+ protected:
+  WindStep<Real> step(Particles<Real>& p, double dt) const {
+    const Vec3& v = wind_.velocity;
+    const bool relative = wind_.law == Wind::Law::relative;
+    return {p.x.data(),
+            p.previous.data(),
+            p.a.data(),
+            {static_cast<Real>(v.x()), static_cast<Real>(v.y()), static_cast<Real>(v.z())},
+            static_cast<Real>(relative ? 1 / (3 * dt) : 0),
+            static_cast<Real>(wind_.strength / 6)};
+  }
+
+ private:
+  Wind wind_;
+};
+
+/// On the faces of a regular sheet, a vector of quads at a time.
+template <class Real>
+class SheetWindPass final : public WindPass<Real> {
+ public:
+  SheetWindPass(const Scene& scene, std::span<const double> w, const SheetRows& sheet, Simd simd,
+                ThreadPool& pool)
+      : WindPass<Real>(*scene.wind), items_(scene.mesh.triangles.size()), pool_(pool) {
+    const Grid& grid = *scene.mesh.grid;
+    const auto [rows, columns, lanes, vectors, stride] = sheet;
+    blow_ = lanes == kWide ? kernels<Real>(simd).wide_wind : kernels<Real>(simd).narrow_wind;
+    blocks_ = {rows - 1};
+    const std::size_t row = to_index(lanes * vectors);
+    w_.resize(to_index(rows) * row), diagonals_.resize(2 * row);
+    for (int i = 0; i < columns; ++i) {
+      const std::size_t place = to_index(i % vectors * lanes + i / vectors);
+      for (int j = 0; j < rows; ++j)
+        w_[to_index(j) * row + place] = static_cast<Real>(w[to_index(grid.index(i, j))]);
+      for (int j = 0; j < 2 && i + 1 < columns; ++j)  // as make_sheet splits them
+        diagonals_[to_index(j) * row + place] = (i + j) % 2 == 0 ? Real(1) : Real(-1);
+    }
+    faces_ = {vectors, stride, {diagonals_.data(), diagonals_.data() + row}, w_.data()};
+  }
+
+  void apply(Particles<Real>& p, double, double dt) override {
+    const WindStep<Real> step = this->step(p, dt);
+    for (const int parity : {0, 1})
+      pool_.run(
+          blocks_.count(parity),
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t block = begin; block < end; ++block) {
+              const auto [from, to] = blocks_.of(parity, block);
+              blow_(step, faces_, from, to);
+            }
+          },
+          p.size() >= ThreadPool::kWorthSharing);
+  }
+
+  std::vector<PassCost> cost() const override {
+    return {
+        {.pass = "wind", .items = items_, .bytes = (w_.size() + diagonals_.size()) * sizeof(Real)}};
+  }
+
+ private:
+  std::size_t items_;
+  ThreadPool& pool_;
+  void (*blow_)(const WindStep<Real>&, const SheetFaces<Real>&, int, int);
+  RowBlocks blocks_{};  ///< of quads
+  std::vector<Real> w_, diagonals_;
+  SheetFaces<Real> faces_{};
+};
+
+/// On any faces of packed particles.
+template <class Real>
+class FaceWindPass final : public WindPass<Real> {
+ public:
+  FaceWindPass(const Scene& scene, std::span<const double> w, const Layout& layout, Simd simd)
+      : WindPass<Real>(*scene.wind),
+        items_(scene.mesh.triangles.size()),
+        blow_(kernels<Real>(simd).wind_on_faces) {
+    for (std::size_t f = 0; f < items_; ++f) {
+      if (f % kLanes == 0) add_idle_batch(layout);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t i = to_index(scene.mesh.triangles[f][c]);
+        batches_.back().corner[c][f % kLanes] = static_cast<std::uint32_t>(layout.slot(i));
+        batches_.back().w[c][f % kLanes] = static_cast<Real>(w[i]);
+      }
+    }
+  }
+
+  void apply(Particles<Real>& p, double, double dt) override { blow_(this->step(p, dt), batches_); }
+
+  std::vector<PassCost> cost() const override {
+    return {{.pass = "wind", .items = items_, .bytes = batches_.size() * sizeof batches_[0]}};
+  }
+
+ private:
+  /// Of faces between a spare particle and itself.
+  void add_idle_batch(const Layout& layout) {
+    FaceBatch<Real>& batch = batches_.emplace_back();
+    for (auto& corners : batch.corner)
+      std::ranges::fill(corners, static_cast<std::uint32_t>(4 * layout.size()));
+  }
+
+  std::size_t items_;
+  void (*blow_)(const WindStep<Real>&, std::span<const FaceBatch<Real>>);
+  std::vector<FaceBatch<Real>> batches_;
+};
+
+}  // namespace
+
+template <class Real>
+std::unique_ptr<Pass<Real>> make_wind(const Scene& scene, std::span<const double> w,
+                                      const Layout& layout, Simd simd, ThreadPool& pool) {
+  if (layout.sheet().lanes > 1)
+    return std::make_unique<SheetWindPass<Real>>(scene, w, layout.sheet(), simd, pool);
+  return std::make_unique<FaceWindPass<Real>>(scene, w, layout, simd);
+}
+
+template std::unique_ptr<Pass<float>> make_wind(const Scene&, std::span<const double>,
+                                                const Layout&, Simd, ThreadPool&);
+template std::unique_ptr<Pass<double>> make_wind(const Scene&, std::span<const double>,
+                                                 const Layout&, Simd, ThreadPool&);
+
+}  // namespace taut
