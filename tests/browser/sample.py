@@ -86,12 +86,11 @@ def scene_parts(model, scene):
         depths.append({**head, "join": True, "points": lines[1]})
         costs.append({**head, "join": False, "points": lines[2]})
         cells = [{"column": STEPS.index(c["dt"]), "row": SWEEPS.index(int(c["brief"].split()[-1])), "status": c["status"],
-                  "case": c["key"], "inferred": False} for c in model["cases"] if (c["scene"], c["solver"]) == (scene, solver)]
-        cells[5] = {**cells[5], "inferred": True, "case": None}
+                  "case": c["key"]} for c in model["cases"] if (c["scene"], c["solver"]) == (scene, solver)]
         del cells[9]
         model["maps"].append({"id": f"{scene}-map-{solver}", "scene": scene, "solver": solver, "label": solver.title(),
                               "title": "How cases end", "study": "sample", "x": {**AXIS["dt"], "values": STEPS},
-                              "y": {**AXIS["iterations"], "values": SWEEPS}, "cells": cells, "run": 22, "all": 24,
+                              "y": {**AXIS["iterations"], "values": SWEEPS}, "cells": cells,
                               "counts": {"ok": 22}})
     front = [{k: p[k] for k in ("x", "y", "case")} for p in costs[0]["points"]]
     sweeps = {**AXIS["iterations"], "values": SWEEPS}

@@ -172,7 +172,10 @@ function drawChart(svg, spec, view, width) {
   const floor = view.kind === 'log' && flat.some((p) => p.zero) ? 12 : 0;
   const [yLow, yHigh] = [box.height - box.bottom - floor, box.top + strip];
   const numbers = (list, scale) => list.filter((v) => typeof v === 'number').map((v) => v * scale);
-  const up = numbers(flat.filter((p) => !p.failed).flatMap((p) => [p.y, p.low, p.high]), y.scale);
+  const measured = flat.filter((p) => !p.failed).flatMap((p) => [p.y, p.low, p.high]);
+  // The reference's own error belongs into the picture unless it lies far below all of it.
+  if (spec.floor && spec.floor.y > d3.min(measured.filter((v) => v > 0)) / 30) measured.push(spec.floor.y);
+  const up = numbers(measured, y.scale);
   const across = numbers(flat.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale);
   const ys = view.transform.rescaleY(scaleOf(view.kind, up, [yLow, yHigh]));
   svg.attr('viewBox', `0 0 ${width} ${box.height}`).attr('width', width).attr('height', box.height);

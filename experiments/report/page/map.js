@@ -2,11 +2,8 @@
 // Stability maps: how cases end over two settings, as a table with a glyph in every cell.
 
 /** Statuses with their glyphs, as far as `used` has them. */
-function statusKey(used, extra) {
-  return el('ul', {className: 'key'}, model.statuses.filter(({id}) => used.has(id)).map((status) =>
-    item(glyphBox(status.id), el('span', {}, [status.title, status.help].filter(Boolean).join(': ')))),
-    extra);
-}
+const statusKey = (used) => el('ul', {className: 'key'}, model.statuses.filter(({id}) => used.has(id)).map((status) =>
+  item(glyphBox(status.id), el('span', {}, [status.title, status.help].filter(Boolean).join(': ')))));
 
 /** A glyph on its colour. */
 function glyphBox(id) {
@@ -17,15 +14,13 @@ function glyphBox(id) {
 function mapCell(map, cell, row, column) {
   if (!cell) return el('td', {}, el('span', {className: 'absent', 'aria-label': 'left out by the study'}, '·'));
   const i = statusIndex(cell.status), known = cases.has(cell.case);
-  const button = el('button', {type: 'button', className: cell.inferred ? 'cell inferred' : 'cell', tabIndex: -1,
+  const button = el('button', {type: 'button', className: 'cell', tabIndex: -1,
     'data-group': row, style: `--c:var(--c${i});--i:var(--i${i})`}, statusOf(cell.status).glyph);
   if (known) button.onclick = () => state.set({case: cell.case});
   else button.setAttribute('aria-disabled', true);
   const at = (axis, place) => `${axis.title} ${shown(axis.values[place], axis, 4)}`;
   const settings = `${at(map.x, column)}, ${at(map.y, row)}`;
-  describe(button, [`${map.label}: ${settings}`,
-    ...(cell.inferred ? [`status: ${statusOf(cell.status).title} (not run, inferred from its neighbours)`]
-                      : caseLines(cell.status, cell.reason, cell.case))]);
+  describe(button, [`${map.label}: ${settings}`, ...caseLines(cell.status, cell.reason, cell.case)]);
   return el('td', {}, button);
 }
 
@@ -34,7 +29,7 @@ function mapFigure(map) {
   const texts = (axis) => axis.texts ?? axis.values.map((v) => number(v * axis.scale));
   const rows = d3.range(map.y.values.length).reverse();
   const table = el('table', {className: 'map'},
-    el('caption', {}, `${map.run} of ${map.all} cells were run`),
+    el('caption', {}, count(map.cells.length, 'case')),
     el('thead', {}, el('tr', {}, el('th', {scope: 'col', className: 'corner'}, `${titled(map.y)} ↑`),
       texts(map.x).map((text) => el('th', {scope: 'col'}, text)))),
     el('tbody', {}, rows.map((row) => el('tr', {}, el('th', {scope: 'row'}, texts(map.y)[row]),
@@ -52,10 +47,8 @@ function mapsOf(scene) {
   const shown = all(scene.maps, maps);
   if (!shown.length) return null;
   const used = new Set(shown.flatMap((map) => map.cells.map((cell) => cell.status)));
-  const inferred = shown.some((map) => map.cells.some((cell) => cell.inferred));
   return el('section', {className: 'part'}, el('h3', {}, 'Stability'),
-    statusKey(used, inferred && el('li', {}, el('span', {className: 'glyph-box sample inferred'}, '✓'),
-      el('span', {}, 'dashed: not run, inferred from its neighbours'))),
+    statusKey(used),
     d3.nest().key((map) => map.study + '\n' + map.title).entries(shown).map(({values}) => [
       el('h4', {}, short(values[0].title, 140), ' ', el('small', {}, `study ${short(values[0].study, 40)}`)),
       el('div', {className: 'grid'}, values.map(mapFigure))]));
