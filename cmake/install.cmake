@@ -16,8 +16,9 @@ foreach(library IN LISTS libraries)
   target_include_directories(taut_${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   install(TARGETS taut_${library} EXPORT taut COMPONENT development)
 endforeach()
-# find_solver() asks for solvers(), which is in the library of the solvers: a cycle, which CMake puts on the link line.
+# Two cycles, which CMake puts on the link line: find_solver() asks for solvers(), a metric for known_references().
 target_link_libraries(taut_model INTERFACE $<INSTALL_INTERFACE:taut::solver>)
+target_link_libraries(taut_metrics INTERFACE $<INSTALL_INTERFACE:taut::case>)
 
 # core/model/scene.hpp becomes <taut/model/scene.hpp>, also where headers include each other.
 set(headers core/io/mesh_io.hpp core/io/scene_io.hpp experiments/metrics/metric.hpp experiments/metrics/summary.hpp

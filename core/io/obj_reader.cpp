@@ -1,13 +1,12 @@
 // The text of an OBJ file; what makes a surface of it is in polygons.cpp.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <optional>
 #include <string_view>
 
 #include "core/io/mesh_io.hpp"
 #include "core/io/polygons.hpp"
 #include "core/io/text_file.hpp"
+#include "core/io/words.hpp"
 #include "core/model/input_error.hpp"
 
 namespace taut {
@@ -16,26 +15,6 @@ namespace {
 
 /// Keywords that say nothing about the shape.
 constexpr std::string_view kSkipped[] = {"vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib"};
-
-std::vector<std::string_view> words_of(std::string_view line) {
-  constexpr std::string_view kBlank = " \t\r\f\v";
-  line = line.substr(0, line.find('#'));
-  std::vector<std::string_view> words;
-  for (auto begin = line.find_first_not_of(kBlank); begin != line.npos;) {
-    const auto end = std::min(line.find_first_of(kBlank, begin), line.size());
-    words.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(kBlank, end);
-  }
-  return words;
-}
-
-template <class T>
-std::optional<T> whole(std::string_view word) {
-  T value{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return value;
-}
 
 class ObjReader {
  public:
@@ -128,11 +107,7 @@ Polygons parse_obj(const std::string& file, const std::string& text) {
   SurfaceErrors errors(file);
   ObjReader reader(file, errors);
   std::string_view rest = text;
-  while (!rest.empty()) {
-    const auto end = std::min(rest.find('\n'), rest.size());
-    reader.line(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
+  while (!rest.empty()) reader.line(take_line(rest));
   Polygons polygons = reader.take();
   errors.throw_if_any();  // what follows presumes that every face names vertices that exist
   judge_surface(polygons, errors);

@@ -1,14 +1,15 @@
 #include <fstream>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <new>
 #include <optional>
 
+#include "core/io/positions/positions.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/record_text.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/isolate.hpp"
 #include "experiments/system/files.hpp"
@@ -23,37 +24,32 @@ struct Options {
   std::string final_state, trajectory, series, into;
 };
 
-std::string_view unit_of(const std::string& value) {
-  for (const MetricEntry* metric : metrics())
-    for (const ValueSpec& spec : metric->values)
-      if (spec.name == value) return spec.unit.si == "1" ? "" : spec.unit.si;
-  return "";
-}
+/// What keeps the motion: taut's own trajectory, or a format of other programs.
+class Keeper {
+ public:
+  Keeper(const std::string& file, const Case& one) {
+    if (file.empty()) return;
+    if (!file.ends_with(".traj"))
+      positions_ = create_positions(file, one.scene->mesh);
+    else
+      trajectory_.emplace(file, TrajectoryHeader{.scene = one.scene->name,
+                                                 .solver = one.choice.canonical(),
+                                                 .frame_dt = one.scene->dt,
+                                                 .vertices = one.scene->mesh.size(),
+                                                 .triangles = one.scene->mesh.triangles});
+  }
+  void append(const Snapshot& m) {
+    if (trajectory_) trajectory_->append(m.t, m.state);
+    if (positions_) positions_->append(m.t, m.state.x);
+  }
+  void finish() {
+    if (positions_) positions_->finish();
+  }
 
-void print_text(const Record& record) {
-  std::cout << record.id << "\n  status       " << to_string(record.status.kind);
-  if (!record.status.reason.empty()) std::cout << " (" << record.status.reason << ")";
-  if (record.status.step >= 0) std::cout << ", step " << record.status.step;
-  if (record.status.vertex >= 0) std::cout << ", vertex " << record.status.vertex;
-  std::cout << "\n  steps        " << record.steps << " of " << record.dt << " s\n  cloth        "
-            << record.vertices << " vertices, " << record.links << " links\n  work         "
-            << record.projections << " projections per step\n  state        " << record.digest
-            << '\n';
-  for (const auto& [name, value] : record.values)
-    if (!std::isnan(value))
-      std::cout << "  " << std::left << std::setw(26) << name << std::setprecision(6) << value
-                << ' ' << unit_of(name) << '\n';
-}
-
-std::unique_ptr<TrajectoryWriter> start_trajectory(const std::string& file, const Case& one) {
-  if (file.empty()) return nullptr;
-  return std::make_unique<TrajectoryWriter>(
-      file, TrajectoryHeader{.scene = one.scene->name,
-                             .solver = one.choice.canonical(),
-                             .frame_dt = one.scene->dt,
-                             .vertices = one.scene->mesh.size(),
-                             .triangles = one.scene->mesh.triangles});
-}
+ private:
+  std::optional<TrajectoryWriter> trajectory_;
+  std::unique_ptr<PositionWriter> positions_;
+};
 
 void tell(const Snapshot& m, int steps) {
   if (m.step % std::max(1, steps / 20) != 0) return;
@@ -68,18 +64,19 @@ int run(const Options& options) try {
   continue_in_right_program(one.choice);
   if (!options.into.empty()) return run_into(one, options.into);
 
-  const auto trajectory = start_trajectory(options.trajectory, one);
+  Keeper keeper(options.trajectory, one);
   const CaseRun result = run_case(
       one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Snapshot& m) {
-              if (trajectory) trajectory->append(m.t, m.state);
+              keeper.append(m);
               if (options.verbose) tell(m, one.scene->steps);
             }});
+  keeper.finish();
   if (!options.final_state.empty()) write_durably(options.final_state, to_csv(result.last));
   if (!options.series.empty()) write_durably(options.series, to_csv(result.series));
   if (options.json)
     std::cout << to_json(result.record, 2) << '\n';
   else
-    print_text(result.record);
+    print_record(result.record);
   if (options.verbose)
     for (const auto& [name, value] : result.record.resolved_settings)
       std::cerr << name << ": " << value << '\n';
@@ -94,8 +91,10 @@ std::function<int()> bind(CLI::App& app) {
   options->which.bind(app);
   app.add_flag("--json", options->json, "Print the record as JSON");
   app.add_option("--final-state", options->final_state,
-                 "Write vertex,x,y,z,vx,vy,vz of the last stable state, full precision (CSV)");
-  app.add_option("--trajectory", options->trajectory, "Write every step's positions");
+                 "Write vertex,x,y,z,vx,vy,vz of the last sound state, full precision (CSV)");
+  app.add_option("--trajectory", options->trajectory,
+                 "Write every step's positions: taut's .traj, .npy, .pc2, .mdd, or a file a step, "
+                 ".obj or .ply");
   app.add_option("--series", options->series, "Write values over time (CSV)");
   app.add_flag("--verbose", options->verbose, "Say on stderr how far it is and what is effective");
   app.add_option("--into", options->into, "Used by taut run")->group("");

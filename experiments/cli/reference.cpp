@@ -11,7 +11,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/study/reference_store.hpp"
+#include "experiments/case/reference_store.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
 

@@ -25,7 +25,7 @@ struct References {
   std::optional<Reference> rest, motion;
 };
 
-/// Found by experiments/study/reference_store, so that metrics know no files. Throws InputError on
+/// Found by experiments/case/reference_store, so that metrics know no files. Throws InputError on
 /// a file that is not a reference.
 References known_references(const Scene&);
 

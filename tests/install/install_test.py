@@ -33,6 +33,9 @@ class Installed(unittest.TestCase):
         call("cmake", "--install", BINARIES, "--prefix", cls.prefix)
         cls.libraries = next(cls.prefix.glob("**/libtaut_model.a")).parent
         cls.scene = cls.prefix / "share/taut/scenes/hang.toml"
+        cls.fall = cls.folder / "fall.toml"
+        cls.fall.write_text('summary = "Nothing holds it"\n[cloth]\ngrid = [3, 3]\nsize = [1, 1]\nmass = 1\n'
+                            '[time]\ndt = "1/64"\nduration = 1\n')
 
     def build(self, name, *components, source="int main() {}", libraries="", expect=0):
         """Configures and builds a project of one file that finds these components."""
@@ -60,13 +63,10 @@ class Installed(unittest.TestCase):
         names, *_, last = [line.split(",") for line in series.read_text().splitlines()]
         self.assertAlmostEqual(float(lines[-1].split()[-1]), float(last[names.index("stretch.rms")]), delta=1e-15)
 
-        fall = self.folder / "fall.toml"
-        fall.write_text('summary = "Nothing holds it"\n[cloth]\ngrid = [3, 3]\nsize = [1, 1]\nmass = 1\n'
-                        '[time]\ndt = "1/64"\nduration = 1\n')
-        record = json.loads(call(build / "own_solver", fall, "gravity=0"))
+        record = json.loads(call(build / "own_solver", self.fall, "gravity=0"))
         self.assertEqual((record["solver"], record["status"]["kind"], record["values"]["stretch.rms"]), ("fall", "ok", 0))
         record = json.loads(call(build / "own_solver", self.scene))
-        self.assertGreater(record["values"]["stretch.rms"], 1, "pinned at its corners, it is torn apart")
+        self.assertEqual(record["status"]["kind"], "exploded", "pinned cloth does not fall for ten seconds")
         self.assertIn("usage", call(build / "own_solver", expect=2))
 
     def test_pkg_config_is_enough(self):
@@ -75,14 +75,14 @@ class Installed(unittest.TestCase):
         self.assertEqual(call("pkg-config", "--modversion", "taut", env=environment).strip(), VERSION)
         program = self.folder / "by pkg-config"
         call("sh", "-c", f'g++ -std=c++20 "$0" -o "$1" {flags}', EXAMPLES / "own_solver.cpp", program)
-        self.assertEqual(json.loads(call(program, self.scene))["status"]["kind"], "ok")
+        self.assertEqual(json.loads(call(program, self.fall))["status"]["kind"], "ok")
 
     def test_components(self):
         self.build("alone", "0.2", "model", "solver", "metrics", libraries="taut::model taut::metrics",
                    source='#include <taut/metrics/metric.hpp>\n#include <taut/model/solver.hpp>\n'
                           'int main() { return taut::parse_solver("jakobsen").entry && taut::metrics().size() ? 0 : 1; }')
         call(self.folder / "alone/build/main")
-        self.assertIn("bullet", self.build("unknown", "0.2", "model", "bullet", expect=1))
+        self.assertIn("no component bullet", self.build("unknown", "0.2", "model", "bullet", expect=1))
         self.assertIn("compatible", self.build("older", "0.1", "model", expect=1))
         self.assertIn("compatible", self.build("newer", "0.3", "model", expect=1))
 

@@ -19,6 +19,7 @@ bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
 experiments/metrics      | (core/model|experiments/metrics)/
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
+experiments/external     | (core/(model|io)|experiments/(system|case|external))/
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
 experiments/timing       | (core/model|experiments/(system|case|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|baseline))/
@@ -100,6 +101,7 @@ core/solver/planted.hpp|"experiments/case/record.hpp"
 bullet_ref/planted.cpp|"core/solver/layout/particles.hpp"
 experiments/metrics/planted.cpp|"core/solver/layout/particles.hpp"
 experiments/case/planted.cpp|"bullet_ref/read_back.hpp"
+experiments/external/planted.cpp|"core/solver/layout/particles.hpp"
 core/solver/simd/planted.hpp|"core/solver/layout/particles.hpp"
 core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
 core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"

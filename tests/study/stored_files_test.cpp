@@ -10,7 +10,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/report/findings.hpp"
-#include "experiments/study/reference_store.hpp"
+#include "experiments/case/reference_store.hpp"
 #include "experiments/study/session.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/answer.hpp"

@@ -9,7 +9,7 @@
 #include "core/model/input_error.hpp"
 #include "core/reference/textbook.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/study/reference_store.hpp"
+#include "experiments/case/reference_store.hpp"
 #include "experiments/truths/fit.hpp"
 #include "experiments/truths/probe.hpp"
 

@@ -1,4 +1,4 @@
-#include "experiments/study/reference_store.hpp"
+#include "experiments/case/reference_store.hpp"
 
 #include "experiments/case/digest.hpp"
 #include "experiments/system/data.hpp"

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "core/io/positions/positions.hpp"
+
+/// What the formats share; for the sources of this folder.
+namespace taut {
+
+/// A number at these bytes. `order` is the file's.
+template <class T>
+T number_at(const char* from, std::endian order) {
+  char bytes[sizeof(T)];
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+    bytes[i] = from[order == std::endian::native ? i : sizeof(T) - 1 - i];
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  return value;
+}
+
+template <class T>
+void append_number(std::string& out, T value, std::endian order) {
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, &value, sizeof value);
+  const std::string_view text(bytes, sizeof bytes);
+  order == std::endian::native ? out.append(text) : out.append(text.rbegin(), text.rend());
+}
+
+template <class Real>
+void append_vectors(std::string& out, const std::vector<Vec3>& vectors, std::endian order) {
+  for (const Vec3& v : vectors)
+    for (const double c : v) append_number(out, static_cast<Real>(c), order);
+}
+
+/// A file that is being written. Throws InputError with the system's reason.
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path);
+  void write_at(std::uint64_t offset, std::string_view bytes);
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream out_;
+};
+
+/// Frames of equal size one after the other: what all formats of one file are after their header.
+struct FrameBlock {
+  std::uint64_t first = 0;          ///< byte of the first frame
+  std::uint64_t frames = 0, n = 0;  ///< as the header says
+  std::endian order = std::endian::little;
+  bool single = true;  ///< float32, else float64
+};
+/// Throws InputError if the file does not end where the block does.
+std::unique_ptr<PositionReader> read_block(const std::filesystem::path&, const FrameBlock&,
+                                           PositionsHeader);
+
+/// The first bytes of a file, as many as it has of them.
+std::string first_bytes(const std::filesystem::path&, std::size_t most);
+
+std::unique_ptr<PositionReader> open_npy(const std::filesystem::path&);
+std::unique_ptr<PositionReader> open_pc2(const std::filesystem::path&);
+std::unique_ptr<PositionReader> open_mdd(const std::filesystem::path&);
+std::unique_ptr<PositionReader> open_sequence(const std::filesystem::path&);
+std::unique_ptr<PositionWriter> create_npy(const std::filesystem::path&);
+std::unique_ptr<PositionWriter> create_pc2(const std::filesystem::path&);
+std::unique_ptr<PositionWriter> create_mdd(const std::filesystem::path&);
+std::unique_ptr<PositionWriter> create_sequence(const std::filesystem::path&, const Mesh&);
+
+/// The vertices of one file of a sequence, and to what they are rounded.
+std::vector<Vec3> obj_vertices(const std::filesystem::path&, Rounding&);
+std::vector<Vec3> ply_vertices(const std::filesystem::path&, Rounding&);
+/// The text of such a file.
+std::string obj_text(double t, const std::vector<Vec3>&, const Mesh&);
+std::string ply_text(double t, const std::vector<Vec3>&, const Mesh&);
+
+}  // namespace taut

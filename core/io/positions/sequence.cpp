@@ -1,0 +1,156 @@
+// A file for each frame: OBJ and PLY.
+#include <algorithm>
+#include <cassert>
+
+#include "core/io/positions/formats.hpp"
+#include "core/io/text_file.hpp"
+#include "core/io/words.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kDigits = "0123456789";
+
+/// A file of a sequence and its number.
+struct Numbered {
+  long number;
+  fs::path file;
+};
+
+/// The files beside `path` that have its extension and, before it, `prefix` (ending in one of _.-
+/// or not) and digits.
+std::vector<Numbered> numbered_files(const fs::path& path, const std::string& prefix) {
+  std::vector<Numbered> found;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const fs::path name = entry.path().filename();
+    std::string digits = name.stem().string();
+    if (name.extension() != path.extension() || !digits.starts_with(prefix)) continue;
+    digits.erase(0, prefix.size());
+    if (!digits.empty() && std::string_view("_.-").find(digits[0]) != std::string_view::npos)
+      digits.erase(0, 1);
+    if (const auto number = whole<long>(digits);
+        number && digits.find_first_not_of(kDigits) == digits.npos)
+      found.push_back({*number, path.parent_path() / name});
+  }
+  std::ranges::sort(found, {}, &Numbered::number);
+  return found;
+}
+
+std::vector<fs::path> files_of(const fs::path& path) {
+  std::string prefix = path.stem().string();
+  const auto end = prefix.find_last_not_of(kDigits);
+  const bool numbered = end + 1 < prefix.size();
+  if (!numbered && fs::exists(path)) return {path};
+  if (numbered) prefix.resize(end == prefix.npos ? 0 : end + 1);
+  const std::vector<Numbered> all = numbered_files(path, prefix);
+  if (all.empty() || (numbered && !fs::exists(path)))
+    throw InputError({{path.string(), 0, 0, "no such file, and no frames of that name"}});
+  std::vector<fs::path> files;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (k > 0 && all[k].number == all[k - 1].number)
+      throw InputError(
+          {{all[k].file.string(), 0, 0, "is the same frame as " + all[k - 1].file.string()}});
+    if (k > 1 && all[k].number - all[k - 1].number != all[1].number - all[0].number)
+      throw InputError({{all[k].file.string(), 0, 0,
+                         "the frame before it is missing: number " +
+                             std::to_string(all[k - 1].number + all[1].number - all[0].number)}});
+    files.push_back(all[k].file);
+  }
+  return files;
+}
+
+class SequenceReader final : public PositionReader {
+ public:
+  explicit SequenceReader(const fs::path& path) {
+    header_.files = files_of(path);
+    header_.frames = static_cast<int>(header_.files.size());
+    header_.vertices = static_cast<int>(vertices_of(header_.files.front()).size());
+    if (header_.vertices == 0)
+      throw InputError({{header_.files.front().string(), 0, 0, "has no vertices"}});
+  }
+
+  std::vector<Vec3> read(int k) override {
+    assert(k >= 0 && k < header_.frames);
+    const fs::path& file = header_.files[static_cast<std::size_t>(k)];
+    std::vector<Vec3> x = vertices_of(file);
+    if (x.size() != static_cast<std::size_t>(header_.vertices))
+      throw InputError(
+          {{file.string(), 0, 0,
+            "has " + std::to_string(x.size()) + " vertices; " + header_.files.front().string() +
+                " has " + std::to_string(header_.vertices)}});
+    return x;
+  }
+
+ private:
+  std::vector<Vec3> vertices_of(const fs::path& file) {
+    return file.extension() == ".ply" ? ply_vertices(file, header_.rounding)
+                                      : obj_vertices(file, header_.rounding);
+  }
+};
+
+class SequenceWriter final : public PositionWriter {
+ public:
+  SequenceWriter(const fs::path& path, const Mesh& mesh) : path_(path), mesh_(mesh) {}
+
+  void append(double t, const std::vector<Vec3>& x) override {
+    std::string digits = std::to_string(frames_++);
+    digits.insert(0, 5 - std::min<std::size_t>(5, digits.size()), '0');
+    fs::path file = path_;
+    file.replace_filename(path_.stem().string() + "_" + digits + path_.extension().string());
+    OutputFile(file).write_at(
+        0, path_.extension() == ".ply" ? ply_text(t, x, mesh_) : obj_text(t, x, mesh_));
+  }
+
+ private:
+  fs::path path_;
+  Mesh mesh_;
+  int frames_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<PositionReader> open_sequence(const fs::path& path) {
+  return std::make_unique<SequenceReader>(path);
+}
+
+std::unique_ptr<PositionWriter> create_sequence(const fs::path& path, const Mesh& mesh) {
+  return std::make_unique<SequenceWriter>(path, mesh);
+}
+
+std::vector<Vec3> obj_vertices(const fs::path& path, Rounding& rounding) {
+  rounding = Rounding::decimal;
+  const std::string text = read_text(path, kMostMeshBytes);
+  std::vector<Vec3> x;
+  int line = 0;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::vector<std::string_view> words = words_of(take_line(rest));
+    ++line;
+    if (words.empty() || words[0] != "v") continue;
+    Vec3& v = x.emplace_back();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto c = axis + 1 < words.size() ? whole<double>(words[axis + 1]) : std::nullopt;
+      if (!c) throw InputError({{path.string(), line, 1, "a vertex needs three numbers"}});
+      v[static_cast<Eigen::Index>(axis)] = *c;
+    }
+  }
+  return x;
+}
+
+std::string obj_text(double t, const std::vector<Vec3>& x, const Mesh& mesh) {
+  std::string out = "# t = " + shortest(t) + " s, metres\n";
+  for (const Vec3& v : x)
+    out += "v " + shortest(v.x()) + ' ' + shortest(v.y()) + ' ' + shortest(v.z()) + '\n';
+  for (const auto& [a, b, c] : mesh.triangles)
+    out += "f " + std::to_string(a + 1) + ' ' + std::to_string(b + 1) + ' ' +
+           std::to_string(c + 1) + '\n';
+  return out;
+}
+
+}  // namespace taut

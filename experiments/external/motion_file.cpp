@@ -1,0 +1,228 @@
+#include "experiments/external/motion_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "core/model/index.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
+#include "experiments/case/trajectory.hpp"
+#include "experiments/external/vertex_match.hpp"
+
+namespace taut::external {
+
+namespace {
+
+constexpr double kInch = 0.0254;
+
+std::string number(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/// taut's own format.
+class TrajectoryPositions final : public PositionReader {
+ public:
+  explicit TrajectoryPositions(const std::filesystem::path& path) : reader_(path) {
+    if (reader_.frames() == 0) throw InputError({{path.string(), 0, 0, "has no whole frame"}});
+    header_ = {.vertices = reader_.header().vertices,
+               .frames = reader_.frames(),
+               .rounding = reader_.header().real == TrajectoryHeader::Real::f32
+                               ? Rounding::binary32
+                               : Rounding::binary64,
+               .files = {path}};
+    for (int k = 0; k < header_.frames; ++k) header_.times.push_back(reader_.read(k).t);
+  }
+  std::vector<Vec3> read(int k) override { return reader_.read(k).state.x; }
+
+ private:
+  TrajectoryReader reader_;
+};
+
+std::vector<Vec3> converted(std::vector<Vec3> x, double scale, bool z_up) {
+  for (Vec3& v : x) v = scale * (z_up ? Vec3(v.x(), v.z(), -v.y()) : v);
+  return x;
+}
+
+/// The number of decimals to which all coordinates are rounded; more than 15: to none.
+int decimals(const std::vector<Vec3>& x) {
+  int digits = 0;
+  double power = 1;
+  for (const Vec3& v : x)
+    for (const double c : v)
+      while (digits < 16 && std::abs(c * power - std::round(c * power)) > 1e-15 * power + 1e-9)
+        ++digits, power *= 10;
+  return digits;
+}
+
+/// Between neighbouring numbers that the file can hold at c, in the file's unit.
+double spacing(double c, Rounding rounding, int digits) {
+  if (rounding == Rounding::decimal && digits < 16) return std::pow(10, -digits);
+  const double size = std::abs(c), infinity = std::numeric_limits<double>::infinity();
+  if (rounding != Rounding::binary32) return std::nextafter(size, infinity) - size;
+  const auto single = static_cast<float>(size);
+  return static_cast<double>(std::nextafter(single, std::numeric_limits<float>::infinity()) -
+                             single);
+}
+
+std::unique_ptr<PositionReader> open_motion(const std::filesystem::path& path) {
+  if (path.extension() == ".traj") return std::make_unique<TrajectoryPositions>(path);
+  return open_positions(path);
+}
+
+/// Plays a motion as a solver would compute it.
+class Playback final : public Solver {
+ public:
+  explicit Playback(MotionFile& motion) : motion_(motion) {}
+  void load(const State& state) override { state_ = state; }
+  void step(double t, double dt) override {
+    std::vector<Vec3> next = motion_.frame(static_cast<int>(std::lround(t / dt)) + 1);
+    for (std::size_t i = 0; i < next.size(); ++i) state_.v[i] = (next[i] - state_.x[i]) / dt;
+    state_.x = std::move(next);
+  }
+  void store(State& state) const override { state = state_; }
+  std::vector<PassCost> step_cost() const override { return {}; }
+
+ private:
+  MotionFile& motion_;
+  State state_;
+};
+
+thread_local MotionFile* playing = nullptr;  ///< an entry's functions know nothing else
+
+constexpr SolverEntry kPositions = {
+    .name = "positions",
+    .summary = "Positions that another program computed",
+    .source = "experiments/external/FILES.md",
+    .make = [](const Scene&, const Params&) -> std::unique_ptr<Solver> {
+      return std::make_unique<Playback>(*playing);
+    },
+    .unsupported = [](const Scene&, const Params&) { return playing->misfits(); },
+    .resolved_settings = [](const Scene& scene,
+                            const Params&) { return playing->settings(scene); }};
+
+}  // namespace
+
+CaseRun score(const Scene& scene, MotionFile& motion, const RunOptions& options) {
+  playing = &motion;
+  return run_case(scene, {&kPositions, {}}, options);
+}
+
+MotionFile::MotionFile(const Scene& scene, const MotionOptions& options)
+    : reader_(open_motion(options.file)), file_(options.file) {
+  find_time(scene, options.fps);
+  find_place(scene, options);
+  if (std::abs(frame_dt_ - scene.dt) > 1e-6 * scene.dt)
+    misfits_.push_back(file_ + " has a frame each " + shortest(frame_dt_) +
+                       " s, the scene a step each " + shortest(scene.dt) +
+                       " s: --dt (time.dt in a study) makes them agree");
+  if (header().frames <= scene.steps)
+    misfits_.push_back(file_ + " has " + std::to_string(header().frames) +
+                       " frames, the scene needs " + std::to_string(scene.steps + 1) +
+                       ": --duration (time.duration in a study) makes it shorter");
+}
+
+void MotionFile::find_time(const Scene& scene, double fps) {
+  const std::vector<double>& times = header().times;
+  if (fps > 0) {
+    frame_dt_ = header().spacing / fps;
+    time_said_ = "as said";
+  } else if (times.size() > 1) {
+    frame_dt_ = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    time_said_ = "from the times in the file";
+  } else {
+    frame_dt_ = scene.dt;
+    time_said_ = "assumed: the scene's time step; fps says otherwise";
+  }
+  for (std::size_t k = 0; fps == 0 && k < times.size(); ++k) {
+    const double even = times.front() + static_cast<double>(k) * frame_dt_;
+    if (!(frame_dt_ > 0) || !(std::abs(times[k] - even) <= 0.01 * frame_dt_))
+      throw InputError({{file_, 0, 0,
+                         "frame " + std::to_string(k) + " is at " + shortest(times[k]) +
+                             " s; evenly spaced it would be at " + shortest(even) + " s"}});
+  }
+}
+
+void MotionFile::find_place(const Scene& scene, const MotionOptions& options) {
+  const std::filesystem::path& rest = options.rest;
+  const std::vector<Vec3> first = rest.empty() ? reader_->read(0) : open_motion(rest)->read(0);
+  const std::vector<Vec3>& target = rest.empty() ? scene.start.x : scene.mesh.rest;
+  const double said = options.scale, tolerance = 1e-4 * extent(scene);
+  const std::vector<double> scales =
+      said > 0 ? std::vector{said} : std::vector{1.0, 0.01, 0.001, kInch};
+  std::string mismatch;
+  for (const bool z_up : {false, true}) {
+    if (options.up == (z_up ? "y" : "z")) continue;
+    for (const double scale : scales) {
+      VertexMatch match = match_vertices(converted(first, scale, z_up), target, tolerance);
+      if (!match.mismatch.empty()) {
+        if (mismatch.empty()) mismatch = match.mismatch;
+        continue;
+      }
+      scale_ = scale, z_up_ = z_up;
+      place_said_ = "1 unit is " + shortest(scale) + " m (" + (said > 0 ? "as said" : "derived") +
+                    "), " + (z_up ? "z" : "y") + " up (" +
+                    (options.up == "auto" ? "derived" : "as said") + ")";
+      order_said_ = std::string(match.same_order() ? "as in the scene" : "matched by position") +
+                    ", at " + (rest.empty() ? "the start" : "rest") + " at most " +
+                    number("%.2g", match.farthest) + " m off";
+      of_scene_ = std::move(match.of_scene);
+      return;
+    }
+  }
+  misfits_.push_back(file_ + " does not begin as " + scene.name + " does: " + mismatch);
+}
+
+std::vector<Vec3> MotionFile::frame(int k) {
+  const std::vector<Vec3> x = converted(reader_->read(k), scale_, z_up_);
+  std::vector<Vec3> ordered;
+  ordered.reserve(x.size());
+  for (const std::size_t i : of_scene_) ordered.push_back(x[i]);
+  return ordered;
+}
+
+StrainFloor MotionFile::floor(const Scene& scene) {
+  std::vector<Vec3> x = frame(scene.steps);
+  if (!std::ranges::all_of(x, [](const Vec3& v) { return v.allFinite(); })) x = frame(0);
+  const Rounding rounding = header().rounding;
+  const int digits = rounding == Rounding::decimal ? decimals(converted(x, 1 / scale_, false)) : 0;
+  StrainFloor floor;
+  double sum = 0;
+  for (const Link& link : scene.links) {
+    const Vec3 &a = x[to_index(link.a)], &b = x[to_index(link.b)];
+    const Vec3 along = (b - a).normalized();
+    double variance = 0, most = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double c : {a[axis], b[axis]}) {
+        const double step = scale_ * spacing(c / scale_, rounding, digits) * std::abs(along[axis]);
+        variance += step * step / 12;  // of a rounding that is as likely anywhere in the step
+        most += step / 2;
+      }
+    sum += variance / (link.rest * link.rest);
+    floor.max = std::max(floor.max, most / link.rest);
+  }
+  if (!scene.links.empty()) floor.rms = std::sqrt(sum / static_cast<double>(scene.links.size()));
+  return floor;
+}
+
+ResolvedSettings MotionFile::settings(const Scene& scene) {
+  const PositionsHeader& about = header();
+  const StrainFloor least = floor(scene);
+  const char* rounding = about.rounding == Rounding::binary32   ? "float32"
+                         : about.rounding == Rounding::binary64 ? "float64"
+                                                                : "text";
+  return {{"frames", std::to_string(about.frames) + " of " + std::to_string(about.vertices) +
+                         " vertices, " + rounding},
+          {"time step", shortest(frame_dt_) + " s a frame, " + time_said_},
+          {"unit", place_said_},
+          {"vertex order", order_said_},
+          {"floor of strain", number("%.1e", least.rms) + " RMS, " + number("%.1e", least.max) +
+                                  " at most: the rounding of the file"},
+          {"velocity", "differences between frames"},
+          {"cost", "not measured"}};
+}
+
+}  // namespace taut::external

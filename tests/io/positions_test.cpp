@@ -1,0 +1,231 @@
+// Files of positions: what is written comes back to the format's rounding, and a hostile file costs
+// a message with its place.
+#include "core/io/positions/positions.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include "core/io/text_file.hpp"
+#include "core/model/input_error.hpp"
+
+namespace taut {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFormats[] = {"a.npy", "a.pc2", "a.mdd", "a.obj", "a.ply"};
+
+class Positions : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("taut_positions_" + std::to_string(getpid()));
+    fs::create_directory(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static constexpr std::size_t kVertices = 6;
+  static constexpr int kFrames = 4;
+  static std::vector<Vec3> frame(int k) {
+    std::vector<Vec3> x;
+    for (std::size_t i = 0; i < kVertices; ++i)
+      x.emplace_back(1.0 / 3 + k, -1e-7 * static_cast<double>(i), std::pow(10, k) / 7);
+    return x;
+  }
+  fs::path written(const char* name) const {
+    const Mesh mesh = make_sheet({.nu = 2, .nv = 3, .width = 1, .height = 1, .mass = 1});
+    const auto writer = create_positions(folder_ / name, mesh);
+    for (int k = 0; k < kFrames; ++k) writer->append(k / 64.0, frame(k));
+    writer->finish();
+    return folder_ / name;
+  }
+  fs::path file(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return folder_ / name;
+  }
+  static std::vector<std::vector<Vec3>> all_of(const fs::path& path) {
+    const auto reader = open_positions(path);
+    std::vector<std::vector<Vec3>> all;
+    for (int k = 0; k < reader->header().frames; ++k) all.push_back(reader->read(k));
+    return all;
+  }
+  static std::string message(const fs::path& path) {
+    try {
+      all_of(path);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  fs::path folder_;
+};
+
+TEST_F(Positions, ComeBackToTheRoundingOfTheFormat) {
+  for (const std::string name : kFormats) {
+    const fs::path path = written(name.c_str());
+    const auto reader = open_positions(path);
+    const PositionsHeader& header = reader->header();
+    EXPECT_EQ(header.vertices, static_cast<int>(kVertices)) << name;
+    ASSERT_EQ(header.frames, kFrames) << name;
+    const bool single = name == "a.pc2" || name == "a.mdd";
+    EXPECT_EQ(header.rounding, single            ? Rounding::binary32
+                               : name == "a.obj" ? Rounding::decimal
+                                                 : Rounding::binary64);
+    for (const int k : {3, 0, 2, 1}) {
+      const std::vector<Vec3> x = reader->read(k);
+      for (std::size_t i = 0; i < kVertices; ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+          const double exact = frame(k)[i][axis];
+          const double kept = single ? static_cast<double>(static_cast<float>(exact)) : exact;
+          EXPECT_EQ(x[i][axis], kept) << name << " frame " << k;
+        }
+    }
+    if (name == "a.mdd")
+      EXPECT_EQ(header.times, (std::vector<double>{0, 1 / 64.0, 2 / 64.0, 3 / 64.0}));
+    else
+      EXPECT_TRUE(header.times.empty());
+  }
+}
+
+TEST_F(Positions, WhatIsNotFiniteIsData) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const char* name : kFormats) {
+    const auto writer = create_positions(folder_ / name, {});
+    writer->append(0, {Vec3(nan, 1, -std::numeric_limits<double>::infinity())});
+    writer->finish();
+    const Vec3 x = all_of(folder_ / name).at(0).at(0);
+    EXPECT_TRUE(std::isnan(x.x()) && x.y() == 1 &&
+                x.z() == -std::numeric_limits<double>::infinity())
+        << name;
+  }
+}
+
+/// A file of which every prefix, and every change of a byte, is either read or refused.
+TEST_F(Positions, DamagedFilesAreRefused) {
+  std::mt19937 random(7);
+  for (const char* name : kFormats) {
+    const fs::path path = written(name);
+    const fs::path first = fs::exists(path) ? path : open_positions(path)->header().files.at(0);
+    const std::string whole = read_text(first);
+    int refused = 0;
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      file(first.filename(), whole.substr(0, size));
+      const std::string said = message(path);
+      refused += said != "no error";
+      EXPECT_TRUE(path != first || said != "no error") << name << " cut at byte " << size;
+      EXPECT_TRUE(said == "no error" || said.find(first.filename()) != said.npos) << said;
+    }
+    EXPECT_GT(refused, static_cast<int>(whole.size() / 4)) << name;
+    for (int k = 0; k < 200; ++k) {
+      std::string damaged = whole;
+      damaged[random() % std::min<std::size_t>(whole.size(), 200)] = static_cast<char>(random());
+      file(first.filename(), damaged);
+      message(path);  // whatever it says: no crash, no memory without end
+    }
+    file(first.filename(), whole + "x");
+    EXPECT_TRUE(path != first || message(path).find("bytes") != std::string::npos) << message(path);
+  }
+}
+
+std::string npy(const std::string& dictionary, std::size_t body) {
+  std::string bytes("\x93NUMPY\1\0", 8);
+  bytes += static_cast<char>(dictionary.size());
+  bytes += '\0';
+  return bytes + dictionary + std::string(body, '\0');
+}
+
+TEST_F(Positions, SayWhatIsWrongAndWhere) {
+  const auto says = [&](const std::string& name, const std::string& bytes, const char* what) {
+    const std::string said = message(file(name, bytes));
+    EXPECT_NE(said.find(name), said.npos) << said;
+    EXPECT_NE(said.find(what), said.npos) << said;
+  };
+  const std::string good = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2, 3), }";
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_EQ(message(file("good.npy", npy(good, 48))), "no error");
+  says("b.npy", npy(good, 47), "ends at byte 119, after 0 whole frames");
+  says("b.npy", npy(with("<f8", "<i8"), 48), "byte 10: the type is <i8");
+  says("b.npy", npy(with("False", "True"), 48), "numpy.ascontiguousarray");
+  says("b.npy", npy(with("(1, 2, 3)", "(2, 3)"), 48), "[frames, vertices, 3]");
+  says("b.npy", npy(with("(1, 2, 3)", "(1, 2, 4)"), 48), "[frames, vertices, 3]");
+  says("b.npy", npy(with("(1, 2,", "(4294967296, 4294967296,"), 48), "1 to 2147483647 of each");
+  says("b.npy", npy(with("(1, 2,", "(2147483647, 2147483647,"), 48), "ends at byte");
+  says("b.npy", npy(with("(1, 2,", "(0, 2,"), 48), "0 frames of 2 vertices");
+  says("b.npy", npy(with("(1, 2,", "(-1, 2,"), 48), "[frames, vertices, 3]");
+
+  std::string pc2 = read_text(written("a.pc2"));
+  says("b.pc2", "POINTCACHE1" + pc2.substr(11), "byte 0");
+  says("b.pc2", std::string(pc2).replace(28, 4, "\xff\xff\xff\x7f"), "2147483647 frames of 6");
+  says("b.pc2", std::string(pc2).replace(28, 4, "\xff\xff\xff\xff"), "byte 28: -1 is no number");
+  says("b.pc2", std::string(pc2).replace(16, 4, std::string(4, '\0')), "byte 16: 0 is no number");
+  says("b.pc2", std::string(pc2).replace(24, 4, std::string(4, '\0')), "byte 24");
+  says("b.mdd", "\x7f\xff\xff\xff\x7f\xff\xff\xff", "the file ends at byte 8");
+  says("b.mdd", "\1\1", "ends at byte 2, within its header");
+
+  says("b.obj", "v 1 2 3\nv 1 2\n", "b.obj:2:1: a vertex needs three numbers");
+  says("b.obj", "v 1 2 3\n\nv 1 2 x\n", "b.obj:3:1");
+  says("b.obj", "# nothing\n", "has no vertices");
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+      "property float y\nproperty float z\nend_header\n";
+  EXPECT_EQ(message(file("good.ply", ply + "1 2 3\n4 5 6\n")), "no error");
+  says("b.ply", ply + "1 2 3\n", "b.ply:8:1: ends after 1 of 2 vertices");
+  says("b.ply", ply + "1 2 3\n1 2\n", "b.ply:9:1: a vertex has 3 numbers");
+  says("b.ply",
+       "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\n"
+       "property double y\nproperty double z\nend_header\n",
+       "4000000000 vertices of 24 bytes begin at byte ");
+  says("b.ply", "ply\nformat ascii 1.0\nelement face 1\n",
+       "b.ply:3:1: the element vertex has to be");
+  says("b.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\n",
+       "is no list");
+  says("b.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n",
+       "lack one of the properties");
+  says("b.abc", "", ".npy, .pc2, .mdd, .obj or .ply");
+  EXPECT_NE(message(folder_ / "none.pc2").find("No such file"), std::string::npos);
+  EXPECT_NE(message(folder_ / "none.obj").find("no such file"), std::string::npos);
+}
+
+TEST_F(Positions, BothByteOrdersAndOtherProperties) {
+  std::string ply =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty uchar red\n"
+      "property float z\nproperty double x\nproperty short s\nproperty float y\n"
+      "element face 0\nproperty list uchar int vertex_indices\nend_header\n";
+  ply += std::string("\7\x40\x40\0\0\x3f\xf0\0\0\0\0\0\0\0\0\x40\0\0\0", 19);  // 7 3 1 0 2
+  EXPECT_EQ(all_of(file("a.ply", ply)).at(0).at(0), Vec3(1, 2, 3));
+  const std::string array =
+      npy("{'descr': '>f4', 'fortran_order': False, 'shape': (1, 1, 3), }", 0) +
+      std::string("\x3f\x80\0\0\x40\0\0\0\x40\x40\0\0", 12);
+  EXPECT_EQ(all_of(file("a.npy", array)).at(0).at(0), Vec3(1, 2, 3));
+}
+
+TEST_F(Positions, ASequenceHasAllItsFramesInOrder) {
+  for (const int k : {8, 9, 10, 11})
+    file("cloth" + std::to_string(k) + ".obj", "v " + std::to_string(k) + " 0 0\n");
+  file("cloth_rest.obj", "v 0 0 0\nv 0 0 0\n");  // another name
+  for (const char* name : {"cloth.obj", "cloth9.obj"}) {
+    const auto all = all_of(folder_ / name);
+    ASSERT_EQ(all.size(), 4u);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(all[k].at(0).x(), 8 + static_cast<double>(k));
+  }
+  file("cloth011.obj", "v 0 0 0\n");
+  EXPECT_NE(message(folder_ / "cloth.obj").find("is the same frame as"), std::string::npos);
+  fs::remove(folder_ / "cloth011.obj");
+  fs::remove(folder_ / "cloth10.obj");
+  EXPECT_NE(message(folder_ / "cloth.obj")
+                .find("cloth11.obj: the frame before it is missing: "
+                      "number 10"),
+            std::string::npos);
+  file("cloth10.obj", "v 0 0 0\nv 0 0 0\n");
+  EXPECT_NE(message(folder_ / "cloth.obj").find("cloth10.obj: has 2 vertices"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace taut
