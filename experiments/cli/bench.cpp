@@ -125,7 +125,7 @@ std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
 
 BenchSession bench(const std::string& name, const std::vector<Case>& cases,
                    const Options& options) {
-  BenchSession session{name, machine_name(), {}};
+  BenchSession session = BenchSession::here(name);
   for (const auto& [scene, records] : by_scene(physics(cases, options)))
     session.scenes.push_back(bench_scene(scene, records, options));
   return session;
@@ -134,7 +134,7 @@ BenchSession bench(const std::string& name, const std::vector<Case>& cases,
 void bench_study(const std::string& name, const Options& options) {
   const Study study = load_study(name, options.preset);
   const BenchSession session = bench(study.name, cases_of(study), options);
-  const auto file = bench_file(options.out, study.name);
+  const auto file = bench_file(options.out, session);
   make_folder(file.parent_path());
   write_durably(file, to_json(session));
   if (options.json) {
@@ -181,6 +181,7 @@ int run(const Options& options) {
     const Case one = make_case({options.what[0], options.settings, options.what[1]});
     return serve_timing(*one.scene, one.choice);
   }
+  require_one_quiet_host();
   if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
   for (const std::string& name : options.what)
     options.solvers.empty() ? bench_study(name, options) : compare(name, options);

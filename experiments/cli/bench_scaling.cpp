@@ -110,13 +110,16 @@ std::filesystem::path keep(const Study& study, const std::vector<ScalingLine>& l
   SceneBench scene{study.scenes.front(), {1, 1, 1}, {}};
   for (const ScalingLine& line : lines)
     for (const BenchedCase& c : line.cases) scene.cases.push_back(c);
-  const auto file = bench_file(options.out, study.name);
+  BenchSession session = BenchSession::here(study.name);
+  session.scenes = {scene};
+  const auto file = bench_file(options.out, session);
   make_folder(file.parent_path());
-  write_durably(file, to_json(BenchSession{study.name, machine_name(), {scene}}));
+  write_durably(file, to_json(session));
   return file;
 }
 
 int run(const Options& options) {
+  require_one_quiet_host();
   const Study study = load_study(options.study, options.preset);
   if (!options.preset.empty() && study.preset.empty())
     throw InputError("study '" + study.name + "' has no preset '" + options.preset + "'" +

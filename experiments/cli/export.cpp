@@ -40,11 +40,12 @@ std::string axis_value(const CaseSpec& spec, const std::string& key) {
   return value;
 }
 
-/// What `taut bench STUDY` measured, by the key of the case.
+/// What `taut bench STUDY` measured, on this host if it did so here, by the key of the case.
 std::map<std::string, BenchedCase> stored_costs(const Options& options, const Study& study) {
   std::map<std::string, BenchedCase> costs;
-  const std::filesystem::path file = bench_file(options.results, study.name);
-  if (!std::filesystem::exists(file)) return costs;
+  const std::vector<std::filesystem::path> files = bench_files(options.results, study.name);
+  if (files.empty()) return costs;
+  const std::filesystem::path& file = files.front();
   for (SceneBench& scene : bench_from_json(read_text(file), file.string()).scenes)
     for (BenchedCase& c : scene.cases)
       if (c.timing.failure.empty()) costs[c.record.key] = std::move(c);

@@ -9,6 +9,7 @@
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/claims/rivals.hpp"
+#include "experiments/study/missing.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {
@@ -61,9 +62,7 @@ void add_costs(const BenchSession& bench, std::vector<Record>& records) {
 
 }  // namespace
 
-std::optional<BenchSession> stored_bench(const Store& store, const std::string& study) {
-  const std::filesystem::path file = bench_file(store.root(), study);
-  if (!std::filesystem::exists(file)) return std::nullopt;
+std::optional<BenchSession> stored_bench(const std::filesystem::path& file) {
   BenchSession bench = bench_from_json(read_text(file), file.string());
   CaseMaker maker;
   for (SceneBench& scene : bench.scenes)
@@ -123,11 +122,21 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
   std::vector<std::string> benched;
   if (studies.size() == 1) benched.push_back(studies.front().name);
   benched.emplace_back("trade");
-  for (const std::string& name : benched) try {
-      if (!input.bench) input.bench = stored_bench(store, name);
-    } catch (const InputError& error) {
-      input.left_out.emplace_back(bench_file(store.root(), name).string(), error.what());
-    }
+  for (const std::string& name : benched) {
+    if (input.bench) break;
+    for (const std::filesystem::path& file : bench_files(store.root(), name)) try {
+        std::optional<BenchSession> bench = stored_bench(file);
+        if (!bench) continue;
+        input.cost_hosts.push_back(
+            bench->host + ", build " + bench->build.substr(0, 10) + ": " + bench->machine +
+            (input.bench ? "; not shown and not pooled: " : "; shown: ") + file.string());
+        if (!input.bench) input.bench = std::move(bench);
+      } catch (const InputError& error) {
+        input.left_out.emplace_back(file.string(), error.what());
+      }
+  }
+  for (const Missing& one : still_missing(store))
+    input.left_out.emplace_back(one.file.string(), one.sentence());
   for (const Study& study : studies) {
     StudyRecords known = collect(study, store);
     if (input.bench) add_costs(*input.bench, known.records);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,9 +20,9 @@ ReportInput stored_results(const std::vector<Study>&, const Store&);
 std::vector<TimeSeries> stored_series(std::span<const Record>, const std::string& value,
                                       const Store&);
 
-/// What `taut bench STUDY` left in this store's folder: the cases that this build would run alike,
+/// What `taut bench STUDY` left in this file: the cases that this build would run alike,
 /// in scenes that have any; nullopt: none. Throws InputError if the file is damaged.
-std::optional<BenchSession> stored_bench(const Store&, const std::string& study);
+std::optional<BenchSession> stored_bench(const std::filesystem::path& file);
 
 /// The maps among these studies (two sweeps and a plot of kind "stability") of which the store has
 /// something.

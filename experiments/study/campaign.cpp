@@ -11,10 +11,6 @@
 
 namespace taut {
 
-namespace {
-
-/// Work of a case, to order cases and to foresee the end: particles and links that it visits, if
-/// parameters of these names mean what they usually mean. Never part of a result.
 double estimated_work(const Case& one) {
   double sweeps = 1;
   for (const ParamSpec& spec : one.choice.entry->params)
@@ -23,6 +19,8 @@ double estimated_work(const Case& one) {
   return one.scene->steps *
          (20.0 * one.scene->mesh.size() + static_cast<double>(one.scene->links.size()) * sweeps);
 }
+
+namespace {
 
 class Campaign {
  public:

@@ -14,6 +14,11 @@
 
 namespace taut {
 
+/// Work of a case, to order cases, to share them out and to foresee the end: particles and links
+/// that it visits, if parameters of these names mean what they usually mean. Never part of a
+/// result.
+double estimated_work(const Case&);
+
 /// How far a campaign is.
 struct CampaignProgress {
   std::size_t cases = 0;      ///< of this shard

@@ -71,11 +71,8 @@ Session::Session(const Store& store, const std::string& command, const std::vect
                      {"shards", shard.count},    {"cases", cases.size()}};
   std::string manifest;
   for (const Case& one : cases)
-    manifest += to_text(Json{{"key", one.key},
-                             {"id", one.id},
-                             {"shard", shard_of(one.key, shard.count)},
-                             {"shards", shard.count}}) +
-                "\n";
+    manifest +=
+        to_text(ManifestEntry{one.key, one.id, shard_of(one.key, shard.count), shard.count}) + '\n';
   try {
     write_durably(folder_ / "session.json", to_text(session, 1) + "\n");
     write_durably(folder_ / "manifest.jsonl", manifest);
@@ -92,18 +89,26 @@ void Session::done(const Record& record) const {
                                                       {"status", to_string(record.status.kind)}}));
 }
 
+std::string to_text(const ManifestEntry& one) {
+  return to_text(
+      Json{{"key", one.key}, {"id", one.id}, {"shard", one.shard}, {"shards", one.shards}});
+}
+
+std::vector<ManifestEntry> read_manifest_lines(const fs::path& file) {
+  std::vector<ManifestEntry> all;
+  std::istringstream lines(read_text(file));
+  for (std::string line; std::getline(lines, line);)
+    all.push_back(read_json(line, file.string(), manifest_entry, static_cast<int>(all.size()) + 1));
+  return all;
+}
+
 std::vector<ManifestEntry> read_manifests(const fs::path& root) {
   std::map<std::string, ManifestEntry> all;
   std::error_code none;
   for (const auto& session : fs::directory_iterator(root / "sessions", none)) {
     const fs::path file = session.path() / "manifest.jsonl";
     if (!fs::exists(file)) continue;
-    std::istringstream lines(read_text(file));
-    int number = 0;
-    for (std::string line; std::getline(lines, line);) {
-      ManifestEntry one = read_json(line, file.string(), manifest_entry, ++number);
-      all.emplace(one.key, std::move(one));
-    }
+    for (ManifestEntry& one : read_manifest_lines(file)) all.emplace(one.key, std::move(one));
   }
   std::vector<ManifestEntry> list;
   for (auto& [key, one] : all) list.push_back(std::move(one));

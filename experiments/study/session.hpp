@@ -41,6 +41,11 @@ struct ManifestEntry {
   int shard = 1, shards = 1;
 };
 
+std::string to_text(const ManifestEntry&);  ///< a line
+
+/// Throws InputError with file and line.
+std::vector<ManifestEntry> read_manifest_lines(const std::filesystem::path& file);
+
 /// What the sessions of a results folder were to run, each key once. Throws InputError with file
 /// and line.
 std::vector<ManifestEntry> read_manifests(const std::filesystem::path& root);

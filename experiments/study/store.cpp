@@ -23,27 +23,34 @@ namespace {
 
 constexpr std::array kParts{"case.json", "series.csv", "stderr.txt"};
 
-Json seal_of(const fs::path& folder, const Record& record) {
+EntryParts parts_in(const fs::path& folder) {
+  EntryParts parts;
+  for (const char* part : kParts)
+    if (fs::exists(folder / part)) parts[part] = read_text(folder / part);
+  return parts;
+}
+
+Json seal_of(const EntryParts& parts, const Record& record) {
   Json seal{{"schema", kRecordSchema},
             {"key", record.key},
             {"status", to_string(record.status.kind)},
             {"result", result_digest(record)}};
-  for (const char* part : kParts)
-    if (fs::exists(folder / part)) seal["files"][part] = sha256(read_text(folder / part));
+  for (const auto& [part, text] : parts) seal["files"][part] = sha256(text);
   return seal;
 }
 
 /// The record of an entry; throws if a part is not what its seal says.
-Record open_entry(const fs::path& folder, const std::string& key) {
-  read_json(read_text(folder / "status.json"), "status.json", [&](const JsonReader& seal) {
+Record open_entry(const std::string& sealed, const std::string& key,
+                  const std::function<std::string(const std::string&)>& read) {
+  read_json(sealed, "status.json", [&](const JsonReader& seal) {
     for (const auto& [part, digest] : seal.at("files").members()) {
       if (std::ranges::find(kParts, part) == kParts.end()) digest.fail("is no part of an entry");
-      if (sha256(read_text(folder / part)) != digest.text())
+      if (sha256(read(part)) != digest.text())
         throw InputError(part + " does not match its digest");
     }
     if (seal.at("key").text() != key) throw InputError("it belongs to another key");
   });
-  Record record = record_from_json(read_text(folder / "case.json"), "case.json");
+  Record record = record_from_json(read("case.json"), "case.json");
   if (record.key != key) throw InputError("it belongs to another key");
   return record;
 }
@@ -70,12 +77,62 @@ fs::path Store::folder(const std::string& key) const {
   return root_ / "store" / key.substr(0, 2) / key;
 }
 
+struct Store::Packs {
+  PackIndex index;
+  std::optional<PackWriter> writer;
+  std::optional<Scratch> scratch;  ///< of a store that packs: where its cases write
+};
+
+Store::Packs& Store::packs() const {
+  if (!packs_) {
+    packs_ = std::make_shared<Packs>();
+    packs_->index = PackIndex::of(root_);
+    for (const std::string& sentence : packs_->index.damaged) notice_(sentence);
+  }
+  return *packs_;
+}
+
+void Store::pack_into(const std::string& name, std::size_t batch) {
+  flush();
+  packs().writer.emplace(root_ / "packs" / (name + ".pack"), batch);
+  packs().index.packs.push_back(packs().writer->file());
+  if (!packs().scratch) packs().scratch.emplace();
+}
+
+void Store::flush() const {
+  if (packs().writer) packs().writer->flush();
+}
+
 std::optional<Record> Store::find(const std::string& key) const {
+  std::optional<Record> loose = find_loose(key);
+  if (loose && loose->status.is_result()) return loose;
+  std::optional<Record> packed = find_packed(key);
+  return packed && (!loose || packed->status.is_result()) ? packed : loose;
+}
+
+std::optional<Record> Store::find_loose(const std::string& key) const {
   if (!fs::exists(folder(key))) return {};
   try {
-    return open_entry(folder(key), key);
+    return open_entry(read_text(folder(key) / "status.json"), key,
+                      [&](const std::string& part) { return read_text(folder(key) / part); });
   } catch (const std::exception& error) {
     set_aside(key, error.what());
+    return {};
+  }
+}
+
+std::optional<Record> Store::find_packed(const std::string& key) const {
+  const PackIndex& index = packs().index;
+  const auto at = index.places.find(key);
+  if (at == index.places.end()) return {};
+  const fs::path& file = index.packs[at->second.pack];
+  try {
+    const PackedEntry entry(file, at->second.offset);
+    return open_entry(entry.seal, key, [&](const std::string& part) { return entry.part(part); });
+  } catch (const std::exception& error) {
+    notice_(file.string() + ": corrupt entry at byte " + std::to_string(at->second.offset) + " (" +
+            error.what() + "), ignored");
+    packs().index.places.erase(key);
     return {};
   }
 }
@@ -96,8 +153,24 @@ void Store::set_aside(const std::string& key, const std::string& why) const {
 }
 
 Series Store::series(const std::string& key) const {
-  const fs::path file = folder(key) / "series.csv";
-  return fs::exists(file) ? series_from_csv(read_text(file)) : Series{};
+  const std::string text = part(key, "series.csv");
+  return text.empty() ? Series{} : series_from_csv(text);
+}
+
+std::string Store::part(const std::string& key, const std::string& name) const {
+  const PackIndex& index = packs().index;
+  const auto at = index.places.find(key);
+  const fs::path loose = folder(key);
+  if (at != index.places.end() && (at->second.result || !fs::exists(loose)))
+    return PackedEntry(index.packs[at->second.pack], at->second.offset).part(name);
+  return fs::exists(loose / name) ? read_text(loose / name) : "";
+}
+
+EntryParts Store::parts(const std::string& key) const {
+  EntryParts parts;
+  for (const char* name : kParts)
+    if (std::string text = part(key, name); !text.empty()) parts[name] = std::move(text);
+  return parts;
 }
 
 void Store::prepare() const {
@@ -112,18 +185,44 @@ void Store::prepare() const {
 }
 
 fs::path Store::stage(const std::string& key) const {
-  const fs::path staged = root_ / "tmp" / (key + "." + unique_suffix());
+  const fs::path place = packs().scratch ? packs().scratch->path() : root_ / "tmp";
+  const fs::path staged = place / (key + "." + unique_suffix());
   make_folder(staged);
   return staged;
 }
 
+Store::Commit Store::commit(EntryParts parts, const Record& record) const {
+  const std::optional<Record> old = find(record.key);
+  if (old && result_digest(*old) == result_digest(record)) return Commit::same;
+  if (old && old->status.is_result() && !record.status.is_result()) return Commit::same;
+  parts["case.json"] = to_json(record, 1) + "\n";
+  const std::string seal = to_text(seal_of(parts, record));
+  if (old && old->status.is_result()) {
+    const fs::path place = root_ / "conflicts" / (record.key + "." + unique_suffix());
+    make_folder(place);
+    for (const auto& [part, text] : parts) write_durably(place / part, text);
+    write_durably(place / "status.json", seal + "\n");
+    return Commit::conflict;
+  }
+  Packs& into = packs();
+  const auto pack = static_cast<std::uint32_t>(into.index.packs.size() - 1);
+  const std::uint64_t offset = into.writer->append(seal, parts);
+  into.index.places[record.key] = {pack, record.status.is_result(), offset};
+  return Commit::stored;
+}
+
 Store::Commit Store::commit(const fs::path& staged, const Record& record) const {
   std::error_code error;
+  if (packs().writer) {
+    const Commit done = commit(parts_in(staged), record);
+    fs::remove_all(staged, error);
+    return done;
+  }
   for (const auto& left : fs::directory_iterator(staged))  // what else the case left there
     if (std::ranges::find(kParts, left.path().filename()) == kParts.end())
       fs::remove_all(left.path(), error);
   write_durably(staged / "case.json", to_json(record, 1) + "\n");
-  write_durably(staged / "status.json", to_text(seal_of(staged, record), 1) + "\n");
+  write_durably(staged / "status.json", to_text(seal_of(parts_in(staged), record), 1) + "\n");
   sync_folder(staged);
   const fs::path target = folder(record.key);
   make_folder(target.parent_path());
@@ -162,7 +261,9 @@ std::vector<std::string> Store::keys() const {
   for (const auto& shelf : fs::directory_iterator(root_ / "store", none))
     for (const auto& entry : fs::directory_iterator(shelf.path(), none))
       keys.push_back(entry.path().filename());
-  std::sort(keys.begin(), keys.end());
+  for (const auto& [key, place] : packs().index.places) keys.push_back(key);
+  std::ranges::sort(keys);
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return keys;
 }
 
@@ -172,6 +273,14 @@ std::string Store::digest() const {
     if (const std::optional<Record> record = find(key); record && record->status.is_result())
       all += key + ' ' + result_digest(*record) + '\n';
   return sha256(all);
+}
+
+std::vector<std::string> Store::conflicts() const {
+  std::vector<std::string> keys = packs().index.conflicts;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(root_ / "conflicts", none))
+    keys.push_back(entry.path().filename().string().substr(0, 64));
+  return keys;
 }
 
 }  // namespace taut

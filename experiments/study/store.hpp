@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
+#include "experiments/study/pack.hpp"
 
 namespace taut {
 
@@ -18,7 +20,8 @@ namespace taut {
 ///                               series.csv   values over time, if there are any
 ///                               stderr.txt   what the case said, if it said anything
 ///                               status.json  digests of the others; written last
-///     <root>/tmp/<key>.<host>.<pid>.<rand>/   an entry that is being written
+///     <root>/packs/*.pack   entries of many small cases, each file written by one process:
+///     pack.hpp <root>/tmp/<key>.<host>.<pid>.<rand>/   an entry that is being written
 ///     <root>/corrupt/<key>.<rand>/            entries that did not match their digests
 ///     <root>/conflicts/<key>.<rand>/          another result under a key that has one
 ///     <root>/sessions/<utc>-<host>.<pid>.<rand>/   who ran what: session.hpp
@@ -28,6 +31,13 @@ class Store {
   using Notice = std::function<void(const std::string&)>;
   /// Nothing is created before something is written.
   explicit Store(std::filesystem::path root, Notice notice = {});
+
+  /// From now on entries go into <root>/packs/<name>.pack, which nobody else writes; cases are
+  /// staged below $TMPDIR. Entries are on the disk after every `batch` bytes (0: each at once) and
+  /// flush().
+  void pack_into(const std::string& name, std::size_t batch = 0);
+  /// Throws InputError if the disk refuses.
+  void flush() const;
 
   const std::filesystem::path& root() const { return root_; }
   std::filesystem::path folder(const std::string& key) const;
@@ -39,6 +49,8 @@ class Store {
   std::optional<Record> find(const Case&) const;
   /// Values over time of a stored case; empty if it has none.
   Series series(const std::string& key) const;
+  /// Everything that is kept of a case; empty if there is none.
+  EntryParts parts(const std::string& key) const;
 
   /// Makes sure that results can be written, and sweeps up after killed processes of this host.
   /// Throws InputError with the reason.
@@ -54,17 +66,27 @@ class Store {
   /// Turns a staged folder into the entry of its record, whole or not at all; it survives the loss
   /// of power. A result is never replaced; a failure is. Throws InputError if the disk refuses.
   Commit commit(const std::filesystem::path& staged, const Record&) const;
+  /// The same for an entry that is held in memory; this store packs.
+  Commit commit(EntryParts, const Record&) const;
 
   /// Keys of all entries, sorted.
   std::vector<std::string> keys() const;
   /// SHA-256 over the keys and results of all sound entries that are results: two stores that know
   /// the same have the same.
   std::string digest() const;
+  /// Keys of which this store was given another result, too: in conflicts/ and in pack files.
+  std::vector<std::string> conflicts() const;
 
  private:
+  struct Packs;
+  Packs& packs() const;  ///< read when they are first asked for
+  std::optional<Record> find_loose(const std::string& key) const;
+  std::optional<Record> find_packed(const std::string& key) const;
+  std::string part(const std::string& key, const std::string& name) const;
   void set_aside(const std::string& key, const std::string& why) const;
   std::filesystem::path root_;
   Notice notice_;
+  mutable std::shared_ptr<Packs> packs_;
 };
 
 /// Where results go unless the user says otherwise: runs in the results folder.

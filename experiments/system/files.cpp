@@ -116,6 +116,12 @@ void append_line(const fs::path& path, std::string_view line) {
   File(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC).write_all(std::string(line) + '\n');
 }
 
+void append_durably(const fs::path& path, std::string_view bytes) {
+  File file(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC);
+  file.write_all(bytes);
+  file.sync();
+}
+
 void sync_folder(const fs::path& path) { File(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC).sync(); }
 
 void make_folder(const fs::path& path) {

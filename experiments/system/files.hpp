@@ -24,6 +24,9 @@ void test_writable(const std::filesystem::path&);
 /// Appends a line in one write. Throws as write_durably.
 void append_line(const std::filesystem::path&, std::string_view line);
 
+/// Appends bytes; returns when they are on the disk. Throws as write_durably.
+void append_durably(const std::filesystem::path&, std::string_view bytes);
+
 /// Makes the folder's entries (new names, renames) durable. Throws as write_durably.
 void sync_folder(const std::filesystem::path&);
 

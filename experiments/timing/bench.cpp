@@ -1,16 +1,23 @@
 #include "experiments/timing/bench.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <tuple>
 
+#include "core/model/input_error.hpp"
+#include "experiments/case/key.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/timing/timing.hpp"
 
 namespace taut {
 
 namespace {
 
-constexpr int kBenchSchema = 2;
+constexpr int kBenchSchema = 3;
 
 Interval scaled(const Interval& i, double factor) {
   return {i.low * factor, i.mid * factor, i.high * factor};
@@ -41,7 +48,8 @@ BenchedCase case_of(const JsonReader& j) {
 
 BenchSession session_of(const JsonReader& j) {
   j.require_schema(kBenchSchema);
-  BenchSession session{j.at("study").text(), j.at("machine").text(), {}};
+  BenchSession session{
+      j.at("study").text(), j.at("machine").text(), {}, j.at("host").text(), j.at("build").text()};
   for (const JsonReader& one : j.at("scenes").items()) {
     SceneBench scene{one.at("scene").text(), interval_of(one.at("control")), {}};
     for (const JsonReader& c : one.at("cases").items()) scene.cases.push_back(case_of(c));
@@ -103,7 +111,11 @@ std::vector<Record> BenchSession::records() const {
 }
 
 std::string to_json(const BenchSession& session) {
-  Json all{{"schema", kBenchSchema}, {"study", session.study}, {"machine", session.machine}};
+  Json all{{"schema", kBenchSchema},
+           {"study", session.study},
+           {"machine", session.machine},
+           {"host", session.host},
+           {"build", session.build}};
   for (const SceneBench& scene : session.scenes) {
     Json one{{"scene", scene.scene}, {"control", json_of(scene.control)}};
     for (const auto& [record, timing] : scene.cases)
@@ -121,8 +133,46 @@ BenchSession bench_from_json(std::string_view text, const std::string& where) {
   return read_json(text, where, session_of);
 }
 
-std::filesystem::path bench_file(const std::filesystem::path& results, const std::string& study) {
-  return results / "bench" / (study + ".json");
+BenchSession BenchSession::here(const std::string& study) {
+  char host[256] = "host";
+  gethostname(host, sizeof host - 1);
+  return {study, machine_name(), {}, host, program_digest()};
+}
+
+std::filesystem::path bench_file(const std::filesystem::path& results,
+                                 const BenchSession& session) {
+  return results / "bench" / session.study /
+         (session.host + "-" + session.build.substr(0, 10) + ".json");
+}
+
+std::vector<std::filesystem::path> bench_files(const std::filesystem::path& results,
+                                               const std::string& study) {
+  const std::filesystem::path mine = bench_file(results, BenchSession::here(study));
+  const std::string name = mine.filename(), host = name.substr(0, name.rfind('-') + 1);
+  std::vector<std::filesystem::path> files;
+  std::error_code none;
+  for (const auto& file : std::filesystem::directory_iterator(mine.parent_path(), none))
+    if (file.path().extension() == ".json") files.push_back(file.path());
+  std::ranges::sort(files, {}, [&](const std::filesystem::path& file) {
+    const std::string other = file.filename();
+    return std::tuple(other != name, !other.starts_with(host), other);
+  });
+  return files;
+}
+
+void require_one_quiet_host() {
+  const auto number = [](const char* name) {
+    const char* text = std::getenv(name);
+    return text ? std::atol(text) : 0;
+  };
+  if (number("SLURM_JOB_NUM_NODES") > 1)
+    throw InputError("this Slurm job has " + std::to_string(number("SLURM_JOB_NUM_NODES")) +
+                     " nodes; the times of a bench are of one host: sbatch --nodes=1");
+  const long cores = sysconf(_SC_NPROCESSORS_ONLN), mine = number("SLURM_CPUS_ON_NODE");
+  if (mine > 0 && mine < cores)
+    throw InputError("this Slurm job has " + std::to_string(mine) + " of the node's " +
+                     std::to_string(cores) +
+                     " cores; others would be in the times: sbatch --exclusive");
 }
 
 }  // namespace taut

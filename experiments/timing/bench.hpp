@@ -40,7 +40,11 @@ struct BenchSession {
   std::string study;
   std::string machine;  ///< processor and number of cores
   std::vector<SceneBench> scenes;
+  std::string host = {};   ///< name of the machine: times of two are never pooled
+  std::string build = {};  ///< program_digest of the program that was timed
 
+  /// Nothing measured yet; on this machine, by this program.
+  static BenchSession here(const std::string& study);
   /// The records, each with its cost as further values: "cpu.per_second", "cpu.per_step",
   /// "wall.per_step" [s], "memory.peak" [bytes].
   std::vector<Record> records() const;
@@ -53,7 +57,14 @@ std::string to_json(const BenchSession&);
 /// Throws InputError that names `where` if the text is not a bench of this schema.
 BenchSession bench_from_json(std::string_view text, const std::string& where);
 
-/// Where the bench of a study lies in a results folder.
-std::filesystem::path bench_file(const std::filesystem::path& results, const std::string& study);
+/// Where a session lies in a results folder: a file for each host and build.
+std::filesystem::path bench_file(const std::filesystem::path& results, const BenchSession&);
+
+/// What is stored of a study: of this host and build, of this host, of others by name.
+std::vector<std::filesystem::path> bench_files(const std::filesystem::path& results,
+                                               const std::string& study);
+
+/// Throws InputError in a Slurm job that may not time: on several nodes, or not alone on its node.
+void require_one_quiet_host();
 
 }  // namespace taut

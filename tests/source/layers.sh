@@ -21,6 +21,7 @@ experiments/metrics      | (core/model|experiments/metrics)/
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | (core/(model|io)|experiments/(system|case|external))/
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
+experiments/cluster      | (core/(model|io)|experiments/(system|case|study|cluster))/
 experiments/timing       | (core/model|experiments/(system|case|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|baseline))/
 experiments/truths       | (core/(model|reference)|experiments/(metrics|case|truths))/
@@ -106,6 +107,7 @@ core/solver/simd/planted.hpp|"core/solver/layout/particles.hpp"
 core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
 core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
 core/solver/contact/planted.cpp|"core/solver/constraints/relaxation.hpp"
+experiments/cluster/planted.cpp|"experiments/timing/bench.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
 experiments/render/image/planted.cpp|"experiments/render/opengl/camera.hpp"
 experiments/render/opengl/planted.cpp|"experiments/render/picture/figure.hpp"

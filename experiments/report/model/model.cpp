@@ -413,6 +413,8 @@ class Builder {
     }
     for (const auto& [what, value] : input_.provenance)
       one["facts"].push_back({{"name", what}, {"value", value}});
+    for (const std::string& host : input_.cost_hosts)
+      one["facts"].push_back({{"name", "cost measured on"}, {"value", host}});
     one["limits"] = limits(input_);
     return one;
   }

@@ -1,0 +1,132 @@
+#include "experiments/study/pack.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/record.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;  ///< of a part
+
+struct Header {
+  std::string key, result;
+  bool is_result = false;
+  std::vector<std::pair<std::string, std::size_t>> sizes;  ///< in the order of the parts
+  std::uint64_t bytes = 0;                                 ///< of all parts
+};
+
+Header header_of(const std::string& line, const fs::path& pack) {
+  return read_json(line, pack.string(), [](const JsonReader& j) {
+    Header header{j.at("key").text(), j.at("result").text(), false, {}, 0};
+    if (!is_key(header.key)) j.at("key").fail("expected 64 hexadecimal digits");
+    const std::string status = j.at("status").text();
+    if (!is_status(status)) j.at("status").fail("unknown status '" + status + "'");
+    header.is_result = Status{status_kind(status), {}, -1, -1}.is_result();
+    for (const auto& [part, size] : j.at("sizes").members()) {
+      header.sizes.emplace_back(part, size.count());
+      if (header.sizes.back().second > kMostBytes) size.fail("expected at most 1 GiB");
+      header.bytes += header.sizes.back().second;
+    }
+    return header;
+  });
+}
+
+}  // namespace
+
+std::uint64_t PackWriter::append(const std::string& seal, const EntryParts& parts) {
+  Json line = parse_json(seal);
+  for (const auto& [part, text] : parts) line["sizes"][part] = text.size();
+  const std::uint64_t offset = size_;
+  std::string entry = to_text(line) + '\n';
+  for (const auto& [part, text] : parts) entry += text;
+  waiting_ += entry;
+  size_ += entry.size();
+  if (waiting_.size() >= std::max<std::size_t>(batch_, 1)) flush();
+  return offset;
+}
+
+void PackWriter::flush() {
+  if (waiting_.empty()) return;
+  const bool first = !fs::exists(file_);
+  if (first) make_folder(file_.parent_path());
+  const std::uint64_t before = size_ - waiting_.size();
+  try {
+    append_durably(file_, waiting_);
+    if (first) sync_folder(file_.parent_path());
+  } catch (const InputError&) {  // half an entry must not stand before a whole one
+    std::error_code ignored;
+    fs::resize_file(file_, before, ignored);
+    throw;
+  }
+  waiting_.clear();
+}
+
+PackIndex PackIndex::of(const fs::path& root) {
+  PackIndex index;
+  std::error_code none;
+  for (const auto& file : fs::directory_iterator(root / "packs", none))
+    if (file.path().extension() == ".pack") index.packs.push_back(file.path());
+  std::ranges::sort(index.packs);
+  std::unordered_map<std::string, std::string> results;  // of those that are results
+  for (std::size_t i = 0; i < index.packs.size(); ++i) {
+    std::ifstream in(index.packs[i], std::ios::binary);
+    const std::uint64_t size = fs::file_size(index.packs[i]);
+    std::uint64_t offset = 0;
+    for (std::string line; std::getline(in, line) && !in.eof();) {
+      std::optional<Header> header;
+      try {
+        header = header_of(line, index.packs[i]);
+      } catch (const InputError& error) {
+        index.damaged.push_back(std::string(error.what()) + ": ignored from byte " +
+                                std::to_string(offset) + " on");
+        break;
+      }
+      const std::uint64_t next = offset + line.size() + 1 + header->bytes;
+      if (next > size) break;  // cut off
+      const Place place{static_cast<std::uint32_t>(i), header->is_result, offset};
+      const auto [at, added] = index.places.try_emplace(header->key, place);
+      if (!added && header->is_result && !at->second.result) at->second = place;
+      if (header->is_result)
+        if (const auto [known, fresh] = results.try_emplace(header->key, header->result);
+            !fresh && known->second != header->result)
+          index.conflicts.push_back(header->key);
+      in.seekg(static_cast<std::streamoff>(next));
+      offset = next;
+    }
+  }
+  return index;
+}
+
+PackedEntry::PackedEntry(const fs::path& pack, std::uint64_t offset) : pack_(pack) {
+  std::ifstream in(pack, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(offset));
+  if (!std::getline(in, seal)) throw InputError(pack.string() + ": cannot read");
+  std::uint64_t at = offset + seal.size() + 1;
+  for (const auto& [part, size] : header_of(seal, pack).sizes) {
+    parts_[part] = {at, size};
+    at += size;
+  }
+}
+
+std::string PackedEntry::part(const std::string& name) const {
+  const auto at = parts_.find(name);
+  if (at == parts_.end()) return {};
+  std::string text(at->second.second, '\0');
+  std::ifstream in(pack_, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(at->second.first));
+  if (!in.read(text.data(), static_cast<std::streamsize>(text.size())))
+    throw InputError(pack_.string() + ": " + name + " is cut off");
+  return text;
+}
+
+}  // namespace taut

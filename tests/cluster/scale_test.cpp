@@ -1,0 +1,118 @@
+// A study of many cheap cases: planned, packed by shards, merged and read back. Prints what each
+// part costs; TAUT_SCALE_CASES=100000 makes the table of results/benchmarks/store.md.
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+
+#include "experiments/case/record_io.hpp"
+#include "experiments/cluster/manifest.hpp"
+#include "experiments/cluster/merge.hpp"
+#include "experiments/study/campaign.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::cluster {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the process holds now [MB].
+long resident() {
+  long pages = 0, held = 0;
+  std::ifstream("/proc/self/statm") >> pages >> held;
+  return held / 256;
+}
+
+class Stopwatch {
+ public:
+  void lap(const char* what) {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - last_;
+    malloc_trim(0);
+    std::cout << "| " << what << " | " << spent.count() << " | " << resident() << " |\n";
+    last_ = std::chrono::steady_clock::now();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+Study many(int cases) {
+  Study study;
+  study.name = "many", study.scenes = {"hang"}, study.solvers = {"jakobsen"};
+  study.settings = {"cloth.grid=[4, 4]", "time.duration=0.1"};
+  StudyAxis iterations{"iterations", {}}, seeds{"seed", {}};
+  for (int i = 1; i <= 100; ++i) iterations.values.push_back(std::to_string(i));
+  for (int i = 1; i <= cases / 100; ++i) seeds.values.push_back(std::to_string(i));
+  study.axes = {iterations, seeds};
+  return study;
+}
+
+TEST(StoreScale, ManyCheapCases) {
+  const char* given = std::getenv("TAUT_SCALE_CASES");
+  const char* keep = std::getenv("TAUT_SCALE_FOLDER");
+  const int count = given ? std::atoi(given) : 1000;
+  const fs::path root =
+      keep ? fs::path(keep) : fs::path(testing::TempDir()) / ("scale." + unique_suffix());
+  const fs::path folder = root / "folder";
+  std::cout << "| " << count << " cases | s | MB held then |\n|---|---|---|\n";
+  Stopwatch watch;
+  const Study study = many(count);
+  std::vector<std::size_t> sizes;
+  {
+    Manifest manifest = plan(study, {}, folder);
+    manifest.shards = 8;
+    share_out(manifest);
+    write_file((make_folder(folder), folder / "manifest.jsonl"), manifest_text(manifest));
+  }
+  watch.lap("plan: keys, shards, manifest");
+  CaseRun done = run_case(make_case({"hang", study.settings, "jakobsen"}), {.series_rows = 120});
+  const EntryParts parts{{"series.csv", to_csv(done.series)}};
+  {
+    const Manifest manifest = read_manifest(folder);
+    ASSERT_EQ(manifest.cases.size(), static_cast<std::size_t>(count));
+    watch.lap("read the manifest");
+    for (int shard = 1; shard <= manifest.shards; ++shard) {
+      Store store(shard_folder(folder, shard));
+      store.pack_into("a", 1 << 20);
+      for (const PlannedCase& one : manifest.cases) {
+        if (one.shard != shard) continue;
+        done.record.key = one.key, done.record.id = one.id, done.record.spec = one.spec;
+        store.commit(parts, done.record);
+      }
+      store.flush();
+    }
+  }
+  watch.lap("write eight pack files");
+  Store merged(root / "merged");
+  {
+    const Merge merge({folder});
+    const MergePlan found = merge.look(merged);
+    ASSERT_TRUE(found.mergeable() && found.missing.empty());
+    watch.lap("compare for the merge");
+    merge.copy(found, merged, [](std::size_t, std::size_t) {});
+  }
+  watch.lap("merge");
+  EXPECT_EQ(Store(root / "merged").digest(), merged.digest());
+  watch.lap("digest, twice");
+  {
+    const StudyRecords all = collect(study, merged);
+    EXPECT_EQ(all.records.size(), static_cast<std::size_t>(count));
+    watch.lap("collect all records");
+  }
+  std::map<fs::path, int> entries;
+  for (const auto& one : fs::recursive_directory_iterator(root))
+    ++entries[one.path().parent_path()];
+  int most = 0;
+  for (const auto& [where, number] : entries) most = std::max(most, number);
+  std::cout << "most entries in a folder: " << most
+            << ", bytes on disk: " << fs::file_size(folder / "manifest.jsonl") / 1000000
+            << " MB manifest\n";
+  EXPECT_LE(most, 20) << "many cases, few files";
+  if (!keep) fs::remove_all(root);
+}
+
+}  // namespace
+}  // namespace taut::cluster
