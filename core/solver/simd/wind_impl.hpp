@@ -51,7 +51,6 @@ template <class T, int lanes, class Real>
                                     both + either(moved[3], moved[0]), is_quad);
   const Vec3T<T> sum = f + g;
   const Vec3T<T> force[4] = {either(sum, g), either(f, sum), either(sum, f), either(g, sum)};
-  // The shifted corners, 1 and 2, last: they end one number inside the next coordinate.
   four_times([&](auto c) {
     Real* const a = wind.a + place[c];
     store_vec3<T, lanes>(a, load_vec3<T, lanes>(a) + load<T>(w[c]) * force[c]);
