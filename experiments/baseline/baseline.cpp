@@ -54,8 +54,10 @@ class RowComparison {
                 const std::set<std::string>& known, Comparison& result)
       : now_(now), result_(result) {
     ++result_.cases;
-    if (before.status != now.status)
+    if (before.status != now.status) {
       add(Change::Kind::status_changed, "status " + before.status + " -> " + now.status);
+      result_.findings.back().scene = now_.spec.scene, result_.findings.back().value = "status";
+    }
     if (before.flaky || now.flaky) {
       if (!before.flaky) add(Change::Kind::value_new, "does not repeat bit for bit: now flaky");
       return;

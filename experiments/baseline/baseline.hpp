@@ -70,11 +70,11 @@ struct Change {
     value_new  ///< the baseline has it nowhere: a new metric
   };
   Kind kind = Kind::value_moved;
-  std::string id;      ///< of the case; empty for a solver
-  std::string solver;  ///< name
-  std::string text;    ///< one line: what it was -> what it is
-  std::string scene = {},
-              value = {};      ///< of a moved value: its scene's and the metric value's name
+  std::string id;                      ///< of the case; empty for a solver
+  std::string solver;                  ///< name
+  std::string text;                    ///< one line: what it was -> what it is
+  std::string scene = {}, value = {};  ///< of a moved value: its scene's and the metric value's
+                                       ///< name, or "status"
   double before = 0, now = 0;  ///< of a moved value, in its unit; NaN: no meaning
   bool is_regression() const { return kind <= Kind::status_changed; }
   bool is_mismatch() const { return !is_regression() && kind != Kind::value_new; }

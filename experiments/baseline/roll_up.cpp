@@ -18,16 +18,17 @@ double relative_change(const Change& c) {
 
 }  // namespace
 
-double MovedValue::relative() const { return relative_change(*worst); }
+double MovedValue::relative() const { return relative_change(*largest); }
 
 std::vector<MovedValue> roll_up(const Comparison& comparison) {
   std::map<std::pair<std::string, std::string>, MovedValue> groups;
   for (const Change& c : comparison.findings) {
-    if (c.kind != Change::Kind::value_moved) continue;
+    if (!c.is_regression()) continue;
     MovedValue& group = groups[{c.scene, c.value}];
     group.scene = c.scene, group.value = c.value;
-    ++group.cases;
-    if (!group.worst || std::abs(relative_change(c)) > std::abs(group.relative())) group.worst = &c;
+    ++group.cases, group.less += c.now<c.before, group.more += c.now> c.before;
+    if (!group.largest || std::abs(relative_change(c)) > std::abs(group.relative()))
+      group.largest = &c;
   }
   std::vector<MovedValue> all;
   for (const auto& [name, group] : groups) all.push_back(group);
@@ -38,13 +39,14 @@ std::vector<MovedValue> roll_up(const Comparison& comparison) {
 }
 
 std::string text(const MovedValue& moved, std::string_view unit) {
+  if (moved.largest->kind == Change::Kind::status_changed) return moved.largest->text;
   char text[160];
   const std::string of(unit == "1" || unit.empty() ? "" : " " + std::string(unit));
   if (std::isfinite(moved.relative()))
     std::snprintf(text, sizeof text, "%+.3g %% (%.4g -> %.4g%s)", 100 * moved.relative(),
-                  moved.worst->before, moved.worst->now, of.c_str());
+                  moved.largest->before, moved.largest->now, of.c_str());
   else
-    std::snprintf(text, sizeof text, "%.4g -> %.4g%s", moved.worst->before, moved.worst->now,
+    std::snprintf(text, sizeof text, "%.4g -> %.4g%s", moved.largest->before, moved.largest->now,
                   of.c_str());
   return text;
 }

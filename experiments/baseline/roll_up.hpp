@@ -11,16 +11,18 @@ namespace taut {
 struct MovedValue {
   std::string scene, value;
   std::size_t cases = 0;
-  const Change* worst = nullptr;  ///< the largest relative change; into the comparison
+  std::size_t less = 0, more = 0;   ///< of these: now below, above what it was
+  const Change* largest = nullptr;  ///< relative change; into the comparison
 
-  /// (now - before) / |before| of the worst; infinite where there was 0 or no number.
+  /// (now - before) / |before| of the largest; infinite where there was 0 or no number, and
+  /// for a status.
   double relative() const;
 };
 
-/// Moved values by scene and value, the worst first.
+/// Statuses that changed and values that moved, by scene and value; the largest change first.
 std::vector<MovedValue> roll_up(const Comparison&);
 
-/// "+12 % (0.01 -> 0.0112 m)", from the worst case.
+/// "+12 % (0.01 -> 0.0112 m)", from the case with the largest change.
 std::string text(const MovedValue&, std::string_view unit);
 
 }  // namespace taut

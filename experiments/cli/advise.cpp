@@ -11,6 +11,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/report/chart/palette.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
@@ -261,7 +262,8 @@ void print_nearest(const Options& options, const Result& result) {
   for (const Candidate& c : result.tried)
     if (c.failure.empty() && std::isfinite(c.error) && (!nearest || miss(c) < miss(*nearest)))
       nearest = &c;
-  std::cout << text(result.target, options.metric) << ": never reached";
+  std::cout << text(result.target, options.metric) << ": "
+            << (result.cut.empty() ? "never reached" : "not reached in the time given");
   if (nearest)
     std::cout << "; nearest: " << parse_solver(nearest->setting).brief() << ", " << options.metric
               << " " << number_text(nearest->error) << " for "
@@ -333,10 +335,10 @@ int run(Options options) {
   target_of(options);
   if (options.solvers.empty())
     for (const SolverEntry* entry : solvers()) options.solvers.emplace_back(entry->name);
-  // Ours first: what it costs bounds how far the others need to be searched.
-  std::stable_partition(options.solvers.begin(), options.solvers.end(),
-                        [](const std::string& s) { return s.starts_with("jakobsen"); });
-  for (const std::string& solver : options.solvers) parse_solver(solver);
+  // What the first costs bounds how far the others need to be searched.
+  std::ranges::stable_sort(options.solvers, {}, [](const std::string& solver) {
+    return report::solver_place(parse_solver(solver).entry->name);
+  });
   Advisor advisor(options);
   const Result result = advisor.run();
   if (result.cut.empty() && std::ranges::all_of(result.tried, [](const Candidate& c) {
@@ -397,5 +399,5 @@ TAUT_VERB(advise) = {
     .example =
         "taut advise hang --error 1%\n  taut advise ball --budget 4 --metric "
         "stretch.max\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
-        "Exit: 0 found; 4 never reached; 6 the best does not repeat bit for bit",
+        "Exit: 0 found; 4 not reached; 6 the best does not repeat bit for bit",
     .bind = taut::verb::advise::bind};

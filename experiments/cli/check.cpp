@@ -77,14 +77,24 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
               << " --why \"...\"\n";
 }
 
-std::string_view unit_of(const std::string& value) {
+Unit unit_of(const std::string& value) {
   for (const MetricEntry* metric : metrics())
     for (const ValueSpec& spec : metric->values)
-      if (spec.name == value) return spec.unit.si;
-  return "";
+      if (spec.name == value) return spec.unit;
+  return kNumber;
 }
 
-/// By scene and value: in how many cases it moved, and how far in the worst.
+/// "better in 3, worse in 1": of an error; "" of what has neither.
+std::string judged(const MovedValue& moved) {
+  if (!unit_of(moved.value).less_is_better || moved.less + moved.more == 0) return "";
+  std::string text;
+  if (moved.less > 0) text += "; better in " + std::to_string(moved.less);
+  if (moved.more > 0)
+    text += (text.empty() ? "; " : ", ") + ("worse in " + std::to_string(moved.more));
+  return text;
+}
+
+/// By scene and value: in how many cases it moved, and how far in the one that moved most.
 void print_roll_up(const Comparison& comparison) {
   const std::vector<MovedValue> all = roll_up(comparison);
   std::size_t scene = 0, value = 0;
@@ -93,8 +103,8 @@ void print_roll_up(const Comparison& comparison) {
   for (const MovedValue& moved : all)
     std::cout << "  " << std::left << std::setw(static_cast<int>(scene) + 2) << moved.scene
               << std::setw(static_cast<int>(value) + 2) << moved.value << std::right << std::setw(4)
-              << moved.cases << (moved.cases == 1 ? " case,  " : " cases, ") << "worst "
-              << text(moved, unit_of(moved.value)) << '\n';
+              << moved.cases << (moved.cases == 1 ? " case,  " : " cases, ") << "largest change "
+              << text(moved, unit_of(moved.value).si) << judged(moved) << '\n';
 }
 
 /// What the report reads: how much was compared, and what differs.
@@ -108,11 +118,12 @@ struct Notes {
     for (const MovedValue& m : roll_up(comparison))
       moved.push_back({{"scene", m.scene},
                        {"value", m.value},
-                       {"unit", unit_of(m.value)},
+                       {"unit", unit_of(m.value).si},
                        {"cases", m.cases},
-                       {"worst_case", m.worst->id},
-                       {"before", m.worst->before},
-                       {"now", m.worst->now}});
+                       {"less", m.less},
+                       {"more", m.more},
+                       {"less_is_better", unit_of(m.value).less_is_better},
+                       {"largest_change", {{"case", m.largest->id}, {"text", m.largest->text}}}});
     studies.push_back({{"study", study.name},
                        {"cases", comparison.cases},
                        {"values", comparison.values},

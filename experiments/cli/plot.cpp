@@ -8,6 +8,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/format.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/report/plot/gnuplot.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/system/files.hpp"
@@ -80,6 +81,8 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
                                                    spec.y.starts_with("stretch."))
     spec.slope = slope->second;
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
+  if (const std::string unequal = report::unequal_work(records); !unequal.empty())
+    spec.title += "; unequal work: " + unequal;
   spec.file = report::slug(
       scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
   return report::make_plot(spec, records, series, out);

@@ -11,6 +11,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/case/key.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/film/film.hpp"
@@ -30,6 +31,10 @@ struct Options {
   std::string preset, results = default_results(), out = "report.html";
   bool no_media = false, json = false;
 };
+
+bool is_results_folder(const std::string& name) {
+  return std::filesystem::is_directory(std::filesystem::path(name) / "store");
+}
 
 std::string command_line(const Options& options) {
   std::string run = "./taut run";
@@ -70,7 +75,46 @@ std::string readable(const std::string& stamp) {
          stamp.substr(9, 2) + ":" + stamp.substr(11, 2) + " UTC";
 }
 
+/// `taut report A B [STUDY...]`: what differs, and what B has.
+int compare_folders(const Options& options) {
+  if (options.studies.size() < 2 || !is_results_folder(options.studies[1]))
+    throw InputError("report " + options.studies[0] +
+                     ": one results folder; --results shows it, a second one is compared with it");
+  if (!options.json) test_writable(options.out);
+  const Store a(options.studies[0]), b(options.studies[1]);
+  std::vector<std::string> names(options.studies.begin() + 2, options.studies.end());
+  std::string preset = options.preset;
+  if (names.empty()) {
+    const MainJob job = main_job();
+    names = job.studies;
+    if (preset.empty()) preset = job.preset;
+  }
+  std::vector<Study> studies;
+  for (const std::string& name : names) studies.push_back(load_study(name, preset));
+  report::ReportInput input = report::stored_anywhere(studies, b);
+  input.differences = report::stored_differences(a, b);
+  if (input.differences->pairs.empty())
+    throw InputError("no case is in both " + options.studies[0] + " and " + options.studies[1]);
+  input.question =
+      "What differs between A, " + options.studies[0] + ", and B, " + options.studies[1] + "?";
+  input.title = "B, " + options.studies[1];
+  input.command = "./taut report " + options.studies[0] + " " + options.studies[1];
+  input.solvers = introductions();
+  input.provenance = {{"program", program_digest().substr(0, 10)},
+                      {"made", readable(utc_stamp())},
+                      {"toolchain", std::string(toolchain())}};
+  if (options.json) {
+    std::cout << report::make_model(input, 1) << '\n';
+    return kPass;
+  }
+  write_file(options.out, report::make_report(input));
+  std::cout << options.out << '\n';
+  return kPass;
+}
+
 int run(Options options) {
+  if (!options.studies.empty() && is_results_folder(options.studies[0]))
+    return compare_folders(options);
   const std::string command = command_line(options);
   std::vector<std::string> maps = options.studies;
   if (options.studies.empty()) {
@@ -135,7 +179,8 @@ int run(Options options) {
 std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("STUDY", options->studies,
-                 "Names or paths of studies; none: the main job, preset quick");
+                 "Names or paths of studies; none: the main job, preset quick. After two results "
+                 "folders A and B: what differs");
   app.add_option("--preset", options->preset, "The preset under which the studies were run");
   app.add_option("--results", options->results,
                  "Results folder (default: " + options->results + ")");
@@ -159,5 +204,5 @@ TAUT_VERB(report) = {
     .summary = "Writes the comparison of stored results as one HTML page",
     .example =
         "taut report\n  taut report iterations --preset quick -o hang.html\n  taut "
-        "report iterations --json | jq .claims",
+        "report iterations --json | jq .claims\n  taut report results/before results/after",
     .bind = taut::verb::reporting::bind};

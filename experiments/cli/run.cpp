@@ -7,6 +7,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/main_job.hpp"
@@ -140,6 +141,13 @@ void print_tables(const std::vector<Study>& studies, const Options& options, con
   if (options.json) std::cout << to_text(all, 1) << '\n';
 }
 
+void print_unequal_work(const std::vector<Study>& studies, const Store& store) {
+  for (const Study& study : studies)
+    if (const std::string unequal = report::unequal_work(collect(study, store).records);
+        !unequal.empty())
+      std::cerr << study.name << ": unequal work: " << unequal << '\n';
+}
+
 void print_next(const Options& options) {
   std::string which;
   for (const std::string& study : options.studies) which += " " + study;
@@ -195,6 +203,7 @@ int run(Options options) {
     std::cout << to_text(to_json(campaign, options, store), 1) << '\n';
   else
     std::cout << options.out << '\n';
+  print_unequal_work(studies, store);
   print_next(options);
   return kPass;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -12,9 +11,9 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/film/recorded_runs.hpp"
-#include "experiments/metrics/metric.hpp"
 #include "experiments/render/picture/media.hpp"
 #include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/stored.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -50,7 +49,7 @@ Film studied_film(const report::Rivals& rivals, const report::QuotedScene& quote
     film.request.scene = one->spec.scene, film.request.overrides = one->spec.overrides;
     film.request.solvers.push_back(one->spec.solver);
     film.labels.push_back(rivals.all[i].label);
-    film.settings.push_back(report::brief_settings(one->spec.solver, report::work_of(*one)));
+    film.settings.push_back(report::brief_settings(one->spec.solver));
     film.keys.push_back(one->key);
   }
   return film;
@@ -75,7 +74,7 @@ Film other_film(const report::Rivals& rivals, const std::string& name) {
     film.request.overrides.push_back("time.duration=" + std::to_string(kSeconds));
   for (const report::Rival& rival : rivals.all) {
     const auto quoted = std::ranges::find_if(
-        rival.cases, [&](const Record* r) { return rivals.work.admits(report::work_of(*r)); });
+        rival.cases, [&](const Record* r) { return report::work_of(*r) == rival.work; });
     if (quoted == rival.cases.end() || film.request.solvers.size() == kMostPanels) continue;
     const SolverChoice choice = parse_solver((*quoted)->spec.solver);
     std::string why;
@@ -86,8 +85,7 @@ Film other_film(const report::Rivals& rivals, const std::string& name) {
       continue;
     }
     film.request.solvers.push_back((*quoted)->spec.solver);
-    film.settings.push_back(
-        report::brief_settings((*quoted)->spec.solver, report::work_of(**quoted)));
+    film.settings.push_back(report::brief_settings((*quoted)->spec.solver));
     film.labels.push_back(rival.label);
   }
   return film;
@@ -143,30 +141,6 @@ std::string solver_name(const RecordedRun& run) {
   return solver.substr(0, solver.find(':'));
 }
 
-/// A value over time of each run, from its positions alone; empty if the scene has no such thing.
-std::vector<report::TimeSeries> watched(const Film& film, const RunSet& set,
-                                        const std::string& metric, const std::string& value) {
-  std::vector<report::TimeSeries> all;
-  const auto entry = std::ranges::find(metrics(), metric, &MetricEntry::name);
-  if (entry == metrics().end()) return all;
-  const auto spec = std::ranges::find((*entry)->values, value, &ValueSpec::name);
-  const auto index = static_cast<std::size_t>(spec - (*entry)->values.begin());
-  for (std::size_t k = 0; k < set.runs.size(); ++k) {
-    const std::unique_ptr<Metric> watch = (*entry)->make(set.scene);
-    if (!watch) return {};
-    report::TimeSeries series{film.scene, solver_name(set.runs[k]), film.labels[k], value, {}, {}};
-    int step = 0;
-    for (const TrajectoryReader::Frame& frame : set.runs[k].trajectory.frames) {
-      const Snapshot moment{step++, frame.t, frame.state};
-      watch->observe(moment);
-      series.t.push_back(frame.t);
-      series.y.push_back(watch->now(moment)[index]);
-    }
-    all.push_back(std::move(series));
-  }
-  return all;
-}
-
 report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
   report::Clip clip;
   std::string who;
@@ -213,11 +187,10 @@ FilmResult make_film(const Film& film) {
       row.stills.push_back({flat.t, flat.rms, flat.png});
   }
   for (std::size_t k = 0; !film.studied && k < set.runs.size(); ++k)
-    result.series.push_back({film.scene, solver_name(set.runs[k]), film.labels[k], "stretch.rms",
-                             media.t, media.rms_strain[k]});
-  if (!film.studied)
-    std::ranges::move(watched(film, set, "penetration", "penetration.max"),
-                      std::back_inserter(result.series));
+    std::ranges::move(
+        report::shown_series(set.series[k],
+                             {film.scene, solver_name(set.runs[k]), film.labels[k], "", {}, {}}),
+        std::back_inserter(result.series));
   return result;
 }
 

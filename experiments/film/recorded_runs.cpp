@@ -7,6 +7,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/palette.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
@@ -20,26 +21,6 @@ namespace fs = std::filesystem;
 /// "#0B6BCB"
 Rgb8 colour_of(std::string_view hex) {
   return rgb(static_cast<std::uint32_t>(std::stoul(std::string(hex.substr(1)), nullptr, 16)));
-}
-
-/// The work of a step, sweeps and substeps, and what else tells this choice from the defaults.
-/// Defaults differ between solvers: of work nothing goes without saying.
-std::string caption_settings(const SolverChoice& choice) {
-  std::string settings;
-  for (const ParamSpec& spec : choice.params.specs()) {
-    const std::string_view value = choice.params.value(spec.name);
-    if (spec.name == "iterations" || spec.name == "substeps" || value != spec.default_value)
-      settings +=
-          (settings.empty() ? ":" : ",") + std::string(spec.name) + "=" + std::string(value);
-  }
-  return readable_settings(settings);
-}
-
-/// The same of a text that some program wrote: as it stands if this one knows no such solver.
-std::string caption_settings(const std::string& solver) try {
-  return caption_settings(parse_solver(solver));
-} catch (const InputError&) {
-  return readable_settings(solver);
 }
 
 /// `taut case` in a process of its own: what crashes or hangs there costs one panel, and Bullet's
@@ -61,16 +42,22 @@ class CaseProcess {
     return {Status::Kind::crash, "the case's process ended early"};
   }
   const fs::path& trajectory() const { return trajectory_; }
+  Series series() const {
+    return fs::exists(table(trajectory_)) ? series_from_csv(read_text(table(trajectory_)))
+                                          : Series{};
+  }
 
  private:
   static constexpr double kSeconds = 600;
+  static fs::path table(fs::path trajectory) { return trajectory.replace_extension(".csv"); }
   static std::vector<std::string> command(const RunRequest& request, const SolverChoice& choice,
                                           const fs::path& trajectory) {
     const std::string program(choice.entry->program ? choice.entry->program(choice.params) : "");
     std::vector<std::string> words{sibling_program(program), "case", request.scene,
                                    choice.canonical()};
     for (const std::string& value : request.overrides) words.insert(words.end(), {"--set", value});
-    words.insert(words.end(), {"--json", "--trajectory", trajectory});
+    words.insert(words.end(),
+                 {"--json", "--trajectory", trajectory, "--series", table(trajectory)});
     return words;
   }
   fs::path trajectory_;
@@ -87,7 +74,7 @@ RecordedRun record_run(const Scene& scene, const SolverChoice& choice, CaseProce
   RecordedRun run = recorded_run(scene, read_trajectory(process.trajectory()));
   if (run.stop && status.kind != Status::Kind::ok) run.stop->why = to_string(status.kind);
   run.title = report::solver_title(choice.entry->name);
-  run.settings = caption_settings(choice);
+  run.settings = report::brief_settings(choice.canonical());
   return run;
 }
 
@@ -104,7 +91,7 @@ RecordedRun stored_run(const Scene& scene, const std::string& file) {
   const std::string& solver = run.trajectory.header.solver;
   const std::string name = solver.substr(0, solver.find(':'));
   run.title = report::solver_title(name);
-  run.settings = caption_settings(solver);
+  run.settings = report::brief_settings(solver);
   run.colour = colour_of(report::solver_style(name).colour.light);
   return run;
 }
@@ -125,6 +112,7 @@ RunSet record_runs(const RunRequest& request, const std::function<void(const std
   for (std::size_t k = 0; k < choices.size(); ++k) {
     RecordedRun& run = set.runs.emplace_back(record_run(set.scene, choices[k], *processes[k]));
     run.colour = colour_of(report::solver_style(choices[k].entry->name).colour.light);
+    set.series.push_back(processes[k]->series());
   }
   for (const std::string& file : request.files) set.runs.push_back(stored_run(set.scene, file));
   return set;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/case/run_case.hpp"
 #include "experiments/render/picture/recorded_run.hpp"
 
 namespace taut {
@@ -19,6 +20,7 @@ struct RunRequest {
 struct RunSet {
   Scene scene;
   std::vector<RecordedRun> runs;  ///< of the solvers, then of the files, with titles and colours
+  std::vector<Series> series{};   ///< of the solvers: values over time
 };
 
 /// Runs every solver on the scene, each in a process of its own and all at once, and keeps every

@@ -124,6 +124,15 @@ struct Regressions {
   std::vector<Row> rows;
 };
 
+/// Two results folders, of two builds or two machines.
+struct Differences {
+  std::string a, b;                              ///< their paths
+  std::vector<std::pair<Record, Record>> pairs;  ///< cases that both have
+  std::vector<std::pair<BenchedCase, BenchedCase>> timed;
+  std::size_t only_a = 0, only_b = 0;  ///< cases that the other one lacks
+  double noise = 0;  ///< how far identical code differed from itself in either, as a share
+};
+
 /// Everything that a report is made of. Empty parts become a line that says which command makes
 /// them.
 struct ReportInput {
@@ -138,9 +147,10 @@ struct ReportInput {
   std::vector<MapResult> maps;
   std::vector<TimeSeries> series;  ///< over time, for the scene on top and its playhead
   std::vector<SceneMedia> media;
-  std::optional<BenchSession> bench;       ///< what accuracy costs; nullopt: not timed
-  std::optional<Truths> truths;            ///< nullopt: not run
-  std::optional<Regressions> regressions;  ///< nullopt: not checked
+  std::optional<BenchSession> bench;            ///< what accuracy costs; nullopt: not timed
+  std::optional<Truths> truths;                 ///< nullopt: not run
+  std::optional<Regressions> regressions;       ///< nullopt: not checked
+  std::optional<Differences> differences = {};  ///< nullopt: one folder alone
   /// Inputs that could not be understood, and why: they are left out and said so.
   std::vector<std::pair<std::string, std::string>> left_out = {};
 };

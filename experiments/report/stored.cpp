@@ -8,6 +8,7 @@
 #include "experiments/report/chart/curves.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/claims/claim.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/study/missing.hpp"
 #include "experiments/system/files.hpp"
@@ -16,22 +17,20 @@ namespace taut::report {
 
 namespace {
 
-TimeSeries column(const Series& table, const Record& record, const std::string& label,
-                  const std::string& value) {
-  TimeSeries series{record.scene, record.solver, label, value, {}, {}, record.key};
+/// `of` with its value's times and values, if the table has them.
+TimeSeries column(const Series& table, TimeSeries of) {
   const auto index = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(table.columns, name) - table.columns.begin());
   };
-  const std::size_t t = index("t"), y = index(value);
-  if (t == table.columns.size() || y == table.columns.size()) return series;
+  const std::size_t t = index("t"), y = index(of.value);
+  if (t == table.columns.size() || y == table.columns.size()) return of;
   for (const auto& row : table.rows) {
-    series.t.push_back(row[t]);
-    series.y.push_back(row[y]);
+    of.t.push_back(row[t]);
+    of.y.push_back(row[y]);
   }
-  return series;
+  return of;
 }
 
-/// What a scene shows over time: its own quantities, and stretch.
 constexpr const char* kShown[] = {"stretch.rms", "penetration.max", "tunnelling.count",
                                   "slip.distance"};
 
@@ -42,11 +41,9 @@ std::vector<TimeSeries> series_of(const QuotedScene& quoted, const Rivals& rival
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
     if (!quoted.cases[i]) continue;
     const Record& r = *quoted.cases[i];
-    const Series table = store.series(r.key);
-    for (const char* value : kShown) {
-      TimeSeries series = column(table, r, rivals.all[i].label, value);
-      if (series.t.size() > 1) all.push_back(std::move(series));
-    }
+    for (TimeSeries& series : shown_series(
+             store.series(r.key), {r.scene, r.solver, rivals.all[i].label, "", {}, {}, r.key}))
+      all.push_back(std::move(series));
   }
   return all;
 }
@@ -62,6 +59,17 @@ void add_costs(const BenchSession& bench, std::vector<Record>& records) {
 
 }  // namespace
 
+std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of) {
+  std::vector<TimeSeries> all;
+  for (const char* value : kShown) {
+    TimeSeries series = of;
+    series.value = value;
+    series = column(table, std::move(series));
+    if (series.t.size() > 1) all.push_back(std::move(series));
+  }
+  return all;
+}
+
 std::optional<BenchSession> stored_bench(const std::filesystem::path& file) {
   BenchSession bench = bench_from_json(read_text(file), file.string());
   CaseMaker maker;
@@ -76,6 +84,105 @@ std::optional<BenchSession> stored_bench(const std::filesystem::path& file) {
   std::erase_if(bench.scenes, [](const SceneBench& scene) { return scene.cases.empty(); });
   if (bench.scenes.empty()) return std::nullopt;
   return bench;
+}
+
+namespace {
+
+std::vector<Record> all_records(const Store& store) {
+  std::vector<Record> records;
+  for (const std::string& key : store.keys())
+    if (auto record = store.find(key)) records.push_back(std::move(*record));
+  return records;
+}
+
+using Names = std::map<std::string, std::set<std::string>>;
+
+Names parameters_of(const std::vector<Record>& records) {
+  Names names;
+  for (const Record& r : records)
+    for (const auto& [name, value] : r.params) names[r.solver].insert(name);
+  return names;
+}
+
+/// A case without the parameters that only one of the folders knows; "" where two share a name.
+template <class T, class RecordOf>
+std::map<std::string, const T*> by_question(const std::vector<T>& all, const Names& known,
+                                            RecordOf record_of) {
+  std::map<std::string, const T*> index;
+  for (const T& one : all) {
+    const Record& r = record_of(one);
+    std::string name = r.scene + "\n" + r.solver;
+    for (const std::string& text : r.spec.overrides) name += "\n" + text;
+    const auto names = known.find(r.solver);
+    for (const auto& [param, value] : r.params)
+      if (names != known.end() && names->second.contains(param)) name += "\n" + param + "=" + value;
+    const auto [at, fresh] = index.try_emplace(name, &one);
+    if (!fresh) at->second = nullptr;  // a parameter of one build alone tells them apart
+  }
+  return index;
+}
+
+std::vector<BenchedCase> all_timed(const Store& store, double& noise) {
+  std::vector<BenchedCase> all;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(store.root() / "bench", none))
+    if (entry.path().extension() == ".json") {
+      const BenchSession session = bench_from_json(read_text(entry.path()), entry.path().string());
+      for (const SceneBench& scene : session.scenes) {
+        noise = std::max(noise, strayed(scene.control));
+        all.insert(all.end(), scene.cases.begin(), scene.cases.end());
+      }
+    }
+  return all;
+}
+
+}  // namespace
+
+Differences stored_differences(const Store& a, const Store& b) {
+  Differences found{a.root().string(), b.root().string(), {}, {}, 0, 0, 0};
+  const std::vector<Record> in_a = all_records(a), in_b = all_records(b);
+  Names names = parameters_of(in_a);
+  const Names other = parameters_of(in_b);
+  for (auto& [solver, own] : names)
+    std::erase_if(own, [&](const std::string& name) {
+      return !other.contains(solver) || !other.at(solver).contains(name);
+    });
+  const auto itself = [](const Record& r) -> const Record& { return r; };
+  const auto of_a = by_question(in_a, names, itself), of_b = by_question(in_b, names, itself);
+  for (const auto& [name, record] : of_a)
+    if (const auto at = of_b.find(name); record && at != of_b.end() && at->second)
+      found.pairs.emplace_back(*record, *at->second);
+  found.only_a = in_a.size() - found.pairs.size(), found.only_b = in_b.size() - found.pairs.size();
+  const std::vector<BenchedCase> timed_a = all_timed(a, found.noise),
+                                 timed_b = all_timed(b, found.noise);
+  const auto its_record = [](const BenchedCase& c) -> const Record& { return c.record; };
+  const auto costs = by_question(timed_b, names, its_record);
+  for (const auto& [name, one] : by_question(timed_a, names, its_record))
+    if (const auto at = costs.find(name); one && at != costs.end() && at->second)
+      found.timed.emplace_back(*one, *at->second);
+  return found;
+}
+
+ReportInput stored_anywhere(const std::vector<Study>& studies, const Store& store) {
+  ReportInput input;
+  const std::vector<Record> all = all_records(store);
+  const auto name_of = [](const CaseSpec& spec) {
+    std::string name = spec.scene + "\n" + spec.solver;
+    for (const std::string& text : spec.overrides) name += "\n" + text;
+    return name;
+  };
+  std::map<std::string, const Record*> by_name;
+  for (const Record& r : all) by_name[name_of(r.spec)] = &r;
+  for (const Study& study : studies) {
+    StudyResult result{study.name, study.question, {}, 0, {}};
+    for (const Case& one : cases_of(study))
+      if (const auto at = by_name.find(name_of(one.spec)); at != by_name.end())
+        result.records.push_back(*at->second);
+    if (!result.records.empty()) input.studies.push_back(std::move(result));
+  }
+  if (input.studies.empty() && !all.empty())
+    input.studies.push_back({"stored", "All cases of " + store.root().string(), all, 0, {}});
+  return input;
 }
 
 std::optional<double> theory_slope(const Scene& scene) {
@@ -109,7 +216,8 @@ std::vector<TimeSeries> stored_series(std::span<const Record> records, const std
   for (const Record& record : records) {
     const std::string knobs = knob_label(record, records);
     const std::string label = solver_title(record.solver) + (knobs.empty() ? "" : " " + knobs);
-    TimeSeries series = column(store.series(record.key), record, label, value);
+    TimeSeries series = column(store.series(record.key),
+                               {record.scene, record.solver, label, value, {}, {}, record.key});
     if (series.t.size() > 1) all.push_back(std::move(series));
   }
   return all;

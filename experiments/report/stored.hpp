@@ -16,6 +16,9 @@ namespace taut::report {
 /// scene and solver. Throws InputError as load_scene() does.
 ReportInput stored_results(const std::vector<Study>&, const Store&);
 
+/// What a scene shows over time, its own quantities and stretch, as far as the table has it.
+std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of);
+
 /// A value over time of those cases of which the store has it, named by what sets them apart.
 std::vector<TimeSeries> stored_series(std::span<const Record>, const std::string& value,
                                       const Store&);
@@ -27,6 +30,14 @@ std::optional<BenchSession> stored_bench(const std::filesystem::path& file);
 /// The maps among these studies (two sweeps and a plot of kind "stability") of which the store has
 /// something.
 std::vector<MapResult> stored_maps(const std::vector<Study>&, const Store&);
+
+/// What two results folders have, whichever builds made them, case by case: of the same scene, its
+/// settings and solver, with the same values of those parameters that both know.
+Differences stored_differences(const Store& a, const Store& b);
+
+/// The records of `b` among these studies' cases, whichever build made them; all in one study where
+/// no study has any.
+ReportInput stored_anywhere(const std::vector<Study>&, const Store& b);
 
 /// -1 where theory has stretch fall as 1 / sweeps: pinned links at rest, e ~ (dt^2/k) U f, with
 /// neither contact nor wind nor bending. nullopt elsewhere.

@@ -34,13 +34,16 @@ std::string line(const BenchedCase& c, const std::string& metric) {
          interval_text(c.cost(), 1e-3) + " ms CPU per simulated s";
 }
 
-/// What a solver that never reached the target came nearest to.
+/// What a solver that did not reach the target came nearest to.
 std::string nearest(const SolverAnswer& solver, const SceneBench& bench, const Answer& answer,
                     const std::string& metric) {
   constexpr double kAny = std::numeric_limits<double>::max();
   const Target any = answer.target.error ? Target{{}, kAny} : Target{kAny, {}};
   const auto at = best_for(any, bench.candidates(metric), solver.solver);
-  return at ? "never; nearest: " + line(bench.cases[*at], metric) : "never; every case failed";
+  const std::string missed = bench.searched_to_the_end(solver.solver)
+                                 ? "never, to the end of its knobs"
+                                 : "not by the settings tried";
+  return missed + (at ? "; nearest: " + line(bench.cases[*at], metric) : "; every case failed");
 }
 
 }  // namespace
@@ -112,7 +115,7 @@ std::string text(const Answer& answer, const SceneBench& bench, const std::strin
     out += line(bench.cases[*answer.best], metric) + "; " +
            std::string(to_string(answer.certainty)) + "\n";
   else
-    out += "never reached\n";
+    out += "not reached\n";
   for (const SolverAnswer& solver : answer.solvers) {
     if (answer.best && solver.at == answer.best) continue;
     out += "  " + solver.solver + ": ";

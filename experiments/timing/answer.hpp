@@ -21,7 +21,7 @@ std::string_view to_string(Certainty);
 /// How a solver's best setting serves a target.
 struct SolverAnswer {
   std::string solver;
-  std::optional<std::size_t> at;  ///< index of the case; nothing: never reached
+  std::optional<std::size_t> at;  ///< index of the case; nothing: not reached
   std::optional<Interval> times;  ///< its cost over that of the best of all
 };
 

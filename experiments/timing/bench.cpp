@@ -88,6 +88,29 @@ std::optional<Interval> SceneBench::ratio(std::size_t i, std::size_t j) const {
   return scaled(interleaved_ratio(a.timing.samples, b.timing.samples), b.record.dt / a.record.dt);
 }
 
+std::vector<KnobRange> SceneBench::knob_ranges(const std::string& solver) const {
+  const auto entry = std::ranges::find(solvers(), solver, &SolverEntry::name);
+  if (entry == solvers().end()) return {};
+  std::vector<KnobRange> ranges;
+  const AccuracyKnobs& knobs = (*entry)->knobs;
+  for (const auto& [knob, end] :
+       {std::pair{knobs.substeps, kMostSubsteps}, std::pair{knobs.sweeps, kMostSweeps}}) {
+    if (knob.empty()) continue;
+    KnobRange& range = ranges.emplace_back(KnobRange{std::string(knob), 0, end});
+    for (const BenchedCase& c : cases)
+      if (const auto at = c.record.params.find(range.knob);
+          c.record.solver == solver && at != c.record.params.end())
+        range.largest = std::max(range.largest, std::atoi(at->second.c_str()));
+  }
+  return ranges;
+}
+
+bool SceneBench::searched_to_the_end(const std::string& solver) const {
+  const std::vector<KnobRange> ranges = knob_ranges(solver);
+  return !ranges.empty() &&
+         std::ranges::all_of(ranges, [](const KnobRange& r) { return r.largest >= r.end; });
+}
+
 std::vector<std::string> solvers_of(const SceneBench& bench) {
   std::vector<std::string> names;
   for (const BenchedCase& c : bench.cases)
@@ -124,6 +147,9 @@ std::string to_json(const BenchSession& session) {
                               {"wall_seconds_per_step", timing.wall},
                               {"peak_bytes", timing.peak_bytes},
                               {"failure", timing.failure}});
+    for (const std::string& solver : solvers_of(scene))
+      for (const KnobRange& range : scene.knob_ranges(solver))
+        one["knobs"][solver][range.knob] = {{"largest", range.largest}, {"end", range.end}};
     all["scenes"].push_back(std::move(one));
   }
   return to_text(all, 1) + "\n";

@@ -22,6 +22,12 @@ struct BenchedCase {
   bool stable() const;
 };
 
+/// The largest value tried of an accuracy knob, and the last one that a search would try.
+struct KnobRange {
+  std::string knob;
+  int largest = 0, end = 0;
+};
+
 /// All settings of all solvers on one scene, timed in one interleaved session.
 struct SceneBench {
   std::string scene;
@@ -33,6 +39,10 @@ struct SceneBench {
   /// Cost of case i over case j per simulated second, from their interleaved samples; nothing if
   /// either failed.
   std::optional<Interval> ratio(std::size_t i, std::size_t j) const;
+  /// How far the cases of a solver go along its accuracy knobs.
+  std::vector<KnobRange> knob_ranges(const std::string& solver) const;
+  /// All of them to the end: only then is an error that no case reaches never reached.
+  bool searched_to_the_end(const std::string& solver) const;
 };
 
 /// What `taut bench STUDY` leaves for reports and plots: every sample is kept.

@@ -33,6 +33,9 @@ struct Target {
 std::optional<std::size_t> best_for(const Target&, std::span<const Candidate>,
                                     const std::string& solver = "");
 
+/// Where a search for a setting ends.
+inline constexpr int kMostSubsteps = 1024, kMostSweeps = 128;
+
 /// The errors and budgets for which a bench answers.
 inline constexpr double kErrorLevels[] = {0.1, 0.01, 0.001, 0.0001};
 inline constexpr double kFrame = 1.0 / 60;  ///< s; budgets are CPU time within it

@@ -10,7 +10,6 @@ namespace taut {
 
 namespace {
 
-constexpr int kMostSubsteps = 1024;
 constexpr double kDearer = 1.3;   ///< a quick cost this much above its own best is not worth a run
 constexpr double kHopeless = 30;  ///< nor is one this much above the best of all
 constexpr double kFar = 10;       ///< above the best of all: found, but not polished
@@ -50,7 +49,7 @@ class Knobs {
   std::string sweeps() const { return std::string(entry_.knobs.sweeps); }
 
   Columns columns() const {
-    if (open(entry_.knobs.sweeps)) return {{sweeps()}, doublings(1, 128), true};
+    if (open(entry_.knobs.sweeps)) return {{sweeps()}, doublings(1, kMostSweeps), true};
     Columns columns{parts_of(entry_.knobs.stiffness.parameters), {}, false};
     std::erase_if(columns.knobs, [&](const std::string& name) { return !open(name); });
     if (columns.knobs.empty()) return {{}, {""}, false};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 namespace taut {
 namespace {
@@ -14,18 +15,25 @@ Change moved(const char* scene, const char* value, double before, double now) {
   return c;
 }
 
-TEST(RollUp, TheWorstOfEveryValueIsNamedAndTheWorstValueIsFirst) {
+TEST(RollUp, TheLargestChangeOfEveryValueIsNamedAndTheLargestIsFirst) {
   Comparison comparison;
   comparison.findings = {moved("hang", "stretch.rms", 0.01, 0.0101),
                          moved("hang", "stretch.rms", 0.01, 0.0098),
                          moved("ball", "penetration.max", 0.001, 0.002)};
-  comparison.findings.push_back({Change::Kind::status_changed, "hang", "", "status ok -> crash"});
+  for (int i = 0; i < 2; ++i)
+    comparison.findings.push_back(
+        {Change::Kind::status_changed, "hang", "", "status ok -> crash", "hang", "status"});
+  comparison.findings.push_back({Change::Kind::case_new, "new", "", "is new"});
   const auto all = roll_up(comparison);
-  ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0].value, "penetration.max");
-  EXPECT_EQ(text(all[0], "m"), "+100 % (0.001 -> 0.002 m)");
-  EXPECT_EQ(all[1].cases, 2u);
-  EXPECT_EQ(text(all[1], "1"), "-2 % (0.01 -> 0.0098)");
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].value, "status") << "a failure is no smaller than any change of a value";
+  EXPECT_EQ(all[0].cases, 2u);
+  EXPECT_EQ(text(all[0], ""), "status ok -> crash");
+  EXPECT_EQ(all[1].value, "penetration.max");
+  EXPECT_EQ(text(all[1], "m"), "+100 % (0.001 -> 0.002 m)");
+  EXPECT_EQ(all[2].cases, 2u);
+  EXPECT_EQ(std::pair(all[2].less, all[2].more), std::pair(std::size_t{1}, std::size_t{1}));
+  EXPECT_EQ(text(all[2], "1"), "-2 % (0.01 -> 0.0098)");
 }
 
 TEST(RollUp, FromNothingIsWorseThanAnyPerCent) {

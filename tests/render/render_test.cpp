@@ -276,11 +276,6 @@ TEST(RecordedRun, EndsBeforeTheFirstUnsoundFrameAndSaysSo) {
   EXPECT_THROW(recorded_run(scene, trajectory), InputError);
 }
 
-TEST(RecordedRun, OneIterationIsNotTwo) {
-  EXPECT_EQ(readable_settings("bullet:iterations=1,substeps=2,order=mesh"),
-            "1 iteration · 2 substeps · order mesh");
-}
-
 TEST(SceneRenderer, ARunThatBlewUpLeavesTheOthersTheirColours) {
   const Scene scene = test::level_sheet(5);
   std::vector<RecordedRun> runs{test::stretched(scene, 0.06), test::stretched(scene, 40)};

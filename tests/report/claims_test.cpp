@@ -98,14 +98,19 @@ class Raw {
     const double v = r->values.at(metric);
     return std::isnan(v) ? std::nullopt : std::optional(v);
   }
-  /// The case at this work whose time step most solvers ran, of equals the nearest to 1/64 s.
-  const Record* quoted(const std::string& scene, const std::string& solver, int substeps,
-                       int sweeps) const {
+  /// (substeps, sweeps) of a case; -1: the solver has none.
+  static std::pair<int, int> work(const Record& r) {
+    return {number(r, "substeps"), number(r, "iterations")};
+  }
+  using Works = std::map<std::string, std::pair<int, int>>;  // by solver
+
+  /// Of the cases at these works the one whose time step most solvers ran, of equals the nearest to
+  /// 1/64 s.
+  const Record* quoted(const std::string& scene, const std::string& solver,
+                       const Works& works) const {
     std::map<double, std::map<std::string, const Record*>> at;
     for (const Record* r : all) {
-      const int own = number(*r, "iterations");
-      if (r->scene == scene && (substeps < 0 || number(*r, "substeps") == substeps) &&
-          (own < 0 || own == sweeps))
+      if (r->scene == scene && works.contains(r->solver) && work(*r) == works.at(r->solver))
         at[r->dt].try_emplace(r->solver, r);
     }
     const auto rank = [](const auto& entry) {
@@ -114,6 +119,13 @@ class Raw {
     };
     const auto best = std::ranges::min_element(at, {}, rank);
     return best != at.end() && best->second.contains(solver) ? best->second.at(solver) : nullptr;
+  }
+
+  /// Whether some work was run by all solvers, which then have to be compared at it.
+  bool any_work_in_common() const {
+    std::map<std::pair<int, int>, std::set<std::string>> who;
+    for (const Record* r : all) who[work(*r)].insert(r->solver);
+    return std::ranges::any_of(who, [&](const auto& w) { return w.second == solvers; });
   }
 };
 
@@ -125,16 +137,10 @@ class Reader {
   void read(const Claim& claim, const std::vector<Claim>& all) {
     SCOPED_TRACE(claim.id + ": " + claim.sentence);
     text_ = claim.sentence;
-    const auto work = matches(text_, " at (\\d+) × (\\d+)");
-    const auto sweeps = matches(text_, " at (\\d+) sweeps");
-    if (!work.empty()) substeps_ = std::stoi(work[0][1]), sweeps_ = std::stoi(work[0][2]);
-    if (!sweeps.empty()) {
-      substeps_ = -1, sweeps_ = std::stoi(sweeps[0][1]);
-      EXPECT_NE(text_.find("unequal work"), std::string::npos);
-    }
+    if (claim.about == "differences") return difference(claim.id);
     const bool of_work = claim.id.starts_with("stretch") || claim.id.starts_with("depth");
+    if (of_work) read_work();
     if (claim.kind == ClaimKind::tile) return tile(claim, all);
-    if (of_work && work.empty() && sweeps.empty()) return;  // solvers without sweeps alone
     if (claim.id == "stretch") return stretch();
     if (claim.id == "depth") return depth();
     if (claim.id == "step") return step();
@@ -156,8 +162,34 @@ class Reader {
     return text_.substr(from, (stop == std::string::npos ? text_.size() - 1 : stop) - from);
   }
 
+  /// "at 1 × 16 (substeps × sweeps)", "at unequal work (Jakobsen 5 × 16, XPBD 1 substeps; ...)".
+  void read_work() {
+    works_.clear();
+    const std::string one = "(\\d+)( × (\\d+)| substeps)";
+    const auto work = [](const Names& m, std::size_t at) {
+      return std::pair(std::stoi(m[at]), m[at + 2].empty() ? -1 : std::stoi(m[at + 2]));
+    };
+    const auto unequal = matches(text_, " at unequal work \\(([^;)]*)");
+    if (!unequal.empty()) {
+      EXPECT_FALSE(raw_.any_work_in_common());
+      for (const Names& m : matches(unequal[0][1], "([A-Z][A-Za-z]+) " + one))
+        works_[solver_of(m[1])] = work(m, 2);
+    } else {
+      const auto equal = matches(text_, " at " + one);
+      ASSERT_FALSE(equal.empty());
+      for (const std::string& solver : raw_.solvers) works_[solver] = work(equal[0], 1);
+    }
+    EXPECT_EQ(works_.size(), raw_.solvers.size());
+    for (const auto& [solver, its] : works_)
+      EXPECT_TRUE(std::ranges::any_of(raw_.all,
+                                      [&, solver = solver, its = its](const Record* r) {
+                                        return r->solver == solver && Raw::work(*r) == its;
+                                      }))
+          << solver << " never ran that";
+  }
+
   const Record* quoted(const std::string& scene, const std::string& solver) const {
-    return raw_.quoted(scene, solver, substeps_, sweeps_);
+    return raw_.quoted(scene, solver, works_);
   }
   bool everybody(const std::string& scene, const std::string& metric) const {
     return std::ranges::all_of(raw_.solvers, [&](const std::string& solver) {
@@ -404,13 +436,21 @@ class Reader {
         best = &c;
     return best;
   }
-  /// Who is compared with `other`: the claim names both.
+  /// Who is compared with `other`: the first by place that was timed.
   std::string first_beside(const std::string& other) const {
     for (const char* name : {"jakobsen", "bullet", "xpbd"})
-      if (name != other && text_.find(label_of(name)) != std::string::npos) return name;
-    // Nothing is said of either: the first of the bench.
-    return raw_.solvers.contains("jakobsen") ? "jakobsen"
-                                             : input_.bench->scenes[0].cases[0].record.solver;
+      for (const SceneBench& scene : input_.bench->scenes)
+        if (has(scene, name)) return name;
+    return other;
+  }
+  /// Tried at the last value of both knobs that a search would try.
+  static bool searched(const SceneBench& scene, const std::string& solver) {
+    int substeps = 0, sweeps = 0;
+    for (const BenchedCase& c : scene.cases)
+      if (c.record.solver == solver)
+        substeps = std::max(substeps, Raw::number(c.record, "substeps")),
+        sweeps = std::max(sweeps, Raw::number(c.record, "iterations"));
+    return substeps >= 1024 && sweeps >= 128;
   }
 
   /// Who is said to need less where, by how much and how sure; gives the scenes judged.
@@ -486,10 +526,17 @@ class Reader {
         EXPECT_TRUE(!timed || (cheapest(bench(name), first, false) != nullptr) == ours) << name;
       }
     };
-    const std::string a = label_of(first), b = label_of(other),
-                      by = " Reached by no setting tried of ";
-    check(by + b + ", but by " + a + ", on ", true, false, true);
-    check(by + a + ", but by " + b + ", on ", false, true, true);
+    for (const auto& [missing, having] : {std::pair(other, first), {first, other}})
+      for (const bool to_the_end : {false, true}) {
+        const std::string words =
+            (to_the_end ? " Never reached by " : " Reached by no setting tried of ") +
+            label_of(missing) + (to_the_end ? ", tried to the end of its knobs" : "") +
+            ", but by " + label_of(having) + " on ";
+        check(words, having == first, having == other, true);
+        for (const std::string& name : names_in(said(words)))
+          EXPECT_EQ(searched(bench(name), missing), to_the_end) << words << name;
+      }
+    const std::string b = label_of(other);
     check(" Reached by no setting tried on ", false, false, true);
     check(" Not timed with " + b + " on ", false, false, false);
     EXPECT_EQ(named, expected);
@@ -505,7 +552,8 @@ class Reader {
     for (const SceneBench& scene : input_.bench->scenes) {
       double sum = 0;
       int n = 0;
-      for (const auto& [substeps, sweeps] : {std::pair{1, 4}, {1, 16}, {4, 1}, {8, 2}}) {
+      for (const auto& [substeps, sweeps] :
+           {std::pair{1, 4}, {1, 16}, {4, 1}, {8, 2}, {1024, 1}, {1, 128}}) {
         const BenchedCase *ours = nullptr, *theirs = nullptr;
         for (const BenchedCase& c : scene.cases) {
           if (!counts(c) || tethered(c) || Raw::number(c.record, "substeps") != substeps ||
@@ -538,6 +586,77 @@ class Reader {
     }
   }
 
+  /// Two folders: counts, directions and the largest change, from the pairs themselves.
+  void difference(const std::string& id) const {
+    const Differences& d = *input_.differences;
+    if (id == "differences-statuses") {
+      const auto of = matches(text_, "Of (\\d+) cases that both have, (\\d+) end alike");
+      ASSERT_EQ(of.size(), 1U);
+      std::map<std::string, int> changed;
+      for (const auto& [a, b] : d.pairs)
+        ++changed[std::string(to_string(a.status.kind)) + " in A and " +
+                  std::string(to_string(b.status.kind)) + " in B"];
+      int named = 0;
+      for (const Names& m : matches(text_, "(\\d+) ([a-z]+ in A and [a-z]+ in B)")) {
+        EXPECT_EQ(std::stoi(m[1]), changed[m[2]]);
+        named += std::stoi(m[1]);
+      }
+      EXPECT_EQ(std::stoul(of[0][1]), d.pairs.size());
+      EXPECT_EQ(std::stoi(of[0][2]) + named, std::stoi(of[0][1]));
+      return;
+    }
+    if (id.starts_with("differences-cost-")) return difference_of_cost(id.substr(17));
+    const std::map<std::string, std::pair<std::string, double>> metrics{
+        {"differences-stretch.rms", {"stretch.rms", 100}},
+        {"differences-penetration.peak", {"penetration.peak", 1e3}},
+        {"differences-face.peak", {"face.peak", 1e3}},
+        {"differences-tunnelling.events", {"tunnelling.events", 1}}};
+    ASSERT_TRUE(metrics.contains(id));
+    const auto& [metric, scale] = metrics.at(id);
+    int both = 0, less = 0, more = 0;
+    double largest = 0;
+    for (const auto& [one, other] : d.pairs) {
+      const auto a = Raw::value(&one, metric), b = Raw::value(&other, metric);
+      if (!a || !b) continue;
+      ++both, less += *b<*a, more += *b> * a;
+      if (*a != *b) largest = std::max(largest, std::abs(*b - *a) / std::max(*a, *b));
+    }
+    const auto same = matches(text_, ", (\\d+) cases? [a-z ]*: the same to the bit");
+    if (less + more == 0) {
+      ASSERT_EQ(same.size(), 1U);
+      EXPECT_EQ(std::stoi(same[0][1]), both);
+      return;
+    }
+    const auto m = matches(
+        text_, pattern(", (\\d+) cases? that completed in both: less in B in (\\d+), more in "
+                       "(\\d+); [^:]*: #[^,]* in A, #"));
+    ASSERT_EQ(m.size(), 1U);
+    EXPECT_EQ(std::stoi(m[0][1]), both);
+    EXPECT_EQ(std::stoi(m[0][2]), less);
+    EXPECT_EQ(std::stoi(m[0][3]), more);
+    const double a = number_in(m[0][4]) / scale, b = number_in(m[0][5]) / scale;
+    EXPECT_NEAR(std::abs(b - a) / std::max({a, b, 1e-300}), largest, 0.02);
+  }
+
+  void difference_of_cost(const std::string& solver) const {
+    double sum = 0;
+    int n = 0;
+    for (const auto& [a, b] : input_.differences->timed)
+      if (a.record.solver == solver && counts(a) && counts(b))
+        sum += std::log(cost_of(b) / cost_of(a)), ++n;
+    const auto cases = matches(text_, ", (\\d+) cases? in sessions");
+    ASSERT_EQ(cases.size(), 1U);
+    EXPECT_EQ(std::stoi(cases[0][1]), n);
+    if (n == 0) return;
+    const double change = sum / n, stray = std::log1p(input_.differences->noise);
+    const auto uses = matches(text_, pattern("(A|B) uses #(\u00A0%)? of the CPU time of"));
+    EXPECT_EQ(uses.size(), std::abs(change) > std::max(std::log(1.05), stray) ? 1U : 0U);
+    for (const Names& m : uses) {
+      const double share = number_in(m[2]) / (m[3].empty() ? 1 : 100);
+      EXPECT_PRED2(near, share, std::exp(m[1] == "B" ? change : -change));
+    }
+  }
+
   /// One number for one thing: what a tile's bar says stands in the headline.
   static void tile(const Claim& claim, const std::vector<Claim>& all) {
     const auto headline =
@@ -551,14 +670,15 @@ class Reader {
   const ReportInput& input_;
   Raw raw_;
   std::string text_;
-  int substeps_ = -1, sweeps_ = -1;
+  Raw::Works works_;
 };
 
 std::vector<Claim> claims_of(const ReportInput& input) {
   const Rivals rivals = rivals_of(input);
   std::vector<Claim> all;
+  for (const Claim& c : difference_claims(input)) all.push_back(c);
   for (const Claim& c : physics_claims(rivals)) all.push_back(c);
-  for (const Claim& c : cost_claims(input, rivals)) all.push_back(c);
+  for (const Claim& c : cost_claims(input)) all.push_back(c);
   return all;
 }
 
@@ -576,7 +696,8 @@ TEST(Claims, NoneIsFalseInThousandsOfMadeUpReports) {
       ++read[claim.id.substr(0, claim.id.find('-'))];
     }
   }
-  for (const char* id : {"stretch", "depth", "step", "failures", "cost", "work", "only", "tile"})
+  for (const char* id :
+       {"stretch", "depth", "step", "failures", "cost", "work", "only", "tile", "differences"})
     EXPECT_GT(read[id], 50) << id << " is hardly ever said: the test says nothing about it";
 }
 

@@ -37,6 +37,7 @@ class Maker {
     ReportInput input;
     input.studies = {sweeps, steps};
     if (chance(0.1)) input.bench = bench(names, scenes);  // its intervals take the time
+    if (chance(0.2)) input.differences = differences(input);
     return input;
   }
 
@@ -103,6 +104,27 @@ class Maker {
     study.records.push_back(r);
   }
 
+  /// The same cases again, most of them to the bit, others with other values or another end.
+  Differences differences(const ReportInput& input) {
+    Differences found{"before", "after", {}, {}, 3, 0, chance(0.5) ? 0.02 : 0.3};
+    const bool changed = chance(0.7);
+    for (const Record& r : input.studies[0].records) {
+      Record b = r;
+      if (changed && chance(0.1)) b.status.kind = Status::Kind::exploded;
+      for (auto& [name, value] : b.values)
+        if (changed && chance(0.3)) value *= between(0.5, 2);
+      found.pairs.emplace_back(r, b);
+    }
+    if (!input.bench) return found;
+    const double factor = chance(0.3) ? 1 : between(0.5, 2);
+    for (const SceneBench& scene : input.bench->scenes)
+      for (const BenchedCase& c : scene.cases) {
+        found.timed.emplace_back(c, c);
+        for (double& t : found.timed.back().second.timing.samples) t *= factor;
+      }
+    return found;
+  }
+
   BenchSession bench(const std::vector<std::string>& names,
                      const std::vector<std::string>& scenes) {
     BenchSession session{"trade", "a machine", {}};
@@ -112,16 +134,20 @@ class Maker {
       for (const std::string& solver : names) {
         if (chance(0.1)) continue;
         const double speed = between(0.5, 4);
-        for (const auto& [substeps, sweeps] : {std::pair{1, 4}, {1, 16}, {4, 1}, {8, 2}})
+        const bool stubborn = chance(0.3);  // no setting reaches the priced error
+        const bool to_the_end = chance(0.3);
+        for (const auto& [substeps, sweeps] :
+             {std::pair{1, 4}, {1, 16}, {4, 1}, {8, 2}, {1024, 1}, {1, 128}})
           for (const char* tethers : {"off", "on"}) {
             const bool on = tethers == std::string("on");
             if (on && solver != "jakobsen") continue;
+            if (!to_the_end && (substeps > 8 || (sweeps > 16 && chance(0.5)))) continue;
             BenchedCase c{record(scene, solver, 1.0 / 64, substeps, sweeps,
                                  on ? ",tethers=on,timed" : ",timed"),
                           {}};
             if (solver == "jakobsen") c.record.params["tethers"] = tethers;
             end(c.record);
-            c.record.values["stretch.rms"] = between(0.001, 0.03);
+            c.record.values["stretch.rms"] = between(stubborn ? 0.011 : 0.001, 0.03);
             const double cost = speed * substeps * sweeps * (on ? 0.3 : 1) / 64;
             for (int i = 0; i < 10; ++i)
               c.timing.samples.push_back(cost * (1 + noise * (uniform() - 0.5)));

@@ -211,7 +211,8 @@ TEST(Rivals, OnlyWhatAnswersTheSameQuestionIsQuotedSideBySide) {
   const Rivals rivals = rivals_of(input);
   for (const QuotedScene& quoted : rivals.scenes)
     EXPECT_EQ(std::ranges::count(quoted.cases, nullptr), 1) << "another grid is another question";
-  EXPECT_EQ(rivals.work.sweeps, 16);
+  for (const Rival& rival : rivals.all) EXPECT_EQ(rival.work.sweeps, 16);
+  EXPECT_EQ(rivals.work_text(), "16 sweeps");
 }
 
 TEST(Files, WhatCannotBeWrittenIsSaidBeforeAnythingIsDone) {

@@ -30,7 +30,7 @@ experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/(model|io)|experiments/(system|case|render))/
 experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
 experiments/bench        | (core/(model|io|solver|reference)|experiments/(system|timing|bench))/
-experiments/film         | (core/(model|io)|experiments/(system|metrics|case|render|report|film))/
+experiments/film         | (core/(model|io)|experiments/(system|case|render|report|film))/
 '
 # what is included | files that may include it
 owners='

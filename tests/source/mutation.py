@@ -50,7 +50,7 @@ MUTATIONS = {
 
 SIMD = [f"core/solver/simd/{isa}.cpp" for isa in ("scalar", "sse2", "avx2", "avx512")]
 RESPONSES = ["core/solver/contact/responses.cpp"]
-CLAIMS = [f"experiments/report/claims/{name}.cpp" for name in ("claim", "cost_claims", "physics_claims")]
+CLAIMS = [f"experiments/report/claims/{name}.cpp" for name in ("claim", "cost_claims", "physics_claims", "difference_claims")]
 SEARCH = ["tests/solver/self_collision_test.cpp"]  # which instantiates the templates itself
 
 # name: (file, what is there, what is planted, units to recompile, tests that must break)
@@ -117,7 +117,7 @@ TESTED = {
 
 
 def compile_command(build, unit):
-    """How `unit` is compiled, by itself or in a batch of files (TAUT_BATCH_SIZE)."""
+    """How `unit` is compiled, by itself or in a batch of files (TAUT_UNITY)."""
     for entry in json.loads((build / "compile_commands.json").read_text()):
         file = pathlib.Path(entry["file"])
         if file == ROOT / unit or "Unity" in file.parts and f'"{ROOT / unit}"' in file.read_text():

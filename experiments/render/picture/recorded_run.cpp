@@ -60,22 +60,4 @@ RecordedRun recorded_run(const Scene& scene, Trajectory trajectory, double reach
   return run;
 }
 
-std::string readable_settings(const std::string& solver) {
-  const std::size_t colon = solver.find(':');
-  if (colon == std::string::npos) return "";
-  std::string settings, rest = solver.substr(colon + 1) + ",";
-  for (std::size_t comma; (comma = rest.find(',')) != std::string::npos;
-       rest = rest.substr(comma + 1)) {
-    const std::string pair = rest.substr(0, comma);
-    const std::size_t equals = pair.find('=');
-    if (equals == std::string::npos) continue;
-    const std::string name = pair.substr(0, equals), value = pair.substr(equals + 1);
-    const bool plural = name == "iterations" || name == "substeps";
-    const std::string counted = value == "1" ? name.substr(0, name.size() - 1) : name;
-    settings +=
-        (settings.empty() ? "" : " · ") + (plural ? value + " " + counted : name + " " + value);
-  }
-  return settings;
-}
-
 }  // namespace taut

@@ -17,7 +17,7 @@ struct RecordedRun {
     std::string why;  ///< "exploded"
   };
   std::string title;     ///< "Jakobsen"
-  std::string settings;  ///< "8 iterations, exact"
+  std::string settings;  ///< "1 × 16, order=mesh": substeps × sweeps first
   Rgb8 colour;           ///< the solver's throughout a report
   Trajectory trajectory;
   std::optional<Stop> stop;
@@ -30,9 +30,5 @@ struct RecordedRun {
 /// the scene from where the cloth started, and says so in `stop`; so it does when the file ends
 /// before the scene does. Throws InputError if no stable frame is left.
 RecordedRun recorded_run(const Scene&, Trajectory, double reach = 50);
-
-/// Settings as a caption says them: "jakobsen:iterations=8,projection=exact" gives
-/// "8 iterations · projection exact".
-std::string readable_settings(const std::string& solver);
 
 }  // namespace taut

@@ -209,10 +209,14 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
     for (const StudyResult& study : input.studies)
       if (const auto at = study.slopes.find(scene); at != study.slopes.end())
         charts.back().slope = at->second;
-  add("reference", "convergence", "iterations", "reference.rms", "iterations", "dt", step,
-      over("reference.rms", "iterations"),
-      "The reference is the static equilibrium of the same cloth, found without any of these "
-      "solvers.");
+  if (add("reference", "convergence", "iterations", "reference.rms", "iterations", "dt", step,
+          over("reference.rms", "iterations"),
+          "The reference is the static equilibrium of the same cloth, found without any of these "
+          "solvers."))
+    for (const Curve& curve : charts.back().curves)
+      for (const Point& p : curve.points)
+        if (const double floor = value_of(*p.record, "reference.floor"); floor > 0)
+          charts.back().floor = std::max(charts.back().floor.value_or(0), floor);
   const bool timed =
       std::ranges::any_of(swept(input, scene, "iterations", "stretch.rms"),
                           [](const Record& r) { return std::isfinite(value_of(r, kCpuValue)); });

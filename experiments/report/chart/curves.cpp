@@ -102,9 +102,9 @@ std::vector<Curve> make_curves(std::span<const Record> records, const std::strin
     std::ranges::stable_sort(curve.points, {}, [](const Point& p) {
       return std::isnan(p.along) ? std::numeric_limits<double>::infinity() : p.along;
     });
-  // Our solver first, then by name: later curves are drawn above earlier ones, everywhere alike.
+  // Later curves are drawn above earlier ones, everywhere alike.
   std::ranges::stable_sort(
-      curves, {}, [](const Curve& c) { return std::pair(c.solver != "jakobsen", c.solver); });
+      curves, {}, [](const Curve& c) { return std::pair(solver_place(c.solver), c.solver); });
   return curves;
 }
 

@@ -29,35 +29,38 @@ Colour colour(std::string_view name) {
   return *found;
 }
 
-struct Known {
+struct Look {
   std::string_view solver, colour, shape;
   int marker;
   std::string_view dash;
 };
-// Bullet's line is dashed because a correct pair coincides: the solid line must show through.
-constexpr std::array kKnown{
-    Known{"jakobsen", "s-blue", "circle", 7, ""},
-    Known{"bullet", "s-orange", "square", 5, "9 4"},
-    Known{"mass-spring", "s-purple", "triangle", 9, "3 3"},
-    Known{"bullet-deformable", "s-magenta", "diamond", 13, "9 3 2 3"},
-    Known{"reference", "s-green", "triangle-down", 11, "6 2"},
+/// In the order of lists and pictures. The second's line is dashed because a correct pair
+/// coincides: the first must show through.
+constexpr std::array kPlaced{
+    Look{"jakobsen", "s-blue", "circle", 7, ""},
+    Look{"bullet", "s-orange", "square", 5, "9 4"},
+    Look{"xpbd", "s-green", "triangle-down", 11, "9 3 2 3"},
+    Look{"mass-spring", "s-purple", "triangle", 9, "3 3"},
+    Look{"bullet-deformable", "s-magenta", "diamond", 13, "9 3 2 3"},
 };
 constexpr std::array kOthers{
-    Known{"", "s-teal", "pentagon", 15, "12 3"},
-    Known{"", "s-brown", "triangle", 9, "5 3"},
-    Known{"", "s-green", "triangle-down", 11, "9 3 2 3"},
-    Known{"", "s-magenta", "diamond", 13, "2 3"},
-    Known{"", "s-slate", "square", 5, "6 2"},
+    Look{"", "s-teal", "pentagon", 15, "12 3"},
+    Look{"", "s-brown", "triangle", 9, "5 3"},
+    Look{"", "s-slate", "square", 5, "6 2"},
 };
 
 }  // namespace
 
+int solver_place(std::string_view solver) {
+  return static_cast<int>(std::ranges::find(kPlaced, solver, &Look::solver) - kPlaced.begin());
+}
+
 SolverStyle solver_style(std::string_view solver) {
-  const auto found = std::ranges::find(kKnown, solver, &Known::solver);
+  const auto place = static_cast<std::size_t>(solver_place(solver));
   std::uint32_t hash = 2166136261U;  // FNV-1a: stable across runs and machines
   for (const char c : solver) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
-  const Known& k = found != kKnown.end() ? *found : kOthers[hash % kOthers.size()];
-  return {colour(k.colour), k.shape, k.marker, k.dash};
+  const Look& look = place < kPlaced.size() ? kPlaced[place] : kOthers[hash % kOthers.size()];
+  return {colour(look.colour), look.shape, look.marker, look.dash};
 }
 
 std::string solver_title(std::string_view solver) {

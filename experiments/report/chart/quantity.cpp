@@ -14,7 +14,7 @@ namespace taut::report {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr Unit kMilliseconds{"s", "ms", 1e3};
+constexpr Unit kMilliseconds{"s", "ms", 1e3}, kCost{"s", "ms", 1e3, true, true};
 
 /// What is no metric's value: settings, sizes and costs.
 struct Titled {
@@ -31,11 +31,11 @@ constexpr std::array kTitles{
     Titled{"projections", "constraint projections per step", kNumber},
     Titled{"vertices", "vertices", kNumber},
     Titled{"links", "links", kNumber},
-    Titled{"cpu.per_second", "CPU time per simulated second", kMilliseconds,
+    Titled{"cpu.per_second", "CPU time per simulated second", kCost,
            "median of samples that alternate between the solvers, one thread's time"},
-    Titled{"cpu.per_step", "CPU time per step", kMilliseconds,
+    Titled{"cpu.per_step", "CPU time per step", kCost,
            "median of samples that alternate between the solvers, one thread's time"},
-    Titled{"wall.per_step", "wall time per step", kMilliseconds, "median of the same samples"},
+    Titled{"wall.per_step", "wall time per step", kCost, "median of the same samples"},
     Titled{"memory.peak", "peak memory of the process", {"bytes", "MB", 1e-6}},
     Titled{"structural", "stiffness of structural springs", {"N/m", "N/m"}},
     Titled{"omega", "relaxation factor", kNumber},
@@ -95,8 +95,8 @@ std::string Quantity::text(double si, int digits) const {
 
 Quantity quantity(std::string_view name) {
   const auto shown = [&](std::string title, const Unit& unit, std::string_view help) {
-    return Quantity{std::string(name), std::move(title), std::string(unit.shown),
-                    unit.scale,        unit.logarithmic, std::string(help)};
+    return Quantity{std::string(name), std::move(title),  std::string(unit.shown), unit.scale,
+                    unit.logarithmic,  std::string(help), unit.less_is_better};
   };
   if (const auto known = std::ranges::find(kTitles, name, &Titled::name); known != kTitles.end())
     return shown(std::string(known->title), known->unit, known->help);

@@ -21,6 +21,7 @@ struct Quantity {
   double scale = 1;
   bool logarithmic = true;  ///< the axis that suits it
   std::string help = {};    ///< its definition; "" of settings
+  bool less_is_better = false;
   std::string window = {};  ///< "last second", "whole run", "end of the run"; "" of settings
 
   std::string label() const { return unit.empty() ? title : title + " [" + unit + "]"; }

@@ -72,8 +72,8 @@ struct Bar {
 /// that it rests on.
 class Claim {
  public:
-  /// `about`: "all", a scene, "cost", "only", "failures". Throws std::logic_error without evidence
-  /// or with evidence that looked at no case.
+  /// `about`: "all", a scene, "cost", "only", "failures", "differences". Throws std::logic_error
+  /// without evidence or with evidence that looked at no case.
   Claim(std::string id, ClaimKind, std::string about, std::string sentence, Sure,
         std::vector<Evidence>);
 
@@ -110,9 +110,13 @@ inline constexpr double kPricedError = 0.01;
 
 /// Stretch, penetration, largest stable time step and failures, over all scenes and scene by scene.
 std::vector<Claim> physics_claims(const Rivals&);
-/// What the priced error costs, with the same work, each at its best, and with what only one has.
+/// What a step of the same work costs, then the priced error, each at its best, and apart from that
+/// with what only one has.
 /// Empty without a bench.
-std::vector<Claim> cost_claims(const ReportInput&, const Rivals&);
+std::vector<Claim> cost_claims(const ReportInput&);
+/// How the cases that two results folders have ended, what values and costs differ, and by how
+/// much. Empty with one folder alone.
+std::vector<Claim> difference_claims(const ReportInput&);
 
 /// How sure a ratio is, given the ratio of identical code to itself; nothing: no difference that
 /// can be told.

@@ -71,6 +71,14 @@ std::string clause(const std::string& opening, const std::vector<std::string>& s
   return scenes.empty() ? "" : " " + opening + joined(scenes) + ".";
 }
 
+/// Why a solver's cases do not reach the level: the search went to the end, or it did not.
+std::string not_reached(const SceneBench& scene, const std::string& solver,
+                        const std::string& label) {
+  return scene.searched_to_the_end(solver)
+             ? "Never reached by " + label + ", tried to the end of its knobs"
+             : "Reached by no setting tried of " + label;
+}
+
 /// "Two runs of identical code differed by up to 3 %."
 std::string noise_text(double noise) {
   return " Two runs of identical code differed by up to " + significant(100 * noise, 2) +
@@ -134,7 +142,8 @@ void claim_price(const BenchSession& bench, const Pair& pair, bool with_tile,
   Evidence evidence("cpu.per_second", "cheapest case that reaches " + level +
                                           "; geometric mean of the interleaved ratios over scenes");
   std::vector<SceneRatio> ratios;
-  std::vector<std::string> only_first, only_other, neither, absent;
+  std::vector<std::string> absent;
+  std::map<std::string, std::vector<std::string>> missed;  // scenes, by how a solver missed it
   for (const SceneBench& scene : bench.scenes) {
     if (!timed(scene, pair.first)) continue;
     if (!timed(scene, pair.other)) {
@@ -148,21 +157,22 @@ void claim_price(const BenchSession& bench, const Pair& pair, bool with_tile,
     if (ours && theirs)
       ratios.push_back({scene.scene, *scene.ratio(*ours, *theirs), scene.control,
                         &scene.cases[*ours], &scene.cases[*theirs]});
+    else if (ours)
+      missed[not_reached(scene, pair.other, pair.other_label) + ", but by " + pair.first_label]
+          .push_back(scene.scene);
+    else if (theirs)
+      missed[not_reached(scene, pair.first, pair.first_label) + ", but by " + pair.other_label]
+          .push_back(scene.scene);
     else
-      (ours ? only_first : theirs ? only_other : neither).push_back(scene.scene);
+      missed["Reached by no setting tried"].push_back(scene.scene);
   }
   if (evidence.seen().empty()) return;
   const std::string opening = "For " + level +
                               " in the last second, each at the cheapest setting tried with what "
                               "both have: ";
-  const std::string rest = clause("Reached by no setting tried of " + pair.other_label +
-                                      ", but by " + pair.first_label + ", on ",
-                                  only_first) +
-                           clause("Reached by no setting tried of " + pair.first_label +
-                                      ", but by " + pair.other_label + ", on ",
-                                  only_other) +
-                           clause("Reached by no setting tried on ", neither) +
-                           clause("Not timed with " + pair.other_label + " on ", absent);
+  std::string rest;
+  for (const auto& [how, scenes] : missed) rest += clause(how + " on ", scenes);
+  rest += clause("Not timed with " + pair.other_label + " on ", absent);
   const std::string id = "cost-" + pair.other;
   if (ratios.empty()) {
     claims.emplace_back(id, ClaimKind::headline, "cost",
@@ -232,7 +242,7 @@ void claim_same_work(const BenchSession& bench, const Pair& pair, std::vector<Cl
   std::vector<std::string> names;
   for (const Work& work : works) names.push_back(work.text());
   const Verdicts verdicts = judge_all(means, pair);
-  Claim claim("work-" + pair.other, ClaimKind::note, "cost",
+  Claim claim("work-" + pair.other, ClaimKind::headline, "cost",
               "For a step of the same substeps × sweeps (" + joined(names) + "): " + verdicts.text,
               verdicts.sure, {evidence});
   claims.push_back(claim.emphasise({verdicts.strong}));
@@ -268,7 +278,7 @@ void claim_extras(const BenchSession& bench, const Pair& pair, std::vector<Claim
       text += told && ratio.mid < 1 ? ", " + share_text(ratio.mid) + " of" : than;
       text += std::string(" without") + (judged && !told ? " as far as the noise lets tell" : "");
     } else {
-      text += ", without it not reached by the settings tried";
+      text += ", without not reached by the settings tried";
     }
     clauses.push_back(text);
   }
@@ -285,7 +295,7 @@ void claim_extras(const BenchSession& bench, const Pair& pair, std::vector<Claim
 
 }  // namespace
 
-std::vector<Claim> cost_claims(const ReportInput& input, const Rivals& rivals) {
+std::vector<Claim> cost_claims(const ReportInput& input) {
   std::vector<Claim> claims;
   if (!input.bench) return claims;
   std::vector<std::string> names;
@@ -293,15 +303,14 @@ std::vector<Claim> cost_claims(const ReportInput& input, const Rivals& rivals) {
     for (const std::string& solver : solvers_of(scene))
       if (std::ranges::find(names, solver) == names.end()) names.push_back(solver);
   if (names.empty()) return claims;  // nothing was timed
-  const std::string first = rivals.all.empty() || !std::ranges::count(names, rivals.all[0].solver)
-                                ? names.front()
-                                : rivals.all[0].solver;
+  std::ranges::stable_sort(names, {}, solver_place);
+  const std::string first = names.front();
   const auto label = [&](const std::string& solver) { return solver_title(solver); };
   for (const std::string& other : names) {
     if (other == first) continue;
     const Pair pair{first, other, label(first), label(other)};
-    claim_price(*input.bench, pair, names.size() == 2, claims);
     claim_same_work(*input.bench, pair, claims);
+    claim_price(*input.bench, pair, names.size() == 2, claims);
     claim_extras(*input.bench, pair, claims);
     claim_extras(*input.bench, {other, first, label(other), label(first)}, claims);
   }

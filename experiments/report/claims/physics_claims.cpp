@@ -19,12 +19,7 @@ constexpr const char* kPassages = "tunnelling.events";
 constexpr std::size_t kLeastSteps = 3;
 constexpr double kLeastRange = 4;
 
-std::string at_work(const Rivals& rivals) {
-  const Work& work = rivals.work;
-  if (work.substeps >= 0 && work.sweeps >= 0) return " at " + work.text() + " (substeps × sweeps)";
-  if (work.sweeps < 0 || rivals.unequal_work().empty()) return " at " + work.text();
-  return " at " + work.text() + " a substep (unequal work, " + rivals.unequal_work() + ")";
-}
+std::string at_work(const Rivals& rivals) { return " at " + rivals.work_text(); }
 
 std::string dt_text(double dt) { return quantity("dt").text(dt, 3); }
 

@@ -40,31 +40,60 @@ Rival choose(const std::string& solver, const std::vector<const Record*>& cases)
   return rival;
 }
 
-/// The work that most rivals did, near 1 × 16, or the sweeps alone where more of them share those;
-/// rivals without sweeps have no say.
-Work common_work(const std::vector<Rival>& rivals) {
+/// How far from 1 × 16, which every comparison in the literature is near to.
+double distance(const Work& work) {
+  return std::abs(std::log(std::max(1, work.sweeps) / 16.0)) + std::log(std::max(1, work.substeps));
+}
+
+/// What a solver ran most often among the works that `admits`; of equals the one nearest to 1 × 16.
+template <class Admits>
+Work commonest_work(const Rival& rival, Admits admits) {
   std::map<Work, int> counts;
-  for (const Rival& rival : rivals) {
-    std::set<Work> own;
-    for (const Record* r : rival.cases)
-      if (const Work work = work_of(*r); work.sweeps > 0) own.insert({work, {-1, work.sweeps}});
-    for (const Work& work : own) ++counts[work];
-  }
-  const auto rank = [](const std::pair<const Work, int>& c) {
-    return std::tuple(
-        c.second, c.first.substeps > 0,
-        -std::abs(std::log(c.first.sweeps / 16.0)) - std::log(std::max(1, c.first.substeps)));
-  };
-  const auto best = std::ranges::max_element(counts, {}, rank);
+  for (const Record* r : rival.cases)
+    if (const Work work = work_of(*r); admits(work)) ++counts[work];
+  const auto best = std::ranges::max_element(counts, {}, [](const auto& entry) {
+    return std::pair(entry.second, -distance(entry.first));
+  });
   return best == counts.end() ? Work{} : best->first;
 }
 
-/// The question that most rivals answered at this work; of equals the time step nearest to 1/64 s.
-QuotedScene quote(const std::string& scene, const std::vector<Rival>& rivals, const Work& work) {
+/// Gives each rival the work at which it is quoted: the one that all who have sweeps ran, nearest
+/// to 1 × 16; else each its own, of the same sweeps if there are any.
+void choose_work(std::vector<Rival>& rivals) {
+  std::map<Work, int> counts;
+  std::map<int, int> sweep_counts;
+  int having = 0;
+  for (const Rival& rival : rivals) {
+    std::set<Work> works;
+    std::set<int> sweeps;
+    for (const Record* r : rival.cases)
+      if (const Work work = work_of(*r); work.sweeps > 0)
+        works.insert(work), sweeps.insert(work.sweeps);
+    having += !works.empty();
+    for (const Work& work : works) ++counts[work];
+    for (const int n : sweeps) ++sweep_counts[n];
+  }
+  std::erase_if(counts, [&](const auto& entry) { return entry.second < having; });
+  std::erase_if(sweep_counts, [&](const auto& entry) { return entry.second < having; });
+  const auto nearest =
+      std::ranges::min_element(counts, {}, [](const auto& entry) { return distance(entry.first); });
+  const auto same_sweeps = std::ranges::min_element(sweep_counts, {}, [](const auto& entry) {
+    return distance({1, entry.first});
+  });
+  for (Rival& rival : rivals)
+    rival.work = commonest_work(rival, [&](const Work& work) {
+      if (work.sweeps <= 0) return true;
+      if (!counts.empty()) return work == nearest->first;
+      return sweep_counts.empty() || work.sweeps == same_sweeps->first;
+    });
+}
+
+/// The question that most rivals answered at their work; of equals the time step nearest to 1/64 s.
+QuotedScene quote(const std::string& scene, const std::vector<Rival>& rivals) {
   std::vector<QuotedScene> asked;
   for (std::size_t i = 0; i < rivals.size(); ++i)
     for (const Record* r : rivals[i].cases) {
-      if (r->scene != scene || !work.admits(work_of(*r))) continue;
+      if (r->scene != scene || work_of(*r) != rivals[i].work) continue;
       const Question question = question_of(*r);
       auto at = std::ranges::find(asked, question, &QuotedScene::question);
       if (at == asked.end())
@@ -85,11 +114,6 @@ bool completed(const Record& r) {
   return r.status.kind == Status::Kind::ok || r.status.kind == Status::Kind::unsettled;
 }
 
-bool Work::admits(const Work& other) const {
-  return (other.substeps < 0 || substeps < 0 || other.substeps == substeps) &&
-         (other.sweeps < 0 || other.sweeps == sweeps);
-}
-
 std::string Work::text() const {
   if (sweeps < 0) return substeps < 0 ? "defaults" : std::to_string(substeps) + " substeps";
   if (substeps < 0) return std::to_string(sweeps) + " sweeps";
@@ -104,19 +128,40 @@ Work work_of(const Record& r) {
   return {number("substeps"), number("iterations")};
 }
 
-std::string brief_settings(const std::string& solver, const Work& work) {
-  std::string text = work.text();
-  try {
-    const SolverChoice choice = parse_solver(solver);
-    for (const ParamSpec& spec : choice.params.specs()) {
-      const std::string_view value = choice.params.value(spec.name);
-      if (spec.name != "iterations" && spec.name != "substeps" && value != spec.default_value)
-        text += ", " + std::string(spec.name) + "=" + std::string(value);
-    }
-  } catch (const InputError&) {
-    // its text says all
+std::string brief_settings(const std::string& solver) try {
+  const SolverChoice choice = parse_solver(solver);
+  Work work;
+  std::string text;
+  for (const ParamSpec& spec : choice.params.specs()) {
+    const std::string value(choice.params.value(spec.name));
+    if (spec.name == "iterations")
+      work.sweeps = std::stoi(value);
+    else if (spec.name == "substeps")
+      work.substeps = std::stoi(value);
+    else if (value != spec.default_value)
+      text += ", " + std::string(spec.name) + "=" + value;
   }
-  return text;
+  return work.text() + text;
+} catch (const InputError&) {
+  const auto colon = solver.find(':');
+  return colon == std::string::npos ? "" : solver.substr(colon + 1);
+}
+
+std::string unequal_work(std::span<const Record> records) {
+  std::map<std::pair<int, std::string>, std::set<Work>> works;  // by solver, in their order
+  for (const Record& r : records)
+    if (const Work work = work_of(r); work.sweeps > 0)
+      works[{solver_place(r.solver), r.solver}].insert(work);
+  if (works.size() < 2) return "";
+  std::set<Work> common = works.begin()->second;
+  std::string text;
+  for (const auto& [solver, own] : works) {
+    std::erase_if(common, [&](const Work& work) { return !own.contains(work); });
+    const Work &first = *own.begin(), &last = *own.rbegin();
+    text += (text.empty() ? "" : ", ") + solver_title(solver.second) + " " + first.text() +
+            (own.size() > 1 ? " to " + last.text() : "");
+  }
+  return common.empty() ? text + " (substeps × sweeps)" : "";
 }
 
 Question question_of(const Record& r) {
@@ -132,20 +177,18 @@ const QuotedScene* Rivals::quoted(const std::string& scene) const {
   return at == scenes.end() ? nullptr : &*at;
 }
 
-std::string Rivals::unequal_work() const {
-  std::map<std::string, std::set<int>> substeps;
-  for (const Rival& rival : all)
-    for (const Record* r : rival.cases)
-      if (const Work w = work_of(*r); w.substeps > 0) substeps[rival.label].insert(w.substeps);
-  std::set<std::set<int>> kinds;
-  std::string text;
-  for (const auto& [label, own] : substeps) {
-    kinds.insert(own);
-    std::string numbers;
-    for (const int n : own) numbers += (numbers.empty() ? "" : "/") + std::to_string(n);
-    text += (text.empty() ? "" : ", ") + label + " " + numbers;
+std::string Rivals::work_text() const {
+  std::string own;
+  std::set<Work> works;
+  for (const Rival& rival : all) {
+    works.insert(rival.work);
+    own += (own.empty() ? "" : ", ") + rival.label + " " + rival.work.text();
   }
-  return kinds.size() < 2 ? "" : text + " substeps";
+  const bool both = std::ranges::any_of(
+      works, [](const Work& work) { return work.sweeps > 0 && work.substeps > 0; });
+  const std::string order = "substeps × sweeps";
+  if (works.size() == 1) return works.begin()->text() + (both ? " (" + order + ")" : "");
+  return "unequal work (" + own + (both ? "; " + order : "") + ")";
 }
 
 Rivals rivals_of(const ReportInput& input) {
@@ -161,12 +204,11 @@ Rivals rivals_of(const ReportInput& input) {
       add(solvers, r.solver), add(scenes, r.scene);
       rivals.by_solver[r.solver].push_back(&r);
     }
-  std::ranges::stable_sort(solvers, {}, [](const std::string& s) { return s != "jakobsen"; });
+  std::ranges::stable_sort(solvers, {}, solver_place);
   for (const std::string& solver : solvers)
     rivals.all.push_back(choose(solver, rivals.by_solver[solver]));
-  rivals.work = common_work(rivals.all);
-  for (const std::string& scene : scenes)
-    rivals.scenes.push_back(quote(scene, rivals.all, rivals.work));
+  choose_work(rivals.all);
+  for (const std::string& scene : scenes) rivals.scenes.push_back(quote(scene, rivals.all));
   return rivals;
 }
 

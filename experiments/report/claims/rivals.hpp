@@ -2,6 +2,7 @@
 
 #include <compare>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,15 +17,17 @@ bool completed(const Record&);
 struct Work {
   int substeps = -1, sweeps = -1;
   auto operator<=>(const Work&) const = default;
-  /// A case of `other` work is of this work as far as its solver has a say.
-  bool admits(const Work& other) const;
   std::string text() const;  ///< "1 × 16": substeps × sweeps
 };
 Work work_of(const Record&);
 
 /// "1 × 16, order=mesh": the work of "jakobsen:substeps=1,iterations=16,...", and what else is not
-/// the default; only the work for a solver that this program does not have.
-std::string brief_settings(const std::string& solver, const Work&);
+/// the default. Of a solver that this program does not have: what follows its name.
+std::string brief_settings(const std::string& solver);
+
+/// "Jakobsen 5 × 1 to 64, Bullet 1 × 1 to 64" (substeps × sweeps), if no such work is common to all
+/// solvers that have sweeps; "": some is.
+std::string unequal_work(std::span<const Record>);
 
 /// What a case is asked, apart from the solver: scene, its settings and the time step.
 struct Question {
@@ -41,9 +44,10 @@ struct Rival {
   std::string solver;
   std::string label;  ///< "Bullet", or "Bullet float" if other choices were run too
   std::vector<const Record*> cases;
+  Work work = {};  ///< at which single values are quoted: the same for all, or its own
 };
 
-/// The cases of which single values are quoted: the same question and the same work for all.
+/// The cases of which single values are quoted: the same question for all, each at its work.
 struct QuotedScene {
   Question question;
   std::vector<const Record*> cases;  ///< of each rival; nullptr: was not run like this
@@ -51,15 +55,14 @@ struct QuotedScene {
 
 /// Who is compared, and at which work single values are quoted. Points into the input.
 struct Rivals {
-  std::vector<Rival> all;           ///< in the order of first appearance, ours first
-  Work work;                        ///< that most of them share, near 1 × 16
+  std::vector<Rival> all;           ///< in the order of solver_place()
   std::vector<QuotedScene> scenes;  ///< every scene that a study ran
 
   const QuotedScene* quoted(const std::string& scene) const;
   /// Every case of every solver and choice, each once.
   std::map<std::string, std::vector<const Record*>> by_solver;
-  /// In what these solvers do unequal work although their sweeps are the same; "": in nothing.
-  std::string unequal_work() const;
+  /// "1 × 16 (substeps × sweeps)", or that it is unequal and what it is of each.
+  std::string work_text() const;
 };
 Rivals rivals_of(const ReportInput&);
 

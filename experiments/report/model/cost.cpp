@@ -36,13 +36,14 @@ struct CostScene {
             {"case", refs.key(c.record)}};
   }
   /// "not reached by the settings tried (at best 0.12 %)".
-  std::string never(const std::string& solver) const {
+  std::string missed(const std::string& solver) const {
     const std::vector<Candidate> candidates = bench.candidates(kPricedMetric);
     const auto nearest =
         best_for({.budget = std::numeric_limits<double>::infinity()}, candidates, solver);
-    return nearest ? "not reached by the settings tried (at best " +
-                         quantity(kPricedMetric).text(candidates[*nearest].error) + ")"
-                   : "no case completed";
+    if (!nearest) return "no case completed";
+    return std::string(bench.searched_to_the_end(solver) ? "never reached, to the end of its knobs"
+                                                         : "not reached by the settings tried") +
+           " (at best " + quantity(kPricedMetric).text(candidates[*nearest].error) + ")";
   }
 };
 
@@ -74,7 +75,7 @@ Json levels_table(const CostScene& scene) {
     row.push_back({{"text", q.text(level, 1)}, {"value", level}});
     for (const SolverAnswer& r : answer(scene.bench, {.error = level}, kPricedMetric).solvers) {
       if (!r.at) {
-        row.push_back(scene.never(r.solver));
+        row.push_back(scene.missed(r.solver));
         continue;
       }
       Json cell = scene.cell(
@@ -133,7 +134,7 @@ Json answer_row(const CostScene& scene) {
     if (r.at == best) continue;
     others += (others.empty() ? "" : "; ") + solver_title(r.solver) + " ";
     if (!r.at || !r.times) {
-      others += scene.never(r.solver);
+      others += scene.missed(r.solver);
       continue;
     }
     Json cell;

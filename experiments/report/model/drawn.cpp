@@ -127,7 +127,9 @@ Json json_of(const Chart& chart, References& refs) {
     one["theory"] = {{"slope", *chart.slope},
                      {"factor", factor},
                      {"text", "theory: slope " + significant(*chart.slope, 2)}};
-  if (chart.floor) one["floor"] = {{"y", *chart.floor}, {"text", "the reference's own error"}};
+  if (chart.floor)
+    one["floor"] = {{"y", *chart.floor},
+                    {"text", "the reference's own error, " + chart.y.text(*chart.floor)}};
   if (chart.front)
     for (const Point& p : pareto_front(chart))
       one["front"].push_back({{"x", p.x}, {"y", p.y}, {"case", refs.key(*p.record)}});
@@ -155,7 +157,6 @@ Json json_of(const StatusMap& map, const std::string& id, References& refs) {
     ++counts[status.kind];
     one["cells"].push_back(std::move(at));
   }
-  one["run"] = one["all"] = map.cells.size();
   for (const auto& [kind, n] : counts) one["counts"][std::string(to_string(kind))] = n;
   return one;
 }

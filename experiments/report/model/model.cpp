@@ -25,7 +25,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, References& refs) {
            {"scene", r.scene},
            {"solver", r.solver},
            {"settings", r.spec.solver},
-           {"brief", brief_settings(r.spec.solver, work_of(r))},
+           {"brief", brief_settings(r.spec.solver)},
            {"studies", refs.studies_of(r)},
            {"dt", r.dt},
            {"steps", r.steps},
@@ -120,8 +120,9 @@ class Builder {
  public:
   explicit Builder(const ReportInput& input)
       : input_(input), rivals_(rivals_of(input)), refs_(input) {
+    for (const Claim& claim : difference_claims(input)) claims_.push_back(claim);
     for (const Claim& claim : physics_claims(rivals_)) claims_.push_back(claim);
-    for (const Claim& claim : cost_claims(input, rivals_)) claims_.push_back(claim);
+    for (const Claim& claim : cost_claims(input)) claims_.push_back(claim);
   }
 
   Json build() {
@@ -136,6 +137,12 @@ class Builder {
       for (const Claim& claim : claims_)
         if ((claim.about == "cost" || claim.about == "only") && claim.kind != ClaimKind::tile)
           cost["claims"].push_back(claim.id);
+    }
+    Json differences;
+    if (input_.differences) {
+      differences = json_of(*input_.differences, refs_, tables_);
+      for (const Claim& claim : claims_)
+        if (claim.about == "differences") differences["claims"].push_back(claim.id);
     }
     Json claims;
     for (const Claim& claim : claims_) claims.push_back(with_film(claim));
@@ -165,6 +172,7 @@ class Builder {
     add_if(model, "cost", std::move(cost));
     add_if(model, "truths", truths());
     add_if(model, "regressions", regressions());
+    add_if(model, "differences", std::move(differences));
     model["method"] = method();
     add_if(model, "missing", missing());
     for (const auto& [file, why] : input_.left_out)
@@ -256,7 +264,7 @@ class Builder {
                    {"scale", q.scale},
                    {"axis", q.logarithmic ? "log" : "linear"},
                    {"window", q.window},
-                   {"better", q.help.empty() ? "" : "less"}};
+                   {"better", q.less_is_better ? "less" : ""}};
     return all;
   }
 
@@ -370,7 +378,7 @@ class Builder {
           one["film"] = "film-" + scene;
       }
     if (filmed && !one.contains("film") && claim.about != "failures")
-      one["film_note"] = "The films show other settings.";
+      one["film_note"] = "The films show " + rivals_.work_text() + ".";
     return one;
   }
 
@@ -402,13 +410,13 @@ class Builder {
 
   Json method() const {
     Json one{{"studies", Json::array()}};
-    const std::string unequal = rivals_.unequal_work();
     for (const StudyResult& study : input_.studies) {
       Json at{{"name", study.name},
               {"question", study.question},
               {"cases", study.records.size()},
               {"planned", std::max(study.planned, study.records.size())}};
-      add_if(at, "unequal", unequal);
+      if (const std::string unequal = unequal_work(study.records); !unequal.empty())
+        at["unequal"] = "Unequal work: " + unequal + ".";
       one["studies"].push_back(std::move(at));
     }
     for (const auto& [what, value] : input_.provenance)
@@ -421,6 +429,7 @@ class Builder {
 
   Json missing() const {
     Json all;
+    if (input_.differences) return all;  // nothing belongs to two folders that one build could make
     const auto add = [&](const char* section, const char* text, const std::string& command) {
       all.push_back({{"section", section}, {"text", text}, {"command", command}});
     };

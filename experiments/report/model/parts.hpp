@@ -46,6 +46,8 @@ Json json_of(const StatusMap&, const std::string& id, References&);
 Json json_of(const SceneMedia&, const ReportInput&, References&, std::size_t& budget);
 /// What accuracy costs; its charts and tables go to those of the model.
 Json json_of_cost(const BenchSession&, References&, Json& charts, Json& tables);
+/// What two folders have otherwise; its table goes to those of the model.
+Json json_of(const Differences&, References&, Json& tables);
 /// Settings of every rival on a scene, row by row; null without a case.
 Json json_of_fairness(const QuotedScene&, const Rivals&, const References&);
 

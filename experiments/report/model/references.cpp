@@ -62,8 +62,9 @@ Json json_of(const Claim& claim, References& refs) {
     std::map<std::string, std::set<std::string>> settings;
     std::map<std::string, std::map<std::string, int>> statuses;
     for (const Evidence::Seen& seen : evidence.seen()) {
-      scenes.insert(seen.scene), cases.insert(refs.key(seen.key));
-      settings[seen.label].insert(seen.setting);
+      scenes.insert(seen.scene);
+      if (const std::string key = refs.key(seen.key); !key.empty()) cases.insert(key);
+      settings[seen.label].insert(brief_settings(seen.setting));
       ++statuses[seen.label][std::string(to_string(seen.status))];
       Json value{{"scene", seen.scene}, {"solver", seen.solver},
                  {"label", seen.label}, {"value", json_number(seen.value)},

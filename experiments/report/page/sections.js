@@ -30,9 +30,9 @@ function answerSection() {
 }
 
 function differencesSection() {
-  const both = model.differences;
-  return both && section('differences', 'What differs', note(`A: ${both.a}; B: ${both.b}`),
-    claimList(all(both.claims, claims)), all(both.tables, tables).map((table) => tableNode(table, 'h3')));
+  const both = model.differences, told = claimList(all(both?.claims, claims));  // headlines are above already
+  return told || both?.tables ? section('differences', 'What differs', note(`A: ${both.a}; B: ${both.b}`), told,
+    all(both.tables, tables).map((table) => tableNode(table, 'h3'))) : null;
 }
 
 function costSection() {

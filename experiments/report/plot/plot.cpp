@@ -215,7 +215,7 @@ Sheet map_sheet(const std::vector<StatusMap>& maps, const std::string& title) {
       const std::string cells = "'@CSV@' skip 1 using (column(1) == " + std::to_string(i) +
                                 " && strcol(8) eq '" + name + "' ? column(6) : NaN):7:";
       panel += (panel.empty() ? "plot " : ", \\\n  ") + cells +
-               "(strcol(10) eq 'yes' ? 0.45 : 0.25):(strcol(10) eq 'yes' ? 0.45 : 0.25) with "
+               "(0.45):(0.45) with "
                "boxxyerror fs solid 1 noborder lc rgb '" +
                std::string(style.colour.light) + "' title '" + name + "', \\\n  " + cells + "(" +
                gnuplot_string(style.glyph) + ") with labels tc rgb '" +
