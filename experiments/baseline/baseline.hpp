@@ -75,7 +75,7 @@ struct Change {
   std::string text;                    ///< one line: what it was -> what it is
   std::string scene = {}, value = {};  ///< of a moved value: its scene's and the metric value's
                                        ///< name, or "status"
-  double before = 0, now = 0;  ///< of a moved value, in its unit; NaN: no meaning
+  double before = 0, now = 0;          ///< of a moved value, in its unit; NaN: no meaning
   bool is_regression() const { return kind <= Kind::status_changed; }
   bool is_mismatch() const { return !is_regression() && kind != Kind::value_new; }
 };

@@ -719,6 +719,7 @@ TEST(Claims, NoneContradictsAChartOfTheModel) {
     for (const Json& claim : model["claims"])
       for (const Json& basis : claim["basis"])
         for (const Json& value : basis["values"]) {
+          if (!value.contains("case")) continue;  // of another results folder
           EXPECT_EQ(value["status"], statuses.at(value["case"])) << claim["id"];
           const auto at = drawn.find({value["case"], basis["metric"]});
           if (at == drawn.end()) continue;

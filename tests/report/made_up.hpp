@@ -110,6 +110,7 @@ class Maker {
     const bool changed = chance(0.7);
     for (const Record& r : input.studies[0].records) {
       Record b = r;
+      b.key = "b" + r.key;  // of another build
       if (changed && chance(0.1)) b.status.kind = Status::Kind::exploded;
       for (auto& [name, value] : b.values)
         if (changed && chance(0.3)) value *= between(0.5, 2);
@@ -120,7 +121,9 @@ class Maker {
     for (const SceneBench& scene : input.bench->scenes)
       for (const BenchedCase& c : scene.cases) {
         found.timed.emplace_back(c, c);
-        for (double& t : found.timed.back().second.timing.samples) t *= factor;
+        BenchedCase& b = found.timed.back().second;
+        b.record.key = "b" + c.record.key;
+        for (double& t : b.timing.samples) t *= factor;
       }
     return found;
   }
