@@ -35,8 +35,8 @@ struct Manifest {
 /// Most shards of a folder: one less than Slurm's default MaxArraySize.
 inline constexpr int kMostShards = 1000;
 
-/// Estimate for one case [s]: what starting a process takes, and 15 ns for each visit. A round number
-/// to share out by; limits leave room for twice that.
+/// Estimate for one case [s]: what starting a process takes, and 15 ns for each visit. A round
+/// number to share out by; limits leave room for twice that.
 double estimated_seconds(double work);
 
 /// Assigns every case to one of the manifest's shards so that their estimates are even: the longest

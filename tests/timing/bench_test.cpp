@@ -2,9 +2,14 @@
 #include "experiments/timing/bench.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstdlib>
+
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/case.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut {
 namespace {
@@ -80,6 +85,49 @@ TEST(Bench, OnlyStepIsInsideTheClock) {
   Scene scene;
   scene.dt = 0.1;
   EXPECT_NEAR(time_steps(scene, solver, 10), 0.002, 0.0005);
+}
+
+TEST(BenchFiles, HostsAndBuildsStayApart) {
+  const std::filesystem::path results =
+      std::filesystem::path(testing::TempDir()) / ("bench." + unique_suffix());
+  BenchSession mine = BenchSession::here("trade");
+  mine.scenes = {sheet()};
+  BenchSession before = mine, other = mine;
+  before.build = std::string(64, '0');
+  other.host = "a" + mine.host;
+  std::vector<std::filesystem::path> expected;
+  for (const BenchSession& session : {mine, before, other}) {
+    expected.push_back(bench_file(results, session));
+    make_folder(expected.back().parent_path());
+    write_file(expected.back(), to_json(session));
+  }
+  EXPECT_EQ(bench_files(results, "trade"), expected) << "of this host and build first";
+  const BenchSession back = bench_from_json(read_text(expected.back()), "test");
+  EXPECT_EQ(back.host, other.host);
+  EXPECT_EQ(back.build, mine.build);
+  EXPECT_TRUE(bench_files(results, "scaling").empty());
+  std::filesystem::remove_all(results);
+}
+
+TEST(BenchFiles, AJobOnSeveralNodesOrASharedOneDoesNotTime) {
+  const auto with = [](const char* name, const char* value) {
+    setenv(name, value, 1);
+    std::string said;
+    try {
+      require_one_quiet_host();
+    } catch (const InputError& error) {
+      said = error.what();
+    }
+    unsetenv(name);
+    return said;
+  };
+  EXPECT_NO_THROW(require_one_quiet_host());
+  EXPECT_NE(with("SLURM_JOB_NUM_NODES", "2").find("this Slurm job has 2 nodes"), std::string::npos);
+  EXPECT_EQ(with("SLURM_JOB_NUM_NODES", "1"), "");
+  EXPECT_EQ(with("SLURM_CPUS_ON_NODE", "100000"), "");
+  if (sysconf(_SC_NPROCESSORS_ONLN) > 1) {
+    EXPECT_NE(with("SLURM_CPUS_ON_NODE", "1").find("sbatch --exclusive"), std::string::npos);
+  }
 }
 
 }  // namespace
