@@ -8,10 +8,10 @@
 #include "core/model/input_error.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
+#include "experiments/case/reference_store.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/case/reference_store.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
 

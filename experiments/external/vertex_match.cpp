@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-std::string text(const Vec3& x) {
+std::string coordinates(const Vec3& x) {
   char buffer[96];
   std::snprintf(buffer, sizeof buffer, "(%.6g, %.6g, %.6g)", x.x(), x.y(), x.z());
   return buffer;
@@ -63,7 +63,7 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
   }
   for (std::size_t i = 0; i < file.size(); ++i)
     if (!file[i].allFinite()) {
-      match.mismatch = "its vertex " + std::to_string(i) + " begins at " + text(file[i]);
+      match.mismatch = "its vertex " + std::to_string(i) + " begins at " + coordinates(file[i]);
       return match;
     }
   match.of_scene.resize(file.size());
@@ -87,7 +87,7 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
     } else if (match.of_scene[same] != kNone) {
       match.mismatch = "its vertices " + std::to_string(match.of_scene[same]) + " and " +
                        std::to_string(i) + " both lie on the scene's vertex " +
-                       std::to_string(same) + " " + text(scene[same]);
+                       std::to_string(same) + " " + coordinates(scene[same]);
       return match;
     } else {
       match.of_scene[same] = i;
@@ -100,8 +100,8 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
         buffer, sizeof buffer,
         "%zu of its %zu vertices lie on none of the scene: its vertex %zu is at %s, %.4g m "
         "from the nearest, the scene's vertex %zu at %s (tolerance %.2g m)",
-        strays, file.size(), first_stray, text(file[first_stray]).c_str(), distance, at,
-        text(scene[at]).c_str(), tolerance);
+        strays, file.size(), first_stray, coordinates(file[first_stray]).c_str(), distance, at,
+        coordinates(scene[at]).c_str(), tolerance);
     match.mismatch = buffer;
     return match;
   }

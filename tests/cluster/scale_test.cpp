@@ -53,7 +53,7 @@ Study many(int cases) {
 TEST(StoreScale, ManyCheapCases) {
   const char* given = std::getenv("TAUT_SCALE_CASES");
   const char* keep = std::getenv("TAUT_SCALE_FOLDER");
-  const int count = given ? std::atoi(given) : 1000;
+  const int count = given ? std::atoi(given) : 300;
   const fs::path root =
       keep ? fs::path(keep) : fs::path(testing::TempDir()) / ("scale." + unique_suffix());
   const fs::path folder = root / "folder";

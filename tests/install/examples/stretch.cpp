@@ -1,11 +1,11 @@
-// stretch SCENE.toml [SOLVER]: steps a solver through a scene and prints, ten times, the RMS strain of the links.
+// stretch SCENE.toml [SOLVER]: steps a solver through a scene and prints, ten times, the RMS strain
+// of the links.
+#include <cmath>
+#include <cstdio>
 #include <taut/io/scene_io.hpp>
 #include <taut/model/index.hpp>
 #include <taut/model/input_error.hpp>
 #include <taut/model/solver.hpp>
-
-#include <cmath>
-#include <cstdio>
 
 int main(int argc, char** argv) try {
   if (argc < 2) throw taut::InputError("usage: stretch SCENE.toml [SOLVER]");
