@@ -26,7 +26,10 @@ target_compile_options(taut_flags INTERFACE
 if(TAUT_WERROR)
   target_compile_options(taut_flags INTERFACE -Werror)
 endif()
-if(TAUT_SANITIZE)
+if(TAUT_FUZZ)
+  target_compile_options(taut_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+if(TAUT_SANITIZE OR TAUT_FUZZ)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
   target_compile_options(taut_flags INTERFACE
     -fsanitize=address,undefined,float-divide-by-zero -fno-sanitize-recover=all -fno-omit-frame-pointer

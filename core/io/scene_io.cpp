@@ -6,6 +6,7 @@
 #include "core/io/contact_checks.hpp"
 #include "core/io/motion_io.hpp"
 #include "core/io/section.hpp"
+#include "core/model/printable.hpp"
 #include "core/model/shortest.hpp"
 
 namespace taut {
@@ -90,7 +91,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   Diagnostics diagnostics(document);
   Section root(diagnostics, document.root, "the scene");
   Scene scene;
-  scene.name = path.stem().string();
+  scene.name = printable(path.stem().string());
   scene.summary = root.string("summary").value_or("");
 
   if (!root.find("cloth")) root.missing("cloth");

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/model/printable.hpp"
+
 namespace taut {
 
 namespace {
@@ -35,19 +37,21 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string Diagnostic::text() const {
-  if (file.empty()) return message;
+  if (file.empty()) return printable(message);
   std::string place = file + ":";
   if (line > 0)
     place += std::to_string(line) + ":" + std::to_string(column) + ":";
   else if (column > 0)  // of an argument
     place += " column " + std::to_string(column) + ":";
-  return place + " " + message;
+  return printable(place + " " + message);
 }
 
 InputError::InputError(std::vector<Diagnostic> diagnostics)
     : std::runtime_error(join(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kMost = 200;  // no name is longer, and the distance takes the product
+  if (word.size() > kMost) return "";
   const std::string* best = nullptr;
   std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates)

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/io/section.hpp"
+#include "core/model/printable.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -34,7 +35,7 @@ std::string line_of(const BaselineRow& row) {
 
 BaselineRow row_of(const JsonReader& json) {
   BaselineRow row;
-  row.id = json.at("id").text();
+  row.id = printable(json.at("id").text());  // goes to the terminal
   row.spec = {json.at("scene").text(), json.at("overrides").texts(), json.at("solver").text()};
   row.scene = json.at("content").text();
   row.status = json.at("status").text();

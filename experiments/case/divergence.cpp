@@ -44,26 +44,45 @@ Hanging hang(const Scene& scene) {
   return result;
 }
 
-/// Extension [m] of the softest relaxation, one sweep a step, where every cut between neighbouring
-/// hop counts carries all that hangs below it.
-double soft_extension(const Scene& scene, const Hanging& hanging) {
+/// The softest relaxation, one sweep a step, where every cut between neighbouring hop counts
+/// carries all that hangs below it.
+struct Softest {
+  double extension = 0;  ///< m, of all cuts together
+  double strain = 0;     ///< largest of a cut, over its shortest link
+};
+
+Softest softest(const Scene& scene, const Hanging& hanging) {
   const std::size_t cuts = to_index(hanging.depth()) + 1;
-  std::vector<double> mass(cuts, 0), yielding(cuts, 0), links(cuts, 0);
+  std::vector<double> mass(cuts, 0), yielding(cuts, 0), links(cuts, 0), shortest(cuts, 0);
   const std::vector<double> w = inverse_masses(scene);
   for (std::size_t i = 0; i < w.size(); ++i)
     if (hanging.hops[i] > 0) mass[to_index(hanging.hops[i])] += scene.mesh.mass[i];
   for (const auto& [a, b, rest, family] : scene.links) {
     const int from = hanging.hops[to_index(a)], to = hanging.hops[to_index(b)];
     if (from == to || from < 0) continue;
-    links[to_index(std::max(from, to))] += 1;
-    yielding[to_index(std::max(from, to))] += w[to_index(a)] + w[to_index(b)];
+    const std::size_t cut = to_index(std::max(from, to));
+    shortest[cut] = links[cut] == 0 ? rest : std::min(shortest[cut], rest);
+    links[cut] += 1;
+    yielding[cut] += w[to_index(a)] + w[to_index(b)];
   }
-  double extension = 0, below = 0;
+  Softest all;
+  double below = 0;
   for (std::size_t cut = cuts - 1; cut > 0; --cut) {
     below += mass[cut];
-    if (links[cut] > 0) extension += below * yielding[cut] / (links[cut] * links[cut]);
+    if (links[cut] == 0) continue;
+    const double opening = below * yielding[cut] / (links[cut] * links[cut]) *
+                           scene.gravity.norm() * scene.dt * scene.dt;
+    all.extension += opening;
+    all.strain = std::max(all.strain, opening / shortest[cut]);
   }
-  return extension * scene.gravity.norm() * scene.dt * scene.dt;
+  return all;
+}
+
+/// Of a link that is not between two pins and that the cloth is to keep in its plane; 0 of others.
+double strain_in_plane(const Scene& scene, const Link& link, const std::vector<Vec3>& x) {
+  const auto pinned = [&](int i) { return std::ranges::binary_search(scene.pins, i); };
+  if (link.family == Family::bend || (pinned(link.a) && pinned(link.b))) return 0;
+  return (x[to_index(link.b)] - x[to_index(link.a)]).norm() / link.rest - 1;
 }
 
 /// Speeds [m/s] that a motion can impart: every change of its velocity counts.
@@ -150,7 +169,7 @@ EnergyBudget::EnergyBudget(const Scene& scene) : gravity_(scene.gravity.norm()),
     (hanging.hops[i] < 0 ? free_mass_ : hung_mass_) += m;
     constant_ += m * scene.start.v[i].squaredNorm() / 2;
   }
-  reach_ = 2 * (hanging.longest() + soft_extension(scene, hanging));
+  reach_ = 2 * (hanging.longest() + softest(scene, hanging).extension);
   const double rounding = 1e-6 * (farthest + extent(scene));
   constant_ += mass / 2 *
                (square(2 * motion_speed(scene)) +
@@ -182,6 +201,13 @@ double EnergyBudget::farthest(double t) const {
   return std::min(1e6, 1e3 * size_ + 10 * way);
 }
 
+double legitimate_strain(const Scene& scene) {
+  double start = 0;
+  for (const Link& link : scene.links)
+    start = std::max(start, strain_in_plane(scene, link, scene.start.x));
+  return std::max({10.0, 2 * start, 2 * softest(scene, hang(scene)).strain});
+}
+
 std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& step_cost) {
   const bool moved = std::any_of(scene.pin_motions.begin(), scene.pin_motions.end(),
                                  [](const PinMotion& pins) { return !pins.motion.at_rest(); });
@@ -204,7 +230,9 @@ std::optional<double> settling_time(const Scene& scene, const std::vector<PassCo
 }
 
 DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<PassCost>& step_cost)
-    : budget_(scene),
+    : scene_(scene),
+      budget_(scene),
+      legitimate_strain_(legitimate_strain(scene)),
       free_mass_(scene.mesh.mass),
       settling_(settling_time(scene, step_cost)),
       duration_(scene.duration()),
@@ -214,6 +242,17 @@ DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<Pas
 
 void DivergenceDetector::explode(const char* reason, int step, std::size_t vertex) {
   status_ = {Status::Kind::exploded, reason, step, static_cast<int>(vertex)};
+}
+
+void DivergenceDetector::judge_stretch(int step, const State& state) {
+  for (const Link& link : scene_.links) {
+    const double most = (1 + legitimate_strain_) * link.rest;
+    if ((state.x[to_index(link.b)] - state.x[to_index(link.a)]).squaredNorm() > square(most) &&
+        strain_in_plane(scene_, link, state.x) > 0) {
+      status_ = {Status::Kind::extreme, "stretch", step, link.a};
+      return;
+    }
+  }
 }
 
 bool DivergenceDetector::observe(int step, double t, const State& state) {
@@ -239,6 +278,7 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
     if (v2 > fastest) fastest = v2, fastest_vertex = i;
   }
   if (energy > 10 * budget_.available(t)) return explode("energy", step, fastest_vertex), false;
+  if (status_.kind != Status::Kind::extreme) judge_stretch(step, state);
   fastest = std::sqrt(fastest);
   peak_ = std::max(peak_, fastest);
   if (settling_ && t > duration_ - *settling_ && fastest > late_) {
@@ -249,7 +289,7 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
 }
 
 void DivergenceDetector::finish() {
-  if (!settling_ || duration_ < 5 * *settling_) return;
+  if (status_.kind == Status::Kind::extreme || !settling_ || duration_ < 5 * *settling_) return;
   const double decayed = peak_ * std::exp(-(duration_ - *settling_) / *settling_);
   if (late_ > std::max(slow_, decayed))
     status_ = {Status::Kind::unsettled, "moves after five settling times", -1, late_vertex_};

@@ -58,6 +58,12 @@ class EnergyBudget {
   double speed_ = 0;              ///< m/s that start, motion and wind can give
 };
 
+/// The largest strain [1] that a link of this scene may show, whoever solves it, without the case
+/// being called extreme: 10 (eleven times its length) or, where they are larger, twice the strain
+/// that it starts with and twice that of the softest relaxation, one sweep a step (truth
+/// "legitimate strain": 2 (N - 1) g dt^2/l in a hanging chain; here by cuts, as in EnergyBudget).
+double legitimate_strain(const Scene&);
+
 /// Theoretical settling time [s]: in it the slowest mode of a hanging cloth decays by 1/e. Relaxing
 /// strain takes 8 N^2 dt/(pi^2 k) (Gauss-Seidel, N links from a pin to the farthest vertex, k
 /// sweeps per step); swinging takes the inverse of ln(1 + w^2 dt^2)/(2 dt) + damping/2 with w
@@ -71,11 +77,14 @@ std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& s
 ///   exploded{nonfinite}  a position or velocity is not finite
 ///   exploded{energy}     kinetic energy above ten times EnergyBudget::available
 ///   exploded{box}        a coordinate beyond EnergyBudget::farthest
+///   extreme{stretch}     a structural or shear link that is not between two pins was strained by
+///                        more than legitimate_strain(); it goes on, and what it gives is kept
 ///   unsettled            the run lasted at least five settling times and yet, in its last settling
 ///                        time, a vertex is faster than 1e-3 sqrt(|g| L) (L: extent) and than the
 ///                        fastest ever seen times exp(-t/T)
 class DivergenceDetector {
  public:
+  /// The scene must outlive it.
   DivergenceDetector(const Scene&, const std::vector<PassCost>& step_cost);
   /// False if the run has exploded at this boundary; status() says how.
   bool observe(int step, double t, const State&);
@@ -85,7 +94,10 @@ class DivergenceDetector {
 
  private:
   void explode(const char* reason, int step, std::size_t vertex);
+  void judge_stretch(int step, const State&);
+  const Scene& scene_;
   EnergyBudget budget_;
+  double legitimate_strain_ = 0;
   std::vector<double> free_mass_;  ///< [n] kg, 0 for pins
   std::optional<double> settling_;
   double duration_ = 0;

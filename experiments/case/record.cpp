@@ -8,9 +8,9 @@
 namespace taut {
 
 namespace {
-constexpr std::array<std::string_view, 9> kNames{"ok",          "exploded", "unsettled",
-                                                 "unsupported", "timeout",  "oom",
-                                                 "crash",       "error",    "interrupted"};
+constexpr std::array<std::string_view, 10> kNames{
+    "ok",      "exploded", "unsettled", "extreme", "unsupported",
+    "timeout", "oom",      "crash",     "error",   "interrupted"};
 }
 
 std::string_view to_string(Status::Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }

@@ -15,6 +15,7 @@ struct Status {
     ok,           ///< ran to the end
     exploded,     ///< non-finite, or kinetic energy above ten times the available potential drop
     unsettled,    ///< ran to the end, still moving after five theoretical settling times
+    extreme,      ///< ran to the end, but stretched as no mean should include
     unsupported,  ///< the solver says that it would misread the scene
     // failures, kept and re-runnable
     timeout,
@@ -26,7 +27,7 @@ struct Status {
   };
   Kind kind = Kind::ok;
   std::string
-      reason;  ///< "nonfinite", "energy", "box", "SIGSEGV", what the solver does not support, ...
+      reason;  ///< "nonfinite", "energy", "box", "stretch", "SIGSEGV", what is not supported, ...
   int step = -1;    ///< where it happened; -1: not known or not applicable
   int vertex = -1;  ///< the first vertex concerned; -1: not known or not applicable
 

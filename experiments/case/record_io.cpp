@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/model/printable.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/json.hpp"
@@ -96,7 +97,7 @@ bool completed(const Status& status) {
 
 std::string describe(const Status& status) {
   std::string text(to_string(status.kind));
-  if (!status.reason.empty()) text += " (" + status.reason + ")";
+  if (!status.reason.empty()) text += " (" + printable(status.reason) + ")";
   if (status.step >= 0) text += " at step " + std::to_string(status.step);
   if (status.vertex >= 0) text += ", vertex " + std::to_string(status.vertex);
   return text;

@@ -10,7 +10,7 @@ namespace taut {
 
 class JsonReader;
 
-/// It ran to its end, so that its values say something.
+/// It ran to its end, and not to an extreme: its values may be compared and averaged.
 bool completed(const Status&);
 
 /// "exploded (energy) at step 12, vertex 3".

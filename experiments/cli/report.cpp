@@ -21,6 +21,7 @@
 #include "experiments/study/main_job.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut::verb::reporting {
 
@@ -40,12 +41,12 @@ std::string command_line(const Options& options) {
   std::string run = "./taut run";
   if (options.studies.empty())
     return run + (options.preset.empty() ? "" : " --preset " + options.preset);
-  for (const std::string& study : options.studies) run += " " + study;
+  for (const std::string& study : options.studies) run += " " + shell_word(study);
   if (!options.preset.empty()) run += " --preset " + options.preset;
   std::string report = "./taut report";
-  for (const std::string& study : options.studies) report += " " + study;
+  for (const std::string& study : options.studies) report += " " + shell_word(study);
   if (!options.preset.empty()) report += " --preset " + options.preset;
-  for (const std::string& scene : options.films) report += " --film " + scene;
+  for (const std::string& scene : options.films) report += " --film " + shell_word(scene);
   return run + " && " + report;
 }
 

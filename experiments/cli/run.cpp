@@ -13,6 +13,7 @@
 #include "experiments/study/main_job.hpp"
 #include "experiments/study/table.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut::verb::run {
 
@@ -29,7 +30,7 @@ struct Options {
 
 std::string command_line(const Options& options) {
   std::string text = "taut run";
-  for (const std::string& study : options.studies) text += " " + study;
+  for (const std::string& study : options.studies) text += " " + shell_word(study);
   if (!options.preset.empty()) text += " --preset " + options.preset;
   if (!options.shard.empty()) text += " --shard " + options.shard;
   if (!options.only.empty()) text += " --only " + options.only;
@@ -150,10 +151,11 @@ void print_unequal_work(const std::vector<Study>& studies, const Store& store) {
 
 void print_next(const Options& options) {
   std::string which;
-  for (const std::string& study : options.studies) which += " " + study;
-  const std::string first = options.studies.front();
+  for (const std::string& study : options.studies) which += " " + shell_word(study);
+  const std::string first = shell_word(options.studies.front());
   const std::string more = options.preset.empty() ? "" : " --preset " + options.preset;
-  const std::string in = options.out == default_results() ? "" : " --results " + options.out;
+  const std::string in =
+      options.out == default_results() ? "" : " --results " + shell_word(options.out);
   std::cerr << "next: taut report" << which << more << in << "\n      taut plot " << first << more
             << in << "\n      taut export " << first << more << in << " -o table.csv\n";
 }

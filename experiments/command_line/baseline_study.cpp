@@ -4,6 +4,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "core/model/printable.hpp"
 #include "experiments/baseline/frontier_baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/options.hpp"
@@ -99,6 +100,7 @@ BaselineStudy baseline_study(const std::string& name, const BaselineOptions& opt
   result.before = read_baseline(result.folder);
   std::ifstream made_with(result.folder / kToolchainFile);
   std::getline(made_with, result.toolchain);
+  result.toolchain = printable(result.toolchain);
   if (result.before.empty() && needs_baseline) return result;
 
   const Store store(options.out);

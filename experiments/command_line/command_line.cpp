@@ -2,12 +2,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 
 #include "core/model/input_error.hpp"
+#include "core/model/printable.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/case/key.hpp"
 #include "experiments/command_line/manual.hpp"
@@ -104,7 +107,10 @@ int parse_and_run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kPass : kUsage;
+    std::ostringstream complaint;
+    const int code = app.exit(error, std::cout, complaint);
+    std::cerr << printable(complaint.str());
+    return code == 0 ? kPass : kUsage;
   }
   const auto chosen = std::find_if(all.rbegin(), all.rend(),  // a verb of a verb is the last
                                    [](const Verb& verb) { return verb.app->parsed(); });
@@ -122,10 +128,11 @@ const VerbEntry* find_verb(const std::string& name) {
 }  // namespace
 
 int command_line(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit on files a write fails, and says so
   if (argc > 1 && argv[1][0] != '-' && !find_verb(argv[1])) {
     std::vector<std::string> names;
     for (const VerbEntry* verb : verbs()) names.emplace_back(verb->name);
-    std::cerr << "unknown verb '" << argv[1] << "'" << suggestion(argv[1], names)
+    std::cerr << "unknown verb '" << printable(argv[1]) << "'" << suggestion(argv[1], names)
               << " (`taut --help` names all)\n";
     return kUsage;
   }

@@ -19,7 +19,10 @@ struct SearchRange {
 struct Probed {
   double value = 0;
   Status status;
-  bool stable() const { return status.kind == Status::Kind::ok; }
+  /// However far it stretches: a large strain alone is no instability.
+  bool stable() const {
+    return status.kind == Status::Kind::ok || status.kind == Status::Kind::extreme;
+  }
   /// A crash is an answer; want of time or memory is none.
   bool known() const { return status.is_result() || status.kind == Status::Kind::crash; }
 };

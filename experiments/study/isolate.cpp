@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "core/model/input_error.hpp"
+#include "core/model/printable.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -31,7 +32,7 @@ std::string last_line(const fs::path& file) {
   std::string line, last;
   while (std::getline(in, line))
     if (!line.empty()) last = line.substr(0, 300);
-  return last;
+  return printable(last);
 }
 
 std::vector<std::string> command(const Case& one, const fs::path& folder) {
@@ -113,8 +114,10 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   const auto failed = [&](Kind kind, const std::string& reason) {
     return unfinished(case_, {kind, reason, step, -1});
   };
-  if (!end) return failed(Kind::timeout, "wall time");
   // What is no property of the case leaves no record: it would be taken for the case's result.
+  if (!fs::exists(folder_))
+    throw InputError(folder_.string() + ": vanished while its case was running");
+  if (!end) return failed(Kind::timeout, "wall time");
   if (end->exit_code == kCannotWrite && beat == Heartbeat::kCannotWrite)
     throw InputError(said.empty() ? folder_.string() + ": cannot write: " + std::strerror(ENOSPC)
                                   : said);  // on a full disk its words are lost too
@@ -139,6 +142,7 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
 }
 
 int run_into(const Case& one, const fs::path& folder) try {
+  std::signal(SIGXFSZ, SIG_DFL);  // a case that prints without end dies of it
   const auto write = [&](auto&& what) {
     try {
       what();

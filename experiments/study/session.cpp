@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/model/input_error.hpp"
+#include "core/model/printable.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/files.hpp"
@@ -26,7 +27,7 @@ int shard_of(const std::string& key, int count) {
 }
 
 ManifestEntry manifest_entry(const JsonReader& j) {
-  ManifestEntry one{j.at("key").text(), j.at("id").text(), j.at("shard").integer(1),
+  ManifestEntry one{j.at("key").text(), printable(j.at("id").text()), j.at("shard").integer(1),
                     j.at("shards").integer(1)};
   if (!is_key(one.key)) j.at("key").fail("expected 64 hexadecimal digits");
   return one;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/io/section.hpp"
+#include "core/model/printable.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/system/data.hpp"
 
@@ -285,7 +286,7 @@ class StudyReader {
 Study load_study(const std::string& name_or_path, const std::string& preset) {
   Study study;
   study.file = find_study(name_or_path);
-  study.name = study.file.stem();
+  study.name = printable(study.file.stem().string());
   const Document document = read_document(study.file, {});
   Diagnostics diagnostics(document);
   refuse_control_characters(diagnostics, document.root);

@@ -13,8 +13,8 @@ class StudyTable {
  public:
   explicit StudyTable(StudyRecords);
 
-  /// A metric's value with three digits: a line per setting, a column per scene. A failure prints
-  /// its status, a value without a meaning "-", one of an unsettled case a "~".
+  /// A metric's value with three digits: a line per setting, a column per scene. A failure, and
+  /// an extreme, prints its status, a value without a meaning "-", one of an unsettled case a "~".
   std::string text(const std::string& value) const;
   /// By [setting, scene].
   const std::map<std::pair<std::string, std::string>, Record>& records() const { return records_; }

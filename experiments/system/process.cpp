@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -76,9 +77,9 @@ struct Pipes {
 }
 
 /// Everything here runs between fork and exec: system calls only.
-[[noreturn]] void become(char* const* argv, const ProcessOptions& options, const Pipes& pipes,
-                         int errors_file, pid_t parent) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+[[noreturn]] void become(char* const* argv, char* const* variables, const ProcessOptions& options,
+                         const Pipes& pipes, int errors_file, pid_t parent) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) std::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -107,8 +108,17 @@ struct Pipes {
   connect(options.errors, pipes.child_output.get(), STDERR_FILENO);
   if (errors_file >= 0) dup2(errors_file, STDERR_FILENO);
   if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) give_up(pipes);
-  execvp(argv[0], argv);
+  execvpe(argv[0], argv, variables);
   give_up(pipes);
+}
+
+/// This process's environment, with `mark` in the place of the mark that it has itself.
+std::vector<char*> environment_with(std::string& mark) {
+  std::vector<char*> variables{mark.data()};
+  for (char** at = environ; *at; ++at)
+    if (!std::string_view(*at).starts_with("TAUT_PROCESS=")) variables.push_back(*at);
+  variables.push_back(nullptr);
+  return variables;
 }
 
 int milliseconds_until(std::chrono::steady_clock::time_point end, double seconds) {
@@ -129,6 +139,9 @@ Process::Process(std::vector<std::string> words, const ProcessOptions& options) 
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
+  static std::atomic<int> started{0};
+  mark_ = descent() + std::to_string(++started) + ";";
+  const std::vector<char*> variables = environment_with(mark_);
   Pipes pipes(words.front(), options);
   Descriptor errors_file;
   if (!options.errors_file.empty()) {
@@ -142,7 +155,7 @@ Process::Process(std::vector<std::string> words, const ProcessOptions& options) 
   pthread_sigmask(SIG_SETMASK, &all, &before);  // no handler of ours may run in the child
   const pid_t parent = getpid();
   pid_ = fork();
-  if (pid_ == 0) become(argv.data(), options, pipes, errors_file.get(), parent);
+  if (pid_ == 0) become(argv.data(), variables.data(), options, pipes, errors_file.get(), parent);
   const int fork_error = errno;
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (pid_ < 0) fail_start(words.front(), fork_error);
@@ -180,6 +193,7 @@ ProcessEnd Process::reap() {
   while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
   }
   tie_.reset();
+  end_orphans(mark_);
   end_ = WIFEXITED(status) ? ProcessEnd{WEXITSTATUS(status), 0} : ProcessEnd{-1, WTERMSIG(status)};
   return *end_;
 }

@@ -37,8 +37,8 @@ struct ProcessEnd {
 };
 
 /// A program that this one started, in a session and a process group of its own: Ctrl-C reaches
-/// this process alone, and all members of the group die with the first of them and with this
-/// process, however it ends (kill -9 of this one spares only what that program started itself).
+/// this process alone. All that it started dies with it, what left the group too (unless that has
+/// emptied its environment), and with this process (kill -9 spares what that program started).
 class Process {
  public:
   /// words[0] is a path or the name of a program in PATH. Throws InputError with the system's
@@ -72,6 +72,7 @@ class Process {
   void stop();
 
   pid_t pid_ = -1;
+  std::string mark_;  ///< in the environment of all that it starts
   int descriptor_ = -1, input_ = -1, output_ = -1;
   std::optional<ProcessEnd> end_;
   std::unique_ptr<EndsWithProgram> tie_;

@@ -1,13 +1,18 @@
 #include "experiments/system/signals.hpp"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 #include <set>
 #include <thread>
+#include <vector>
 
 namespace taut {
 
@@ -34,10 +39,43 @@ void on_signal(int) {
   errno = before;
 }
 
+std::vector<pid_t> children() {
+  std::vector<pid_t> all;
+  std::error_code none;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task", none)) {
+    std::ifstream list(thread.path() / "children");
+    for (pid_t child; list >> child;) all.push_back(child);
+  }
+  return all;
+}
+
+bool has_mark(pid_t process, const std::string& mark) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/environ", std::ios::binary);
+  const std::string variables{std::istreambuf_iterator<char>(file), {}};
+  return variables.starts_with(mark) || variables.find('\0' + mark) != variables.npos;
+}
+
+/// Precondition: the caller holds the belongings.
+void end_children(const std::string& mark) {
+  for (bool found = true; found;) {
+    found = false;
+    for (const pid_t child : children()) {
+      if (belongings().groups.contains(child)) continue;
+      const bool ours = has_mark(child, mark);
+      if (ours) kill(child, SIGKILL);
+      found = found || ours;
+      waitpid(child, nullptr, ours ? 0 : WNOHANG);  // who is dead has no environment
+    }
+  }
+}
+
 [[noreturn]] void end_program() {
   Belongings& all = belongings();
   const std::lock_guard lock(all.mutex);  // kept: nothing new is registered any more
   for (const pid_t group : all.groups) kill(-group, SIGKILL);
+  for (const pid_t group : all.groups)
+    for (int ms = 0; ms < 1000 && waitpid(group, nullptr, WNOHANG) == 0; ++ms) usleep(1000);
+  end_children(descent());
   std::error_code ignored;
   for (const auto& path : all.paths)
     for (int attempt = 0; attempt < 3; ++attempt)  // another thread may still be writing there
@@ -68,6 +106,19 @@ void install_handler() {
 }
 
 }  // namespace
+
+const std::string& descent() {
+  static const std::string mark = [] {
+    prctl(PR_SET_CHILD_SUBREAPER, 1);
+    return "TAUT_PROCESS=" + std::to_string(getpid()) + ".";
+  }();
+  return mark;
+}
+
+void end_orphans(const std::string& mark) {
+  const std::lock_guard lock(belongings().mutex);
+  end_children(mark);
+}
 
 GracefulStop::GracefulStop() {
   install_handler();

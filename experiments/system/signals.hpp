@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <string>
 
 /// The one handler of SIGINT, SIGTERM and SIGHUP. It kills the processes that this one started,
 /// removes its temporary files and ends the program with kInterruptedExit; while a GracefulStop
@@ -39,5 +40,15 @@ class EndsWithProgram {
   std::filesystem::path path_;
   pid_t group_ = 0;
 };
+
+/// "TAUT_PROCESS=<this process>.": how the environment of every process begins that this one
+/// started, and of all that those start; a number follows for each. From the first call on, what
+/// loses its parent becomes a child of this process.
+const std::string& descent();
+
+/// Ends what a started process left behind, also if it left its group and session: kills and reaps
+/// the children of this process that it did not start itself and whose environment has a variable
+/// that begins with `mark`, until there are none.
+void end_orphans(const std::string& mark);
 
 }  // namespace taut

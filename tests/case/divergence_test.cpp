@@ -68,6 +68,47 @@ TEST(VerdictBorders, TheEndOfTheWorld) {
   }
 }
 
+/// A link from vertex 4 to vertex 5 that is strained by `strain`, seen at step 7.
+Status strained(const Scene& scene, double strain) {
+  State state = scene.start;
+  for (std::size_t i = 5; i < state.x.size(); ++i) state.x[i].y() -= strain * scene.links[4].rest;
+  DivergenceDetector verdict(scene, {});
+  EXPECT_TRUE(verdict.observe(6, 6 * scene.dt, scene.start));
+  EXPECT_TRUE(verdict.observe(7, 7 * scene.dt, state));
+  verdict.finish();
+  return verdict.status();
+}
+
+TEST(VerdictBorders, AStrainOfTenIsExtremeUnlessRelaxationAsSoftAsPossibleHasIt) {
+  Scene scene = chain();
+  EXPECT_EQ(legitimate_strain(scene), 10);
+  EXPECT_EQ(strained(scene, 9.99).kind, Status::Kind::ok);
+  const Status status = strained(scene, 10.01);
+  EXPECT_EQ(status.kind, Status::Kind::extreme);
+  EXPECT_EQ(status.reason, "stretch");
+  EXPECT_EQ(status.step, 7);
+  EXPECT_EQ(status.vertex, 4);
+
+  scene.dt = 0.25;  // truth 5.5: a chain of N free particles is strained by 2 (N - 1) g dt^2/l
+  const double truth = 2 * 7 * scene.gravity.norm() * scene.dt * scene.dt / scene.links[0].rest;
+  EXPECT_GT(truth, 50);
+  EXPECT_EQ(strained(scene, truth).kind, Status::Kind::ok);
+  EXPECT_EQ(strained(scene, 2.01 * truth).kind, Status::Kind::extreme);
+
+  scene = chain();
+  for (Vec3& x : scene.start.x) x *= 9;
+  EXPECT_NEAR(legitimate_strain(scene), 16, 1e-9) << "twice what it starts with";
+}
+
+TEST(VerdictBorders, ABendLinkAndOneBetweenPinsAreNeverExtreme) {
+  Scene scene = hanging_sheet(1, 9, {true, false, true}, Lumping::equal);
+  for (Link& link : scene.links)
+    if (link.family == Family::bend) link.rest *= 1e-3;
+  EXPECT_EQ(strained(scene, 0).kind, Status::Kind::ok);
+  scene.pins = {4, 5};
+  EXPECT_EQ(strained(scene, 50).kind, Status::Kind::ok);
+}
+
 /// The verdict on a run of `times` settling times in which a vertex never slows down.
 Status restless(double speed, double times) {
   Scene scene = chain();

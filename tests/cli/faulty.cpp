@@ -21,7 +21,7 @@ constexpr ParamSpec kParams[] = {
      .kind = ParamSpec::Kind::choice,
      .default_value = "stable",
      .choices = "stable|crash|abort|hang|spin|memory|nan|throw|exit|print|slow|refuse|random|"
-                "exit74|exit127|chdir|fork|fewer|far|forge",
+                "exit74|exit127|chdir|fork|daemon|stop|stretch|fewer|far|forge|words",
      .help = "what it does at that step"},
     {.name = "at",
      .kind = ParamSpec::Kind::integer,
@@ -63,18 +63,33 @@ class Faulty final : public Solver {
     if (mode_ == "crash") std::raise(SIGSEGV);
     if (mode_ == "abort") std::abort();
     if (mode_ == "nan") state_.x[2].y() = std::numeric_limits<double>::quiet_NaN();
+    if (mode_ == "words")
+      throw std::runtime_error("<img src=x onerror=alert(1)>\x1b]0;title\x07`touch canary` \u202e" +
+                               std::string(10'000, 'w'));
     if (mode_ == "throw") throw std::runtime_error("faulty: threw as told");
     if (mode_.starts_with("exit")) std::_Exit(mode_ == "exit" ? 3 : std::stoi(mode_.substr(4)));
     if (mode_ == "far") state_.x[3].y() = 9e5;
     if (mode_ == "chdir" && chdir("/") != 0) std::abort();
-    if (mode_ == "fork" && fork() == 0)
-      for (std::ofstream("grandchild") << getpid() << std::endl;;) pause();
+    if (mode_ == "stop") std::raise(SIGSTOP);
+    if (mode_ == "stretch") state_.x[3].y() = 50;
+    if (mode_ == "fork" || mode_ == "daemon") leave_behind();
     if (mode_ == "forge") forge();
     if (mode_ == "random") state_.x[0].x() += 1e-3 * static_cast<double>(getpid() % 1000);
     while (mode_ == "hang") usleep(1000);
     for (volatile int spun = 0; mode_ == "spin";) spun = spun + 1;
     while (mode_ == "print") std::cerr << std::string(1 << 20, 'x');
     while (mode_ == "memory") hoard_.emplace_back(std::size_t{1} << 20, 'x');
+  }
+
+  /// A process that does not end, in this one's group or in a session of its own.
+  void leave_behind() const {
+    const pid_t child = fork();
+    if (child == 0) {
+      if (mode_ == "daemon") setsid();
+      for (;;) pause();
+    }
+    while (mode_ == "daemon" && getsid(child) != child) usleep(100);
+    std::ofstream("left-by-" + mode_) << child;
   }
 
   /// A whole record, in the place of the case's own, of an address that leads out of the store.

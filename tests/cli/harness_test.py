@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Faulty solvers cost one case each; stores survive kill -9, corruption, shards and conflicts."""
 
+import csv
 import hashlib
 import json
 import os
 import pathlib
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -58,9 +60,9 @@ class FaultySolvers(CommandLine):
                          ("oom", "more than the limit of 100 MB (taut run --memory raises it)"))
 
     def test_none_leaves_its_process_group_or_its_folder(self):
-        status = self.run_modes("exit74", "exit127", "chdir", "fork", "fewer", "far", "forge")
+        status = self.run_modes("exit74", "exit127", "chdir", "fork", "daemon", "fewer", "far", "forge")
         self.assertEqual({mode: s["kind"] for mode, s in status.items()},
-                         {"jakobsen": "ok", "exit74": "error", "exit127": "error", "chdir": "ok", "fork": "ok", "fewer": "error",
+                         {"jakobsen": "ok", "exit74": "error", "exit127": "error", "chdir": "ok", "fork": "ok", "daemon": "ok", "fewer": "error",
                           "far": "exploded", "forge": "error"})
         self.assertEqual(status["exit74"]["reason"], "exit code 74")
         self.assertEqual(status["exit127"]["reason"], "exit code 127")
@@ -68,13 +70,47 @@ class FaultySolvers(CommandLine):
         self.assertEqual((status["far"]["reason"], status["far"]["vertex"]), ("box", 3))
         self.assertIn("key: expected 64 hexadecimal digits", status["forge"]["reason"])
         self.assertEqual(list(self.folder.parent.glob("**/escaped")), [])
-        grandchild = int((self.folder / "grandchild").read_text())
+        for mode in ("fork", "daemon"):
+            self.assertEnds(int((self.folder / f"left-by-{mode}").read_text()))
+
+    def assertEnds(self, process):
         with self.assertRaises(ProcessLookupError, msg="a process that a case left behind lives on"):
             for _ in range(100):  # killed with the case; who adopts it still has to reap it
-                os.kill(grandchild, 0)
-                if (pathlib.Path("/proc") / str(grandchild) / "stat").read_text().split()[2] == "Z":
+                os.kill(process, 0)
+                if (pathlib.Path("/proc") / str(process) / "stat").read_text().split()[2] == "Z":
                     raise ProcessLookupError
                 time.sleep(0.02)
+
+    def test_ctrl_c_ends_what_left_its_session_too(self):
+        study = self.study(solvers=["faulty:mode=daemon", "faulty:mode=slow"], rest='set = ["time.duration=60"]\n')
+        process = self.start("run", study, "-j", 2, program="taut-faulty")
+        left = self.folder / "left-by-daemon"
+        while not left.exists() or not left.read_text():
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130)
+        self.assertEnds(int(left.read_text()))
+
+    def test_a_case_that_is_stopped_runs_out_of_wall_time(self):
+        self.assertEqual(self.run_modes("stop", seconds=0.2)["stop"], {"kind": "timeout", "reason": "wall time", "step": 4, "vertex": -1})
+
+    def test_an_extreme_is_marked_wherever_it_shows(self):
+        status = self.run_modes("stretch")["stretch"]
+        self.assertEqual(status, {"kind": "extreme", "reason": "stretch", "step": 5, "vertex": 2})
+        study = self.study(solvers=["faulty:mode=stretch", "faulty:mode=stable"])
+        run = self.taut("run", study, "--table", "stretch.max", program="taut-faulty")
+        self.assertIn("2/2 cases: ok 1, extreme 1", run.err)
+        rows = {line.split()[0]: line.split()[1] for line in run.out.splitlines()[1:3]}
+        self.assertEqual(rows["faulty:mode=stretch"], "extreme")
+        row, = [row for row in csv.DictReader(self.taut("export", study, program="taut-faulty").out.splitlines())
+                if row["mode"] == "stretch"]
+        self.assertEqual(row["status"], "extreme")
+        self.assertGreater(float(row["stretch.max"]), 100)  # kept, under its status
+        model = json.loads(self.taut("report", study, "--json", program="taut-faulty").out)
+        shown, = [status for status in model["statuses"] if status["id"] == "extreme"]
+        self.assertTrue(shown["failed"])
+        self.assertIn("1 of 2 (1 extreme)", json.dumps(model["claims"]))
 
     def test_printing_without_end(self):
         status = self.run_modes("print")["print"]
@@ -87,6 +123,48 @@ class FaultySolvers(CommandLine):
         self.assertIn("(2 were stored already)", again.err)
         failed = self.taut("run", study, "--only", "failed", program="taut-faulty")
         self.assertIn("1/1 cases: error 1 (0 were stored already)", failed.err)
+
+
+class Signals(CommandLine):
+    """Every phase of a bare run, and a report that is ended, leave nothing in the folder for temporary files."""
+
+    def setUp(self):
+        super().setUp()
+        for folder in ("data/scenes", "data/studies", "temporary"):
+            (self.folder / folder).mkdir(parents=True)
+        (self.folder / "small.toml").rename(self.folder / "data/scenes/small.toml")
+        for name, axes in [("small", "iterations = [1, 2]"), ("small-map", 'iterations = [1, 2]\ntime.dt = ["1/64", "1/32"]')]:
+            (self.folder / f"data/studies/{name}.toml").write_text(
+                f'question = "?"\nscenes = ["small"]\nsolvers = ["jakobsen", "bullet"]\n[axes]\n{axes}\n[preset.quick]\nset = []\n'.replace(
+                    "set = []", 'set = ["time.duration=0.25"]') + '[[plot]]\nkind = "stability"\n')
+        (self.folder / "data/main-job.toml").write_text(
+            'preset = "quick"\nstudies = ["small"]\nmaps = ["small-map"]\nbench = "small"\n')
+        self.env = {**os.environ, "TAUT_DATA": str(self.folder / "data"), "TMPDIR": str(self.folder / "temporary")}
+
+    def end_at(self, marker, stop, *words):
+        process = self.start(*words, env=self.env)
+        said = ""
+        while marker not in said:
+            line = process.stderr.readline()
+            self.assertTrue(line, f"it ended before '{marker}':\n{said}")
+            said += line
+        process.send_signal(stop)
+        _, rest = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, said + rest)
+        self.assertEqual(list((self.folder / "temporary").iterdir()), [])
+
+    def test_a_bare_run_ends_in_each_of_its_phases(self):
+        for marker in ["[1/", "timing", "holding solvers"]:
+            for stop in (signal.SIGINT, signal.SIGTERM):
+                with self.subTest(marker, stop=stop):
+                    shutil.rmtree(self.folder / "results", ignore_errors=True)
+                    self.end_at(marker, stop, "run", "-j", 1)
+
+    def test_a_report_that_is_ended_leaves_no_folder_and_no_page(self):
+        self.taut("run", "small", env=self.env)
+        for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            self.end_at("small", stop, "report", "small")
+            self.assertEqual([file.name for file in self.folder.iterdir() if "report" in file.name], [])
 
 
 class Input(CommandLine):
@@ -253,6 +331,70 @@ class Store(CommandLine):
         if os.geteuid() != 0:
             (self.folder / "locked").mkdir(mode=0o500)
             self.assertIn("Permission denied", self.taut("run", study, "--out", "locked", expect=2).err)
+
+    MANIFEST_BYTES = 4000  # a limit on files that the probe and session.json keep, and the manifest of 60 cases does not
+
+    def test_a_session_that_cannot_be_recorded_leaves_nothing(self):
+        study = self.study(rest="axes.iterations = { from = 1, to = 60, steps = 60 }\n")
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (self.MANIFEST_BYTES, self.MANIFEST_BYTES))
+        full = self.taut("run", study, expect=2, preexec_fn=limit)
+        self.assertRegex(full.err, "^results/runs/sessions/.*/manifest.jsonl: cannot write: File too large\n$")
+        self.assertEqual([*(self.folder / "results/runs/sessions").iterdir(), *self.entries()], [])
+        self.taut("run", study)
+        self.assertIn("60/60 cases", self.taut("merge", "results/runs", "--out", "merged").out)
+
+    def test_a_results_folder_that_is_moved_away_loses_nothing_finished(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        whole = self.store_digest(self.taut("run", study, "--out", "whole", "-j", 4, program="taut-faulty"))
+        process = self.start("run", study, "-j", 1, program="taut-faulty")
+        while not self.entries():
+            time.sleep(0.02)
+        (self.folder / "results/runs").rename(self.folder / "moved")
+        _, said = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 2, said)
+        self.assertIn("results/runs/", said.splitlines()[-1])
+        kept = len(self.entries("moved"))
+        self.assertGreater(kept, 0)
+        again = self.taut("run", study, "--out", "moved", program="taut-faulty")
+        self.assertIn(f"({kept} were stored already)", again.err)
+        self.assertEqual(self.store_digest(again), whole)
+
+    def test_results_that_are_read_only_can_be_read_and_not_added_to(self):
+        place = self.folder / "disk"
+        place.mkdir()
+        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "tmpfs", place], capture_output=True).returncode != 0:
+            self.skipTest("needs a file system of its own")
+        self.addCleanup(subprocess.run, ["umount", place])
+        study = self.study(rest=self.MANY)
+        self.taut("run", study, "--out", "disk/results")
+        subprocess.run(["mount", "-o", "remount,ro", place], check=True)
+        before = sorted(place.rglob("*"))
+        for more in (self.MANY, "axes.iterations = [100]\n"):
+            refused = self.taut("run", self.study(rest=more), "--out", "disk/results", expect=2)
+            self.assertRegex(refused.err, "^disk/results/.*: cannot (write|create): Read-only file system\n$")
+        study = self.study(rest=self.MANY)
+        rows = self.taut("export", study, "--results", "disk/results").out.splitlines()
+        self.assertEqual(len(rows), 13)
+        self.taut("plot", study, "--results", "disk/results", "--kind", "error-iterations", "--out", "figures")
+        json.loads(self.taut("report", study, "--results", "disk/results", "--json").out)
+        self.assertEqual(sorted(place.rglob("*")), before)
+
+    def test_a_clock_that_jumps_changes_nothing(self):
+        if SANITIZED:
+            self.skipTest("the sanitizer wants to be the first that is preloaded")
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        whole = self.store_digest(self.taut("run", study, "--out", "whole", program="taut-faulty"))
+        jumping = {**os.environ, "LD_PRELOAD": str(BINARIES / "libjumping_clock.so")}
+        years = {subprocess.run(["date", "+%Y"], env=jumping, capture_output=True, check=True).stdout for _ in range(2)}
+        years.add(time.strftime("%Y\n").encode())
+        self.assertGreater(len(years), 1, "the clock has to jump")
+        run = self.taut("run", study, "--timeout", 30, program="taut-faulty", env=jumping)
+        self.assertEqual(self.store_digest(run), whole)
+        self.assertEqual({record["status"]["kind"] for record in self.records()}, {"ok"})
+        self.assertIn("(4 were stored already)", self.taut("run", study, program="taut-faulty", env=jumping).err)
+        self.assertIn("4/4 cases", self.taut("merge", "results/runs", "--out", "merged", env=jumping).out)
 
     def test_a_program_that_vanishes_is_no_result(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")

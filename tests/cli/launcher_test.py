@@ -4,6 +4,7 @@ when there is nothing to build, own sources after a copy or a move, the caller's
 
 import os
 import pathlib
+import re
 import resource
 import shutil
 import subprocess
@@ -26,14 +27,16 @@ target_compile_definitions(taut PRIVATE SOURCE="${PROJECT_SOURCE_DIR}")
 add_custom_target(taut-f32)
 if(TAUT_TESTS)
   enable_testing()
-  foreach(target taut_tests taut_tests_f32)
+  foreach(target taut_tests taut_tests_f32 taut_fuzz)
     add_custom_target(${target})
   endforeach()
   add_test(NAME one COMMAND true)
   add_test(NAME planted COMMAND true)
+  add_test(NAME random COMMAND true)
   add_test(NAME absent COMMAND false)
   set_tests_properties(one PROPERTIES LABELS unit)
   set_tests_properties(planted PROPERTIES LABELS mutation)
+  set_tests_properties(random PROPERTIES LABELS fuzz)
   set_tests_properties(absent PROPERTIES LABELS browser SKIP_RETURN_CODE 1)
 endif()
 """
@@ -195,10 +198,13 @@ class Launcher(unittest.TestCase):
         quick = self.call("test")
         self.assertIn("one", quick.out)
         self.assertNotIn("planted", quick.out)
-        self.assertRegex(quick.err, r"(?s)skipped:\n  default: absent\n  not run: clang\+\+ with sanitizers, planted")
+        self.assertNotIn("random", quick.out)
+        self.assertRegex(quick.err, r"(?s)skipped:\n  default: absent\n  not run: clang\+\+ with sanitizers, planted errors, random")
         whole = self.call("test", "--all")
         self.assertRegex(whole.out, r"planted \.+ +Passed")
-        self.assertIn("build/asan\n", whole.out)
+        self.assertEqual(len(re.findall(r"random \.+ +Passed", whole.out)), 2, "with the program and with libFuzzer")
+        for preset in ["asan", "fuzz"]:
+            self.assertIn(f"build/{preset}\n", whole.out)
         self.assertIn("default: absent\n", whole.err)
         cmake = self.clone / "CMakeLists.txt"
         cmake.write_text(cmake.read_text().replace("planted COMMAND true", "planted COMMAND false"))

@@ -74,6 +74,7 @@ class Maker {
     if (die < 0.7) return;
     r.status.reason = "made up";
     r.status.kind = die < 0.78   ? Status::Kind::unsettled
+                    : die < 0.82 ? Status::Kind::extreme
                     : die < 0.88 ? Status::Kind::exploded
                     : die < 0.92 ? Status::Kind::timeout
                     : die < 0.96 ? Status::Kind::crash

@@ -194,7 +194,10 @@ TEST(Format, NumbersReadAsPeopleWriteThem) {
   EXPECT_EQ(exact(0.1), "0.1");
   EXPECT_EQ(base64("Man"), "TWFu");
   EXPECT_EQ(base64("M"), "TQ==");
-  EXPECT_EQ(slug("../a b/ç"), "..-a-b");
+  EXPECT_EQ(slug("../a b/ç"), "a-b");
+  EXPECT_EQ(slug("-o"), "o");
+  EXPECT_EQ(slug(std::string(300, 'a') + "b").size(), 129U);
+  EXPECT_NE(slug(std::string(300, 'a') + "b"), slug(std::string(300, 'a') + "c"));
   EXPECT_EQ(joined({"ball", "box", "hang"}), "ball, box and hang");
 }
 

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <utility>
 
 #include "core/model/shortest.hpp"
@@ -194,10 +195,16 @@ std::string slug(std::string_view text) {
   for (const char c : text) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                        c == '-' || c == '.';
-    if (plain)
+    if (plain && !(out.empty() && (c == '-' || c == '.')))
       out += c;
     else if (!out.empty() && out.back() != '-')
       out += '-';
+  }
+  constexpr std::size_t kMost = 120;  // a file name has 255 bytes, with extensions and more
+  if (out.size() > kMost) {           // what is cut off still tells names apart
+    char digits[20];
+    std::snprintf(digits, sizeof digits, "-%08zx", std::hash<std::string>{}(out)&0xFFFFFFFFU);
+    out = out.substr(0, kMost) + digits;
   }
   while (!out.empty() && (out.back() == '-' || out.back() == '.')) out.pop_back();
   return out.empty() ? "x" : out;

@@ -27,7 +27,8 @@ std::string csv_field(
                         ///< with = + - @ gets a ' in front: a spreadsheet would run it
 std::string gnuplot_string(std::string_view);  ///< a literal that no text can leave; one line
 std::string base64(std::string_view bytes);
-/// Letters, digits, '-' and '.' only: safe as a file name and as an HTML id.
+/// Letters, digits, '-' and '.' only, a letter or digit first, at most 129: safe as a file name and
+/// as an HTML id.
 std::string slug(std::string_view);
 
 /// "ball, box and plane"

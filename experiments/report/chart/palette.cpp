@@ -17,10 +17,11 @@ constexpr std::array kColours{
     Colour{"s-magenta", "#B52C77", "#F284BB"},   Colour{"s-brown", "#866000", "#E0B040"},
     Colour{"s-teal", "#0C7680", "#4CC8D4"},      Colour{"s-slate", "#56606F", "#A9B4C2"},
     Colour{"ok", "#2F9E77", "#2C8F6C"},          Colour{"unsettled", "#F2BF4B", "#DDA83A"},
-    Colour{"exploded", "#C9423B", "#C9473F"},    Colour{"unsupported", "#9AA3AF", "#5F6977"},
-    Colour{"timeout", "#7A5BB5", "#7F62B8"},     Colour{"oom", "#5A3E8E", "#5C4291"},
-    Colour{"crash", "#1F2430", "#05070A"},       Colour{"error", "#6E4A1E", "#7A5426"},
-    Colour{"glyph-light", "#FFFFFE", "#FFFFFE"}, Colour{"glyph-dark", "#1A1A19", "#1A1A19"},
+    Colour{"extreme", "#E8894A", "#D97B3C"},     Colour{"exploded", "#C9423B", "#C9473F"},
+    Colour{"unsupported", "#9AA3AF", "#5F6977"}, Colour{"timeout", "#7A5BB5", "#7F62B8"},
+    Colour{"oom", "#5A3E8E", "#5C4291"},         Colour{"crash", "#1F2430", "#05070A"},
+    Colour{"error", "#6E4A1E", "#7A5426"},       Colour{"glyph-light", "#FFFFFE", "#FFFFFE"},
+    Colour{"glyph-dark", "#1A1A19", "#1A1A19"},
 };
 
 Colour colour(std::string_view name) {
@@ -80,6 +81,9 @@ StatusStyle status_style(Status::Kind kind) {
       return {colour("ok"), "✓", "settled or ran to the end", light};
     case Status::Kind::unsettled:
       return {colour("unsettled"), "~", "still moving at the end", dark};
+    case Status::Kind::extreme:
+      return {colour("extreme"), "^",
+              "ran to the end, stretched beyond what the scene accounts for", dark};
     case Status::Kind::exploded:
       return {colour("exploded"), "×", "non-finite or gained energy", light};
     case Status::Kind::unsupported:

@@ -18,7 +18,7 @@ fs::path temporary(const fs::path& path) {
 /// Runs `program -e commands script` in the script's folder; gives its exit code and what it said.
 std::pair<int, std::string> run_program(const std::string& program, const fs::path& script,
                                         const std::string& commands) try {
-  Process process({program, "-e", commands, script.filename()},
+  Process process({program, "-e", commands, "./" + script.filename().string()},
                   {.errors = ProcessOptions::Stream::piped, .folder = script.parent_path()});
   const std::string said = process.read_all();
   return {process.wait()->exit_code, said};

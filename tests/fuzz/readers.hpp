@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/io/mesh_io.hpp"
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/baseline/baseline.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/case/trajectory.hpp"
+#include "experiments/study/study.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/timing/bench.hpp"
+
+/// Everything that reads what others wrote, as functions of bytes: for libFuzzer (fuzz.cpp) and for
+/// the inputs that once broke something (corpus_test.cpp). Each throws InputError for what it
+/// refuses; any other exception, a signal or a false expectation is a finding.
+namespace taut::fuzz {
+
+/// What has to hold of anything that was read.
+inline void expect(bool holds, const char* what) {
+  if (holds) return;
+  std::cerr << "does not hold: " << what << '\n';
+  std::abort();
+}
+
+/// A file with these bytes; the same one in every call.
+inline std::filesystem::path file_of(const std::string& bytes, const std::string& name) {
+  static const Scratch scratch;
+  const std::filesystem::path file = scratch.path() / name;
+  make_folder(file.parent_path());
+  write_file(file, bytes);
+  return file;
+}
+
+inline void read_scene(const std::string& bytes) {
+  // Small: the bytes may ask for 2^24 vertices. No mesh, which would be another file.
+  const Scene scene = parse_scene("fuzzed.toml", bytes, {"cloth.grid=[4, 3]"});
+  expect(digest(scene).size() == 64, "a scene has a digest");
+  for (const Vec3& x : scene.start.x) expect(x.allFinite(), "a scene starts at finite positions");
+  for (const double m : scene.mesh.mass) expect(m > 0, "masses are above 0");
+  for (const Link& link : scene.links) expect(link.rest > 0, "links have a length");
+  expect(scene.dt > 0 && scene.steps > 0, "a scene takes time");
+}
+
+inline void read_study(const std::string& bytes) {
+  const Study study = load_study(file_of(bytes, "study.toml").string());
+  expect(!study.question.empty() && !study.scenes.empty() && !study.solvers.empty(),
+         "a study asks something");
+  for (const StudyAxis& axis : study.axes) expect(!axis.values.empty(), "an axis has values");
+}
+
+inline void read_mesh(const std::string& bytes) {
+  const Polygons polygons = parse_obj("fuzzed.obj", bytes);
+  for (const double m : make_mesh(polygons, 1, Lumping::area).mass)
+    expect(m > 0, "masses are above 0");
+  for (const Link& link : mesh_links(polygons, {true, true, true}))
+    expect(link.rest > 0, "links have a length");
+}
+
+inline void read_solver(const std::string& bytes) {
+  const SolverChoice choice = parse_solver(bytes);
+  const std::string canonical = choice.canonical();
+  expect(parse_solver(canonical).canonical() == canonical, "a canonical text stands for itself");
+  expect(parse_solver(choice.brief()).canonical() == canonical, "the brief text says the same");
+}
+
+inline void read_trajectory_file(const std::string& bytes) {
+  const Trajectory trajectory = read_trajectory(file_of(bytes, "run.traj"));
+  for (const TrajectoryReader::Frame& frame : trajectory.frames)
+    expect(std::isfinite(frame.t), "frames have a time");
+}
+
+inline void judge(const Record& record) {
+  expect(is_key(record.key) && record.dt > 0, "a record has an address and a time step");
+  for (const auto& [name, value] : record.values)
+    expect(!std::isinf(value), "a value is a number or has no meaning");
+}
+
+inline void read_record(const std::string& bytes) {
+  const Record record = record_from_json(bytes, "case.json");
+  judge(record);
+  expect(to_json(record_from_json(to_json(record), "again")) == to_json(record),
+         "a record is what was written of it");
+}
+
+inline void read_bench(const std::string& bytes) {
+  const BenchSession bench = bench_from_json(bytes, "bench.json");
+  for (const Record& record : bench.records()) judge(record);
+  for (const SceneBench& scene : bench.scenes) {
+    scene.candidates("stretch.rms");
+    for (std::size_t i = 1; i < scene.cases.size(); ++i) scene.ratio(i, 0);
+  }
+}
+
+inline void read_baseline_rows(const std::string& bytes) {
+  const Baseline rows = read_baseline(file_of(bytes, "baseline/jakobsen.jsonl").parent_path());
+  expect(compare(rows, rows, {}).findings.empty(), "a baseline is equal to itself");
+  for (const BaselineRow& row : rows) reproduce(row);
+}
+
+struct Reader {
+  std::string_view name;  ///< also of its folder in corpus/
+  void (*read)(const std::string& bytes);
+};
+
+inline constexpr Reader kReaders[] = {
+    {"scene", read_scene},   {"study", read_study},
+    {"mesh", read_mesh},     {"solver", read_solver},
+    {"record", read_record}, {"trajectory", read_trajectory_file},
+    {"bench", read_bench},   {"baseline", read_baseline_rows},
+};
+
+}  // namespace taut::fuzz
