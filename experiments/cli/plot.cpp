@@ -111,13 +111,21 @@ int run(const Options& options) {
   make_folder(out);  // what cannot be written is said once, not for every scene
   std::vector<std::string> files;
   try {
-    for (const PlotSpec& spec : specs)
+    for (PlotSpec spec : specs) {
+      if (spec.kind == "profile") {
+        if (!input.bench) throw InputError("no cost was measured: taut bench " + study.name);
+        spec.title = spec.title.empty() ? "How often each solver is near the cheapest" : spec.title;
+        const report::PlotFiles plot = report::make_profile_plot(spec, *input.bench, out);
+        for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
+        continue;
+      }
       for (const report::SceneInfo& scene : input.scenes) try {
           const report::PlotFiles plot = draw(spec, result, scene.name, store, out);
           for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
         } catch (const InputError& error) {
           std::cerr << scene.name << ": " << error.what() << '\n';
         }
+    }
   } catch (const report::PlotError& error) {
     std::cerr << error.what() << '\n';
     return kEnvironment;
@@ -157,6 +165,7 @@ TAUT_VERB(plot) = {.name = "plot",
                    .summary = "Draws the figures of a study: SVG, PDF, gnuplot script and CSV",
                    .example =
                        "taut plot iterations --preset quick\n  taut plot time-steps --kind "
-                       "stability --out figures\n  taut plot iterations --x projections "
+                       "stability --out figures\n  taut plot trade --kind profile\n  taut plot "
+                       "iterations --x projections "
                        "--y stretch.max",
                    .bind = taut::verb::plot::bind};

@@ -12,6 +12,7 @@
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/report/plot/gnuplot.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/timing/profile.hpp"
 
 namespace taut::report {
 
@@ -23,6 +24,8 @@ constexpr std::array kKinds{
              "iterations", "stretch.rms", "iterations"},
     PlotKind{"penetration", "Depth inside the colliders over sweeps or the time step, whole run",
              "iterations", "penetration.peak", "iterations"},
+    PlotKind{"profile", "How often each solver is within a factor of the cheapest (Dolan and More)",
+             "cpu.per_second", "stretch.rms", "setting"},
     PlotKind{"scaling", "A cost or an error over the number of vertices", "vertices",
              "cpu.per_step", "vertices"},
     PlotKind{"series", "A value over simulated time", "t", "stretch.rms", "t"},
@@ -229,6 +232,33 @@ Sheet map_sheet(const std::vector<StatusMap>& maps, const std::string& title) {
   return sheet;
 }
 
+Sheet profile_sheet(const std::vector<Profile>& profiles, const std::string& title) {
+  Sheet sheet;
+  double most = 2;  // of the finite factors
+  for (const Profile& profile : profiles)
+    for (const double r : profile.ratios)
+      if (std::isfinite(r)) most = std::max(most, r);
+  sheet.settings = "set title " + gnuplot_string(title) +
+                   "\nset xlabel 'CPU time over that of the cheapest solver'\nset logscale x\n"
+                   "set ylabel 'share of problems [%]'\nset xrange [1:" +
+                   exact(1.1 * most) + "]\nset yrange [0:105]\n";
+  sheet.csv = "curve,solver,factor,share\n";
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    const Profile& profile = profiles[i];
+    std::set<double> factors{1, 1.1 * most};
+    for (const double r : profile.ratios)
+      if (std::isfinite(r)) factors.insert(r);
+    for (const double factor : factors)
+      sheet.csv += std::to_string(i) + "," + csv_field(profile.solver) + "," + exact(factor) + "," +
+                   exact(profile.share(factor)) + "\n";
+    sheet.draw("'@CSV@' skip 1 using (column(1) == " + std::to_string(i) +
+               " ? column(3) : NaN):(100*column(4)) with steps lw 2 lc rgb '" +
+               colour_of(profile.solver) + "' dt " + dash_of(profile.solver, 0) + " title " +
+               gnuplot_string(solver_title(profile.solver)));
+  }
+  return sheet;
+}
+
 std::string script(const PlotSpec& spec, const Sheet& sheet, const std::string& stem) {
   std::string text = "# " + spec.kind + ": " + spec.y + " over " + spec.x +
                      "\n# Again: gnuplot -e \"set terminal svg noenhanced; set output '" + stem +
@@ -241,6 +271,20 @@ std::string script(const PlotSpec& spec, const Sheet& sheet, const std::string& 
   for (std::size_t at; (at = text.find("@CSV@")) != std::string::npos;)
     text.replace(at, 5, stem + ".csv");
   return text;
+}
+
+PlotFiles write_plot(const PlotSpec& spec, const Sheet& sheet,
+                     const std::filesystem::path& folder) {
+  make_folder(folder);
+  const auto path = [&](const char* extension) { return folder / (spec.file + extension); };
+  const PlotFiles files{path(".svg"), path(".pdf"), path(".gp"), path(".csv")};
+  write_file(files.csv, sheet.csv);
+  write_file(files.gp, script(spec, sheet, spec.file));
+  run_gnuplot(files.gp, "svg noenhanced size 760,520 font 'sans-serif,13' background '#ffffff'",
+              files.svg);
+  run_gnuplot(files.gp, "pdfcairo noenhanced size 7.6in,5.2in font 'sans,13' fontscale 0.72",
+              files.pdf);
+  return files;
 }
 
 }  // namespace
@@ -290,16 +334,20 @@ PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
     chart.slope = spec.slope, chart.front = spec.kind == "work-precision";
     sheet = curves_sheet(chart, spec.title);
   }
-  make_folder(folder);
-  const auto path = [&](const char* extension) { return folder / (spec.file + extension); };
-  const PlotFiles files{path(".svg"), path(".pdf"), path(".gp"), path(".csv")};
-  write_file(files.csv, sheet.csv);
-  write_file(files.gp, script(spec, sheet, spec.file));
-  run_gnuplot(files.gp, "svg noenhanced size 760,520 font 'sans-serif,13' background '#ffffff'",
-              files.svg);
-  run_gnuplot(files.gp, "pdfcairo noenhanced size 7.6in,5.2in font 'sans,13' fontscale 0.72",
-              files.pdf);
-  return files;
+  return write_plot(spec, sheet, folder);
+}
+
+PlotFiles make_profile_plot(PlotSpec spec, const BenchSession& bench,
+                            const std::filesystem::path& folder) {
+  const PlotKind& kind = find_plot_kind("profile");
+  spec.x = kind.x;
+  if (spec.y.empty()) spec.y = kind.y;
+  if (spec.file.empty()) spec.file = slug("profile-" + spec.y);
+  const std::vector<Profile> profiles = performance_profiles(bench.scenes, spec.y);
+  if (profiles.empty() || profiles.front().ratios.empty())
+    throw InputError("no setting of any solver reaches an error of " + spec.y +
+                     " that is asked for");
+  return write_plot(spec, profile_sheet(profiles, spec.title), folder);
 }
 
 }  // namespace taut::report

@@ -37,6 +37,10 @@ struct PlotFiles {
 PlotFiles make_plot(PlotSpec, std::span<const Record>, std::span<const TimeSeries>,
                     const std::filesystem::path& folder);
 
+/// The share of problems, an error `spec.y` to be reached on a scene, in which each solver costs at
+/// most a factor of the best (experiments/timing/profile.hpp). Throws as make_plot().
+PlotFiles make_profile_plot(PlotSpec, const BenchSession&, const std::filesystem::path& folder);
+
 /// Throws InputError with a suggestion if no case and no metric has a value of this name.
 void check_value_name(const std::string& name, std::span<const Record>);
 
