@@ -10,12 +10,13 @@
 #include "experiments/study/study.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/truths/seed_claims.hpp"
 
 namespace taut::verb::list {
 
 namespace {
 
-constexpr std::string_view kKinds[] = {"scenes", "solvers", "metrics", "studies"};
+constexpr std::string_view kKinds[] = {"scenes", "solvers", "metrics", "studies", "claims"};
 
 std::string allowed(const ParamSpec& spec) {
   if (spec.kind == ParamSpec::Kind::choice) return std::string(spec.choices);
@@ -87,9 +88,22 @@ Json list_studies() {
   return all;
 }
 
+/// What Vasilovici's report claims.
+Json list_claims() {
+  Json all = Json::array();
+  for (const SeedClaim& claim : seed_claims())
+    all.push_back({{"name", claim.section},
+                   {"summary", claim.claim},
+                   {"verdict", to_string(claim.verdict)},
+                   {"because", claim.because},
+                   {"truth", claim.truth.empty() ? Json() : Json(claim.truth)}});
+  return all;
+}
+
 Json list(std::string_view kind) {
   if (kind == "scenes") return list_scenes();
   if (kind == "solvers") return list_solvers();
+  if (kind == "claims") return list_claims();
   return kind == "metrics" ? list_metrics() : list_studies();
 }
 
@@ -100,6 +114,11 @@ void print_text(std::string_view kind, const Json& all) {
   for (const Json& one : all) {
     std::cout << "  " << text(one["name"]) << ": "
               << text(one.contains("summary") ? one["summary"] : one["question"]) << '\n';
+    if (one.contains("verdict")) {
+      const std::string truth = text(one["truth"]);
+      std::cout << "      " << text(one["verdict"]) << ": " << text(one["because"])
+                << (truth.empty() ? "" : " (truth " + truth + ")") << '\n';
+    }
     if (one.contains("source")) std::cout << "      source: " << text(one["source"]) << '\n';
     for (const Json& param : one.value("params", Json::array())) {
       std::cout << "      " << text(param["name"]) << '=' << text(param["default"]);
@@ -134,8 +153,8 @@ int run(const std::string& what, bool as_json) {
 std::function<int()> bind(CLI::App& app) {
   const auto what = std::make_shared<std::string>();
   const auto as_json = std::make_shared<bool>(false);
-  app.add_option("WHAT", *what, "scenes | solvers | metrics | studies (default: all)")
-      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies"}));
+  app.add_option("WHAT", *what, "scenes | solvers | metrics | studies | claims (default: all)")
+      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies", "claims"}));
   app.add_flag("--json", *as_json, "Print JSON");
   return [what, as_json] { return run(*what, *as_json); };
 }
@@ -143,8 +162,9 @@ std::function<int()> bind(CLI::App& app) {
 }  // namespace
 }  // namespace taut::verb::list
 
-TAUT_VERB(list) = {.name = "list",
-                   .group = VerbGroup::one_case,
-                   .summary = "Names scenes, solvers with their parameters, metrics and studies",
-                   .example = "taut list solvers",
-                   .bind = taut::verb::list::bind};
+TAUT_VERB(list) = {
+    .name = "list",
+    .group = VerbGroup::one_case,
+    .summary = "Names scenes, solvers with their parameters, metrics, studies and claims",
+    .example = "taut list solvers",
+    .bind = taut::verb::list::bind};

@@ -5,6 +5,7 @@
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/timing/answer.hpp"
+#include "experiments/timing/profile.hpp"
 
 namespace taut::report {
 
@@ -146,6 +147,33 @@ Json answer_row(const CostScene& scene) {
           others.empty() ? "no other solver can run this scene" : others, again};
 }
 
+/// Dolan and More's performance profiles at a few factors.
+Json profile_table(const BenchSession& session) {
+  const std::vector<Profile> profiles = performance_profiles(session.scenes, kPricedMetric);
+  const std::size_t problems = profiles.empty() ? 0 : profiles.front().ratios.size();
+  Json table{{"id", "cost-profiles"},
+             {"title", "How often each solver is within a factor of the cheapest"},
+             {"caption", "Of " + std::to_string(problems) + " problems, an error of " +
+                             quantity(kPricedMetric).title +
+                             " to be reached on a scene, with as many settings of every solver; a "
+                             "solver that does not get there is infinitely dear."},
+             {"columns", Json::array({{{"title", "solver"}}})},
+             {"rows", Json::array()}};
+  constexpr double kFactors[] = {1, 1.5, 2, 4, 10};
+  for (const double factor : kFactors)
+    table["columns"].push_back({{"title", "within " + significant(factor) + " times"}});
+  table["columns"].push_back({{"title", "ever"}});
+  for (const Profile& profile : profiles) {
+    if (problems == 0) break;
+    Json row = Json::array({solver_title(profile.solver)});
+    for (const double factor : kFactors)
+      row.push_back(significant(100 * profile.share(factor)) + "\u00A0%");
+    row.push_back(significant(100 * profile.share(std::numeric_limits<double>::max())) + "\u00A0%");
+    table["rows"].push_back(std::move(row));
+  }
+  return table;
+}
+
 }  // namespace
 
 Json json_of_cost(const BenchSession& session, References& refs, Json& charts, Json& tables) {
@@ -184,6 +212,10 @@ Json json_of_cost(const BenchSession& session, References& refs, Json& charts, J
   }
   cost["tables"].push_back("cost-answers");
   tables.push_back(std::move(answers));
+  if (Json profiles = profile_table(session); !profiles["rows"].empty()) {
+    cost["tables"].push_back(profiles["id"]);
+    tables.push_back(std::move(profiles));
+  }
   return cost;
 }
 

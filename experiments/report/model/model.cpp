@@ -419,6 +419,7 @@ class Builder {
         at["unequal"] = "Unequal work: " + unequal + ".";
       one["studies"].push_back(std::move(at));
     }
+    one["claims"] = json_of_seed_claims();
     for (const auto& [what, value] : input_.provenance)
       one["facts"].push_back({{"name", what}, {"value", value}});
     for (const std::string& host : input_.cost_hosts)

@@ -48,6 +48,8 @@ Json json_of(const SceneMedia&, const ReportInput&, References&, std::size_t& bu
 Json json_of_cost(const BenchSession&, References&, Json& charts, Json& tables);
 /// What two folders have otherwise; its table goes to those of the model.
 Json json_of(const Differences&, References&, Json& tables);
+/// What Vasilovici's report claims, with verdicts.
+Json json_of_seed_claims();
 /// Settings of every rival on a scene, row by row; null without a case.
 Json json_of_fairness(const QuotedScene&, const Rivals&, const References&);
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace taut {
+
+enum class SeedVerdict { holds, holds_if, does_not_hold, cannot_be_tested };
+std::string_view to_string(SeedVerdict);
+
+/// A claim of Vasilovici's Cloth Simulation Report that can be tested, and what became of it.
+struct SeedClaim {
+  std::string_view section;  ///< of the report
+  std::string_view claim;
+  SeedVerdict verdict;
+  std::string_view because;  ///< the condition, the figure, or why it cannot be tested
+  std::string_view truth;    ///< by name: `taut verify` holds the verdict to it; "": none can
+};
+
+/// All of them, in the report's order.
+std::span<const SeedClaim> seed_claims();
+
+}  // namespace taut
