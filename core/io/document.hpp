@@ -61,4 +61,8 @@ Document read_document(const std::filesystem::path&, const std::vector<std::stri
 Document parse_document(const std::string& file, const std::string& text,
                         const std::vector<std::string>& overrides);
 
+/// The document as TOML, without comments: it reads back as the same values. Throws InputError for
+/// a date or time, which no document of ours has.
+std::string to_toml(const Value& root);
+
 }  // namespace taut

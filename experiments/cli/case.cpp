@@ -20,7 +20,7 @@ namespace {
 
 struct Options {
   CaseOptions which;
-  bool json = false, verbose = false;
+  bool json = false, verbose = false, frames = false;
   std::string final_state, trajectory, series, into;
 };
 
@@ -32,11 +32,7 @@ class Keeper {
     if (!file.ends_with(".traj"))
       positions_ = create_positions(file, one.scene->mesh);
     else
-      trajectory_.emplace(file, TrajectoryHeader{.scene = one.scene->name,
-                                                 .solver = one.choice.canonical(),
-                                                 .frame_dt = one.scene->dt,
-                                                 .vertices = one.scene->mesh.size(),
-                                                 .triangles = one.scene->mesh.triangles});
+      trajectory_.emplace(file, trajectory_header(one));
   }
   void append(const Snapshot& m) {
     if (trajectory_) trajectory_->append(m.t, m.state);
@@ -62,7 +58,7 @@ void tell(const Snapshot& m, int steps) {
 int run(const Options& options) try {
   const Case one = options.which.make();
   continue_in_right_program(one.choice);
-  if (!options.into.empty()) return run_into(one, options.into);
+  if (!options.into.empty()) return run_into(one, options.into, options.frames);
 
   Keeper keeper(options.trajectory, one);
   const CaseRun result = run_case(
@@ -98,6 +94,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--series", options->series, "Write values over time (CSV)");
   app.add_flag("--verbose", options->verbose, "Say on stderr how far it is and what is effective");
   app.add_option("--into", options->into, "Used by taut run")->group("");
+  app.add_flag("--frames", options->frames, "Used by taut require")->group("");
   return [options] { return run(*options); };
 }
 

@@ -22,6 +22,8 @@ double estimated_work(const Case& one) {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 class Campaign {
  public:
   Campaign(const Store& store, const Session& session, const CampaignOptions& options)
@@ -31,11 +33,11 @@ class Campaign {
     sort_out(cases);
     const GracefulStop signals;
     while (!waiting_.empty() || !running_.empty()) {
-      if (GracefulStop::requested()) break;
+      if (GracefulStop::requested() || Clock::now() >= options_.deadline) break;
       while (!waiting_.empty() && running_.size() < static_cast<std::size_t>(options_.jobs)) {
         const Case& next = *waiting_.front();
         waiting_.pop_front();
-        running_.emplace_back(next, store_.stage(next.key), options_.limits);
+        running_.emplace_back(next, store_.stage(next.key), options_.limits, options_.frames);
       }
       wait();
       reap();
@@ -58,7 +60,8 @@ class Campaign {
       const bool failed = stored && !stored->status.is_result();
       if (options_.only_failed && !failed) continue;
       ++progress_.cases;
-      if (stored && !(options_.only_failed && failed)) {
+      const bool whole = stored && (!options_.frames || failed || store_.has_frames(one.key));
+      if (whole && !(options_.only_failed && failed)) {
         ++progress_.reused;
         ++progress_.by_status[stored->status.kind];
         session_.done(*stored);
@@ -74,11 +77,12 @@ class Campaign {
     report(nullptr);
   }
 
-  /// Until a case has ended, one runs out of time, or half a second has passed.
+  /// Until a case has ended, one runs out of time, the deadline or half a second has passed.
   void wait() {
     std::vector<pollfd> ends;
     for (const IsolatedCase& one : running_) ends.push_back({one.descriptor(), POLLIN, 0});
-    ::poll(ends.data(), ends.size(), 500);
+    const double left = std::chrono::duration<double>(options_.deadline - Clock::now()).count();
+    ::poll(ends.data(), ends.size(), static_cast<int>(1e3 * std::clamp(left, 0.001, 0.5)));
   }
 
   void reap() {
@@ -110,8 +114,6 @@ class Campaign {
   std::list<IsolatedCase> running_;
   CampaignProgress progress_;
 };
-
-using Clock = std::chrono::steady_clock;
 
 /// Nothing if it has not ended by then.
 std::optional<Record> wait_for(IsolatedCase& running, Clock::time_point deadline) {

@@ -37,6 +37,9 @@ struct CampaignOptions {
   Limits limits;
   Shard shard;
   bool only_failed = false;  ///< run again what is stored as a failure, and nothing else
+  bool frames = false;       ///< keep the motion too; what is stored without it is run again
+  /// What has not ended by then is killed and not stored.
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
   /// After every case that was run, and about twice a second (record: nullptr).
   std::function<void(const CampaignProgress&, const Record*)> progress;
 };
@@ -44,7 +47,7 @@ struct CampaignOptions {
 /// Runs those cases that the store does not have, each in a process of its own, the longest first,
 /// and commits each as it ends. SIGINT and SIGTERM end it after the running cases are killed; what
 /// was finished is stored. Throws InputError if results cannot be written: nothing finished is
-/// lost.
+/// lost. Unfinished at the deadline: done() < cases.
 CampaignProgress run_cases(const std::vector<Case>&, const Store&, const Session&,
                            const CampaignOptions&);
 

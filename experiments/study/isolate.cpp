@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -14,6 +15,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/printable.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
@@ -35,12 +37,13 @@ std::string last_line(const fs::path& file) {
   return printable(last);
 }
 
-std::vector<std::string> command(const Case& one, const fs::path& folder) {
+std::vector<std::string> command(const Case& one, const fs::path& folder, bool frames) {
   const auto program_of = one.choice.entry->program;
   const std::string program(program_of ? program_of(one.choice.params) : "");
   std::vector<std::string> words{sibling_program(program), "case",   one.spec.scene,
                                  one.spec.solver,          "--into", fs::absolute(folder)};
   for (const std::string& text : one.spec.overrides) words.insert(words.end(), {"--set", text});
+  if (frames) words.emplace_back("--frames");
   return words;
 }
 
@@ -80,17 +83,17 @@ int Heartbeat::last(const fs::path& path) {
   return step;
 }
 
-IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limits)
+IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limits, bool frames)
     : case_(one),
       folder_(std::move(folder)),
       deadline_(std::chrono::steady_clock::now() +
                 std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                     std::chrono::duration<double>(5 * limits.seconds))),
       bytes_(limits.bytes),
-      process_(command(case_, folder_), {.errors_file = folder_ / "stderr.txt",
-                                         .limits = {.cpu_seconds = limits.seconds,
-                                                    .address_space = limits.bytes,
-                                                    .file_bytes = kFileBytes}}) {}
+      process_(command(case_, folder_, frames), {.errors_file = folder_ / "stderr.txt",
+                                                 .limits = {.cpu_seconds = limits.seconds,
+                                                            .address_space = limits.bytes,
+                                                            .file_bytes = kFileBytes}}) {}
 
 std::optional<Record> IsolatedCase::poll() {
   std::optional<ProcessEnd> end = process_.poll();
@@ -141,7 +144,15 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   }
 }
 
-int run_into(const Case& one, const fs::path& folder) try {
+TrajectoryHeader trajectory_header(const Case& one) {
+  return {.scene = one.scene->name,
+          .solver = one.choice.canonical(),
+          .frame_dt = one.scene->dt,
+          .vertices = one.scene->mesh.size(),
+          .triangles = one.scene->mesh.triangles};
+}
+
+int run_into(const Case& one, const fs::path& folder, bool frames) try {
   std::signal(SIGXFSZ, SIG_DFL);  // a case that prints without end dies of it
   const auto write = [&](auto&& what) {
     try {
@@ -154,8 +165,16 @@ int run_into(const Case& one, const fs::path& folder) try {
   };
   std::optional<Heartbeat> heartbeat;
   if (!write([&] { heartbeat.emplace(folder / "heartbeat"); })) return kCannotWrite;
-  const CaseRun run = run_case(one, {.series_rows = kSeriesRows,
-                                     .watch = [&](const Snapshot& m) { heartbeat->beat(m.step); }});
+  std::optional<TrajectoryWriter> motion;
+  if (frames && !write([&] { motion.emplace(folder / kFramesFile, trajectory_header(one)); }))
+    return kCannotWrite;
+  const int steps = one.scene->steps, stride = std::max(1, steps / kFrames);
+  const CaseRun run = run_case(one, {.series_rows = kSeriesRows, .watch = [&](const Snapshot& m) {
+                                       heartbeat->beat(m.step);
+                                       if (motion && (m.step % stride == 0 || m.step == steps))
+                                         motion->append(m.t, m.state);
+                                     }});
+  motion.reset();
   const bool written = write([&] {
     write_durably(folder / "series.csv", to_csv(run.series));
     write_durably(folder / "case.json", to_json(run.record, 1) + "\n");

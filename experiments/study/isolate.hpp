@@ -6,6 +6,7 @@
 
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
+#include "experiments/case/trajectory.hpp"
 #include "experiments/system/process.hpp"
 
 namespace taut {
@@ -45,7 +46,8 @@ class Heartbeat {
 class IsolatedCase {
  public:
   /// Starts it; its files and what it says go into `folder`. Throws InputError if it cannot start.
-  IsolatedCase(const Case&, std::filesystem::path folder, const Limits&);
+  /// `frames`: its motion too (kFramesFile).
+  IsolatedCase(const Case&, std::filesystem::path folder, const Limits&, bool frames = false);
 
   /// Ready for reading when the process has ended.
   int descriptor() const { return process_.descriptor(); }
@@ -66,8 +68,11 @@ class IsolatedCase {
   Process process_;
 };
 
-/// The child's side: runs the case in this process and leaves case.json, series.csv and its
-/// heartbeat in `folder`. Gives the exit code.
-int run_into(const Case&, const std::filesystem::path& folder);
+/// What a recording of the case says about itself.
+TrajectoryHeader trajectory_header(const Case&);
+
+/// The child's side: runs the case in this process and leaves case.json, series.csv, its heartbeat
+/// and, if asked for, its frames in `folder`. Gives the exit code.
+int run_into(const Case&, const std::filesystem::path& folder, bool frames = false);
 
 }  // namespace taut

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array kParts{"case.json", "series.csv", "stderr.txt"};
+constexpr std::array kParts{"case.json", "series.csv", kFramesFile, "stderr.txt"};
 
 EntryParts parts_in(const fs::path& folder) {
   EntryParts parts;
@@ -173,6 +173,10 @@ EntryParts Store::parts(const std::string& key) const {
   return parts;
 }
 
+bool Store::has_frames(const std::string& key) const {
+  return fs::exists(folder(key) / kFramesFile);
+}
+
 void Store::prepare() const {
   make_folder(root_ / "store");
   make_folder(root_ / "tmp");
@@ -230,11 +234,12 @@ Store::Commit Store::commit(const fs::path& staged, const Record& record) const 
   for (int attempt = 0; attempt < 100; ++attempt) {
     if (const std::optional<Record> old = find(record.key)) {
       const bool same = result_digest(*old) == result_digest(record);
-      if (same || (old->status.is_result() && !record.status.is_result())) {
+      const bool adds_frames = same && fs::exists(staged / kFramesFile) && !has_frames(record.key);
+      if ((same && !adds_frames) || (old->status.is_result() && !record.status.is_result())) {
         fs::remove_all(staged, error);
         return Commit::same;
       }
-      if (old->status.is_result()) {
+      if (old->status.is_result() && !same) {
         const fs::path place = root_ / "conflicts" / (record.key + "." + unique_suffix());
         make_folder(place.parent_path());
         fs::rename(staged, place, error);

@@ -13,15 +13,21 @@
 
 namespace taut {
 
+/// A trajectory (experiments/case/trajectory.hpp) of about kFrames + 1 moments, first and last
+/// included.
+inline constexpr const char* kFramesFile = "frames.traj";
+inline constexpr int kFrames = 32;
+
 /// Results by content address. No locks and no shared appends: any number of processes may write,
 /// and one that is killed leaves at most a folder in tmp/, which is swept up later.
 ///
 ///     <root>/store/7f/7f3a.../  case.json    the record
 ///                               series.csv   values over time, if there are any
+///                               frames.traj  the motion at some moments, if it was asked for
 ///                               stderr.txt   what the case said, if it said anything
 ///                               status.json  digests of the others; written last
-///     <root>/packs/*.pack   entries of many small cases, each file written by one process:
-///     pack.hpp <root>/tmp/<key>.<host>.<pid>.<rand>/   an entry that is being written
+///     <root>/packs/*.pack                     many small entries in one file: pack.hpp
+///     <root>/tmp/<key>.<host>.<pid>.<rand>/   an entry that is being written
 ///     <root>/corrupt/<key>.<rand>/            entries that did not match their digests
 ///     <root>/conflicts/<key>.<rand>/          another result under a key that has one
 ///     <root>/sessions/<utc>-<host>.<pid>.<rand>/   who ran what: session.hpp
@@ -51,6 +57,8 @@ class Store {
   Series series(const std::string& key) const;
   /// Everything that is kept of a case; empty if there is none.
   EntryParts parts(const std::string& key) const;
+  /// Whether the motion of a stored case is kept, as folder(key) / kFramesFile.
+  bool has_frames(const std::string& key) const;
 
   /// Makes sure that results can be written, and sweeps up after killed processes of this host.
   /// Throws InputError with the reason.
@@ -59,7 +67,7 @@ class Store {
   std::filesystem::path stage(const std::string& key) const;
 
   enum class Commit {
-    stored,    ///< new, or in place of a failure
+    stored,    ///< new, or in place of a failure or of the same result without frames
     same,      ///< the same result was there
     conflict,  ///< another result was there: a determinism alarm; ours is in conflicts/
   };

@@ -20,6 +20,8 @@ namespace taut {
 
 namespace {
 
+using Steady = std::chrono::steady_clock;
+
 double seconds_of(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);
@@ -130,14 +132,13 @@ TimingWorker::TimingWorker(const std::filesystem::path& program, const CaseSpec&
 }
 
 std::string TimingWorker::ask(const std::string& request) {
-  using Clock = std::chrono::steady_clock;
   std::string answer;
   const double seconds =
       deadline_
-          ? std::clamp(std::chrono::duration<double>(*deadline_ - Clock::now()).count(), 0.0, 1e6)
+          ? std::clamp(std::chrono::duration<double>(*deadline_ - Steady::now()).count(), 0.0, 1e6)
           : -1;
   if (process_.write(request + "\n") && process_.read_line(answer, seconds)) return answer;
-  if (deadline_ && Clock::now() >= *deadline_) throw TimeIsUp();
+  if (deadline_ && Steady::now() >= *deadline_) throw TimeIsUp();
   throw std::runtime_error("the timing worker died");
 }
 
@@ -180,6 +181,7 @@ BenchCase start_case(const CaseSpec& spec, const BenchOptions& options) {
   one.timing.spec = spec;
   one.guard([&] {
     one.worker = std::make_unique<TimingWorker>(options.program(spec), spec);
+    if (options.deadline != Steady::time_point::max()) one.worker->give_up_at(options.deadline);
     const int all = std::max(1, options.steps(spec));
     const double pilot = one.worker->pilot_run(all).cpu;
     one.steps = std::clamp(static_cast<int>(std::min(options.seconds / std::max(pilot, 1e-9), 1e9)),
@@ -229,12 +231,16 @@ Bench run_bench(const std::vector<CaseSpec>& specs, const BenchOptions& options)
       one.timing.wall.push_back(time.wall);
     });
   };
+  Steady::duration longest{};
   for (int round = 0; round < options.rounds; ++round) {
+    const Steady::time_point start = Steady::now();
+    if (options.deadline - start < longest + longest / 2) break;
     std::for_each(cases.begin(), cases.end(), sample);
     std::for_each(cases.rbegin(), cases.rend(), sample);
     if (options.progress)
       options.progress(static_cast<std::size_t>(round) + 1,
                        static_cast<std::size_t>(options.rounds));
+    longest = std::max(longest, Steady::now() - start);
   }
   Bench bench;
   for (BenchCase& one : cases) {

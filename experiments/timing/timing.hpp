@@ -115,6 +115,8 @@ struct BenchOptions {
       program;                                ///< which executable times the case
   std::function<int(const CaseSpec&)> steps;  ///< how many steps the case has (or survived)
   std::function<void(std::size_t done, std::size_t all)> progress;
+  /// No round begins that would not end by then; a case that is not ready by then has a failure.
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
 };
 Bench run_bench(const std::vector<CaseSpec>&, const BenchOptions&);
 

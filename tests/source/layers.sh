@@ -24,6 +24,7 @@ experiments/study        | (core/(model|io|reference)|experiments/(system|metric
 experiments/cluster      | (core/(model|io)|experiments/(system|case|study|cluster))/
 experiments/timing       | (core/model|experiments/(system|case|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|baseline))/
+experiments/require      | (core/(model|io)|experiments/(system|metrics|case|study|timing|require))/
 experiments/truths       | (core/(model|reference)|experiments/(metrics|case|truths))/
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
@@ -108,6 +109,7 @@ core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
 core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
 core/solver/contact/planted.cpp|"core/solver/constraints/relaxation.hpp"
 experiments/cluster/planted.cpp|"experiments/timing/bench.hpp"
+experiments/require/planted.cpp|"experiments/report/format.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
 experiments/render/image/planted.cpp|"experiments/render/opengl/camera.hpp"
 experiments/render/opengl/planted.cpp|"experiments/render/picture/figure.hpp"

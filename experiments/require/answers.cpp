@@ -1,0 +1,189 @@
+#include "experiments/require/answers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/model/index.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/timing/statistics.hpp"
+
+namespace taut {
+
+namespace {
+
+const MetricEntry* metric_of(const std::string& value) {
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& spec : metric->values)
+      if (spec.name == value) return metric;
+  return nullptr;
+}
+
+bool same(const Unit& unit, const Unit& other) {
+  return unit.si == other.si && unit.shown == other.shown;
+}
+
+/// What 100 % is of.
+double whole(const KeptAnswer& answer, const Observation& full) {
+  const Unit unit = unit_of(answer);
+  if (unit.si == "m") return extent(*full.one.scene);
+  if (unit.si == "s") return full.one.scene->duration();
+  if (unit.shown == "%") return 1;
+  return std::abs(value_of(answer, full));
+}
+
+double default_tolerance(const KeptAnswer& answer, const Observation& full) {
+  const Unit unit = unit_of(answer);
+  if (same(unit, kCount) && !unit.logarithmic) return 0;
+  const double share = answer.is_shape() || unit.shown == "%" ? 0.01 : unit.si == "m" ? 0.001 : 0.1;
+  return share * whole(answer, full);
+}
+
+/// The scene's place of a vertex of a grid in another grid of the same sheet, bilinearly.
+Vec3 between(const Grid& grid, const std::vector<Vec3>& x, double u, double v) {
+  const auto part = [](double share, int count) {
+    const double at = share * (count - 1);
+    const int below = std::clamp(static_cast<int>(at), 0, std::max(0, count - 2));
+    return std::pair(below, at - below);
+  };
+  const auto [i, a] = part(u, grid.nu);
+  const auto [j, b] = part(v, grid.nv);
+  const auto at = [&](int di, int dj) -> const Vec3& {
+    return x[to_index(grid.index(std::min(i + di, grid.nu - 1), std::min(j + dj, grid.nv - 1)))];
+  };
+  return (1 - a) * (1 - b) * at(0, 0) + a * (1 - b) * at(1, 0) + (1 - a) * b * at(0, 1) +
+         a * b * at(1, 1);
+}
+
+double apart(const Scene& scene, const std::vector<Vec3>& x, const Scene& other,
+             const std::vector<Vec3>& y) {
+  double most = 0;
+  if (x.size() == y.size()) {
+    for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, (x[i] - y[i]).norm());
+    return most;
+  }
+  if (!scene.mesh.grid || !other.mesh.grid) return kNoAnswer;
+  const bool first = x.size() < y.size();
+  const Grid &few = first ? *scene.mesh.grid : *other.mesh.grid,
+             &many = first ? *other.mesh.grid : *scene.mesh.grid;
+  const auto share = [](int i, int count) {
+    return count > 1 ? static_cast<double>(i) / (count - 1) : 0.0;
+  };
+  for (int j = 0; j < few.nv; ++j)
+    for (int i = 0; i < few.nu; ++i) {
+      const Vec3& here = (first ? x : y)[to_index(few.index(i, j))];
+      const Vec3 there = between(many, first ? y : x, share(i, few.nu), share(j, few.nv));
+      most = std::max(most, (here - there).norm());
+    }
+  return most;
+}
+
+/// A metric's value on a motion, as the full model's scene has it measured.
+double measured(const KeptAnswer& answer, const Scene& scene,
+                const std::vector<TrajectoryReader::Frame>& frames) {
+  const MetricEntry* entry = metric_of(answer.name);
+  const auto metric = entry->make(scene);
+  if (!metric) return std::nan("");
+  for (const TrajectoryReader::Frame& frame : frames) {
+    if (frame.state.x.size() != scene.start.x.size()) return std::nan("");
+    const State state{frame.state.x, scene.start.v};
+    const auto before_end = std::lround((frames.back().t - frame.t) / scene.dt);
+    metric->observe({scene.steps - static_cast<int>(before_end), frame.t, state});
+  }
+  const std::vector<double> values = metric->finish();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (entry->values[i].name == answer.name) return values[i];
+  return std::nan("");
+}
+
+}  // namespace
+
+Unit unit_of(const KeptAnswer& answer) {
+  if (const MetricEntry* metric = metric_of(answer.name))
+    for (const ValueSpec& spec : metric->values)
+      if (spec.name == answer.name) return spec.unit;
+  return kLength;
+}
+
+std::string text(const KeptAnswer& answer, double value) {
+  if (!std::isfinite(value)) return "-";
+  const Unit unit = unit_of(answer);
+  return number_text(unit.scale * value) +
+         (unit.shown.empty() ? "" : " " + std::string(unit.shown));
+}
+
+KeptAnswer parse_answer(const std::string& asked, const Observation& full) {
+  const auto colon = asked.find(':');
+  KeptAnswer answer{asked.substr(0, colon), 0};
+  if (!answer.is_shape() && !metric_of(answer.name)) {
+    std::vector<std::string> names{kShapeAnswer};
+    for (const MetricEntry* metric : metrics())
+      for (const ValueSpec& spec : metric->values) names.emplace_back(spec.name);
+    throw InputError("--keep " + asked + ": unknown metric value '" + answer.name + "'" +
+                     suggestion(answer.name, names));
+  }
+  if (!answer.is_shape() && std::isnan(value_of(answer, full)))
+    throw InputError("--keep " + asked + ": has no value on this scene");
+  if (colon == std::string::npos) {
+    answer.tolerance = default_tolerance(answer, full);
+    return answer;
+  }
+  const std::string text = asked.substr(colon + 1);
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const std::string unit(end);
+  const Unit known = unit_of(answer);
+  const bool shown = unit == known.shown && unit != "%";
+  if (end == text.c_str() || !std::isfinite(number) || number < 0 ||
+      !(unit.empty() || unit == "%" || shown))
+    throw InputError("--keep " + asked + ": expected a number of at least 0 after ':' and then " +
+                     (known.shown.empty() || known.shown == "%"
+                          ? std::string()
+                          : "'" + std::string(known.shown) + "', ") +
+                     "'%' or nothing");
+  answer.tolerance = unit == "%"              ? number / 100 * whole(answer, full)
+                     : shown && !unit.empty() ? number / known.scale
+                                              : number;
+  return answer;
+}
+
+std::vector<std::string> default_answers(const Observation& full) {
+  std::vector<std::string> names{kShapeAnswer};
+  const auto& params = full.record.params;  // Bullet's "faces" are about normals
+  const bool faces =
+      params.contains("contact") && params.contains("faces") && params.at("faces") == "on";
+  for (const char* name :
+       {"stretch.max", "penetration.max", "face.max", "self.crossings", "settle.time"}) {
+    if (name == std::string("face.max") && !faces) continue;
+    if (!std::isnan(value_of({name}, full))) names.emplace_back(name);
+  }
+  return names;
+}
+
+double value_of(const KeptAnswer& answer, const Observation& one) {
+  const auto found = one.record.values.find(answer.name);
+  return found == one.record.values.end() ? std::nan("") : found->second;
+}
+
+double distance(const KeptAnswer& answer, const Observation& full, const Observation& other) {
+  if (!completed(other.record.status) || other.frames.empty() || full.frames.empty())
+    return kNoAnswer;
+  if (answer.is_shape())
+    return apart(*full.one.scene, full.frames.back().state.x, *other.one.scene,
+                 other.frames.back().state.x);
+  const double value = value_of(answer, other);
+  if (!std::isnan(value)) return std::abs(value - value_of(answer, full));
+  const double moved = std::abs(measured(answer, *full.one.scene, other.frames) -
+                                measured(answer, *full.one.scene, full.frames));
+  return std::isnan(moved) ? kNoAnswer : moved;
+}
+
+std::optional<double> apart_after(const Observation& a, const Observation& b, double tolerance) {
+  for (std::size_t k = 0; k < std::min(a.frames.size(), b.frames.size()); ++k)
+    if (apart(*a.one.scene, a.frames[k].state.x, *b.one.scene, b.frames[k].state.x) > tolerance)
+      return a.frames[k].t;
+  return std::nullopt;
+}
+
+}  // namespace taut

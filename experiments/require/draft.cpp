@@ -1,0 +1,133 @@
+#include "experiments/require/draft.hpp"
+
+#include <algorithm>
+
+#include "core/model/input_error.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Value& slot(Value& table, const std::string& key) {
+  for (std::size_t i = 0; i < table.keys.size(); ++i)
+    if (table.keys[i].text == key) return table.items[i];
+  table.keys.push_back({key, {}});
+  return table.items.emplace_back();
+}
+
+/// Without the tables of arrays that were emptied.
+Value without_empty(Value root) {
+  for (std::size_t i = root.items.size(); i-- > 0;) {
+    Value& one = root.items[i];
+    if (!one.is_array() || one.items.empty()) continue;
+    std::erase_if(one.items, [](const Value& v) { return v.is_table() && v.keys.empty(); });
+    if (one.items.empty()) erase_key(root, root.keys[i].text);
+  }
+  return root;
+}
+
+}  // namespace
+
+void erase_key(Value& table, const std::string& key) {
+  for (std::size_t i = 0; i < table.keys.size(); ++i)
+    if (table.keys[i].text == key) {
+      table.keys.erase(table.keys.begin() + static_cast<std::ptrdiff_t>(i));
+      table.items.erase(table.items.begin() + static_cast<std::ptrdiff_t>(i));
+      return;
+    }
+}
+
+Draft::Draft(const CaseSpec& spec)
+    : spec_(spec),
+      file_(find_scene(spec.scene)),
+      scene_(read_document(file_, spec.overrides)),
+      solver_(parse_solver(spec.solver).entry->name) {}
+
+Value& Draft::section(const std::string& name) {
+  scene_changed_ = true;
+  return slot(scene_.root, name);
+}
+
+void Draft::set(const std::string& name, const std::string& key, Value value) {
+  slot(section(name), key) = std::move(value);
+}
+
+void Draft::remove(const std::string& name) {
+  scene_changed_ = true;
+  erase_key(scene_.root, name);
+}
+
+void Draft::remove(const std::string& name, const std::string& key) {
+  if (find(name, key)) erase_key(section(name), key);
+}
+
+std::vector<Value>* Draft::tables(const std::string& name) {
+  const Value* found = scene_.root.find(name);
+  return found && found->is_array() ? &section(name).items : nullptr;
+}
+
+const Value* Draft::find(const std::string& name, const std::string& key) const {
+  const Value* found = scene_.root.find(name);
+  return found ? found->find(key) : nullptr;
+}
+
+void Draft::set_parameter(const std::string& name, const std::string& value) {
+  changed_[name] = value;
+}
+
+CaseSpec Draft::write(const fs::path& folder, const std::string& name,
+                      const std::string& comment) const {
+  const Params params = parse_solver(spec_.solver).params;
+  std::string text;
+  for (const ParamSpec& one : params.specs()) {
+    const auto changed = changed_.find(std::string(one.name));
+    text += (text.empty() ? ":" : ",") + std::string(one.name) + "=" +
+            (changed == changed_.end() ? std::string(params.value(one.name)) : changed->second);
+  }
+  const std::string solver = parse_solver(solver_ + text).canonical();
+  if (!scene_changed_ && comment.empty()) return {spec_.scene, spec_.overrides, solver};
+  Value root = without_empty(scene_.root);
+  if (const Value* mesh = find("cloth", "mesh"); mesh && mesh->is_string()) {
+    const fs::path there = fs::absolute(file_.parent_path() / mesh->string);
+    slot(slot(root, "cloth"), "mesh") =
+        text_value(fs::proximate(there, fs::absolute(folder)).string());
+  }
+  make_folder(folder);
+  const fs::path file = folder / (name + ".toml");
+  write_durably(file, comment + to_toml(root));
+  return {file.string(), {}, solver};
+}
+
+Value number_value(double number) {
+  Value value;
+  value.kind = Value::Kind::real;
+  value.number = number;
+  return value;
+}
+
+Value flag_value(bool flag) {
+  Value value;
+  value.kind = Value::Kind::boolean;
+  value.boolean = flag;
+  return value;
+}
+
+Value text_value(std::string text) {
+  Value value;
+  value.kind = Value::Kind::string;
+  value.string = std::move(text);
+  return value;
+}
+
+Value array_value(const std::vector<double>& numbers) {
+  Value value;
+  value.kind = Value::Kind::array;
+  for (const double number : numbers) value.items.push_back(number_value(number));
+  return value;
+}
+
+}  // namespace taut

@@ -1,0 +1,143 @@
+// What a case has that it may not need.
+#include <algorithm>
+
+#include "core/model/shortest.hpp"
+#include "experiments/require/draft.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr int kFewest = 4;  ///< vertices along a side that a coarser grid keeps at least
+
+/// Collects effects; those without a reduction are left out.
+class Effects {
+ public:
+  void add(const std::string& name, std::vector<Reduction> reductions) {
+    if (!reductions.empty()) all_.push_back({name, std::move(reductions)});
+  }
+  void gone(const std::string& name, std::function<void(Draft&)> apply) {
+    add(name, {{"gone", std::move(apply)}});
+  }
+  std::vector<Effect> take() { return std::move(all_); }
+
+ private:
+  std::vector<Effect> all_;
+};
+
+bool has_family(const Scene& scene, Family family) {
+  return std::ranges::any_of(scene.links, [&](const Link& l) { return l.family == family; });
+}
+
+bool has_parameter(const SolverChoice& choice, std::string_view name) {
+  return std::ranges::any_of(choice.entry->params,
+                             [&](const ParamSpec& spec) { return spec.name == name; });
+}
+
+void add_links_and_forces(const Case& one, Effects& effects) {
+  const Scene& scene = *one.scene;
+  const auto no_links = [](const char* family) {
+    return [family](Draft& draft) { draft.set("links", family, flag_value(false)); };
+  };
+  if (has_family(scene, Family::bend)) effects.gone("bend links", no_links("bend"));
+  if (has_family(scene, Family::shear)) effects.gone("shear links", no_links("shear"));
+  if (scene.wind) {
+    effects.gone("wind", [](Draft& draft) { draft.remove("wind"); });
+    if (scene.wind->law == Wind::Law::relative)
+      effects.add("law of the wind", {{"relative -> literal", [](Draft& draft) {
+                                         if (draft.has("wind"))
+                                           draft.set("wind", "law", text_value("literal"));
+                                       }}});
+  }
+  if (scene.damping > 0)
+    effects.gone("damping", [](Draft& draft) { draft.remove("forces", "damping"); });
+}
+
+void add_contact(const Case& one, Effects& effects) {
+  const Scene& scene = *one.scene;
+  if (std::ranges::any_of(scene.colliders, [](const Collider& c) { return c.friction > 0; }))
+    effects.gone("friction", [](Draft& draft) {
+      for (Value& collider : *draft.tables("collider")) erase_key(collider, "friction");
+    });
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const std::string number =
+        scene.colliders.size() > 1 ? " " + std::to_string(k + 1) : std::string();
+    effects.gone(std::string(type_name(scene.colliders[k].shape)) + number,
+                 [k](Draft& draft) { (*draft.tables("collider"))[k] = Value{}; });
+  }
+  if (scene.self_collision)
+    effects.gone("self-collision", [](Draft& draft) { draft.remove("self_collision"); });
+  if (scene.thickness > 0 && !scene.colliders.empty())
+    effects.gone("thickness", [](Draft& draft) { draft.remove("cloth", "thickness"); });
+}
+
+void add_choice(const Case& one, Effects& effects, const std::string& name,
+                const std::string& parameter, const std::string& from, const std::string& to) {
+  if (!has_parameter(one.choice, parameter) || one.choice.params.value(parameter) != from) return;
+  effects.add(name,
+              {{from + " -> " + to, [=](Draft& draft) { draft.set_parameter(parameter, to); }}});
+}
+
+/// A whole number, halved until it is 1.
+void add_count(const Case& one, Effects& effects, const std::string& name,
+               const std::string& parameter) {
+  if (!has_parameter(one.choice, parameter)) return;
+  const int from = one.choice.params.integer(parameter);
+  std::vector<Reduction> halves;
+  for (int n = from; n > 1;) {
+    n = (n + 1) / 2;
+    halves.push_back({std::to_string(from) + " -> " + std::to_string(n),
+                      [=](Draft& draft) { draft.set_parameter(parameter, std::to_string(n)); }});
+  }
+  effects.add(name, std::move(halves));
+}
+
+void add_sizes(const Case& one, Effects& effects) {
+  const Scene& scene = *one.scene;
+  if (scene.mesh.grid) {
+    const Grid& grid = *scene.mesh.grid;
+    const auto halved = [](int n) { return n == 1 ? 1 : (n + 1) / 2; };
+    const auto text = [](int nu, int nv) { return std::to_string(nu) + "x" + std::to_string(nv); };
+    std::vector<Reduction> coarser;
+    int nu = halved(grid.nu), nv = halved(grid.nv);
+    for (int k = 0; k < 2 && std::max(nu, nv) >= kFewest && (nu >= 2 || grid.nu == 1) &&
+                    (nv >= 2 || grid.nv == 1);
+         ++k, nu = halved(nu), nv = halved(nv))
+      coarser.push_back({text(grid.nu, grid.nv) + " -> " + text(nu, nv), [=](Draft& draft) {
+                           draft.set(
+                               "cloth", "grid",
+                               array_value({static_cast<double>(nu), static_cast<double>(nv)}));
+                         }});
+    effects.add("resolution", std::move(coarser));
+  }
+  std::vector<Reduction> shorter;
+  for (const int part : {2, 4, 8}) {
+    const double seconds = scene.duration() / part;
+    if (seconds < scene.dt) break;
+    shorter.push_back(
+        {shortest(scene.duration()) + " s -> " + shortest(seconds) + " s",
+         [=](Draft& draft) { draft.set("time", "duration", number_value(seconds)); }});
+  }
+  effects.add("duration", std::move(shorter));
+}
+
+}  // namespace
+
+std::vector<Effect> effects_of(const Case& one) {
+  Effects effects;
+  add_links_and_forces(one, effects);
+  add_contact(one, effects);
+  if (!one.scene->colliders.empty()) {
+    add_choice(one, effects, "contact of faces", "faces", "on", "off");
+    add_choice(one, effects, "swept tests", "contact", "continuous", "discrete");
+  }
+  add_choice(one, effects, "tethers", "tethers", "on", "off");
+  add_count(one, effects, "levels", "levels");
+  add_count(one, effects, "substeps", "substeps");
+  add_count(one, effects, "sweeps", "iterations");
+  add_choice(one, effects, "precision", "precision", "double", "float");
+  add_sizes(one, effects);
+  return effects.take();
+}
+
+}  // namespace taut

@@ -1,0 +1,373 @@
+#include "experiments/require/require.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/require/perturbation.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/timing/timing.hpp"
+
+namespace taut {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Shares of the patience by which a part of the work has to have ended.
+constexpr double kNoiseBy = 0.4, kTrialsBy = 0.65, kCombinedBy = 0.75, kVerifiedBy = 0.82,
+                 kTimedBy = 0.97;
+constexpr int kTimingRounds = 4;
+
+/// "Bend links" as part of a file's name.
+std::string slug(std::string text) {
+  for (char& c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '-';
+  return text;
+}
+
+class Search {
+ public:
+  Search(const RequireOptions& options, const Store& store, const Session& session,
+         std::filesystem::path folder)
+      : options_(options), store_(store), session_(session), folder_(std::move(folder)) {}
+
+  Requirement run() {
+    found_.full = make_case(options_.full);
+    if (!observe_full()) return std::move(found_);
+    try_effects();
+    combine();
+    verify();
+    measure();
+    return std::move(found_);
+  }
+
+ private:
+  Clock::time_point at(double share) const {
+    return start_ + std::chrono::duration_cast<Clock::duration>(
+                        std::chrono::duration<double>(share * options_.patience));
+  }
+
+  /// Runs what is not stored yet; by case: nothing if the time was up.
+  std::vector<std::optional<Observation>> observe(const std::vector<CaseSpec>& specs,
+                                                  double share) {
+    std::vector<Case> cases;
+    for (const CaseSpec& spec : specs) cases.push_back(maker_.make(spec));
+    const CampaignProgress campaign = run_cases(cases, store_, session_,
+                                                {.jobs = options_.jobs,
+                                                 .limits = {},
+                                                 .shard = {},
+                                                 .only_failed = false,
+                                                 .frames = true,
+                                                 .deadline = at(share),
+                                                 .progress = options_.progress});
+    found_.interrupted = found_.interrupted || campaign.interrupted;
+    found_.cases += campaign.cases, found_.ran += campaign.ran;
+    if (campaign.conflicts > 0)
+      throw InputError("another result than the one stored; see " +
+                       (store_.root() / "conflicts").string());
+    std::vector<std::optional<Observation>> seen;
+    for (const Case& one : cases) {
+      const std::optional<Record> record = store_.find(one);
+      if (!record || (completed(record->status) && !store_.has_frames(one.key))) {
+        seen.emplace_back();
+        continue;
+      }
+      Observation observed{one, *record, {}};
+      if (completed(record->status))
+        observed.frames = read_trajectory(store_.folder(one.key) / kFramesFile).frames;
+      seen.emplace_back(std::move(observed));
+    }
+    return seen;
+  }
+
+  /// The full model, what noise does to it, and which answers can be kept; false: no time.
+  bool observe_full() {
+    auto full = observe({options_.full}, kNoiseBy).front();
+    if (!full) return give_up("the full model");
+    if (!completed(full->record.status))
+      throw InputError(found_.full.id +
+                       " does not run to its end: " + describe(full->record.status));
+    full_ = std::move(*full);
+    for (const std::string& text : options_.keep.empty() ? default_answers(full_) : options_.keep) {
+      found_.answers.push_back(parse_answer(text, full_));
+      const KeptAnswer& answer = found_.answers.back();
+      found_.values.push_back(answer.is_shape() ? 0 : value_of(answer, full_));
+    }
+    const Perturbations other = perturbations(found_.full, folder_);
+    if (!add_noise(other.rounding, 2, true) || !add_noise(other.order, other.order.size(), false))
+      return give_up("the noise of the full model");
+    if (found_.chaotic && !add_noise(other.rounding, other.rounding.size(), true))
+      return give_up("the noise of the full model");
+    choose_answers();
+    return !found_.interrupted;
+  }
+
+  bool give_up(const std::string& what) {
+    found_.not_done.push_back(what);
+    return false;
+  }
+
+  bool add_noise(const std::vector<CaseSpec>& specs, std::size_t most, bool rounding) {
+    const std::vector<CaseSpec> some(
+        specs.begin(), specs.begin() + static_cast<std::ptrdiff_t>(std::min(most, specs.size())));
+    for (auto& one : observe(some, kNoiseBy)) {
+      if (!one) return false;
+      if (!completed(one->record.status)) continue;
+      if (rounding) find_horizon(*one);
+      runs_.push_back(std::move(*one));
+    }
+    return true;
+  }
+
+  void find_horizon(const Observation& other) {
+    const auto shape = std::ranges::find_if(found_.answers, &KeptAnswer::is_shape);
+    const double tolerance =
+        shape != found_.answers.end() ? shape->tolerance : parse_answer("shape", full_).tolerance;
+    if (const auto t = apart_after(full_, other, tolerance)) {
+      found_.horizon = found_.chaotic ? std::min(found_.horizon, *t) : *t;
+      found_.chaotic = true;
+    }
+  }
+
+  /// The noise of each answer; the shape of a chaotic scene is none that could be kept.
+  void choose_answers() {
+    for (const KeptAnswer& answer : found_.answers) {
+      double most = 0;
+      for (std::size_t i = 0; i < runs_.size(); ++i) {
+        most = std::max(most, distance(answer, full_, runs_[i]));
+        for (std::size_t j = 0; j < i; ++j)
+          most = std::max(most, distance(answer, runs_[j], runs_[i]));
+      }
+      found_.noise.push_back(most);
+    }
+    if (!found_.chaotic) return;
+    for (std::size_t i = found_.answers.size(); i-- > 0;) {
+      if (!found_.answers[i].is_shape()) continue;
+      found_.given_up.push_back("shape: a rounding error at the start moves it by " +
+                                text(found_.answers[i], found_.noise[i]));
+      const auto place = static_cast<std::ptrdiff_t>(i);
+      found_.answers.erase(found_.answers.begin() + place);
+      found_.values.erase(found_.values.begin() + place);
+      found_.noise.erase(found_.noise.begin() + place);
+    }
+  }
+
+  /// The case of the full model with these reductions; why it is none otherwise.
+  ModelTrial draft(const std::vector<const Reduction*>& reductions, const std::string& name,
+                   const std::string& change, const std::string& comment = "") {
+    ModelTrial trial{.change = change, .spec = {}, .why = "", .moved = {}, .cost = {}};
+    try {
+      Draft draft(options_.full);
+      for (const Reduction* reduction : reductions) reduction->apply(draft);
+      trial.spec = draft.write(folder_, name, comment);
+      maker_.make(trial.spec);
+    } catch (const InputError& error) {
+      trial.spec = {};
+      trial.why = error.diagnostics().front().message;
+      trial.moved.assign(found_.answers.size(), kNoAnswer);
+      trial.done = true;
+    }
+    return trial;
+  }
+
+  void judge(ModelTrial& trial, const std::optional<Observation>& seen) const {
+    if (!seen) return;
+    trial.done = trial.within = true;
+    trial.cost = seen->record.step_cost;
+    trial.steps = seen->record.steps;
+    if (!completed(seen->record.status)) trial.why = describe(seen->record.status);
+    for (std::size_t i = 0; i < found_.answers.size(); ++i) {
+      const double moved = distance(found_.answers[i], full_, *seen);
+      trial.moved.push_back(moved);
+      trial.within &= moved <= std::max(found_.answers[i].tolerance, found_.noise[i]);
+    }
+  }
+
+  /// Each effect by itself: all weakest reductions at once, then the next of those that may go.
+  void try_effects() {
+    effects_ = effects_of(found_.full);
+    for (const Effect& effect : effects_) found_.effects.push_back({effect.name, {}, 0, {}, {}});
+    for (std::size_t level = 0;; ++level) {
+      std::vector<CaseSpec> specs;
+      std::vector<ModelTrial*> asked;
+      for (std::size_t i = 0; i < effects_.size(); ++i) {
+        EffectTrial& effect = found_.effects[i];
+        if (effect.allowed < level || level >= effects_[i].reductions.size()) continue;
+        const Reduction& reduction = effects_[i].reductions[level];
+        effect.trials.push_back(
+            draft({&reduction}, slug(effect.name + " " + reduction.change), reduction.change));
+        if (effect.trials.back().done) continue;
+        specs.push_back(effect.trials.back().spec);
+        asked.push_back(&effect.trials.back());
+      }
+      if (specs.empty()) break;
+      const auto seen = observe(specs, kTrialsBy);
+      for (std::size_t i = 0; i < asked.size(); ++i) judge(*asked[i], seen[i]);
+      for (EffectTrial& effect : found_.effects)
+        if (effect.trials.size() > level && effect.trials[level].within)
+          effect.allowed = level + 1;
+        else if (effect.trials.size() > level && !effect.trials[level].done)
+          found_.not_done.push_back(effect.name);
+    }
+  }
+
+  /// Work of a whole run, that nothing disturbs: items visited.
+  static double work(const ModelTrial& trial) {
+    return static_cast<double>(work_of(trial.cost)) * trial.steps;
+  }
+
+  /// Effects and the reductions that are taken of them.
+  using Choice = std::vector<std::pair<std::size_t, std::size_t>>;
+
+  std::vector<const Reduction*> reductions(const Choice& choice) const {
+    std::vector<const Reduction*> all;
+    for (const auto& [effect, level] : choice) all.push_back(&effects_[effect].reductions[level]);
+    return all;
+  }
+
+  ModelTrial try_combined(const Choice& choice) {
+    // A name of its own: scenes are read once.
+    ModelTrial trial = draft(reductions(choice), "smaller-" + std::to_string(++combinations_), "");
+    if (!trial.done) judge(trial, observe({trial.spec}, kCombinedBy).front());
+    return trial;
+  }
+
+  /// All that may go at once, or else one after the other, the greatest saving first.
+  void combine() {
+    Choice wanted;
+    for (std::size_t i = 0; i < found_.effects.size(); ++i)
+      if (found_.effects[i].may_go()) wanted.emplace_back(i, found_.effects[i].allowed - 1);
+    if (wanted.empty() || found_.interrupted) return;
+    std::ranges::stable_sort(wanted, {}, [&](const auto& one) {
+      return work(found_.effects[one.first].trials[one.second]);
+    });
+    ModelTrial best = try_combined(wanted);
+    if (!best.within) wanted = one_by_one(wanted, best);
+    if (!best.within) return;
+    std::string comment =
+        "# The smallest model found of " + found_.full.id + ". Without, or coarser:\n";
+    for (const auto& [effect, level] : wanted) {
+      found_.effects[effect].chosen = level;
+      comment +=
+          "#   " + effects_[effect].name + ": " + effects_[effect].reductions[level].change + "\n";
+    }
+    best.spec = draft(reductions(wanted), "smallest", "", comment).spec;
+    found_.smallest = std::move(best);
+    found_.file = found_.smallest->spec.scene;
+  }
+
+  /// Adds what still stays within, each as strongly as it may; gives what was added, and its trial.
+  Choice one_by_one(const Choice& wanted, ModelTrial& best) {
+    Choice chosen;
+    for (const auto& [effect, level] : wanted)
+      for (std::size_t weaker = level + 1; weaker-- > 0;) {
+        Choice more = chosen;
+        more.emplace_back(effect, weaker);
+        ModelTrial trial =
+            chosen.empty() ? found_.effects[effect].trials[weaker] : try_combined(more);
+        if (!trial.done) {
+          found_.not_done.emplace_back("the combination");
+          return chosen;
+        }
+        if (!trial.within) continue;
+        best = std::move(trial), chosen = std::move(more);
+        break;
+      }
+    return chosen;
+  }
+
+  /// Runs the smallest model again, from its file and without the store.
+  void verify() {
+    if (!found_.smallest || found_.interrupted) return;
+    const Scratch scratch;
+    const Store apart(scratch.path());
+    apart.prepare();
+    const Case again = make_case(found_.smallest->spec);
+    run_cases({again}, apart, Session(apart, "taut require", {}, {}),
+              {.jobs = 1,
+               .limits = {},
+               .shard = {},
+               .only_failed = false,
+               .frames = false,
+               .deadline = at(kVerifiedBy),
+               .progress = {}});
+    const std::optional<Record> first = store_.find(again), second = apart.find(again);
+    if (!second) return found_.not_done.push_back("the verification");
+    found_.verified = first && first->digest == second->digest;
+  }
+
+  /// What every effect costs, and what the smallest model saves, from one interleaved session.
+  void measure() {
+    if (found_.interrupted) return;
+    std::vector<CaseSpec> specs{full_.record.spec};
+    std::vector<int> steps{full_.record.steps};
+    std::vector<std::optional<Interval>*> wanted{nullptr};
+    const auto ask = [&](const ModelTrial& trial, std::optional<Interval>& ratio) {
+      if (!trial.done || !trial.why.empty()) return;
+      specs.push_back(trial.spec), steps.push_back(trial.steps), wanted.push_back(&ratio);
+    };
+    if (found_.smallest) ask(*found_.smallest, found_.time_ratio);
+    for (EffectTrial& effect : found_.effects)
+      if (effect.done()) ask(effect.told(), effect.time);
+    const auto steps_of = [&](const CaseSpec& spec) {
+      for (std::size_t i = 0; i < specs.size(); ++i)
+        if (specs[i].scene == spec.scene && specs[i].solver == spec.solver) return steps[i];
+      return 1;
+    };
+    const Bench bench = run_bench(specs, {.rounds = kTimingRounds,
+                                          .seconds = 0.02,
+                                          .program = program_of,
+                                          .steps = steps_of,
+                                          .progress = {},
+                                          .deadline = at(kTimedBy)});
+    found_.control = bench.control;
+    for (std::size_t i = 1; i < specs.size(); ++i) {
+      if (bench.timings[i].samples.empty() || !bench.timings[i].failure.empty() ||
+          bench.timings[0].samples.size() != bench.timings[i].samples.size()) {
+        if (found_.not_done.empty() || found_.not_done.back() != "timing")
+          found_.not_done.emplace_back("timing");
+        continue;
+      }
+      const double longer = static_cast<double>(steps[i]) / steps[0];
+      const Interval ratio = bench.ratio(i, 0);
+      *wanted[i] = Interval{ratio.low * longer, ratio.mid * longer, ratio.high * longer};
+    }
+  }
+
+  const RequireOptions& options_;
+  const Store& store_;
+  const Session& session_;
+  std::filesystem::path folder_;
+  Clock::time_point start_ = Clock::now();
+  CaseMaker maker_;
+  Observation full_;
+  std::vector<Observation> runs_;  ///< the full model under noise
+  std::vector<Effect> effects_;
+  int combinations_ = 0;
+  Requirement found_;
+};
+
+}  // namespace
+
+std::size_t bytes_of(const std::vector<PassCost>& passes) {
+  return std::accumulate(passes.begin(), passes.end(), std::size_t{0},
+                         [](std::size_t sum, const PassCost& p) { return sum + p.bytes; });
+}
+
+std::size_t work_of(const std::vector<PassCost>& passes) {
+  return std::accumulate(
+      passes.begin(), passes.end(), std::size_t{0},
+      [](std::size_t sum, const PassCost& p) { return sum + p.items * p.repeats; });
+}
+
+Requirement find_requirement(const RequireOptions& options, const Store& store,
+                             const Session& session, const std::filesystem::path& folder) {
+  return Search(options, store, session, folder).run();
+}
+
+}  // namespace taut
