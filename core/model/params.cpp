@@ -36,8 +36,21 @@ bool parse(std::string_view text, auto& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+/// A value as it stands in a solver's text: in quotes if it needs them.
+std::string quoted_if_needed(const ParamSpec& spec, const std::string& value) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@%";
+  if (spec.kind != ParamSpec::Kind::text ||
+      (!value.empty() && value.find_first_not_of(kPlain) == value.npos))
+    return value;
+  std::string quoted = "'";
+  for (const char c : value) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
+}
+
 /// The canonical text of a value, or the reason why it is not one.
 std::string canonical_value(const ParamSpec& spec, std::string_view given, std::string& problem) {
+  if (spec.kind == ParamSpec::Kind::text) return std::string(given);
   if (spec.kind == ParamSpec::Kind::choice) {
     std::vector<std::string> allowed;
     for (Part& choice : split(spec.choices, '|')) {
@@ -68,6 +81,40 @@ std::string canonical_value(const ParamSpec& spec, std::string_view given, std::
 
 }  // namespace
 
+std::vector<ParamItem> param_items(std::string_view text) {
+  std::vector<ParamItem> items;
+  for (std::size_t at = 0; !text.empty() && at <= text.size();) {
+    ParamItem item;
+    item.at = at;
+    const auto start = at;
+    const auto eq = text.find_first_of("=,", at);
+    if (eq != text.npos && text[eq] == '=' && eq > at) {
+      item.key = text.substr(at, eq - at);
+      at = eq + 1;
+      const char quote = at < text.size() ? text[at] : '\0';
+      if (quote == '\'' || quote == '"') {
+        for (++at; at < text.size(); ++at) {
+          if (text[at] == quote && text.substr(at + 1, 1) != text.substr(at, 1)) break;
+          if (text[at] == quote) ++at;
+          item.value += text[at];
+        }
+        if (at == text.size()) item.problem = item.key + ": the quote " + quote + " is not closed";
+        at = std::min(at + 1, text.size());
+      }
+    }
+    const auto end = std::min(text.find(',', at), text.size());
+    if (item.key.empty())
+      item.problem = "expected key=value, got " + in_quotes(text.substr(start, end - start));
+    else if (at > item.at + item.key.size() + 1 && at != end && item.problem.empty())
+      item.problem = item.key + ": a comma has to follow the quote";
+    else
+      item.value += text.substr(at, end - at);
+    items.push_back(std::move(item));
+    at = end + 1;
+  }
+  return items;
+}
+
 Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::string_view text)
     : specs_(specs) {
   std::vector<Diagnostic> problems;
@@ -79,15 +126,13 @@ Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::st
     assert(problem.empty() && "a default outside its own range");
   }
   std::vector<bool> seen(specs.size());
-  for (const auto& [item, at] : split(text, ',')) {
+  for (const auto& [key, given, at, wrong] : param_items(text)) {
     const auto report = [&, column = static_cast<int>(at) + 1](const std::string& message) {
       problems.push_back({std::string(text), 0, column, std::string(owner) + ": " + message});
     };
-    const auto eq = item.find('=');
-    const std::string key = item.substr(0, eq);
     const std::size_t i = find(key);
-    if (eq == std::string::npos || key.empty()) {
-      report("expected key=value, got " + in_quotes(item));
+    if (!wrong.empty()) {
+      report(wrong);
     } else if (i == specs.size()) {
       report("unknown parameter " + in_quotes(key) + suggestion(key, names));
     } else if (seen[i]) {
@@ -95,11 +140,11 @@ Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::st
     } else {
       seen[i] = true;
       std::string problem;
-      const std::string value = canonical_value(specs[i], item.substr(eq + 1), problem);
+      const std::string value = canonical_value(specs[i], given, problem);
       if (problem.empty())
         values_[i] = value;
       else
-        report(key + "=" + item.substr(eq + 1) + " " + problem);
+        report(key + "=" + given + " " + problem);
     }
   }
   if (!problems.empty()) throw InputError(problems);
@@ -129,7 +174,8 @@ std::string Params::text(bool only_changed) const {
     std::string ignored;
     if (only_changed && values_[i] == canonical_value(specs_[i], specs_[i].default_value, ignored))
       continue;
-    all += (all.empty() ? "" : ",") + std::string(specs_[i].name) + "=" + values_[i];
+    all += (all.empty() ? "" : ",") + std::string(specs_[i].name) + "=" +
+           quoted_if_needed(specs_[i], values_[i]);
   }
   return all;
 }

@@ -9,7 +9,7 @@ namespace taut {
 
 /// A parameter of a solver: its name, range, default and one line of help.
 struct ParamSpec {
-  enum class Kind { integer, real, choice };
+  enum class Kind { integer, real, choice, text };
   std::string_view name;
   Kind kind = Kind::real;
   std::string_view unit;           ///< "" if it has none
@@ -18,6 +18,15 @@ struct ParamSpec {
   std::string_view choices;        ///< "exact|sqrt-free"; choices only
   std::string_view help;           ///< one line
 };
+
+/// "key=value" of a solver's text. A value in quotes ('a, b' or "a, b") may hold commas; a quote
+/// in it is written twice.
+struct ParamItem {
+  std::string key, value;  ///< the value without its quotes
+  std::size_t at = 0;      ///< where it begins in the text
+  std::string problem;     ///< it is no key=value, or a quote is not closed; "": it is one
+};
+std::vector<ParamItem> param_items(std::string_view text);
 
 /// Validated values of all parameters of one solver.
 class Params {
@@ -35,7 +44,7 @@ class Params {
   /// "key=value,..." in declared order: all of them, or only those that differ from their defaults.
   std::string canonical() const { return text(false); }
   std::string brief() const { return text(true); }
-  /// The value as text, in canonical form.
+  /// The value in canonical form; a text without quotes.
   std::string_view value(std::string_view name) const;
   std::span<const ParamSpec> specs() const { return specs_; }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,6 +36,14 @@ class Solver {
   virtual void store(State&) const = 0;        ///< copy out (untimed); step() leaves no debt behind
   virtual std::vector<PassCost> step_cost() const = 0;  ///< the passes of one step, in order
 
+  /// What step() has cost so far, from any origin; by default this process's CPU clock and the
+  /// largest size of its resident set, for a solver that computes in it.
+  virtual double cpu_seconds() const;       ///< NaN: cannot be measured
+  virtual std::size_t peak_bytes() const;   ///< 0: cannot be measured
+  virtual std::string time_remark() const;  ///< why its time is to be doubted or is none; "": fine
+  /// The end of what the solver's own program, if it has one, wrote to standard error.
+  virtual std::string log() const;
+
   /// Calls `visit` with the time at the end of every substep inside a step, where store() gives the
   /// state: for those who need the path between two step boundaries. Not while timing.
   void visit_substeps(std::function<void(double t)> visit) { visit_ = std::move(visit); }
@@ -47,6 +56,14 @@ class Solver {
 
  private:
   std::function<void(double)> visit_;
+};
+
+/// A solver that computes in a process of its own has failed there. `status` is the case's, by name
+/// ("crash", "timeout", "oom", "protocol", "error"); `log` the end of its standard error.
+struct SolverFailure : std::runtime_error {
+  SolverFailure(std::string status_, const std::string& reason, std::string log_ = "")
+      : std::runtime_error(reason), status(std::move(status_)), log(std::move(log_)) {}
+  std::string status, log;
 };
 
 /// A line of the fairness panel: what the solver makes of a setting ("time step", "1/64 s, as
@@ -85,22 +102,25 @@ struct LinearSweeps {
 /// Neither: no theory is known.
 using LinearModel = std::variant<std::monostate, LinearSprings, LinearSweeps>;
 
-/// How a solver introduces itself: one per file, found by its TAUT_SOLVER line.
+/// How a solver introduces itself: one per file, found by its TAUT_SOLVER line. Its functions may
+/// throw SolverFailure.
 struct SolverEntry {
   std::string_view name;
   std::string_view summary;           ///< one sentence
   std::string_view source;            ///< paper or library, with version
   std::span<const ParamSpec> params;  ///< drives the command line, the documentation and the errors
-  std::unique_ptr<Solver> (*make)(const Scene&, const Params&);
+  std::function<std::unique_ptr<Solver>(const Scene&, const Params&)> make;
   /// Why it would misread this scene, a sentence each; empty: it can.
-  std::vector<std::string> (*unsupported)(const Scene&, const Params&);
-  ResolvedSettings (*resolved_settings)(const Scene&, const Params&);
+  std::function<std::vector<std::string>(const Scene&, const Params&)> unsupported;
+  std::function<ResolvedSettings(const Scene&, const Params&)> resolved_settings;
   /// Which program can run this choice: "taut", "taut-f32", or "" for either. Null: either.
   /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
   /// other one, make() throws InputError.
   std::string_view (*program)(const Params&) = nullptr;
   AccuracyKnobs knobs = {};
   LinearModel (*linear_model)(const Scene&, const Params&) = nullptr;  ///< null: none is known
+  /// Digest of what a solver outside this program is made of; "": it is part of this program.
+  std::string_view implementation = "";
 };
 
 /// Constraint projections in one step: sum of items x repeats over the passes that project.
@@ -109,8 +129,21 @@ std::size_t projections_per_step(const Solver&);
 /// All solvers of this program, sorted by name (generated; see cmake/registry.cmake).
 std::span<const SolverEntry* const> solvers();
 
-/// Throws InputError with a suggestion if there is no such solver.
-const SolverEntry& find_solver(std::string_view name);
+/// Where solvers come from that are no part of this program (experiments/external). Entries live as
+/// long as the program does.
+struct SolverSource {
+  std::vector<const SolverEntry*> (*all)() = nullptr;
+  /// The entry of "name:params"; null: it has none of that name. Throws InputError.
+  const SolverEntry* (*find)(std::string_view name, std::string_view params) = nullptr;
+};
+void set_solver_source(SolverSource);
+
+/// solvers(), and those that the source names.
+std::vector<const SolverEntry*> all_solvers();
+
+/// Throws InputError with a suggestion if there is no such solver. `params` is what follows the
+/// name and its colon: it tells which external program is meant.
+const SolverEntry& find_solver(std::string_view name, std::string_view params = "");
 
 /// "name" or "name:key=value,..."; every parameter gets its value or its default. Throws
 /// InputError.

@@ -9,11 +9,14 @@ namespace taut {
 
 std::string case_key(const Scene& scene, const std::string& scene_digest,
                      const SolverChoice& choice) {
-  const Json parts{
-      {"schema", kRecordSchema},      {"scene", scene_digest},
-      {"solver", choice.canonical()}, {"implementation", implementation(choice.entry->name)},
-      {"measurement", measurement()}, {"dt", scene.dt},
-      {"steps", scene.steps}};
+  const std::string_view own = choice.entry->implementation;
+  const Json parts{{"schema", kRecordSchema},
+                   {"scene", scene_digest},
+                   {"solver", choice.canonical()},
+                   {"implementation", own.empty() ? implementation(choice.entry->name) : own},
+                   {"measurement", measurement()},
+                   {"dt", scene.dt},
+                   {"steps", scene.steps}};
   return sha256(to_text(parts));
 }
 

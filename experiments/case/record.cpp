@@ -9,8 +9,8 @@ namespace taut {
 
 namespace {
 constexpr std::array<std::string_view, 10> kNames{
-    "ok",      "exploded", "unsettled", "extreme", "unsupported",
-    "timeout", "oom",      "crash",     "error",   "interrupted"};
+    "ok",  "exploded", "unsettled", "extreme", "unsupported", "timeout",
+    "oom", "crash",    "protocol",  "error",   "interrupted"};
 }
 
 std::string_view to_string(Status::Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }

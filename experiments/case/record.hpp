@@ -21,6 +21,7 @@ struct Status {
     timeout,
     oom,
     crash,
+    protocol,  ///< an external program did not keep to taut-solver/1
     error,
     // never stored
     interrupted
@@ -65,6 +66,7 @@ struct Record {
   std::vector<PassCost> step_cost;
   ResolvedSettings resolved_settings;
   std::string digest;  ///< SHA-256 of the final state's bits
+  std::string log;  ///< the end of what a solver's own program wrote to standard error; no result
 };
 
 }  // namespace taut

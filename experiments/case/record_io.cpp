@@ -88,6 +88,7 @@ Record record_of(const JsonReader& j) {
     r.resolved_settings.emplace_back(pair[0].text(), pair[1].text());
   }
   r.digest = j.at("digest").text();
+  if (const auto log = j.find("log")) r.log = log->text();
   return r;
 }
 
@@ -117,6 +118,7 @@ std::string to_json(const Record& r, int indent) {
             {"steps", r.steps},
             {"vertices", r.vertices},
             {"links", r.links}});
+  if (!r.log.empty()) j["log"] = r.log;
   return to_text(j, indent);
 }
 

@@ -85,16 +85,19 @@ Record describe(const Scene& scene, const SolverChoice& choice) {
   return record;
 }
 
-CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOptions& options) {
-  CaseRun run{describe(scene, choice), {}, scene.start};
+namespace {
+
+/// `step` is the one that is being computed.
+void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions& options,
+               CaseRun& run, std::unique_ptr<Solver>& solver, int& step) {
   Record& record = run.record;
   for (const std::string& reason : choice.entry->unsupported(scene, choice.params))
     record.status.reason += (record.status.reason.empty() ? "" : "; ") + reason;
   if (!record.status.reason.empty()) {
     record.status.kind = Status::Kind::unsupported;
-    return run;
+    return;
   }
-  const std::unique_ptr<Solver> solver = choice.entry->make(scene, choice.params);
+  solver = choice.entry->make(scene, choice.params);
   solver->load(scene.start);
   record.step_cost = solver->step_cost();
   record.projections = projections_per_step(*solver);
@@ -106,13 +109,12 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
   const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));
   State state;
   bool stable = true;
-  int step = 0;
   if (instruments.follow_path())
     solver->visit_substeps([&](double t) {
       solver->store(state);
       instruments.observe_within({step, t, state});
     });
-  for (; step <= scene.steps; ++step) {
+  for (step = 0; step <= scene.steps; ++step) {
     if (step > 0) solver->step((step - 1) * scene.dt, scene.dt);
     solver->store(state);
     const Snapshot moment{step, step * scene.dt, state};
@@ -128,6 +130,21 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
   record.status = verdict.status();
   record.values = instruments.values(stable);
   record.digest = digest(run.last);
+}
+
+}  // namespace
+
+CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOptions& options) {
+  CaseRun run{describe(scene, choice), {}, scene.start};
+  std::unique_ptr<Solver> solver;
+  int step = 0;
+  try {
+    run_steps(scene, choice, options, run, solver, step);
+    if (solver) run.record.log = solver->log();
+  } catch (const SolverFailure& failure) {
+    run.record.status = {status_kind(failure.status), failure.what(), step - 1, -1};
+    run.record.log = failure.log;
+  }
   return run;
 }
 

@@ -156,7 +156,12 @@ class Advisor {
     for (const std::string& solver : options_.solvers) {
       const double deadline = elapsed() + (options_.patience - elapsed()) / left--;
       const Case one = make(solver);
-      const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
+      std::vector<std::string> reasons;
+      try {
+        reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
+      } catch (const SolverFailure& failure) {
+        reasons = {failure.what()};
+      }
       if (!reasons.empty()) {
         result_.unsupported.push_back(solver + ": " + reasons.front());
         continue;
@@ -334,7 +339,8 @@ int run(Options options) {
   find_scene(options.scene);
   target_of(options);
   if (options.solvers.empty())
-    for (const SolverEntry* entry : solvers()) options.solvers.emplace_back(entry->name);
+    for (const SolverEntry* entry : all_solvers())
+      if (entry->name != "external") options.solvers.emplace_back(entry->name);
   // What the first costs bounds how far the others need to be searched.
   std::ranges::stable_sort(options.solvers, {}, [](const std::string& solver) {
     return report::solver_place(parse_solver(solver).entry->name);

@@ -105,6 +105,8 @@ void print_failures(const SceneBench& bench) {
   for (const BenchedCase& c : bench.cases)
     if (!c.timing.failure.empty())
       std::cout << "  not timed: " << c.record.id << ": " << c.timing.failure << '\n';
+    else if (!c.timing.remark.empty())
+      std::cout << "  doubtful: " << c.record.id << ": " << c.timing.remark << '\n';
 }
 
 /// Cases grouped by scene, in order of appearance.

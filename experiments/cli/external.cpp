@@ -1,8 +1,113 @@
-#include "experiments/command_line/verb.hpp"
+#include "experiments/external/external.hpp"
 
-namespace taut::verb::external_group {
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/colour.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/external/probe.hpp"
+#include "experiments/external/scene_file.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
+
+namespace taut::verb::external_program {
 
 namespace {
+
+using external::Check;
+
+struct Options {
+  std::string command, scene, out;
+  std::vector<std::string> settings;
+  bool json = false;
+};
+
+int probe(const Options& options) {
+  const external::Command command = external::command_of(options.command);
+  const auto print = [&](const Check& check) {
+    if (options.json) return;
+    constexpr Colour kColours[] = {Colour::green, Colour::red, Colour::yellow};
+    std::cout << coloured(external::to_string(check.verdict),
+                          kColours[static_cast<int>(check.verdict)])
+              << "  " << check.name << ": " << check.said << std::endl;
+  };
+  const std::vector<Check> checks = external::full_probe(command, print);
+  std::size_t failed = 0;
+  Json all = Json::array();
+  for (const Check& check : checks) {
+    failed += check.verdict == Check::Verdict::failed;
+    all.push_back({{"check", check.name},
+                   {"verdict", external::to_string(check.verdict)},
+                   {"said", check.said}});
+  }
+  if (options.json)
+    std::cout << to_text({{"command", command.text()}, {"passed", failed == 0}, {"checks", all}}, 1)
+              << '\n';
+  else
+    std::cout << (failed == 0 ? "It may be scored.\n"
+                              : std::to_string(failed) + " of " + std::to_string(checks.size()) +
+                                    " checks failed: it is not scored.\n");
+  return failed == 0 ? kPass : kRegression;
+}
+
+std::function<int()> bind_probe(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  app.add_option("COMMAND", o->command,
+                 "The command, the name of a registered solver, or external:cmd='...'")
+      ->required();
+  add_json(app, o->json, "Every check with its sentence");
+  return [o] { return probe(*o); };
+}
+
+std::function<int()> bind_scene(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  app.add_option("SCENE", o->scene, "Name or path of a scene")->required();
+  app.add_option("-o,--out", o->out, "File to write")->required();
+  app.add_option("--set", o->settings, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
+      ->allow_extra_args(false);
+  return [o] {
+    write_file(o->out, external::scene_file(load_scene(find_scene(o->scene), o->settings)));
+    return kPass;
+  };
+}
+
+/// Downloads Jolt and registers it. Nothing of it is part of taut or of its set-up.
+int install(const std::string& name) {
+  namespace fs = std::filesystem;
+  constexpr const char* kPackage = "jolt-physics@1.1.0";
+  if (name != "jolt") throw InputError("unknown program '" + name + "': there is jolt");
+  for (const char* needed : {"node", "npm"})
+    if (!on_path(needed))
+      throw InputError(std::string(needed) + " is not here (apt install nodejs npm): no jolt");
+  const fs::path registered = external::registered_folder(), folder = registered / "jolt";
+  std::cerr << "npm downloads " << kPackage << " (MIT, 13 MB; 46 MB unpacked) into "
+            << folder.string() << "; to be rid of it, delete that folder and jolt.toml\n";
+  make_folder(folder);
+  const fs::path ours = data_folder() / "external";
+  write_file(folder / "jolt.js", read_text(ours / "jolt" / "jolt.js"));
+  write_file(folder / "taut_solver.js", read_text(ours / "sdk" / "taut_solver.js"));
+  Process npm({"npm", "install", "--prefix", folder, "--no-save", "--no-audit", "--no-fund",
+               "--ignore-scripts", kPackage},
+              {.output = ProcessOptions::Stream::piped, .errors = ProcessOptions::Stream::piped});
+  const std::string said = npm.read_all(600);
+  if (const auto end = npm.wait(10); !end || !end->good())
+    throw InputError("npm could not install " + std::string(kPackage) + ":\n" + said);
+  write_file(registered / "jolt.toml",
+             "cmd = \"node jolt/jolt.js\"\nfiles = "
+             "[\"jolt/taut_solver.js\", \"jolt/node_modules/jolt-physics/package.json\"]\n");
+  return probe({.command = "jolt"});
+}
+
+std::function<int()> bind_install(CLI::App& app) {
+  const auto name = std::make_shared<std::string>();
+  app.add_option("PROGRAM", *name, "jolt")->required();
+  return [name] { return install(*name); };
+}
 
 std::function<int()> bind(CLI::App& app) {
   app.require_subcommand(1);
@@ -10,10 +115,34 @@ std::function<int()> bind(CLI::App& app) {
 }
 
 }  // namespace
-}  // namespace taut::verb::external_group
+}  // namespace taut::verb::external_program
 
-TAUT_VERB(external) = {.name = "external",
-                       .group = VerbGroup::one_case,
-                       .summary = "Results from outside: positions that another program computed",
-                       .example = "taut external score hang blender.pc2 --fps 24",
-                       .bind = taut::verb::external_group::bind};
+TAUT_VERB(external) = {
+    .name = "external",
+    .group = VerbGroup::one_case,
+    .summary = "Solvers from outside: programs that speak taut-solver/1",
+    .example =
+        "taut external probe 'python3 mine.py'\n  taut case hang \"external:cmd='python3 "
+        "mine.py',iterations=8\"",
+    .bind = taut::verb::external_program::bind};
+
+TAUT_VERB(external_probe) = {
+    .name = "external probe",
+    .group = VerbGroup::one_case,
+    .summary = "Says in sentences whether a program may be scored, and what is wrong with it",
+    .example = "taut external probe 'python3 mine.py'\nExit: 0 it may be scored; 1 it may not",
+    .bind = taut::verb::external_program::bind_probe};
+
+TAUT_VERB(external_install) = {
+    .name = "external install",
+    .group = VerbGroup::one_case,
+    .summary = "Downloads another engine, says what, registers it as a solver and probes it: jolt",
+    .example = "taut external install jolt\n  taut case hang jolt:substeps=15",
+    .bind = taut::verb::external_program::bind_install};
+
+TAUT_VERB(external_scene) = {
+    .name = "external scene",
+    .group = VerbGroup::one_case,
+    .summary = "Writes a scene as programs get it: everything resolved, as JSON",
+    .example = "taut external scene hang -o hang.json",
+    .bind = taut::verb::external_program::bind_scene};

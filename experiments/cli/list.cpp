@@ -20,6 +20,7 @@ constexpr std::string_view kKinds[] = {"scenes", "solvers", "metrics", "studies"
 
 std::string allowed(const ParamSpec& spec) {
   if (spec.kind == ParamSpec::Kind::choice) return std::string(spec.choices);
+  if (spec.kind == ParamSpec::Kind::text) return "any text";
   if (spec.kind == ParamSpec::Kind::integer)
     return std::to_string(static_cast<long>(spec.min)) + " to " +
            std::to_string(static_cast<long>(spec.max));
@@ -42,7 +43,7 @@ Json list_scenes() {
 
 Json list_solvers() {
   Json all = Json::array();
-  for (const SolverEntry* entry : solvers()) {
+  for (const SolverEntry* entry : all_solvers()) {
     Json params = Json::array();
     for (const ParamSpec& spec : entry->params)
       params.push_back({{"name", spec.name},

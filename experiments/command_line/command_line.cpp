@@ -11,6 +11,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/printable.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/case/key.hpp"
 #include "experiments/command_line/manual.hpp"
@@ -144,6 +145,8 @@ int command_line(int argc, char** argv) {
     std::cerr << "out of memory\n";
   } catch (const InputError& error) {
     std::cerr << error.what() << '\n';
+  } catch (const SolverFailure& failure) {
+    std::cerr << failure.status << ": " << failure.what() << '\n' << failure.log;
   } catch (const std::filesystem::filesystem_error& error) {
     std::cerr << error.path1().string() << ": " << error.code().message() << '\n';
   }

@@ -1,4 +1,8 @@
 // The program: `taut VERB ...`. Each verb is a file in experiments/cli.
 #include "experiments/command_line/verb.hpp"
+#include "experiments/external/external.hpp"
 
-int main(int argc, char** argv) { return taut::command_line(argc, argv); }
+int main(int argc, char** argv) {
+  taut::external::enable();
+  return taut::command_line(argc, argv);
+}

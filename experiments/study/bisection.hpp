@@ -23,7 +23,7 @@ struct Probed {
   bool stable() const {
     return status.kind == Status::Kind::ok || status.kind == Status::Kind::extreme;
   }
-  /// A crash is an answer; want of time or memory is none.
+  /// A crash is an answer; want of time or memory is none, nor is a broken protocol.
   bool known() const { return status.is_result() || status.kind == Status::Kind::crash; }
 };
 

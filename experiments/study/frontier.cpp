@@ -46,6 +46,8 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
     range.from = 1e-3, range.to = 0.5;
   } else if (!of_scene(of)) {
     const ParamSpec& spec = find_param(choice, of);
+    if (spec.kind == ParamSpec::Kind::text)
+      throw InputError("'" + of + "' is a text, not a number");
     if (spec.kind == ParamSpec::Kind::choice)
       throw InputError("'" + of + "' is one of " + std::string(spec.choices) + ", not a number");
     range.from = spec.min, range.to = spec.max;

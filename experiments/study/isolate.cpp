@@ -92,7 +92,7 @@ IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limit
       bytes_(limits.bytes),
       process_(command(case_, folder_, frames), {.errors_file = folder_ / "stderr.txt",
                                                  .limits = {.cpu_seconds = limits.seconds,
-                                                            .address_space = limits.bytes,
+                                                            .memory = limits.bytes,
                                                             .file_bytes = kFileBytes}}) {}
 
 std::optional<Record> IsolatedCase::poll() {

@@ -14,7 +14,7 @@ namespace taut {
 /// What one case may use.
 struct Limits {
   double seconds = 120;  ///< CPU time; wall time may be five times as much (a busy machine)
-  std::size_t bytes = std::size_t{2} << 30;  ///< address space
+  std::size_t bytes = std::size_t{2} << 30;  ///< memory of its own
 };
 
 /// Exit code by which a case says that it ran out of memory.

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -92,8 +93,8 @@ struct Pipes {
     const rlimit both{soft, soft + grace};
     setrlimit(what, &both);
   };
-#ifndef __SANITIZE_ADDRESS__  // its shadow alone is terabytes of address space
-  limit(RLIMIT_AS, static_cast<double>(options.limits.address_space), 0);
+#ifndef __SANITIZE_ADDRESS__  // its shadow alone is terabytes
+  limit(RLIMIT_DATA, static_cast<double>(options.limits.memory), 0);
 #endif
   limit(RLIMIT_CPU, options.limits.cpu_seconds, 1);
   limit(RLIMIT_FSIZE, static_cast<double>(options.limits.file_bytes), 0);
@@ -112,11 +113,10 @@ struct Pipes {
   give_up(pipes);
 }
 
-/// This process's environment, with `mark` in the place of the mark that it has itself.
+/// This process's environment and `mark`.
 std::vector<char*> environment_with(std::string& mark) {
   std::vector<char*> variables{mark.data()};
-  for (char** at = environ; *at; ++at)
-    if (!std::string_view(*at).starts_with("TAUT_PROCESS=")) variables.push_back(*at);
+  for (char** at = environ; *at; ++at) variables.push_back(*at);
   variables.push_back(nullptr);
   return variables;
 }
@@ -140,7 +140,7 @@ Process::Process(std::vector<std::string> words, const ProcessOptions& options) 
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   static std::atomic<int> started{0};
-  mark_ = descent() + std::to_string(++started) + ";";
+  mark_ = descent() + std::to_string(++started) + "=";
   const std::vector<char*> variables = environment_with(mark_);
   Pipes pipes(words.front(), options);
   Descriptor errors_file;
@@ -218,14 +218,33 @@ std::optional<ProcessEnd> Process::wait(double seconds) {
   return {};
 }
 
-bool Process::write(std::string_view bytes) {
+bool Process::write(std::string_view bytes, double seconds) {
+  const auto end = in_seconds(seconds);
   while (!bytes.empty()) {
-    const ssize_t sent = send(input_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(sent));
+    const ssize_t sent = send(input_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent >= 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+      continue;
+    }
+    pollfd ready{input_, POLLOUT, 0};
+    if (errno == EAGAIN && ::poll(&ready, 1, milliseconds_until(end, seconds)) == 0) return false;
+    if (errno != EAGAIN && errno != EINTR) return false;
   }
   return true;
+}
+
+std::string Process::read_some(double seconds) {
+  if (buffer_.empty()) read_more(seconds);
+  return std::exchange(buffer_, {});
+}
+
+bool Process::has_descendants() const {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", ignored)) {
+    const pid_t pid = std::atoi(entry.path().filename().c_str());
+    if (pid > 0 && pid != pid_ && has_mark(pid, mark_)) return true;
+  }
+  return false;
 }
 
 void Process::close_input() {

@@ -15,9 +15,9 @@ namespace taut {
 
 /// What a process may use; 0: as much as this one.
 struct ProcessLimits {
-  double cpu_seconds = 0;         ///< SIGXCPU, and SIGKILL a second later
-  std::size_t address_space = 0;  ///< bytes
-  std::size_t file_bytes = 0;     ///< of each file that it writes
+  double cpu_seconds = 0;      ///< SIGXCPU, and SIGKILL a second later
+  std::size_t memory = 0;      ///< bytes of private data; address space alone costs nothing
+  std::size_t file_bytes = 0;  ///< of each file that it writes
 };
 
 struct ProcessOptions {
@@ -48,6 +48,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
+  pid_t pid() const { return pid_; }  ///< until it is reaped
   /// Ready for reading when it has ended.
   int descriptor() const { return descriptor_; }
   /// How it ended; nothing while it runs.
@@ -55,15 +56,21 @@ class Process {
   /// Waits for its end. Nothing: it still ran after so many seconds (< 0: no limit) and was killed.
   std::optional<ProcessEnd> wait(double seconds = -1);
 
-  /// To its standard input; false once it no longer reads (never a SIGPIPE).
-  bool write(std::string_view bytes);
+  /// To its standard input; false once it no longer reads (never a SIGPIPE), or has not read all of
+  /// it after so many seconds (< 0: no limit).
+  bool write(std::string_view bytes, double seconds = -1);
   void close_input();
   /// A line of its output without the line feed; false: it ended first, or so many seconds passed
   /// without more of it (< 0: no limit).
   bool read_line(std::string&, double seconds = -1);
+  /// What has come of its output, waiting so many seconds for some; empty: it ended, or there was
+  /// none.
+  std::string read_some(double seconds);
   /// Its output to the end; what came by then if that takes longer than so many seconds (< 0: no
   /// limit).
   std::string read_all(double seconds = -1);
+  /// Whether something lives that it started.
+  bool has_descendants() const;
 
  private:
   /// More output into buffer_; false: there is no more, or none until the time is up.

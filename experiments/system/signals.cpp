@@ -49,12 +49,6 @@ std::vector<pid_t> children() {
   return all;
 }
 
-bool has_mark(pid_t process, const std::string& mark) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/environ", std::ios::binary);
-  const std::string variables{std::istreambuf_iterator<char>(file), {}};
-  return variables.starts_with(mark) || variables.find('\0' + mark) != variables.npos;
-}
-
 /// Precondition: the caller holds the belongings.
 void end_children(const std::string& mark) {
   for (bool found = true; found;) {
@@ -107,10 +101,16 @@ void install_handler() {
 
 }  // namespace
 
+bool has_mark(pid_t process, const std::string& mark) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/environ", std::ios::binary);
+  const std::string variables{std::istreambuf_iterator<char>(file), {}};
+  return variables.starts_with(mark) || variables.find('\0' + mark) != variables.npos;
+}
+
 const std::string& descent() {
   static const std::string mark = [] {
     prctl(PR_SET_CHILD_SUBREAPER, 1);
-    return "TAUT_PROCESS=" + std::to_string(getpid()) + ".";
+    return "TAUT_PROCESS_" + std::to_string(getpid()) + "_";
   }();
   return mark;
 }

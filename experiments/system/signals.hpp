@@ -41,10 +41,13 @@ class EndsWithProgram {
   pid_t group_ = 0;
 };
 
-/// "TAUT_PROCESS=<this process>.": how the environment of every process begins that this one
-/// started, and of all that those start; a number follows for each. From the first call on, what
-/// loses its parent becomes a child of this process.
+/// "TAUT_PROCESS_<this process>_": how a variable begins that is in the environment of every
+/// process that this one started, and of all that those start; a number and "=" follow for each.
+/// From the first call on, what loses its parent becomes a child of this process.
 const std::string& descent();
+
+/// Whether a variable in the environment of the process begins with `mark`.
+bool has_mark(pid_t process, const std::string& mark);
 
 /// Ends what a started process left behind, also if it left its group and session: kills and reaps
 /// the children of this process that it did not start itself and whose environment has a variable

@@ -36,7 +36,8 @@ BenchedCase case_of(const JsonReader& j) {
                     .samples = j.at("cpu_seconds_per_step").numbers(),
                     .wall = j.at("wall_seconds_per_step").numbers(),
                     .peak_bytes = j.at("peak_bytes").count(),
-                    .failure = j.at("failure").text()};
+                    .failure = j.at("failure").text(),
+                    .remark = j.find("remark") ? j.at("remark").text() : ""};
   const Timing& timing = benched.timing;
   for (const auto* seconds : {&timing.samples, &timing.wall})
     for (const double value : *seconds)
@@ -146,7 +147,8 @@ std::string to_json(const BenchSession& session) {
                               {"cpu_seconds_per_step", timing.samples},
                               {"wall_seconds_per_step", timing.wall},
                               {"peak_bytes", timing.peak_bytes},
-                              {"failure", timing.failure}});
+                              {"failure", timing.failure},
+                              {"remark", timing.remark}});
     for (const std::string& solver : solvers_of(scene))
       for (const KnobRange& range : scene.knob_ranges(solver))
         one["knobs"][solver][range.knob] = {{"largest", range.largest}, {"end", range.end}};

@@ -22,30 +22,33 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-double seconds_of(clockid_t clock) {
+double wall_seconds() {
   timespec now{};
-  clock_gettime(clock, &now);
+  clock_gettime(CLOCK_MONOTONIC, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 /// Adds the time of its life to a StepTime.
 class Clock {
  public:
-  explicit Clock(StepTime& into) : into_(into) {}
+  Clock(StepTime& into, const Solver& solver) : into_(into), solver_(solver) {}
   ~Clock() {
-    into_.cpu += seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_;
-    into_.wall += seconds_of(CLOCK_MONOTONIC) - wall_;
+    into_.cpu += solver_.cpu_seconds() - cpu_;
+    into_.wall += wall_seconds() - wall_;
   }
   Clock(const Clock&) = delete;
   Clock& operator=(const Clock&) = delete;
 
  private:
   StepTime& into_;
-  double wall_ = seconds_of(CLOCK_MONOTONIC);
-  double cpu_ = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+  const Solver& solver_;
+  double wall_ = wall_seconds();
+  double cpu_ = solver_.cpu_seconds();
 };
 
 StepTime operator/(const StepTime& t, int steps) { return {t.cpu / steps, t.wall / steps}; }
+
+constexpr std::string_view kRefusal = "! ";  ///< begins a worker's answer that gives no time
 
 std::vector<std::string> worker_command(const std::filesystem::path& program,
                                         const CaseSpec& spec) {
@@ -62,7 +65,7 @@ double time_steps(const Scene& scene, Solver& solver, int steps) {
   solver.load(scene.start);
   StepTime time;
   {
-    const Clock clock(time);
+    const Clock clock(time, solver);
     for (int n = 0; n < steps; ++n) solver.step(n * scene.dt, scene.dt);
   }
   return time.cpu / steps;
@@ -77,7 +80,7 @@ CheckpointedRun::CheckpointedRun(const Scene& scene, Solver& solver, int steps) 
       starts_.push_back({n, {}});
       solver.store(starts_.back().state);
     }
-    const Clock clock(whole_);
+    const Clock clock(whole_, solver);
     solver.step(n * dt_, dt_);
   }
   whole_ = whole_ / std::max(1, steps);
@@ -90,7 +93,7 @@ StepTime CheckpointedRun::sample(Solver& solver, int steps) const {
     solver.load(start.state);
     solver.step(start.step * dt_, dt_);
     solver.load(start.state);
-    const Clock clock(time);
+    const Clock clock(time, solver);
     for (int n = start.step; n < start.step + share; ++n) solver.step(n * dt_, dt_);
   }
   return time / (share * static_cast<int>(starts_.size()));
@@ -102,22 +105,25 @@ int serve_timing(const Scene& scene, const SolverChoice& choice) {
   std::cout << "ready" << std::endl;
   std::optional<CheckpointedRun> run;
   std::string word;
-  while (std::cin >> word) {
-    int steps = 0;
-    StepTime time;
-    if (word == "pilot_run" && std::cin >> steps) {
-      run.emplace(scene, *solver, std::max(1, steps));
-      time = run->whole();
-      std::cout << time.cpu << ' ' << time.wall << std::endl;
-    } else if (word == "time" && run && std::cin >> steps) {
-      time = run->sample(*solver, steps);
-      std::cout << time.cpu << ' ' << time.wall << std::endl;
-    } else {
-      rusage usage{};
-      getrusage(RUSAGE_SELF, &usage);
-      std::cout << usage.ru_maxrss * 1024 << std::endl;
+  const auto answer = [&](const StepTime& time) {
+    if (std::isnan(time.cpu)) throw std::runtime_error(solver->time_remark());
+    std::cout << time.cpu << ' ' << time.wall << std::endl;
+  };
+  while (std::cin >> word) try {
+      int steps = 0;
+      if (word == "pilot_run" && std::cin >> steps) {
+        run.emplace(scene, *solver, std::max(1, steps));
+        answer(run->whole());
+      } else if (word == "time" && run && std::cin >> steps) {
+        answer(run->sample(*solver, steps));
+      } else if (word == "remark") {
+        std::cout << solver->time_remark() << std::endl;
+      } else {
+        std::cout << solver->peak_bytes() << std::endl;
+      }
+    } catch (const std::runtime_error& error) {
+      std::cout << kRefusal << error.what() << std::endl;
     }
-  }
   return 0;
 }
 
@@ -137,7 +143,10 @@ std::string TimingWorker::ask(const std::string& request) {
       deadline_
           ? std::clamp(std::chrono::duration<double>(*deadline_ - Steady::now()).count(), 0.0, 1e6)
           : -1;
-  if (process_.write(request + "\n") && process_.read_line(answer, seconds)) return answer;
+  if (process_.write(request + "\n") && process_.read_line(answer, seconds)) {
+    if (answer.starts_with(kRefusal)) throw std::runtime_error(answer.substr(kRefusal.size()));
+    return answer;
+  }
   if (deadline_ && Steady::now() >= *deadline_) throw TimeIsUp();
   throw std::runtime_error("the timing worker died");
 }
@@ -156,6 +165,8 @@ StepTime TimingWorker::pilot_run(int steps) {
 StepTime TimingWorker::sample(int steps) { return ask_time("time " + std::to_string(steps)); }
 
 std::size_t TimingWorker::peak_bytes() { return std::stoull(ask("memory")); }
+
+std::string TimingWorker::remark() { return ask("remark"); }
 
 namespace {
 
@@ -244,7 +255,10 @@ Bench run_bench(const std::vector<CaseSpec>& specs, const BenchOptions& options)
   }
   Bench bench;
   for (BenchCase& one : cases) {
-    one.guard([&] { one.timing.peak_bytes = one.worker->peak_bytes(); });
+    one.guard([&] {
+      one.timing.peak_bytes = one.worker->peak_bytes();
+      one.timing.remark = one.worker->remark();
+    });
     bench.timings.push_back(std::move(one.timing));
   }
   if (specs.empty()) return bench;

@@ -21,9 +21,9 @@ struct StepTime {
   double wall = 0;  ///< s; longer than cpu / threads on a busy machine, so only for display
 };
 
-/// CPU seconds per step that `solver` needs for the first `steps` steps of the scene, as this
-/// process's CPU clock counts them: only Solver::step is inside the clock. One untimed step comes
-/// first (caches, first touch). With several threads it is the CPU time of all of them.
+/// CPU seconds per step that `solver` needs for the first `steps` steps of the scene, as its CPU
+/// clock counts them (Solver::cpu_seconds): only Solver::step is inside the clock. One untimed step
+/// comes first (caches, first touch). With several threads it is the CPU time of all of them.
 double time_steps(const Scene&, Solver&, int steps);
 
 /// A run that was seen once, so that samples can begin anywhere in it: the first steps alone would
@@ -66,7 +66,8 @@ class TimingWorker {
   StepTime sample(int steps);  ///< see CheckpointedRun::sample
   /// From then on what is not answered throws TimeIsUp.
   void give_up_at(std::chrono::steady_clock::time_point deadline) { deadline_ = deadline; }
-  std::size_t peak_bytes();  ///< resident set of the worker so far
+  std::size_t peak_bytes();  ///< Solver::peak_bytes so far
+  std::string remark();      ///< Solver::time_remark
 
  private:
   std::string ask(const std::string& line);
@@ -93,7 +94,8 @@ struct Timing {
   std::vector<double> samples;    ///< CPU seconds per step, in the order taken: two per round
   std::vector<double> wall = {};  ///< the same in wall time
   std::size_t peak_bytes = 0;
-  std::string failure;  ///< why it could not be timed; empty: it was
+  std::string failure;      ///< why it could not be timed; empty: it was
+  std::string remark = {};  ///< why its time is to be doubted; empty: it is not
 };
 
 /// One session: every case sampled in rounds of alternating order (ABBA: A B C C B A), so that a

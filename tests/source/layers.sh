@@ -19,7 +19,7 @@ bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
 experiments/metrics      | (core/model|experiments/metrics)/
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
-experiments/external     | (core/(model|io)|experiments/(system|case|external))/
+experiments/external     | ((core/(model|io)|experiments/(system|case|external))/|taut_solver.hpp)
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
 experiments/cluster      | (core/(model|io)|experiments/(system|case|study|cluster))/
 experiments/timing       | (core/model|experiments/(system|case|timing))/

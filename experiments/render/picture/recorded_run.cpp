@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/model/input_error.hpp"
+#include "core/model/params.hpp"
 
 namespace taut {
 

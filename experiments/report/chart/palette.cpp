@@ -20,8 +20,8 @@ constexpr std::array kColours{
     Colour{"extreme", "#E8894A", "#D97B3C"},     Colour{"exploded", "#C9423B", "#C9473F"},
     Colour{"unsupported", "#9AA3AF", "#5F6977"}, Colour{"timeout", "#7A5BB5", "#7F62B8"},
     Colour{"oom", "#5A3E8E", "#5C4291"},         Colour{"crash", "#1F2430", "#05070A"},
-    Colour{"error", "#6E4A1E", "#7A5426"},       Colour{"glyph-light", "#FFFFFE", "#FFFFFE"},
-    Colour{"glyph-dark", "#1A1A19", "#1A1A19"},
+    Colour{"protocol", "#24506B", "#2A5C7A"},    Colour{"error", "#6E4A1E", "#7A5426"},
+    Colour{"glyph-light", "#FFFFFE", "#FFFFFE"}, Colour{"glyph-dark", "#1A1A19", "#1A1A19"},
 };
 
 Colour colour(std::string_view name) {
@@ -94,6 +94,8 @@ StatusStyle status_style(Status::Kind kind) {
       return {colour("oom"), "M", "hit the memory limit", light};
     case Status::Kind::crash:
       return {colour("crash"), "!", "killed by a signal", light};
+    case Status::Kind::protocol:
+      return {colour("protocol"), "P", "its program broke the protocol", light};
     case Status::Kind::error:
     case Status::Kind::interrupted:
       break;

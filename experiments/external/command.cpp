@@ -1,0 +1,37 @@
+#include "experiments/external/command.hpp"
+
+#include <wordexp.h>
+
+#include "core/model/input_error.hpp"
+#include "experiments/system/process.hpp"
+
+namespace taut::external {
+
+namespace fs = std::filesystem;
+
+std::string Command::text() const {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : " ") + shell_word(word);
+  return all;
+}
+
+Command split_command(const std::string& text, const fs::path& folder) {
+  wordexp_t words{};
+  const int problem = wordexp(text.c_str(), &words, WRDE_NOCMD);
+  Command command;
+  command.folder = folder;
+  if (problem == 0) command.words.assign(words.we_wordv, words.we_wordv + words.we_wordc);
+  wordfree(&words);
+  if (problem == WRDE_BADCHAR || problem == WRDE_CMDSUB)
+    throw InputError("cmd='" + text +
+                     "': no shell runs it; put | & ; < > ( ) { } $( ) in a script");
+  if (problem == WRDE_SYNTAX) throw InputError("cmd='" + text + "': a quote is not closed");
+  if (command.words.empty()) throw InputError("cmd='" + text + "' names no program");
+  const std::string& program = command.words.front();
+  const bool there =
+      program.find('/') != program.npos ? fs::exists(folder / program) : on_path(program);
+  if (!there) throw InputError("cmd='" + text + "': no program '" + program + "'");
+  return command;
+}
+
+}  // namespace taut::external

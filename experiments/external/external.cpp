@@ -1,0 +1,165 @@
+#include "experiments/external/external.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+
+#include "core/io/section.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/external/program.hpp"
+
+namespace taut::external {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr ParamSpec kLeading[] = {
+    {.name = "cmd", .kind = ParamSpec::Kind::text, .help = "The program that is called"},
+    {.name = "timeout",
+     .kind = ParamSpec::Kind::real,
+     .unit = "s",
+     .default_value = "30",
+     .min = 0.01,
+     .max = 86400,
+     .help = "Every answer has to come within this time"}};
+
+/// Stands for all programs where none is named.
+const SolverEntry kAny = {
+    .name = "external",
+    .summary = "Any program that speaks taut-solver/1: external:cmd='python3 mine.py'",
+    .source = "experiments/external/README.md",
+    .params = kLeading,
+    .make = [](const Scene&, const Params&) -> std::unique_ptr<Solver> {
+      throw InputError("external: which program? external:cmd='python3 mine.py'");
+    },
+    .unsupported =
+        [](const Scene&, const Params&) {
+          return std::vector<std::string>{"no program is named: external:cmd='python3 mine.py'"};
+        },
+    .resolved_settings = [](const Scene&, const Params&) { return ResolvedSettings{}; }};
+
+/// A solver's file in the registered folder.
+struct Registered {
+  Command command;
+  std::vector<std::string> files;
+};
+
+Registered read_registered(const fs::path& file) {
+  const Document document = read_document(file, {});
+  Diagnostics diagnostics(document);
+  Section section(diagnostics, document.root, "a solver");
+  Registered solver;
+  const std::string cmd = section.string("cmd").value_or("");
+  if (!section.find("cmd")) section.missing("cmd");
+  const double seconds = section.number("timeout", Range::positive(86400), 30);
+  if (const Value* files = section.find("files")) {
+    if (!files->is_array()) section.report("files", "'files' must be a list of texts");
+    for (const Value& item : files->items) {
+      if (!item.is_string() || !fs::is_regular_file(file.parent_path() / item.string))
+        diagnostics.report(item.place,
+                           "'files' holds names of files, relative to this one's folder");
+      solver.files.push_back(item.string);
+    }
+  }
+  section.finish();
+  diagnostics.throw_if_any();
+  try {
+    solver.command = split_command(cmd, fs::absolute(file).parent_path());
+  } catch (const InputError& error) {
+    section.report("cmd", error.diagnostics().front().message);
+  }
+  diagnostics.throw_if_any();
+  solver.command.seconds = seconds;
+  return solver;
+}
+
+fs::path file_of(const std::string& name) { return registered_folder() / (name + ".toml"); }
+
+std::vector<std::string> registered_names() {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& file : fs::directory_iterator(registered_folder(), none)) {
+    const std::string name = file.path().stem();
+    if (file.path().extension() != ".toml") continue;
+    if (name == kAny.name ||
+        std::ranges::any_of(solvers(), [&](auto* e) { return e->name == name; }))
+      throw InputError(file.path().string() + ": there is already a solver '" + name + "'");
+    names.push_back(name);
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+/// Programs by name, command and, if they did not introduce themselves, all that was typed.
+const SolverEntry* program(const std::string& name, std::string_view params,
+                           const Registered& solver, std::vector<ParamSpec> leading) {
+  static std::mutex mutex;
+  static std::map<std::string, std::unique_ptr<Program>> programs;
+  const std::lock_guard lock(mutex);
+  const std::string key =
+      name + '\n' + solver.command.text() + '\n' + std::to_string(solver.command.seconds);
+  auto& known = programs[key];
+  if (!known)
+    known = std::make_unique<Program>(name, solver.command, leading, params, solver.files);
+  if (known->introduced()) return &known->entry();
+  auto& one = programs[key + '\n' + std::string(params)];
+  if (!one) one = std::make_unique<Program>(*known, std::move(leading), params);
+  return &one->entry();
+}
+
+const SolverEntry* find(std::string_view name, std::string_view params) {
+  if (name == kAny.name) {
+    const std::vector<ParamItem> items = param_items(params);
+    if (std::ranges::find(items, "cmd", &ParamItem::key) == items.end()) return &kAny;
+    const Registered solver{command_of("external:" + std::string(params)), {}};
+    return program("external", params, solver, {std::begin(kLeading), std::end(kLeading)});
+  }
+  const std::string file(name);
+  if (file.find('/') != file.npos || !fs::is_regular_file(file_of(file))) return nullptr;
+  return program(file, params, read_registered(file_of(file)), {});
+}
+
+std::vector<const SolverEntry*> all() {
+  std::vector<const SolverEntry*> entries{&kAny};
+  for (const std::string& name : registered_names()) entries.push_back(find(name, ""));
+  return entries;
+}
+
+}  // namespace
+
+fs::path registered_folder() {
+  const auto variable = [](const char* name) -> fs::path {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+  };
+  if (const fs::path given = variable("TAUT_SOLVERS"); !given.empty()) return given;
+  const fs::path config = variable("XDG_CONFIG_HOME");
+  return (config.empty() ? variable("HOME") / ".config" : config) / "taut" / "solvers";
+}
+
+Command command_of(const std::string& text) {
+  if (!text.starts_with("external:")) {
+    const bool name =
+        text.find_first_of(" /'\"") == text.npos && fs::is_regular_file(file_of(text));
+    return name ? read_registered(file_of(text)).command : split_command(text, "");
+  }
+  std::string ours;  // the parameters that are not the program's
+  std::string cmd;
+  for (const ParamItem& item : param_items(std::string_view(text).substr(9)))
+    if (item.key == "timeout")
+      ours += "timeout=" + item.value;
+    else if (item.key == "cmd")
+      cmd = item.value;
+  Command command = split_command(cmd, "");
+  try {
+    command.seconds = Params("external", kLeading, ours).real("timeout");
+  } catch (const InputError&) {  // whoever reads all parameters says so, with its column
+  }
+  return command;
+}
+
+void enable() { set_solver_source({.all = all, .find = find}); }
+
+}  // namespace taut::external

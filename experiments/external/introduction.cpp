@@ -1,0 +1,212 @@
+#include "experiments/external/introduction.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
+#include "experiments/external/scene_file.hpp"
+
+namespace taut::external {
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double), "states are sent as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "states are little-endian");
+
+namespace {
+
+constexpr std::string_view kProtocol = "taut-solver/1";
+constexpr double kLargestInteger = 2147483647;
+
+/// Calls `read`; whatever it finds wrong in an answer breaks the protocol.
+template <class Read>
+auto judged(Session& session, const Json& answer, const std::string& op, Read read) {
+  try {
+    return read(JsonReader(answer, "answer to '" + op + "'"));
+  } catch (const InputError& error) {
+    session.fail("protocol", error.what());
+  }
+}
+
+bool is_name(std::string_view text) {
+  return !text.empty() && text.size() <= 40 && std::isalpha(static_cast<unsigned char>(text[0])) &&
+         std::ranges::all_of(
+             text, [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+}
+
+std::string text_or(const JsonReader& j, const char* key, const std::string& fallback = "") {
+  const auto found = j.find(key);
+  return found ? found->text() : fallback;
+}
+
+/// A parameter as the program describes it, with a default that its own range holds.
+class SpecReader {
+ public:
+  SpecReader(Hello& hello, const std::string& name, const JsonReader& j) : hello_(hello), j_(j) {
+    if (!is_name(name) || name == "cmd" || name == "timeout")
+      j.fail("is no name for a parameter (letters, digits, _ and -; not cmd or timeout)");
+    spec_.name = keep(name);
+    spec_.unit = keep(text_or(j, "unit"));
+    spec_.help = keep(text_or(j, "doc"));
+    const std::string type = j.at("type").text();
+    if (type == "choice")
+      read_choice();
+    else if (type == "text")
+      spec_.kind = ParamSpec::Kind::text, spec_.default_value = keep(text_or(j, "default"));
+    else if (type == "integer" || type == "real")
+      read_number(type == "integer");
+    else
+      j.at("type").fail("'" + type + "' is none of integer, real, choice, text");
+  }
+  const ParamSpec& spec() const { return spec_; }
+
+ private:
+  std::string_view keep(std::string text) { return hello_.texts.emplace_back(std::move(text)); }
+
+  void read_choice() {
+    spec_.kind = ParamSpec::Kind::choice;
+    const std::vector<std::string> choices = j_.at("choices").texts();
+    std::string all;
+    for (const std::string& choice : choices) {
+      if (choice.empty() || choice.find_first_of("|,'\" ") != choice.npos)
+        j_.at("choices").fail("'" + choice + "': a choice has no blank, comma, quote or bar");
+      all += (all.empty() ? "" : "|") + choice;
+    }
+    const std::string given = j_.at("default").text();
+    if (std::ranges::find(choices, given) == choices.end())
+      j_.at("default").fail("'" + given + "' is not one of " + all);
+    spec_.choices = keep(all), spec_.default_value = keep(given);
+  }
+
+  void read_number(bool whole) {
+    spec_.kind = whole ? ParamSpec::Kind::integer : ParamSpec::Kind::real;
+    spec_.min = j_.at("min").number(), spec_.max = j_.at("max").number();
+    const double given = j_.at("default").number();
+    if (!(spec_.min <= given && given <= spec_.max)) j_.at("default").fail("is outside min to max");
+    if (whole && (spec_.min < -kLargestInteger || spec_.max > kLargestInteger))
+      j_.fail("min to max is more than 32 bits hold");
+    if (whole && given != std::floor(given)) j_.at("default").fail("is not a whole number");
+    spec_.default_value = keep(whole ? std::to_string(std::lround(given)) : shortest(given));
+  }
+
+  Hello& hello_;
+  const JsonReader& j_;
+  ParamSpec spec_;
+};
+
+Json typed(const ParamSpec& spec, std::string_view value) {
+  switch (spec.kind) {
+    case ParamSpec::Kind::integer:
+      return std::stol(std::string(value));
+    case ParamSpec::Kind::real:
+      return std::stod(std::string(value));
+    default:
+      return std::string(value);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<const Hello> say_hello(Session& session) {
+  const Json answer = session.ask({{"op", "hello"}, {"protocol", kProtocol}});
+  return judged(session, answer, "hello", [](const JsonReader& j) {
+    if (const std::string protocol = j.at("protocol").text(); protocol != kProtocol)
+      j.at("protocol").fail("'" + protocol + "' is not '" + std::string(kProtocol) + "'");
+    auto hello = std::make_unique<Hello>();
+    hello->name = j.at("name").text();
+    hello->version = j.at("version").text();
+    hello->summary = text_or(j, "summary", hello->name);
+    hello->source = text_or(j, "source", hello->name + " " + hello->version);
+    hello->unmeasurable = text_or(j, "unmeasurable");
+    if (const auto params = j.find("params"))
+      for (const auto& [name, spec] : params->members())
+        hello->params.push_back(SpecReader(*hello, name, spec).spec());
+    return std::unique_ptr<const Hello>(std::move(hello));
+  });
+}
+
+Json own_params(const Hello& hello, const Params& params) {
+  Json all = Json::object();
+  for (const ParamSpec& spec : hello.params)
+    all[std::string(spec.name)] = typed(spec, params.value(spec.name));
+  return all;
+}
+
+Json default_params(const Hello& hello) {
+  Json all = Json::object();
+  for (const ParamSpec& spec : hello.params)
+    all[std::string(spec.name)] = typed(spec, spec.default_value);
+  return all;
+}
+
+SceneAnswer give_scene(Session& session, const Scene& scene, const Json& params) {
+  const auto file = session.folder() / "scene.json";
+  write_file(file, scene_file(scene));
+  const Json answer = session.ask({{"op", "scene"}, {"file", file.string()}, {"params", params}});
+  return judged(session, answer, "scene", [&](const JsonReader& j) {
+    SceneAnswer told;
+    if (const auto cannot = j.find("cannot")) told.cannot = cannot->texts();
+    if (!told.cannot.empty()) return told;
+    if (const int n = j.at("vertices").integer(); n != scene.mesh.size())
+      j.at("vertices")
+          .fail(std::to_string(n) + " is not the scene's " + std::to_string(scene.mesh.size()));
+    if (const auto plan = j.find("plan"))
+      for (const JsonReader& p : plan->items()) {
+        const auto repeats = p.find("repeats"), bytes = p.find("bytes"),
+                   projections = p.find("projections");
+        told.plan.push_back({.pass = p.at("pass").text(),
+                             .items = p.at("items").count(),
+                             .repeats = repeats ? repeats->count() : 1,
+                             .bytes = bytes ? bytes->count() : 0,
+                             .projections = projections && projections->flag()});
+      }
+    if (const auto settings = j.find("settings"))
+      for (const auto& [name, value] : settings->members())
+        told.settings.emplace_back(name, value.text());
+    return told;
+  });
+}
+
+void load_state(Session& session, const State& state) {
+  const std::size_t half = state.x.size() * sizeof(Vec3);
+  std::string bytes(2 * half, '\0');
+  if (half > 0) {
+    std::memcpy(bytes.data(), state.x.data(), half);
+    std::memcpy(bytes.data() + half, state.v.data(), half);
+  }
+  session.ask({{"op", "load"}, {"bytes", bytes.size()}}, bytes);
+}
+
+double take_steps(Session& session, double t, double dt, int count) {
+  const Json answer = session.ask({{"op", "step"}, {"t", t}, {"dt", dt}, {"count", count}});
+  return judged(session, answer, "step", [](const JsonReader& j) {
+    const auto said = j.find("cpu_ns");
+    return said ? 1e-9 * said->number() : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+
+bool agrees(double word, double clock, double empty) {
+  return std::abs(word - clock) <= 0.1 * clock + 2 * empty;
+}
+
+void store_state(Session& session, int vertices, State& state) {
+  const Json answer = session.ask({{"op", "store"}});
+  const auto n = static_cast<std::size_t>(vertices);
+  const std::size_t half = n * sizeof(Vec3);
+  judged(session, answer, "store", [&](const JsonReader& j) {
+    if (const std::size_t bytes = j.at("bytes").count(); bytes != 2 * half)
+      j.at("bytes").fail("a state of " + std::to_string(vertices) + " vertices has " +
+                         std::to_string(2 * half) + " bytes, not " + std::to_string(bytes));
+    return 0;
+  });
+  const std::string bytes = session.take(2 * half);
+  state.x.resize(n), state.v.resize(n);
+  if (half == 0) return;
+  std::memcpy(static_cast<void*>(state.x.data()), bytes.data(), half);
+  std::memcpy(static_cast<void*>(state.v.data()), bytes.data() + half, half);
+}
+
+}  // namespace taut::external

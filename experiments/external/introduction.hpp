@@ -1,0 +1,49 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/model/solver.hpp"
+#include "experiments/external/session.hpp"
+
+namespace taut::external {
+
+/// What a program answers to "hello".
+struct Hello {
+  std::string name, version, summary, source;
+  std::string unmeasurable;  ///< why its time says nothing; "": it does
+  std::vector<ParamSpec> params;
+  std::deque<std::string> texts;  ///< what the views of `params` see
+};
+
+/// Says hello. Throws SolverFailure with what is wrong in the answer.
+std::unique_ptr<const Hello> say_hello(Session&);
+
+/// What a program answers to "scene".
+struct SceneAnswer {
+  std::vector<std::string> cannot;  ///< why it would misread the scene; empty: it has loaded it
+  std::vector<PassCost> plan;
+  ResolvedSettings settings;
+};
+
+/// Gives the program a scene and the values of its own parameters.
+SceneAnswer give_scene(Session&, const Scene&, const Json& params);
+
+/// The values of the program's own parameters: numbers for numbers, texts for the others.
+Json own_params(const Hello&, const Params&);
+/// The same at their defaults.
+Json default_params(const Hello&);
+
+/// load, step and store.
+void load_state(Session&, const State&);
+/// Advances `count` steps of dt from t; gives the CPU seconds that the program says it took, NaN if
+/// it does not say.
+double take_steps(Session&, double t, double dt, int count);
+/// Whether a program's word about its time agrees with its CPU clock: within a tenth and two empty
+/// exchanges, what a busy machine's caches cost. [s] a step.
+bool agrees(double word, double clock, double empty);
+void store_state(Session&, int vertices, State&);
+
+}  // namespace taut::external

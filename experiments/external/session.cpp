@@ -1,0 +1,208 @@
+#include "experiments/external/session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <sstream>
+
+#include "core/model/shortest.hpp"
+#include "core/model/solver.hpp"
+
+namespace taut::external {
+
+namespace fs = std::filesystem;
+using SteadyClock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr std::size_t kLongestLine = 1 << 20, kLog = 4000;
+constexpr std::size_t kMostErrors = std::size_t{64} << 20;  ///< its standard error, bytes
+
+/// The beginning of what it said, for a message: one line of visible characters.
+std::string excerpt(std::string_view text) {
+  std::string shown;
+  for (const char c : text.substr(0, 200))
+    shown += c >= 0x20 && c < 0x7f ? c : c == '\n' ? ' ' : '?';
+  return "'" + shown + (text.size() > 200 ? "..." : "") + "'";
+}
+
+ProcessOptions options(const Command& command, const fs::path& errors) {
+  using Stream = ProcessOptions::Stream;
+  return {.input = Stream::piped,
+          .output = Stream::piped,
+          .errors_file = errors,
+          .folder = command.folder,
+          .limits = {.file_bytes = kMostErrors}};
+}
+
+/// Every language has words of its own for it.
+bool names_memory(const std::string& log) {
+  for (const char* word : {"MemoryError", "bad_alloc", "out of memory", "Cannot allocate memory"})
+    if (log.find(word) != log.npos) return true;
+  return false;
+}
+
+std::string last_line(const std::string& log) {
+  std::istringstream in(log);
+  std::string last;
+  for (std::string line; std::getline(in, line);)
+    if (line.find_first_not_of(" \t\r") != line.npos) last = line.substr(0, 300);
+  return last;
+}
+
+}  // namespace
+
+Session::Session(Command command)
+    : command_(std::move(command)),
+      process_(command_.words, options(command_, scratch_.path() / "stderr.txt")) {}
+
+std::string Session::log() const {
+  std::ifstream in(scratch_.path() / "stderr.txt", std::ios::binary | std::ios::ate);
+  const auto size = static_cast<std::size_t>(std::max<std::streamoff>(0, in.tellg()));
+  std::string text(std::min(size, kLog), '\0');
+  in.seekg(static_cast<std::streamoff>(size - text.size()));
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  return text;
+}
+
+void Session::fail(const std::string& status, const std::string& reason) {
+  process_.wait(0);  // and all that it started
+  throw SolverFailure(status, reason, log());
+}
+
+void Session::ended() {
+  const auto end = process_.wait(1);
+  const std::string during = " during '" + op_ + "'", said = last_line(log());
+  const std::string why = said.empty() ? "" : ": " + said;
+  if (!end) fail("protocol", "closed its standard output" + during);
+  if (end->signal == SIGXCPU) fail("timeout", "CPU time");
+  if (end->signal == SIGKILL) fail("oom", "killed by the system" + during);
+  if (names_memory(log())) fail("oom", "out of memory" + during + why);
+  if (end->signal == 0) fail("crash", "exit code " + std::to_string(end->exit_code) + during + why);
+  const char* name = sigabbrev_np(end->signal);
+  fail("crash",
+       (name ? "SIG" + std::string(name) : "signal " + std::to_string(end->signal)) + during + why);
+}
+
+void Session::more(SteadyClock::time_point deadline) {
+  const std::chrono::duration<double> left = deadline - SteadyClock::now();
+  const std::string some = process_.read_some(std::max(0.0, left.count()));
+  buffer_ += some;
+  if (!some.empty()) return;
+  if (SteadyClock::now() < deadline) ended();
+  fail("timeout",
+       "no answer to '" + op_ + "' within " + shortest(command_.seconds) + " s" +
+           (buffer_.empty() ? "" : ", only " + std::to_string(buffer_.size()) + " bytes"));
+}
+
+namespace {
+SteadyClock::time_point in(double seconds) {
+  return SteadyClock::now() +
+         std::chrono::duration_cast<SteadyClock::duration>(std::chrono::duration<double>(seconds));
+}
+}  // namespace
+
+std::string Session::take_line() {
+  const auto deadline = in(command_.seconds);
+  std::size_t end, seen = 0;
+  while ((end = buffer_.find('\n', seen)) == buffer_.npos) {
+    if (buffer_.size() > kLongestLine)
+      fail("protocol", "answered '" + op_ + "' with more than " + std::to_string(kLongestLine) +
+                           " bytes without a line feed: " + excerpt(buffer_));
+    seen = buffer_.size();
+    more(deadline);
+  }
+  std::string line = buffer_.substr(0, end);
+  buffer_.erase(0, end + 1);
+  return line;
+}
+
+std::string Session::take(std::size_t bytes) {
+  const auto deadline = in(command_.seconds);
+  while (buffer_.size() < bytes) more(deadline);
+  std::string taken = buffer_.substr(0, bytes);
+  buffer_.erase(0, bytes);
+  return taken;
+}
+
+void Session::send(const std::string& line, std::string_view bytes) {
+  if (!buffer_.empty())
+    fail("protocol", "said more than it was asked for, after '" + op_ + "': " + excerpt(buffer_));
+  for (const std::string_view part : {std::string_view(line), bytes})
+    if (!process_.write(part, command_.seconds)) {
+      if (process_.poll()) ended();
+      fail("timeout", "did not read its input within " + shortest(command_.seconds) + " s");
+    }
+}
+
+Json Session::ask_line(const std::string& line) {
+  op_ = line.substr(0, 60);
+  send(line + "\n", {});
+  const std::string said = take_line();
+  try {
+    Json answer = parse_json(said);
+    if (answer.is_object()) return answer;
+  } catch (const Json::exception&) {
+  }
+  fail("protocol", "answered '" + op_ + "' with what is no JSON object: " + excerpt(said));
+}
+
+Json Session::ask(const Json& request, std::string_view bytes) {
+  op_ = request.at("op").get<std::string>();
+  send(to_text(request) + "\n", bytes);
+  const std::string said = take_line();
+  if (ticks_at_start_ < 0) ticks_at_start_ = children_ticks();  // those of a script that became it
+  Json answer;
+  try {
+    answer = parse_json(said);
+  } catch (const Json::exception&) {
+  }
+  if (!answer.is_object())
+    fail("protocol", "answered '" + op_ + "' with what is no JSON object: " + excerpt(said));
+  const auto error = answer.find("error");
+  if (error == answer.end()) return answer;
+  const std::string why = error->is_string() ? error->get<std::string>() : to_text(*error);
+  fail(names_memory(why) ? "oom" : "error", "refused '" + op_ + "': " + why.substr(0, 500));
+}
+
+double Session::cpu_seconds() const {
+  clockid_t clock{};
+  timespec now{};
+  if (clock_getcpuclockid(process_.pid(), &clock) != 0 || clock_gettime(clock, &now) != 0)
+    return std::nan("");
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::size_t Session::peak_bytes() const {
+  std::ifstream in("/proc/" + std::to_string(process_.pid()) + "/status");
+  std::size_t kilobytes = 0;
+  for (std::string word; in >> word;)
+    if (word == "VmHWM:" && in >> kilobytes) break;
+  return kilobytes * 1024;
+}
+
+long Session::children_ticks() const {
+  std::ifstream in("/proc/" + std::to_string(process_.pid()) + "/stat");
+  std::string text;
+  std::getline(in, text);
+  std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
+  std::string skipped;
+  for (int i = 3; i < 16; ++i) fields >> skipped;  // proc(5): cutime is the 16th, cstime the 17th
+  long user = 0, system = 0;
+  fields >> user >> system;
+  return user + system;
+}
+
+bool Session::has_helpers() const {
+  return children_ticks() > ticks_at_start_ || process_.has_descendants();
+}
+
+std::optional<ProcessEnd> Session::close(double seconds) {
+  process_.close_input();
+  return process_.wait(seconds);
+}
+
+}  // namespace taut::external

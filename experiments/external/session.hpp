@@ -1,0 +1,57 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "experiments/external/command.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
+
+namespace taut::external {
+
+/// A running program that speaks taut-solver/1 over its standard input and output
+/// (experiments/external/README.md). Whatever it does wrong is a SolverFailure with the end of its
+/// standard error; it and all that it started die then, and with this object.
+class Session {
+ public:
+  explicit Session(Command);  ///< throws InputError if it cannot be started
+
+  /// Sends a request, and bytes after its line, and gives the answer: an object without "error".
+  Json ask(const Json& request, std::string_view bytes = {});
+  /// Sends a line as it is and gives the answer, whatever it says: for bad requests.
+  Json ask_line(const std::string& line);
+  /// Exactly so many bytes, which follow an answer.
+  std::string take(std::size_t bytes);
+  [[noreturn]] void fail(const std::string& status, const std::string& reason);
+
+  /// CPU seconds of all its threads; its largest resident set.
+  double cpu_seconds() const;
+  std::size_t peak_bytes() const;
+  /// Whether it has started other processes since its first answer, whose time cpu_seconds() does
+  /// not hold.
+  bool has_helpers() const;
+
+  /// Closes its input; how it ended within so many seconds, or nothing: it had to be killed.
+  std::optional<ProcessEnd> close(double seconds);
+  std::string log() const;  ///< the last 4000 bytes of its standard error
+  const std::filesystem::path& folder() const { return scratch_.path(); }  ///< for scene files
+
+ private:
+  std::string take_line();
+  /// Waits for more output; throws SolverFailure if there is none.
+  void more(std::chrono::steady_clock::time_point deadline);
+  long children_ticks() const;  ///< CPU time of its children that have ended
+  void send(const std::string& line, std::string_view bytes);
+  [[noreturn]] void ended();
+
+  Command command_;
+  Scratch scratch_;
+  Process process_;
+  std::string buffer_, op_;   ///< output not yet taken; what was asked last
+  long ticks_at_start_ = -1;  ///< children_ticks() at its first answer; -1: before
+};
+
+}  // namespace taut::external

@@ -1,0 +1,239 @@
+#!/usr/bin/env python3
+"""Programs as solvers: the SDKs' toys give what jakobsen gives; hostile programs cost their own case and leave no process;
+the probe names what is wrong.
+
+Usage: external_test.py FOLDER_OF_TAUT [TEST ...]"""
+
+import csv
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "cli"))
+from command_line import BINARIES, CommandLine, main  # noqa: E402
+
+SDK = HERE.parents[1] / "experiments" / "external" / "sdk"
+os.environ["TAUT_SDK"] = str(SDK)
+os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+LISTING = "jakobsen:substeps=1,order=mesh,projection=exact,precision=double,iterations="
+TOYS = {"python": f"python3 {SDK}/toy.py", "cpp": str(BINARIES / "tests" / "taut_toy_solver"), "node": f"node {SDK}/toy.js"}
+
+
+def hostile(mode, timeout=3):
+    return f"external:cmd='python3 {HERE}/hostile.py {mode}',timeout={timeout}"
+
+
+def alive(word):
+    """Processes whose command line has the word."""
+    found = []
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            words = (folder / "cmdline").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if any(word.encode() == w or w.endswith(word.encode()) for w in words):
+            found.append((int(folder.name), words))
+    return found
+
+
+class Programs(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.solvers = self.folder / "solvers"
+        self.solvers.mkdir()
+        os.environ["TAUT_SOLVERS"] = str(self.solvers)
+
+    def end_of(self, scene, solver, *more):
+        self.taut("case", scene, solver, "--final-state", "end.csv", *more)
+        rows = csv.DictReader((self.folder / "end.csv").read_text().splitlines())
+        return [float(row[key]) for row in rows for key in ("x", "y", "z", "vx", "vy", "vz")]
+
+    def case(self, solver, scene="./five.toml"):
+        return json.loads(self.taut("case", scene, solver, "--json").out)
+
+    def five(self):
+        text = (self.folder / "small.toml").read_text().replace("[4, 4]", "[5, 5]")
+        (self.folder / "five.toml").write_text(text)
+
+
+class Toys(Programs):
+    def check(self, toy):
+        command = TOYS[toy]
+        if not shutil.which(command.split()[0]):
+            self.skipTest(f"{command.split()[0]} is not here: its SDK is not tested")
+        probe = self.taut("external", "probe", command)
+        self.assertIn("It may be scored.", probe.out)
+        self.assertEqual(probe.out.count("passed"), 9, probe.out)
+        (self.folder / "sheet.toml").write_text("[cloth]\ngrid = [6, 6]\nsize = [1, 1]\nmass = 0.1\npins = [\"top-left\", \"top-right\"]\n"
+                                                "[time]\ndt = \"1/64\"\nduration = 9.375\n")
+        ours = self.end_of("./sheet.toml", LISTING + "6")
+        theirs = self.end_of("./sheet.toml", f"external:cmd='{command}',iterations=6")
+        self.assertEqual(len(theirs), 6 * 36)
+        positions = [i for i in range(len(ours)) if i % 6 < 3]
+        self.assertLess(max(abs(ours[i] - theirs[i]) for i in positions), 1e-12, "m after 600 steps")
+        other = self.end_of("./sheet.toml", f"external:cmd='{command}',iterations=5")
+        self.assertGreater(max(abs(ours[i] - other[i]) for i in positions), 1e-3, "its parameter has no effect")
+
+    def test_python(self):
+        self.check("python")
+
+    def test_cpp(self):
+        self.check("cpp")
+
+    def test_node(self):
+        self.check("node")
+
+    def test_what_it_cannot_do_is_unsupported(self):
+        status = self.case(f"external:cmd='{TOYS['cpp']}'", "ball")["status"]
+        self.assertEqual((status["kind"], status["reason"]), ("unsupported", "gravity, links and pins at rest are all that it knows"))
+
+    def test_a_registered_solver_is_one_like_any_other(self):
+        (self.solvers / "mine.toml").write_text(f"cmd = '{TOYS['cpp']}'\n")
+        solvers = {s["name"]: s for s in json.loads(self.taut("list", "solvers", "--json").out)}
+        self.assertEqual(solvers["mine"]["summary"], "Jakobsen's algorithm in C++")
+        self.assertEqual([p["name"] for p in solvers["mine"]["params"]], ["iterations"])
+        study = self.study(solvers=["mine", "jakobsen:substeps=1,order=mesh"], rest="[axes]\niterations = [1, 4]\n"
+                           '[[plot]]\nkind = "error-iterations"\n')
+        self.taut("run", study)
+        records = self.records()
+        self.assertEqual([r["status"]["kind"] for r in records], ["ok"] * 4)
+        mine = [r for r in records if r["solver"] == "mine"]
+        self.assertEqual(sorted(r["params"]["iterations"] for r in mine), ["1", "4"])
+        self.assertIn(["program", "toy-cpp 1"], mine[0]["resolved_settings"])
+        self.assertEqual({r["projections"] for r in mine}, {42, 168})
+        self.taut("plot", study)
+        plan = self.taut("plan", "./small.toml", "mine:iterations=3").out
+        self.assertIn("links", plan)
+        bench = self.taut("bench", study, "--rounds", 2, "--seconds", 0.01).out
+        self.assertNotIn("not timed", bench)
+        self.taut("report", study, "--no-media")
+        self.assertIn("toy-cpp", (self.folder / "report.html").read_text())
+
+    def test_a_changed_program_is_another_one(self):
+        for name in ("toy.py", "taut_solver.py"):
+            shutil.copy(SDK / name, self.folder)
+        solver = "external:cmd='python3 toy.py'"
+        before = self.case(solver, "./small.toml")["key"]
+        self.assertEqual(self.case(solver, "./small.toml")["key"], before)
+        with (self.folder / "toy.py").open("a") as file:
+            file.write("\n")
+        self.assertNotEqual(self.case(solver, "./small.toml")["key"], before)
+
+    def test_bad_input_is_refused_before_anything_runs(self):
+        for solver, says in [("external:cmd='no-such-program x'", "no program 'no-such-program'"),
+                             ("external:cmd='python3 a | b'", "no shell runs it"),
+                             ("external:cmd='python3", "the quote ' is not closed"),
+                             (f"external:cmd='{TOYS['cpp']}',iterations=-1", "iterations=-1 is outside 0 to 1000000"),
+                             (f"external:cmd='{TOYS['cpp']}',sweeps=1", "unknown parameter 'sweeps'"),
+                             ("mien", "unknown solver 'mien'")]:
+            with self.subTest(solver):
+                self.assertIn(says, self.taut("case", "./small.toml", solver, expect=2).err)
+        (self.solvers / "mine.toml").write_text("cmd = 'no-such-program'\nspeed = 3\n")
+        self.assertRegex(self.taut("case", "./small.toml", "mine", expect=2).err, r"mine.toml:2:1: unknown key 'speed'")
+        self.assertEqual(self.case("external", "./small.toml")["status"]["kind"], "unsupported")
+
+
+class Hostile(Programs):
+    def setUp(self):
+        super().setUp()
+        self.five()
+
+    def test_each_costs_its_own_case_and_leaves_no_process(self):
+        expected = {"hang": ("timeout", "no answer to 'step' within 3 s"), "flood": ("protocol", "without a line feed"),
+                    "lines": ("protocol", "said more than it was asked for"), "exit": ("crash", "exit code 3 during 'step': enough of this"),
+                    "abort": ("crash", "SIGABRT during 'step'"),
+                    "garbage": ("protocol", "no JSON object: 'step 5 done, residual 1e-3'"),
+                    "close": ("protocol", "closed its standard output during 'step'"),
+                    "error": ("error", "refused 'step': the matrix is singular"),
+                    "half": ("timeout", "only 600 bytes"), "size": ("protocol", "a state of 25 vertices has 1200 bytes, not 48"),
+                    "nan": ("exploded", "nonfinite"), "fork": ("ok", ""), "hello-hang": ("timeout", "no answer to 'hello' within 3 s"),
+                    "hello-garbage": ("protocol", "no JSON object: 'Loading model...'")}
+        study = self.study(scenes=["./five.toml"], solvers=["jakobsen:precision=double"] + [hostile(mode) for mode in expected])
+        run = self.taut("run", study, "-j", 2)
+        self.assertIn(f"{len(expected) + 1}/{len(expected) + 1} cases", run.err)
+        records = self.records()
+        self.assertEqual([r["status"]["kind"] for r in records if r["solver"] == "jakobsen"], ["ok"])
+        for mode, (kind, reason) in expected.items():
+            record, = [r for r in records if f"hostile.py {mode}" in r["params"].get("cmd", "")]
+            with self.subTest(mode):
+                status = record["status"]
+                self.assertEqual(status["kind"], kind, status)
+                self.assertIn(reason, status["reason"])
+                if kind not in ("ok", "exploded"):
+                    self.assertEqual(status["step"], -1 if mode.startswith("hello") else 4)
+        self.assertEqual([r["log"] for r in records if "hostile.py exit" in r["params"].get("cmd", "")], ["enough of this\n"])
+        for left in ("hostile.py", "1000", "1001", "1002"):
+            self.assertEqual([p for p in alive(left) if b"sleep" in p[1] or b"hostile" in b"".join(p[1])], [])
+
+    def test_memory(self):
+        if "asan" in BINARIES.name:
+            self.skipTest("the sanitizer's programs have no limit of memory")
+        self.taut("run", self.study(scenes=["./five.toml"], solvers=[hostile("memory", 60)]), "--memory", 500)
+        status = self.records()[0]["status"]
+        self.assertEqual(status["kind"], "oom", status)
+
+    def test_lies_about_time_are_published_as_such(self):
+        bench = self.taut("bench", "./five.toml", "--solver", hostile("lie", 30), "--solver", "jakobsen", "--rounds", 2, "--json").out
+        timing, = [c for c in json.loads(bench)["scenes"][0]["cases"] if "lie" in c["record"]["spec"]["solver"]]
+        self.assertRegex(timing["remark"], r"it says 1 us a step, its CPU clock [23]\d\d\d us")
+        self.assertGreater(min(timing["cpu_seconds_per_step"]), 0.0015)
+
+    def test_helpers_have_no_cost(self):
+        bench = self.taut("bench", "./five.toml", "--solver", hostile("fork", 30), "--solver", "jakobsen", "--rounds", 2, "--json").out
+        timing, = [c for c in json.loads(bench)["scenes"][0]["cases"] if "fork" in c["record"]["spec"]["solver"]]
+        self.assertIn("it starts processes of its own", timing["failure"])
+
+    def test_nothing_outlives_a_killed_taut(self):
+        case = self.start("case", "./five.toml", hostile("hang", 60))
+        for _ in range(600):
+            if len(alive("hostile.py")) == 1:
+                break
+            time.sleep(0.05)
+        time.sleep(1)
+        case.kill()
+        case.communicate()
+        for _ in range(100):
+            left = [p for p in alive("hostile.py") if b"python3" in p[1]]
+            if not left:
+                return
+            time.sleep(0.05)
+        self.fail(left)
+
+
+class Probe(Programs):
+    def test_it_says_what_is_wrong(self):
+        expected = {"still": "free fall: in 0.5 s of free fall in steps of 0.01562 s nothing moves",
+                    "down": "free fall: .*it falls along \\(-?[0-9.e-]+, -1, -?[0-9.e-]+\\), but gravity points along",
+                    "up": "free fall: .*it falls along", "weightless": "free fall: .*gravity has no effect",
+                    "centimetres": "free fall: .*it falls 103.1 times as far as g t\\^2/2",
+                    "frames": "free fall: .*it advances by 0.5333 s", "forgets": "free fall: .*forgets the velocities",
+                    "shrinks": "free fall: .*does not stay in shape.*vertex 1", "frame-velocity": "free fall: .*it reports the velocity",
+                    "pins": "pins: vertex 0 is pinned", "chance": "same bits: the same load and the same steps give other bits",
+                    "survives": "same bits: the same load", "restart": "restart: 'store' right after 'load'",
+                    "outlives": "end of input: does not end within 5 s"}
+        for mode, says in expected.items():
+            with self.subTest(mode):
+                probe = self.taut("external", "probe", f"python3 {HERE}/wrong.py {mode}", expect=1)
+                self.assertRegex(probe.out, "FAILED  (" + says + ")")
+                self.assertIn("it is not scored", probe.out)
+
+    def test_nobody_is_scored_before_it_passes(self):
+        status = self.case(f"external:cmd='python3 {HERE}/wrong.py down'", "./small.toml")["status"]
+        self.assertEqual(status["kind"], "error")
+        self.assertRegex(status["reason"], "not scored, free fall: .*it falls along")
+
+    def test_json(self):
+        told = json.loads(self.taut("external", "probe", TOYS["cpp"], "--json").out)
+        self.assertTrue(told["passed"])
+        self.assertEqual([c["check"] for c in told["checks"]],
+                         ["hello", "free fall", "time step", "pins", "same bits", "restart", "bad requests", "end of input", "own word"])
+
+
+if __name__ == "__main__":
+    main()

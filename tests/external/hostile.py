@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""A program that passes the probe and misbehaves in the fifth step of any other scene, as MODE says; MODE hello-*: at once."""
+
+import array
+import json
+import os
+import struct
+import subprocess
+import sys
+import time
+
+MODE = sys.argv[1]
+OUT = sys.stdout.buffer
+
+
+def answer(told, more=b""):
+    OUT.write(json.dumps(told).encode() + b"\n" + more)
+    OUT.flush()
+
+
+def spin(seconds):
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+
+
+def misbehave():
+    if MODE == "hang":
+        time.sleep(1000)
+    if MODE == "flood":
+        while True:
+            OUT.write(b"x" * 65536)
+    if MODE == "lines":
+        while True:
+            OUT.write(b"{}\n" * 10000)
+    if MODE == "exit":
+        print("enough of this", file=sys.stderr)
+        os._exit(3)
+    if MODE == "abort":
+        os.abort()
+    if MODE == "garbage":
+        OUT.write(b"step 5 done, residual 1e-3\n")
+        OUT.flush()
+    if MODE == "close":
+        os.close(1)
+        time.sleep(1000)
+    if MODE == "memory":
+        hoard = []
+        while True:
+            hoard.append(bytearray(1 << 24))
+    if MODE == "error":
+        answer({"error": "the matrix is singular"})
+    if MODE == "fork":
+        for words in (["sleep", "1000"], ["setsid", "-f", "sleep", "1001"]):
+            subprocess.Popen(words, stdout=subprocess.DEVNULL)
+        subprocess.Popen(["sleep", "1002"], start_new_session=True)
+
+
+def main():
+    if MODE == "hello-hang":
+        time.sleep(1000)
+    if MODE == "hello-garbage":
+        print("Loading model...", flush=True)
+    n = x = v = gravity = pins = None
+    steps = 0
+    for line in sys.stdin.buffer:
+        request = json.loads(line)
+        op = request["op"]
+        real = n != 16
+        if op == "hello":
+            answer({"protocol": "taut-solver/1", "name": "hostile", "version": MODE})
+        elif op == "scene":
+            scene = json.load(open(request["file"]))
+            n, gravity, w, steps = scene["vertices"], scene["gravity"], scene["inverse_mass"], 0
+            answer({"vertices": n})
+        elif op == "load":
+            values = array.array("d", sys.stdin.buffer.read(request["bytes"]))
+            x, v = values[:3 * n], values[3 * n:]
+            answer({})
+        elif op == "step":
+            steps += request["count"]
+            if real and steps == 5:
+                misbehave()
+            if real and MODE == "lie":
+                spin(0.002 * request["count"])
+            for k in range(3 * n * request["count"]):
+                k %= 3 * n
+                if w[k // 3] > 0:
+                    v[k] += request["dt"] * gravity[k % 3]
+                    x[k] += request["dt"] * v[k]
+            if real and MODE == "nan" and steps == 5:
+                x[7] = float("nan")
+            if not (real and steps == 5 and MODE in ("garbage", "error")):
+                answer({"cpu_ns": 1000} if MODE == "lie" else {})
+        elif op == "store":
+            state = x.tobytes() + v.tobytes()
+            if real and steps == 5 and MODE == "half":
+                answer({"bytes": len(state)}, state[:len(state) // 2])
+                time.sleep(1000)
+            elif real and steps == 5 and MODE == "size":
+                answer({"bytes": 48}, struct.pack("<6d", *range(6)))
+            else:
+                answer({"bytes": len(state)}, state)
+
+
+main()
