@@ -6,6 +6,7 @@ install(FILES ${PROJECT_BINARY_DIR}/taut.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/m
 install(FILES ${PROJECT_BINARY_DIR}/taut.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
         RENAME taut COMPONENT program)
 install(FILES experiments/main-job.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
+install(DIRECTORY experiments/external/sdk experiments/external/jolt DESTINATION ${CMAKE_INSTALL_DATADIR}/taut/external COMPONENT program)
 install(DIRECTORY experiments/scenes experiments/studies results/references
         DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
 
@@ -35,7 +36,8 @@ install(CODE "
 install(DIRECTORY ${PROJECT_BINARY_DIR}/include/taut DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/taut)
-configure_package_config_file(cmake/package/taut-config.cmake.in taut-config.cmake INSTALL_DESTINATION ${package})
+set(templates ${PROJECT_SOURCE_DIR}/cmake/package)
+configure_package_config_file(${templates}/taut-config.cmake.in taut-config.cmake INSTALL_DESTINATION ${package})
 write_basic_package_version_file(taut-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/taut-config.cmake ${PROJECT_BINARY_DIR}/taut-config-version.cmake
         DESTINATION ${package} COMPONENT development)

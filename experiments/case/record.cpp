@@ -8,7 +8,7 @@
 namespace taut {
 
 namespace {
-constexpr std::array<std::string_view, 10> kNames{
+constexpr std::array<std::string_view, 11> kNames{
     "ok",  "exploded", "unsettled", "extreme", "unsupported", "timeout",
     "oom", "crash",    "protocol",  "error",   "interrupted"};
 }

@@ -341,6 +341,7 @@ int run(Options options) {
   if (options.solvers.empty())
     for (const SolverEntry* entry : all_solvers())
       if (entry->name != "external") options.solvers.emplace_back(entry->name);
+  for (const std::string& solver : options.solvers) parse_solver(solver);
   // What the first costs bounds how far the others need to be searched.
   std::ranges::stable_sort(options.solvers, {}, [](const std::string& solver) {
     return report::solver_place(parse_solver(solver).entry->name);

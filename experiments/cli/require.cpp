@@ -12,6 +12,7 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/picture/figure.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -181,7 +182,7 @@ Json json_of(const Requirement& found, const Store& store, const std::string& pi
                               {"unit", unit_of(found.answers[i]).si},
                               {"value", found.values[i]},
                               {"tolerance", found.answers[i].tolerance},
-                              {"noise", found.noise[i]}});
+                              {"noise", i < found.noise.size() ? Json(found.noise[i]) : Json()}});
   for (const EffectTrial& effect : found.effects) {
     Json one{{"name", effect.name},
              {"verdict", !effect.done()  ? "not done"
@@ -210,7 +211,7 @@ Image panel(const CaseSpec& spec, const std::string& title, const Store& store) 
   const Case one = make_case(spec);
   RecordedRun run = recorded_run(*one.scene, read_trajectory(store.folder(one.key) / kFramesFile));
   run.title = title;
-  run.settings = readable_settings(one.choice.brief());
+  run.settings = report::brief_settings(one.choice.canonical());
   run.colour = kInk;
   const PageLayout layout(800, 720, 1);
   SceneRendererOptions look;

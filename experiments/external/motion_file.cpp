@@ -93,7 +93,7 @@ class Playback final : public Solver {
 
 thread_local MotionFile* playing = nullptr;  ///< an entry's functions know nothing else
 
-constexpr SolverEntry kPositions = {
+const SolverEntry kPositions = {
     .name = "positions",
     .summary = "Positions that another program computed",
     .source = "experiments/external/FILES.md",

@@ -4,7 +4,10 @@
 #include <cctype>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
@@ -237,14 +240,21 @@ class Search {
     return trial;
   }
 
-  /// All that may go at once, or else one after the other, the greatest saving first.
+  /// Whether no answer moves by more than its noise.
+  bool moves_nothing(const ModelTrial& trial) const {
+    return std::ranges::equal(trial.moved, found_.noise, std::less_equal<>());
+  }
+
+  /// All that may go at once, or else one after the other: what moves nothing first, then
+  /// what goes altogether, then the greatest saving.
   void combine() {
     Choice wanted;
     for (std::size_t i = 0; i < found_.effects.size(); ++i)
       if (found_.effects[i].may_go()) wanted.emplace_back(i, found_.effects[i].allowed - 1);
     if (wanted.empty() || found_.interrupted) return;
     std::ranges::stable_sort(wanted, {}, [&](const auto& one) {
-      return work(found_.effects[one.first].trials[one.second]);
+      const ModelTrial& trial = found_.effects[one.first].trials[one.second];
+      return std::tuple(!moves_nothing(trial), trial.change != "gone", work(trial));
     });
     ModelTrial best = try_combined(wanted);
     if (!best.within) wanted = one_by_one(wanted, best);

@@ -17,44 +17,45 @@ std::string answering(const std::string& contact) {
 }
 
 /// Values of a shipped scene under a solver; nothing if it was not asked for or cannot.
-std::map<std::string, double> values(Ledger& ledger, const std::string& scene,
+std::map<std::string, double> values(Findings& findings, const std::string& scene,
                                      const std::string& solver, const std::string& dt = "1/64") {
-  if (!ledger.wants(solver)) return {};
+  if (!findings.wants(solver)) return {};
   const Case one = make_case({scene, {"time.dt=\"" + dt + "\""}, solver});
-  if (!claims(ledger, solver, *one.scene)) return {};
+  if (!claims(findings, solver, *one.scene)) return {};
   return run_case(one).record.values;
 }
 
-void box_before_relaxation(Ledger& ledger) {
+void box_before_relaxation(Findings& findings) {
   const std::string solver = answering("before");
-  auto v = values(ledger, "box", solver);
+  auto v = values(findings, "box", solver);
   if (v.empty()) return;
-  ledger.equal(solver, "depth at rest in a box of 0.4 m", "m", v["penetration.max"], 0.04, 0.02);
-  ledger.below(solver, "vertices that end on the other side of it", "1", v["tunnelling.count"], 0);
+  findings.equal(solver, "depth at rest in a box of 0.4 m", "m", v["penetration.max"], 0.04, 0.02);
+  findings.below(solver, "vertices that end on the other side of it", "1", v["tunnelling.count"],
+                 0);
 }
 
-void box_freeze(Ledger& ledger) {
+void box_freeze(Findings& findings) {
   const std::string solver = answering("freeze");
-  auto v = values(ledger, "box", solver);
+  auto v = values(findings, "box", solver);
   if (v.empty()) return;
-  ledger.below(solver, "depth at rest in a box", "m", v["penetration.max"], 1e-6);
-  ledger.below(solver, "largest acceleration at rest, without gravity's", "m/s^2", v["popping.max"],
-               0.01);
-  ledger.equal(solver, "largest stretch at rest: what is frozen cannot slide", "1",
-               v["stretch.max"], 2, 0.7);
+  findings.below(solver, "depth at rest in a box", "m", v["penetration.max"], 1e-6);
+  findings.below(solver, "largest acceleration at rest, without gravity's", "m/s^2",
+                 v["popping.max"], 0.01);
+  findings.equal(solver, "largest stretch at rest: what is frozen cannot slide", "1",
+                 v["stretch.max"], 2, 0.7);
 }
 
-void box_halt(Ledger& ledger) {
+void box_halt(Findings& findings) {
   const std::string solver = answering("halt");
-  auto coarse = values(ledger, "box", solver), fine = values(ledger, "box", solver, "1/256");
+  auto coarse = values(findings, "box", solver), fine = values(findings, "box", solver, "1/256");
   if (coarse.empty()) return;
-  ledger.equal(solver, "depth in a box at 1/64 s over that at 1/256 s", "1",
-               coarse["penetration.max"] / std::max(fine["penetration.max"], 1e-9), 5.6, 2.8);
-  ledger.equal(solver, "largest acceleration at rest, 1/256 s: it pops", "m/s^2",
-               fine["popping.max"], 320, 200);
+  findings.equal(solver, "depth in a box at 1/64 s over that at 1/256 s", "1",
+                 coarse["penetration.max"] / std::max(fine["penetration.max"], 1e-9), 5.6, 2.8);
+  findings.equal(solver, "largest acceleration at rest, 1/256 s: it pops", "m/s^2",
+                 fine["popping.max"], 320, 200);
 }
 
-void octree_split(Ledger& ledger) {
+void octree_split(Findings& findings) {
   // Two slow particles meet at the middle of a box whose corners hold the others.
   std::vector<Vec3> x{{-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}};
   for (const double sx : {-1, 1})
@@ -69,19 +70,20 @@ void octree_split(Ledger& ledger) {
     return (probe.x(1) - probe.x(0)).norm();
   };
   const std::string octree = "jakobsen:self=octree", grid = "jakobsen:self=grid";
-  if (!claims(ledger, octree, s)) return;
-  ledger.equal(octree, "distance of two that met across the octree's split: as without a test", "m",
-               gap("octree"), gap("off"), 0);
-  ledger.below(grid, "their overlap", "m", std::max(0.0, 0.1 - gap("grid")), 1e-12);
+  if (!claims(findings, octree, s)) return;
+  findings.equal(octree, "distance of two that met across the octree's split: as without a test",
+                 "m", gap("octree"), gap("off"), 0);
+  findings.below(grid, "their overlap", "m", std::max(0.0, 0.1 - gap("grid")), 1e-12);
 }
 
-void octree_jam(Ledger& ledger) {
+void octree_jam(Findings& findings) {
   const std::string octree = "jakobsen:self=octree", grid = "jakobsen:self=grid";
-  if (auto v = values(ledger, "jam", octree, "1/256"); !v.empty())
-    ledger.below(octree, "way of a falling sheet whose particles overlap", "m", v["drift.max"],
-                 1e-3);
-  if (auto v = values(ledger, "jam", grid, "1/256"); !v.empty())
-    ledger.equal(grid, "its way with overlaps at rest left alone", "m", v["drift.max"], 0.26, 0.06);
+  if (auto v = values(findings, "jam", octree, "1/256"); !v.empty())
+    findings.below(octree, "way of a falling sheet whose particles overlap", "m", v["drift.max"],
+                   1e-3);
+  if (auto v = values(findings, "jam", grid, "1/256"); !v.empty())
+    findings.equal(grid, "its way with overlaps at rest left alone", "m", v["drift.max"], 0.26,
+                   0.06);
 }
 
 }  // namespace

@@ -8,14 +8,14 @@ namespace taut {
 
 namespace {
 
-constexpr int kLinks = 8;      // from the pinned row to the last
-constexpr double kMass = 0.1;  // kg, of every vertex
-constexpr double kHeight = 1;  // m
+constexpr int kLinks = 8;            // from the pinned row to the last
+constexpr double kVertexMass = 0.1;  // kg, of every vertex
+constexpr double kHeight = 1;        // m
 
 /// Columns of 8 links that hang from their first vertices; the links along the rows carry nothing.
 Scene hung(int columns) {
   Scene s = bare::sheet(columns, kLinks + 1, {.structural = true}, Lumping::equal, kHeight, kHeight,
-                        kMass * columns * (kLinks + 1));
+                        kVertexMass * columns * (kLinks + 1));
   for (int i = 0; i < columns; ++i) s.pins.push_back(i);
   s.gravity = {0, -kG, 0};
   s.damping = 8;
@@ -28,11 +28,11 @@ double worst(const Scene& s, const State& state, double stiffness) {
   double most = 0;
   for (std::size_t l = 0; l < s.links.size(); ++l) {
     const int nu = s.mesh.grid->nu, upper = s.links[l].a / nu, lower = s.links[l].b / nu;
-    const double expected = (lower - upper) * (kLinks - upper) * kMass * kG / stiffness;
+    const double expected = (lower - upper) * (kLinks - upper) * kVertexMass * kG / stiffness;
     const double off = std::abs(extension[l] - expected);
     if (!(off <= most)) most = off;  // keeps NaN
   }
-  return most / (kMass * kG / stiffness);
+  return most / (kVertexMass * kG / stiffness);
 }
 
 void stiffness(Findings& findings) {

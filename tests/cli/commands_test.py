@@ -201,7 +201,7 @@ class Verbs(CommandLine):
             quoted = " ".join(f"'{word}'" for word in words)
             return subprocess.run(["bash", "-c", line % (quoted, len(words))], cwd=self.folder, text=True, check=True,
                                   capture_output=True).stdout.split()
-        self.assertEqual(sorted(complete("re")), ["reference", "render", "report"])
+        self.assertEqual(sorted(complete("re")), ["reference", "render", "report", "require"])
         self.assertEqual(complete("bench", "ke"), ["kernels"])
         self.assertEqual(complete("bench", "kernels", "--si"), ["--sizes"])
         self.assertEqual(complete("advise", "mov"), ["moving-ball"])

@@ -47,7 +47,9 @@ class Files(CommandLine):
             if value is None or found is None:
                 self.assertEqual(found, value, name)
             else:
-                self.assertLessEqual(abs(found - value), tolerance * max(1, abs(value)), name)
+                # Second differences of float32 positions: four roundings of 6e-8 m over (1/64 s)^2.
+                most = tolerance * (100 if name.startswith("popping") else 1)
+                self.assertLessEqual(abs(found - value), most * max(1, abs(value)), name)
         self.assertEqual(dict(record["resolved_settings"])["cost"], "not measured")
 
     def test_what_taut_writes_scores_as_it_did_inside(self):

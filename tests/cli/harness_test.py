@@ -343,7 +343,7 @@ class Store(CommandLine):
         self.assertRegex(full.err, "^results/runs/sessions/.*/manifest.jsonl: cannot write: File too large\n$")
         self.assertEqual([*(self.folder / "results/runs/sessions").iterdir(), *self.entries()], [])
         self.taut("run", study)
-        self.assertIn("60/60 cases", self.taut("merge", "results/runs", "--out", "merged").out)
+        self.assertIn("60/60 cases", self.taut("cluster", "merge", "results/runs", "--out", "merged").out)
 
     def test_a_results_folder_that_is_moved_away_loses_nothing_finished(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
@@ -394,7 +394,7 @@ class Store(CommandLine):
         self.assertEqual(self.store_digest(run), whole)
         self.assertEqual({record["status"]["kind"] for record in self.records()}, {"ok"})
         self.assertIn("(4 were stored already)", self.taut("run", study, program="taut-faulty", env=jumping).err)
-        self.assertIn("4/4 cases", self.taut("merge", "results/runs", "--out", "merged", env=jumping).out)
+        self.assertIn("4/4 cases", self.taut("cluster", "merge", "results/runs", "--out", "merged", env=jumping).out)
 
     def test_a_program_that_vanishes_is_no_result(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")

@@ -16,7 +16,7 @@ def sheet(cloth="", rest="", grid=(9, 9), duration=2):
 
 
 HUNG = 'pins = ["top-left", "top-right"]'
-CALM = sheet(HUNG, """[links]
+CALM = sheet('pins = ["top"]', """[links]
 bend = true
 [wind]
 velocity = [3, 0, 1]
@@ -31,7 +31,7 @@ half_extents = [0.8, 0.005, 0.8]
 friction = 0.5
 """, duration=1)
 HEAVY = sheet('pins = ["top"]\nweights = [{ vertices = ["bottom"], factor = 300 }]')
-FALLING = sheet("origin = [-0.4, 0.9, 0]\nu = [1, 0, 0.1]\nv = [0, -1, 0.15]\nthickness = 0.01", """[links]
+FALLING = sheet("origin = [-0.4, 1.3, 0]\nu = [1, 0, 0.1]\nv = [0, -1, 0.15]\nthickness = 0.01", """[links]
 bend = true
 [[collider]]
 type = "plane"
@@ -74,6 +74,8 @@ class Require(CommandLine):
         case = json.loads(self.taut(*found["smallest"]["command"].split()[1:], "--json").out)
         for answer in found["answers"][1:]:
             least = max(answer["tolerance"], answer["noise"])
+            if answer["name"] not in case["values"]:  # crossings are none of a model without self-collision
+                continue
             self.assertLessEqual(abs(case["values"][answer["name"]] - answer["value"]), least, answer)
         full = json.loads(self.taut("case", "./made.toml", "jakobsen", "--json").out)
         self.assertLess(case["links"] * case["steps"], 0.7 * full["links"] * full["steps"])

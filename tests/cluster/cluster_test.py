@@ -225,7 +225,8 @@ class Starts(Cluster):
     """Two starts of one shard, starts that die, disks that are full."""
 
     def slow(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]\n")
+        study = self.study(solvers=["faulty:mode=slow"], rest='set = ["time.duration=2.5"]\n'
+                           "axes.variant = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]\n")
         self.submit("--shards", 1, study=study, program="taut-faulty")
 
     def begin(self, **more):

@@ -79,12 +79,14 @@ TEST_F(MotionFiles, UnitAxesAndOrderAreFoundOut) {
         const std::vector<Vec3> x = motion.frame(k), want = moved(scene, k);
         for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - want[i]).norm(), 1e-14);
       }
-      if (unit != 1)
+      if (unit != 1) {
         EXPECT_NE(misfit(scene, {.file = file.file, .scale = 1}).find("on none of the"),
                   std::string::npos);
-      if (z_up)
+      }
+      if (z_up) {
         EXPECT_NE(misfit(scene, {.file = file.file, .up = "y"}).find("on none of the"),
                   std::string::npos);
+      }
     }
 }
 

@@ -46,7 +46,7 @@ Names names_in(const std::string& list) {
   return names;
 }
 
-constexpr const char* kNumber = "([0-9./]+(?:×10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?|10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)";
+constexpr const char* kNumber = "(10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|[0-9./]+(?:×10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?)";
 std::string pattern(std::string text) {  // "#": a number
   for (std::size_t at; (at = text.find('#')) != std::string::npos;) text.replace(at, 1, kNumber);
   return text;
@@ -57,14 +57,15 @@ double number_in(const std::string& text) {
   if (text.starts_with("1/")) return 1 / std::stod(text.substr(2));
   const auto ten = text.find("10⁻");
   if (ten == std::string::npos) return std::stod(text);
-  const std::string raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const std::vector<std::string> raised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   int power = 0;
-  for (std::size_t i = ten + std::string("10⁻").size(); i < text.size();)
-    for (int digit = 0; digit < 10; ++digit)
-      if (text.compare(i, raised[digit].size(), raised[digit]) == 0) {
-        power = 10 * power + digit, i += raised[digit].size();
-        break;
-      }
+  for (std::string rest = text.substr(ten + std::string("10⁻").size());;) {
+    const auto digit =
+        std::ranges::find_if(raised, [&](const std::string& d) { return rest.starts_with(d); });
+    if (digit == raised.end()) break;
+    power = 10 * power + static_cast<int>(digit - raised.begin());
+    rest = rest.substr(digit->size());
+  }
   return (ten == 0 ? 1 : std::stod(text)) * std::pow(10, -power);
 }
 
@@ -618,7 +619,9 @@ class Reader {
     for (const auto& [one, other] : d.pairs) {
       const auto a = Raw::value(&one, metric), b = Raw::value(&other, metric);
       if (!a || !b) continue;
-      ++both, less += *b<*a, more += *b> * a;
+      ++both;
+      if (*b < *a) ++less;
+      if (*b > *a) ++more;
       if (*a != *b) largest = std::max(largest, std::abs(*b - *a) / std::max(*a, *b));
     }
     const auto same = matches(text_, ", (\\d+) cases? [a-z ]*: the same to the bit");

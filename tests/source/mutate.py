@@ -1,25 +1,28 @@
 #!/usr/bin/env python3
-"""Plants random small errors in a copy of the sources and shows which of them no test notices.
+"""Plants random small errors in copies of single files and shows which of them no test notices.
 
-Usage: mutate.py BUILD [--sample N] [--minutes M] [--seed S] [--layer L]... [--goal SHARE] [--widest N] [--list]
+Usage: mutate.py FOLDER [--sample N] [--minutes M] [--seed S] [--layer L]... [--goal SHARE] [--widest N] [--jobs N] [--list]
 
-BUILD is a Ninja build of this tree with `taut` and `tests/taut_tests` in it; nothing in it is
-changed. Each error is one operator at one place: arithmetic, comparison, logic, a constant off by
-little or by much, a sign, an axis, min for max, a removed statement, swapped arguments. Only the
-objects that depend on the file are compiled again. Then run, until one is red: the unit tests in the
-folders of the layer, all unit tests, and `taut verify`. What stays green is printed as a difference.
+1. FOLDER gets a build of its own, unless it has one: file by file, at -O1 and without debug information, so that one
+   error costs one object and a link.
+2. N places are drawn: layers in turn, then an operator (arithmetic, comparison, logic, a constant off by little or by
+   much, a sign, an axis, min for max, a removed statement, swapped arguments), then a place. What does not compile, or
+   compiles to the same object code, is drawn again. The same seed plants the same errors in the same sources.
+3. The objects with these places are compiled once more with gcov's counters, and every check runs once with them: a
+   check is a suite of unit tests or a truth of `taut verify`. So it is known which checks run which line.
+4. For each error the checks that run its line, those in the layer's own folder of tests first, quick ones before slow
+   ones, until one is red. A check also notices if it takes ten times the CPU time that it took before.
 
-Survivors that change no result are listed in equivalent_mutants.txt with the reason, and do not
-count. Files on which more than --widest objects depend are left out, and counted: compiling half
-the tree for one error is for the long run (--sample 1000 --widest 999). The same seed plants the
-same errors in the same sources.
-
-The aim is 92 % noticed, no layer below 85 %. --goal is the share below which the run fails, by more than chance: two
-standard deviations of a sample of this size. The tests ask for 0.7 for now: of 70 errors that somebody planted by hand all
-over the tree 48 were noticed (69 %), before tests were strengthened; this tool has not been run on a large sample yet.
+Survivors are printed as a difference. Those that change no result are listed in equivalent_mutants.txt with the reason,
+and are not drawn. Files on which more than --widest objects depend are left out, and counted: --sample 1000 --widest 999
+is the long run. The aim is 92 % noticed, no layer below 85 %; --goal is the share below which the run fails, by more
+than chance: two standard deviations of a sample of this size. The tests ask for 0.7 until large samples have been run: of
+70 errors that somebody planted by hand all over the tree 48 were noticed (69 %), before tests were strengthened.
 """
 import argparse
 import concurrent.futures
+import contextlib
+import itertools
 import json
 import math
 import os
@@ -29,31 +32,21 @@ import re
 import resource
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EQUIVALENT = pathlib.Path(__file__).with_name("equivalent_mutants.txt")
-SECONDS = 600  # a run that takes longer has noticed
+UNIT, TRUTH = "tests/taut_tests", "taut"  # the programs whose checks notice
 
-# layer: folders of unit tests that are asked first
-LAYERS = {
-    "core/model": ["model", "io", "metrics"],
-    "core/io": ["io"],
-    "core/solver": ["solver"],
-    "core/reference": ["reference", "truths"],
-    "bullet_ref": ["bullet_ref"],
-    "experiments/metrics": ["metrics"],
-    "experiments/case": ["case"],
-    "experiments/study": ["study"],
-    "experiments/timing": ["timing"],
-    "experiments/baseline": ["baseline"],
-    "experiments/truths": ["truths"],
-    "experiments/report": ["report"],
-    "experiments/render": ["render"],
-}
+# Layers; the tests of each are in the folder of tests/ with its last name.
+LAYERS = ["core/model", "core/io", "core/solver", "core/reference", "bullet_ref", "experiments/metrics", "experiments/case",
+          "experiments/study", "experiments/timing", "experiments/baseline", "experiments/truths", "experiments/report",
+          "experiments/render"]
 LEFT_OUT = re.compile(r"/(gl|font|shaders)\.[ch]pp$")  # no numbers in them
 NUMBER = r"(?<![\w.'])(\d+\.?\d*(?:e-?\d+)?)(?![\w.'])"
 
@@ -67,7 +60,6 @@ def scaled(factor, step):
             return str(value if value != int(text) else int(text) + step)
         return repr(float(text) * factor if float(text) else 0.1)
     return change
-
 
 
 def exchanged(*couples):
@@ -124,15 +116,23 @@ def sites(file):
 
 
 class Build:
-    """The objects of a build, and copies of its programs with one file changed."""
+    """The objects and programs of a build of this tree."""
 
-    def __init__(self, folder, copy):
-        self.folder, self.copy = folder, copy
+    def __init__(self, folder):
+        self.folder = folder
+        if not (folder / "build.ninja").exists():
+            subprocess.run(["cmake", "-G", "Ninja", "-S", ROOT, "-B", folder, "-DCMAKE_BUILD_TYPE=Debug", "-DTAUT_TESTS=ON",
+                            "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g0", "-DTAUT_BATCH_SIZE=1"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(["cmake", "--build", folder, "--target", TRUTH, pathlib.Path(UNIT).name], check=True,
+                       stdout=subprocess.DEVNULL)
         self.command = {}
         for entry in json.loads((folder / "compile_commands.json").read_text()):
-            words = [word for word in shlex.split(entry["command"]) if word != "-Werror"]
+            words = shlex.split(re.sub(r" -Werror\b| -MD -MT \S+ -MF \S+", "", entry["command"]))
             self.command[os.path.normpath(words[words.index("-o") + 1])] = words
-        self.link = {program: self.link_command(program) for program in ("taut", "tests/taut_tests")}
+        self.link_command = {}
+        for program in (UNIT, TRUTH):
+            lines = [line for line in self.ninja("-t", "commands", program).splitlines() if f"-o {program} " in line]
+            self.link_command[program] = shlex.split(lines[-1].removeprefix(": && ").split(" && ")[0])
         self.dependents = {}
         current = None
         for line in self.ninja("-t", "deps").splitlines():
@@ -145,94 +145,143 @@ class Build:
     def ninja(self, *words):
         return subprocess.run(["ninja", *words], cwd=self.folder, check=True, text=True, capture_output=True).stdout
 
-    def link_command(self, program):
-        lines = [line for line in self.ninja("-t", "commands", program).splitlines() if f"-o {program} " in line]
-        return shlex.split(lines[-1].removeprefix(": && ").split(" && ")[0])
-
     def in_program(self, program, target):
         """Whether the program is linked with this object, in a library or by itself."""
-        words = self.link[program]
+        words = self.link_command[program]
         library = re.match(r"CMakeFiles/(\w+)\.dir/", target)
         return target in words or bool(library) and f"lib{library[1]}.a" in words
 
     def objects(self, file):
         """Those that depend on a source file and stand in one of the programs."""
         return sorted(target for target in self.dependents.get(str(ROOT / file), ())
-                      if any(self.in_program(program, target) for program in self.link))
+                      if any(self.in_program(program, target) for program in self.link_command))
 
-    def compile(self, target, scratch):
+    def compile(self, target, out, more=(), changed=None):
+        """The object `out`; False if it does not compile. changed: a folder whose files stand for the tree's."""
         words = list(self.command[target])
-        words = [f"-I{self.copy}" if word == f"-I{ROOT}" else word for word in words]
-        source = pathlib.Path(words[words.index("-c") + 1])
-        if source.is_relative_to(self.folder):  # a batch of files, or generated
-            batch = scratch / target.replace("/", "_")
-            batch = batch.with_suffix(".cpp")
-            text = source.read_text()
-            for layer in LAYERS:
-                text = text.replace(f'"{ROOT}/{layer}/', f'"{self.copy}/{layer}/')
-            batch.write_text(text)
-            source = batch
-        else:
-            source = self.copy / source.relative_to(ROOT)
-        words[words.index("-c") + 1] = str(source)
-        out = scratch / target.replace("/", "_")
         words[words.index("-o") + 1] = str(out)
-        done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True)
-        return str(out) if done.returncode == 0 else None
+        if changed:
+            source = pathlib.Path(words[words.index("-c") + 1])
+            text = source.read_text()
+            for file in changed.rglob("*.[ch]pp"):  # a batch of files includes them by their whole paths
+                name = file.relative_to(changed)
+                text = file.read_text() if source == ROOT / name else text.replace(f'"{ROOT / name}"', f'"{file}"')
+            copy = out.parent / "from" / source.name
+            copy.parent.mkdir(exist_ok=True)
+            copy.write_text(text)
+            words[words.index("-c") + 1] = str(copy)
+            words.insert(words.index(f"-I{ROOT}"), f"-I{changed}")
+            more = [*more, f"-fmacro-prefix-map={copy.parent}={source.parent}", f"-fmacro-prefix-map={changed}={ROOT}"]
+        return subprocess.run(words + list(more), cwd=self.folder, capture_output=True).returncode == 0
 
-    def programs(self, file, scratch):
-        """program -> a copy with the changed file in it; nothing if that does not compile"""
-        targets = self.objects(file)
-        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            made = dict(zip(targets, pool.map(lambda t: self.compile(t, scratch), targets)))
-        if not all(made.values()):
-            return {}
+    def link(self, program, objects, out, more=()):
+        """The program with some objects in the place of its own; False if it does not link."""
+        words = [str(objects.get(word, word)) for word in self.link_command[program]]
+        words[words.index("-o") + 1] = str(out)
+        # Members of libraries in front of these, which then have nothing left to give.
+        words[1:1] = [str(new) for target, new in objects.items()
+                      if target not in self.link_command[program] and self.in_program(program, target)]
+        return subprocess.run(words + list(more), cwd=self.folder, capture_output=True).returncode == 0
+
+
+class Check:
+    """A suite of unit tests, or a truth."""
+
+    def __init__(self, program, name, folder):
+        self.program, self.name, self.folder = program, name, folder
+        self.seconds = 0.0  # CPU time that it takes
+
+    def words(self, program):
+        if self.program == UNIT:
+            return [program, f"--gtest_filter={self.name}.*", "--gtest_brief=1"]
+        return [program, "verify", "-j1", "--quiet", self.name]
+
+
+def checks_of(build):
+    folder_of = {suite: file.parent.name for file in (ROOT / "tests").glob("*/*_test.cpp")
+                 for suite in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", file.read_text(), re.MULTILINE)}
+    listed = subprocess.run([build.folder / UNIT, "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
+                            text=True, capture_output=True).stdout
+    suites = [line.split("#")[0].strip().rstrip(".") for line in listed.splitlines() if line and not line[0].isspace()]
+    truths = subprocess.run([build.folder / TRUTH, "verify", "--list"], check=True, text=True, capture_output=True).stdout
+    return ([Check(UNIT, suite, folder_of.get(suite.split("/")[-1], "")) for suite in suites if "Running main" not in suite]
+            + [Check(TRUTH, line.split("\t")[1], "truths") for line in truths.splitlines()])
+
+
+def run(check, program, where, seconds=600.0, **environment):
+    """(whether it is green, CPU seconds); red if it takes more CPU time, or hangs"""
+    # A folder of its own for what the tests write: several run at the same time.
+    environment = {**os.environ, "TMPDIR": f"{where}/", "TEST_TMPDIR": f"{where}/", **environment}
+    process = subprocess.Popen(check.words(program), cwd=where, env=environment, start_new_session=True,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def kill():
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+    for limit, most in ((resource.RLIMIT_CPU, math.ceil(seconds)), (resource.RLIMIT_DATA, 8 << 30)):
+        with contextlib.suppress(ProcessLookupError):
+            resource.prlimit(process.pid, limit, (most, most))
+    hangs = threading.Timer(60 + 10 * seconds, kill)
+    hangs.start()
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    hangs.cancel()
+    kill()  # what it left behind
+    return process.returncode == 0, usage.ru_utime + usage.ru_stime
+
+
+class Coverage:
+    """Which check runs which line of the given objects, and how long each check takes."""
+
+    def __init__(self, build, objects, checks, folder, pool):
+        self.folder, self.lines, self.lock = folder, {}, threading.Lock()
+        (folder / "counted").mkdir(parents=True)
+        self.counted = {target: folder / "counted" / target.replace("/", "_") for target in objects}
+        list(pool.map(lambda t: build.compile(t, self.counted[t], ["--coverage", "-fprofile-update=atomic"]), self.counted))
         programs = {}
-        for program, link in self.link.items():
-            words = [made.get(word, word) for word in link]
-            words[words.index("-o") + 1] = str(scratch / pathlib.Path(program).name)
-            # Members of libraries in front of these, which then have nothing left to give.
-            words[1:1] = [made[t] for t in targets if t not in link and self.in_program(program, t)]
-            if subprocess.run(words, cwd=self.folder, capture_output=True).returncode != 0:
-                return {}
-            programs[program] = scratch / pathlib.Path(program).name
-        return programs
+        for program in build.link_command:
+            programs[program] = folder / pathlib.Path(program).name
+            if not build.link(program, self.counted, programs[program], ["--coverage"]):
+                sys.exit(f"mutate: {program} cannot be linked with counters")
+        def count(check):
+            with tempfile.TemporaryDirectory() as where:
+                green, check.seconds = run(check, programs[check.program], where, GCOV_PREFIX=str(folder / check.name))
+            return green
+        self.idle = {UNIT: Check(UNIT, "None", ""), TRUTH: Check(TRUTH, "--list", "")}
+        for check in self.idle.values():
+            count(check)
+        self.red = [check.name for check, green in zip(checks, pool.map(count, checks)) if not green]
 
+    def counters(self, check, target):
+        counted = self.counted[target].with_suffix(".gcda")
+        return pathlib.Path(f"{self.folder / check.name}{counted}")
 
-def limited():
-    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
-    resource.setrlimit(resource.RLIMIT_DATA, (8 << 30, 8 << 30))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    def executed(self, check, target):
+        """file -> line -> how often, where the check runs this object at all"""
+        key = check.name, target
+        if key not in self.lines:
+            data, idle = self.counters(check, target), self.counters(self.idle[check.program], target)
+            self.lines[key] = {}
+            if data.exists() and not (idle.exists() and idle.read_bytes() == data.read_bytes()):
+                notes = data.with_suffix(".gcno")
+                if not notes.exists():
+                    notes.symlink_to(self.counted[target].with_suffix(".gcno"))
+                report = subprocess.run(["gcov", "--json-format", "--stdout", "-r", "-s", ROOT, data], cwd=data.parent,
+                                        capture_output=True, text=True).stdout
+                for file in json.loads(report)["files"] if report else []:
+                    name = os.path.relpath(os.path.join(ROOT, file["file"]), ROOT)
+                    counts = self.lines[key].setdefault(name, {})
+                    for line in file["lines"]:
+                        counts[line["line_number"]] = counts.get(line["line_number"], 0) + line["count"]
+        return self.lines[key]
 
-
-def red(words, where):
-    try:
-        return subprocess.run(words, cwd=where, preexec_fn=limited, timeout=SECONDS, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL).returncode != 0
-    except subprocess.TimeoutExpired:
-        return True
-
-
-def unit_tests(folders):
-    """The --gtest_filter of all suites in the given folders of tests/."""
-    suites = set()
-    for folder in folders:
-        for file in (ROOT / "tests" / folder).glob("*_test.cpp"):
-            suites.update(re.findall(r"^TEST(?:_F|_P)?\((\w+),", file.read_text(), re.MULTILINE))
-    if not suites:
-        sys.exit(f"mutate: no tests in {folders}")
-    return "--gtest_filter=" + ":".join(f"{suite}.*:*/{suite}.*" for suite in sorted(suites))
-
-
-def who_notices(programs, layer, where):
-    tests, taut = programs["tests/taut_tests"], programs["taut"]
-    if red([tests, unit_tests(LAYERS[layer]), "--gtest_brief=1"], where):
-        return "its own tests"
-    if red([tests, "--gtest_brief=1"], where):
-        return "other tests"
-    if red([taut, "verify", f"-j{os.cpu_count()}"], where):
-        return "truths"
-    return None
+    def runs(self, check, targets, file, number):
+        """Whether the check runs a line. What gcov does not list (a constant, the rest of a statement) counts as run."""
+        for target in targets:
+            counts = self.executed(check, target).get(file)
+            if counts is not None and counts.get(number, 1) > 0:
+                return True
+        return False
 
 
 def equivalents():
@@ -246,10 +295,54 @@ def equivalents():
     return known
 
 
-def draw(layers, sample, seed, build, widest):
-    """Endless (layer, file, line number, line with the error): layers in turn, then a random operator and place."""
+class Mutant:
+    def __init__(self, layer, file, number, planted):
+        self.layer, self.file, self.number, self.planted = layer, file, number, planted
+        self.was = (ROOT / file).read_text().splitlines()[number - 1]
+        self.objects = {}  # target -> the object with the error in it
+        self.by, self.checks, self.seconds = None, 0, 0.0
+
+    def text(self):
+        return f"{self.file}:{self.number}\n    - {self.was.strip()}\n    + {self.planted.strip()}"
+
+    def compile(self, build, folder):
+        """Whether it compiles, to something else than without the error."""
+        changed = folder / "tree" / self.file
+        changed.parent.mkdir(parents=True)
+        lines = (ROOT / self.file).read_text().splitlines()
+        lines[self.number - 1] = self.planted
+        changed.write_text("\n".join(lines) + "\n")
+        for target in build.objects(self.file):
+            out = folder / target.replace("/", "_")
+            if not build.compile(target, out, changed=folder / "tree"):
+                return False
+            if out.read_bytes() != (build.folder / target).read_bytes():
+                self.objects[target] = out
+        return bool(self.objects)
+
+    def judge(self, build, folder, checks, coverage):
+        """Sets by whom it is noticed, and what that took."""
+        own, programs = self.layer.split("/")[-1], {}
+        for check in sorted(checks, key=lambda c: (c.folder != own, c.seconds)):
+            if not coverage.runs(check, self.objects, self.file, self.number):
+                continue
+            if check.program not in programs:
+                programs[check.program] = folder / pathlib.Path(check.program).name
+                if not build.link(check.program, self.objects, programs[check.program]):
+                    self.by = "the linker"
+                    return
+            with tempfile.TemporaryDirectory(dir=folder) as where:
+                green, seconds = run(check, programs[check.program], where, max(10.0, 10 * check.seconds))
+            self.checks, self.seconds = self.checks + 1, self.seconds + seconds
+            if not green:
+                self.by = check.name
+                return
+
+
+def draw(layers, seed, build, widest):
+    """Mutants without end: layers in turn, then a random operator and place."""
     random_ = random.Random(seed)
-    known, pools, wide = equivalents(), {}, []
+    known, pools, wide = equivalents(), {}, 0
     for layer in layers:
         pools[layer] = {}
         for file in sorted(ROOT.glob(f"{layer}/**/*.[ch]pp")):
@@ -257,76 +350,94 @@ def draw(layers, sample, seed, build, widest):
             if LEFT_OUT.search(name) or not build.objects(name):
                 continue
             if len(build.objects(name)) > widest:
-                wide.append(name)
+                wide += 1
                 continue
             lines = file.read_text().splitlines()
             for operator, places in sites(file).items():
                 pools[layer].setdefault(operator, []).extend(
-                    (name, number, planted) for number, planted in places
+                    (name, number + 1, planted) for number, planted in places
                     if (name, lines[number].strip(), planted.strip()) not in known)
     places = sum(len(p) for pool in pools.values() for p in pool.values())
-    print(f"seed {seed}: {places} places in {len(layers)} layers; left out, as too much depends on them: "
-          f"{len(wide)} files", flush=True)
-    while True:
-        for layer in layers:
-            pool = pools[layer]
-            if not any(pool.values()):
-                sys.exit(f"mutate: every place in {layer} was tried")
-            operator = random_.choice(sorted(o for o in pool if pool[o]))
-            yield layer, *pool[operator].pop(random_.randrange(len(pool[operator])))
+    print(f"seed {seed}: {places} places in {len(layers)} layers; left out, as too much depends on them: {wide} files",
+          flush=True)
+    while any(place for pool in pools.values() for place in pool.values()):
+        for layer, pool in pools.items():
+            operators = sorted(o for o in pool if pool[o])
+            if operators:
+                operator = random_.choice(operators)
+                yield Mutant(layer, *pool[operator].pop(random_.randrange(len(pool[operator]))))
+
+
+def compiled(mutants, sample, build, folder, pool):
+    """The first `sample` of the mutants that compile; and how many did not, or not to anything else."""
+    good, idle, batch = [], 0, 0
+    while len(good) < sample:
+        more = list(itertools.islice(mutants, sample - len(good)))
+        if not more:
+            break
+        folders = [folder / f"{batch + i}" for i in range(len(more))]
+        batch += len(more)
+        done = list(pool.map(lambda m, f: m.compile(build, f), more, folders))
+        good += [(mutant, where) for mutant, where, fine in zip(more, folders, done) if fine]
+        idle += done.count(False)
+    return good, idle
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--sample", type=int, default=60)
-    parser.add_argument("--minutes", type=float, default=1e9, help="plant no more after this time")
+    parser.add_argument("--minutes", type=float, default=1e9, help="judge no more errors after this time")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     parser.add_argument("--layer", action="append", choices=LAYERS)
     parser.add_argument("--goal", type=float, default=0.92, help="least share noticed")
-    parser.add_argument("--widest", type=int, default=12)
+    parser.add_argument("--widest", type=int, default=4)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--list", action="store_true", help="only print what would be planted")
     options = parser.parse_args()
-    counts = {layer: [0, 0] for layer in options.layer or LAYERS}  # noticed, planted
-    with tempfile.TemporaryDirectory() as folder:
-        copy = pathlib.Path(folder, "tree")
-        for part in ("core", "bullet_ref", "experiments", "tests"):
-            shutil.copytree(ROOT / part, copy / part)
-        build = Build(options.build.resolve(), copy)
-        mutants = draw(list(counts), options.sample, options.seed, build, options.widest)
-        tried, end = 0, time.monotonic() + 60 * options.minutes
-        while tried < options.sample and time.monotonic() < end:
-            layer, file, number, planted = next(mutants)
-            lines = (ROOT / file).read_text().splitlines()
-            was, lines[number] = lines[number], planted
-            where = f"{file}:{number + 1}"
-            difference = f"    - {was.strip()}\n    + {planted.strip()}"
-            if options.list:
-                tried += 1
-                print(f"{where}\n{difference}")
-                continue
-            (copy / file).write_text("\n".join(lines) + "\n")
-            with tempfile.TemporaryDirectory(dir=folder) as scratch:
-                programs = build.programs(file, pathlib.Path(scratch))
-                by = who_notices(programs, layer, scratch) if programs else None
-            shutil.copy(ROOT / file, copy / file)
-            if not programs:
-                continue  # no error that a compiler lets through
-            tried += 1
-            counts[layer][0] += by is not None
-            counts[layer][1] += 1
-            print(f"noticed by {by}: {where}" if by else f"SURVIVED {where}\n{difference}", flush=True)
+    build = Build(options.folder.resolve())
+    mutants = draw(options.layer or LAYERS, options.seed, build, options.widest)
     if options.list:
+        for mutant in itertools.islice(mutants, options.sample):
+            print(mutant.text())
         return 0
-    for layer, (noticed, planted) in counts.items():
-        print(f"{layer:22} {noticed:3} of {planted:3}")
-    if tried == 0:
+    os.environ["CCACHE_DISABLE"] = "1"  # nothing of what follows is compiled twice
+    start = time.monotonic()
+
+    def spent():
+        cpu = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return f"{time.monotonic() - start:.0f} s, {cpu.ru_utime + cpu.ru_stime:.0f} s of CPU"
+    with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        folder = pathlib.Path(scratch)
+        good, idle = compiled(mutants, options.sample, build, folder, pool)
+        print(f"{len(good)} compiled, {idle} did not or made no difference: {spent()}", flush=True)
+        checks = checks_of(build)
+        coverage = Coverage(build, sorted({t for mutant, _ in good for t in mutant.objects}), checks, folder / "coverage", pool)
+        print(f"{len(checks)} checks take {sum(c.seconds for c in checks):.0f} s of CPU: {spent()}", flush=True)
+        if coverage.red:
+            sys.exit(f"mutate: red without any error: {', '.join(coverage.red)}")
+
+        def judge(mutant, where):
+            if time.monotonic() - start < 60 * options.minutes:
+                mutant.judge(build, where, checks, coverage)
+                shutil.rmtree(where)
+                how = (f"noticed by {mutant.by}: {mutant.file}:{mutant.number}" if mutant.by else
+                       f"SURVIVED {mutant.checks} checks that run it: {mutant.text()}")
+                print(f"{how}   ({mutant.seconds:.0f} s)", flush=True)
+                return mutant
+            return None
+        judged = [mutant for mutant in pool.map(judge, *zip(*good)) if mutant]
+    for layer in options.layer or LAYERS:
+        of_layer = [mutant for mutant in judged if mutant.layer == layer]
+        print(f"{layer:22} {sum(m.by is not None for m in of_layer):3} of {len(of_layer):3}")
+    if not judged:
         sys.exit("mutate: no time for a single one")
-    noticed = sum(n for n, _ in counts.values())
-    bar = options.goal - 2 * math.sqrt(options.goal * (1 - options.goal) / tried)
-    print(f"noticed: {noticed} of {tried} ({noticed / tried:.0%}); the goal is {options.goal:.0%}, "
-          f"a sample of this size fails below {bar:.0%}")
-    return 0 if noticed >= bar * tried else 1
+    noticed = sum(mutant.by is not None for mutant in judged)
+    share = noticed / len(judged)
+    bar = options.goal - 2 * math.sqrt(options.goal * (1 - options.goal) / len(judged))
+    print(f"noticed: {noticed} of {len(judged)} ({share:.0%}) in {spent()}; the goal is {options.goal:.0%}, a sample of this "
+          f"size fails below {bar:.0%}")
+    return 0 if share >= bar else 1
 
 
 if __name__ == "__main__":

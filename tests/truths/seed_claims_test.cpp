@@ -27,10 +27,10 @@ TEST(SeedClaims, EachIsHeldByATruthUnlessItCannotBeTested) {
 TEST(SeedClaims, TheTruthsBehindBoxesAndOctreesHold) {
   for (const TruthEntry* truth : truths()) {
     if (truth->section != 8 || truth->row < 6) continue;
-    Ledger ledger({"jakobsen"});
-    truth->check(ledger);
-    EXPECT_GE(ledger.findings().size(), 1u) << truth->name;
-    for (const Finding& finding : ledger.findings())
+    Findings findings({"jakobsen"});
+    truth->check(findings);
+    EXPECT_GE(findings.all().size(), 1u) << truth->name;
+    for (const Finding& finding : findings.all())
       EXPECT_EQ(finding.verdict, TruthVerdict::passed)
           << truth->name << ", " << finding.quantity << ": " << finding.measured;
   }
