@@ -9,6 +9,7 @@
 
 #include "core/io/document.hpp"
 #include "core/io/text_file.hpp"
+#include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/key.hpp"
@@ -137,8 +138,8 @@ Manifest plan(const Study& study, const Limits& limits, const fs::path& folder) 
     manifest.cases.push_back({one.key, one.id, one.spec, 1, estimated_work(one)});
     manifest.cases.back().spec.scene = files.copied(one.spec);
     manifest.case_memory = std::max(
-        manifest.case_memory,
-        kProgramBytes + kElementBytes * (one.scene->mesh.size() + one.scene->links.size()));
+        manifest.case_memory, kProgramBytes + kElementBytes * (to_index(one.scene->mesh.size()) +
+                                                               one.scene->links.size()));
   }
   return manifest;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <ranges>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -82,7 +82,7 @@ MergePlan Merge::look(const Store& into) const {
   if (plan.name.empty()) plan.name = name_of(plan.cases);
   std::map<std::string, std::string> ids;
   for (const ManifestEntry& one : plan.cases) ids[one.key] = one.id;
-  for (const Source& other : sources_ | std::views::drop(1)) {
+  for (const Source& other : std::span(sources_).subspan(1)) {
     note_planned_alone(sources_.front(), other, plan.foreign);
     note_planned_alone(other, sources_.front(), plan.foreign);
   }

@@ -144,7 +144,7 @@ Differences stored_differences(const Store& a, const Store& b) {
   Names names = parameters_of(in_a);
   const Names other = parameters_of(in_b);
   for (auto& [solver, own] : names)
-    std::erase_if(own, [&](const std::string& name) {
+    std::erase_if(own, [&, &solver = solver](const std::string& name) {
       return !other.contains(solver) || !other.at(solver).contains(name);
     });
   const auto itself = [](const Record& r) -> const Record& { return r; };

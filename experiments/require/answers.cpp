@@ -49,7 +49,7 @@ Vec3 between(const Grid& grid, const std::vector<Vec3>& x, double u, double v) {
   };
   const auto [i, a] = part(u, grid.nu);
   const auto [j, b] = part(v, grid.nv);
-  const auto at = [&](int di, int dj) -> const Vec3& {
+  const auto at = [&, i = i, j = j](int di, int dj) -> const Vec3& {
     return x[to_index(grid.index(std::min(i + di, grid.nu - 1), std::min(j + dj, grid.nv - 1)))];
   };
   return (1 - a) * (1 - b) * at(0, 0) + a * (1 - b) * at(1, 0) + (1 - a) * b * at(0, 1) +

@@ -156,7 +156,7 @@ std::string unequal_work(std::span<const Record> records) {
   std::set<Work> common = works.begin()->second;
   std::string text;
   for (const auto& [solver, own] : works) {
-    std::erase_if(common, [&](const Work& work) { return !own.contains(work); });
+    std::erase_if(common, [&own = own](const Work& work) { return !own.contains(work); });
     const Work &first = *own.begin(), &last = *own.rbegin();
     text += (text.empty() ? "" : ", ") + solver_title(solver.second) + " " + first.text() +
             (own.size() > 1 ? " to " + last.text() : "");
