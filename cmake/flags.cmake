@@ -31,6 +31,7 @@ if(TAUT_FUZZ)
 endif()
 if(TAUT_SANITIZE OR TAUT_FUZZ)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
+  target_compile_definitions(taut_flags INTERFACE TAUT_SANITIZED)
   target_compile_options(taut_flags INTERFACE
     -fsanitize=address,undefined,float-divide-by-zero -fno-sanitize-recover=all -fno-omit-frame-pointer
     -D_GLIBCXX_ASSERTIONS)

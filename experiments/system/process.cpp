@@ -93,7 +93,7 @@ struct Pipes {
     const rlimit both{soft, soft + grace};
     setrlimit(what, &both);
   };
-#ifndef __SANITIZE_ADDRESS__  // its shadow alone is terabytes
+#ifndef TAUT_SANITIZED  // its shadow alone is terabytes
   limit(RLIMIT_DATA, static_cast<double>(options.limits.memory), 0);
 #endif
   limit(RLIMIT_CPU, options.limits.cpu_seconds, 1);

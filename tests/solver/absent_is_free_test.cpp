@@ -123,7 +123,7 @@ TEST(AbsentIsFree, TheHeapHoldsWhatThePassesReportAndNoMore) {
 /// Conditional branches that `work` executes, counted one instruction at a time in a copy of this
 /// process; nothing where that is not possible. The same for the same work, but for a constant.
 std::optional<long> branches([[maybe_unused]] const std::function<void()>& work) {
-#if !defined(__x86_64__) || defined(__SANITIZE_ADDRESS__)
+#if !defined(__x86_64__) || defined(TAUT_SANITIZED)
   return {};  // other instructions; or branches of the sanitizer's own
 #else
   const pid_t child = fork();
