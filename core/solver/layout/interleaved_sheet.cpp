@@ -22,11 +22,12 @@ constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::str
                                                               {2, 0, Family::bend, 0},
                                                               {0, 2, Family::bend, 0}}};
 
-/// One vector more than a row needs: rows of a power of two would share cache sets.
+/// One vector more than a row needs where neighbouring rows would share cache sets.
 SheetRows rows_of(const Grid& grid) {
   const int lanes = grid.nu >= 4 * kWide ? kWide : kNarrow;
   const int vectors = (grid.nu + lanes - 1) / lanes;
-  return {grid.nv, grid.nu, lanes, vectors, to_index((vectors + 1) * 3 * lanes)};
+  const int padding = vectors % 32 == 0 ? 1 : 0;
+  return {grid.nv, grid.nu, lanes, vectors, to_index((vectors + padding) * 3 * lanes)};
 }
 
 }  // namespace

@@ -16,20 +16,27 @@
 
 namespace taut {
 
-template <class T, class Real>
-void verlet(const VerletStep<Real>& s, std::size_t begin, std::size_t end) {
+/// s: a copy, which no store changes.
+template <class T, bool forces, class Real>
+[[gnu::always_inline]] inline void integrate(const VerletStep<Real> s, std::size_t begin,
+                                             std::size_t end) {
   const T keep(s.keep), dt2(s.dt2);
   for (std::size_t i = begin; i < end; i += kGrain)
+#pragma GCC unroll 12
     for (std::size_t l = 0; l < kGrain; l += kWidth<T>) {
       const T x = load<T>(s.x + i + l);
       T moved = x + (keep * (x - load<T>(s.previous + i + l)) + load<T>(s.g + l));
-      if (s.a) {
+      if constexpr (forces) {
         moved = moved + load<T>(s.a + i + l) * dt2;
         store(s.a + i + l, T(0.0));
       }
       store(s.x + i + l, moved);
       store(s.previous + i + l, x);
     }
+}
+template <class T, class Real>
+void verlet(const VerletStep<Real>& s, std::size_t begin, std::size_t end) {
+  s.a ? integrate<T, true>(s, begin, end) : integrate<T, false>(s, begin, end);
 }
 
 /// All links between two vectors of an interleaved sheet.
