@@ -79,7 +79,7 @@ class Jakobsen final : public Solver {
       apply(forces_, t, h);  // AccumulateForces
       verlet();              // Verlet
       pins_.place(p_, t + h);
-      for (const auto* list : {&contact_.before, &contact_.sweep, &contact_.after})
+      for (const auto* list : {&constraints_, &contact_.before, &contact_.sweep, &contact_.after})
         for (auto& pass : *list) pass->begin(p_, t, h);
       apply(contact_.before, t, h);
       for (int k = 0; k < iterations_; ++k) {  // SatisfyConstraints
@@ -97,7 +97,7 @@ class Jakobsen final : public Solver {
       p_.x.set(i, state.x[i].template cast<Real>());
       p_.previous.set(i, previous.template cast<Real>());
     }
-    for (const auto* list : {&contact_.before, &contact_.sweep, &contact_.after})
+    for (const auto* list : {&constraints_, &contact_.before, &contact_.sweep, &contact_.after})
       for (auto& pass : *list) pass->restart();
   }
 

@@ -83,6 +83,21 @@ TEST(SameBits, OfWindForEveryInstructionSetAndNumberOfThreads) {
   }
 }
 
+TEST(SameBits, OfTethersForEveryInstructionSet) {
+  for (const Scene& scene : scenes())
+    for (const char* projection : {"exact", "sqrt-free"})
+      for (const char* layout : {"auto", "batches"}) {
+        const std::string method = std::string("jakobsen:iterations=2,tethers=on,layout=") +
+                                   layout + ",projection=" + projection;
+        const State want = simulate(scene, method + ",simd=scalar", 20);
+        for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+          if (available(simd)) {
+            const std::string with = method + ",simd=" + std::string(to_string(simd));
+            EXPECT_TRUE(same_bits(simulate(scene, with, 20), want)) << with;
+          }
+      }
+}
+
 /// A plane, a ball and a turned box that rises and spins, where the sheet falls past them.
 std::vector<Collider> obstacles(const Scene& scene) {
   Vec3 middle = Vec3::Zero();

@@ -195,7 +195,7 @@ std::vector<std::unique_ptr<Pass<Real>>> accelerators(const Scene& scene, std::s
       passes.push_back(std::make_unique<HierarchyPass<Real, kind>>(std::move(levels), w.size()));
   if (settings.tethers)
     if (auto tethers = make_tethers(scene); !tethers.empty())
-      passes.push_back(std::make_unique<TetherPass<Real, kind>>(std::move(tethers)));
+      passes.push_back(std::make_unique<TetherPass<Real>>(scene, tethers, kind, settings.simd));
   return passes;
 }
 

@@ -135,6 +135,13 @@ struct CollideKernels {
   Collide<Real, BoxSurface> box, box_continuous;
 };
 
+/// One tether of each particle, in the particles' layout: its pin and, where their x are, its
+/// length [m]; 0: none.
+template <class Real>
+struct TetherTable {
+  const Real *pin, *length;
+};
+
 /// Between which bounds the motions of all particles lie [m].
 template <class Real>
 struct MotionBox {
@@ -195,6 +202,9 @@ struct Kernels {
   void (*narrow_wind)(const WindStep<Real>&, const SheetFaces<Real>&, int begin, int end);
   void (*wide_wind)(const WindStep<Real>&, const SheetFaces<Real>&, int begin, int end);
   void (*wind_on_faces)(const WindStep<Real>&, std::span<const FaceBatch<Real>>);
+  /// Pulls particles that are farther than their length from their pin to it, table after table; by
+  /// Projection.
+  void (*tethers[2])(const ParticleSpan<Real>&, std::span<const TetherTable<Real>>);
   /// Of all particles since the span's `previous` and since they were at `then`, laid out alike.
   MotionBoxes<Real> (*motion_boxes)(const ParticleSpan<Real>&, const Real* then);
   /// Square of the largest motion against `middle` [m^2].

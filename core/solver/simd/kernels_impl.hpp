@@ -257,6 +257,30 @@ void collide(const Contact<Real, SurfaceOf>& contact, const ParticleSpan<Real>& 
       });
 }
 
+template <class Narrow, class Wide, class P, Projection kind, class Real>
+void tethers(const ParticleSpan<Real>& span, std::span<const TetherTable<Real>> tables) {
+  with_lanes<Narrow, Wide, P>(
+      span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
+        using T = decltype(t);
+        constexpr int lanes = of_layout;
+        const auto one = [&](std::size_t at, const auto&) __attribute__((always_inline)) {
+          Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
+          bool moved = false;
+          for (const TetherTable<Real>& table : tables) {
+            Vec3T<T> pin = load_vec3<T, lanes>(table.pin + at), end = x;
+            const T length = load_vec3<T, lanes>(table.length + at).x;
+            const auto tight = length > T(0) && squared_norm(x - pin) > length * length;
+            if (!any(tight)) continue;
+            project_distance<kind>(pin, end, select(tight, length, T(1)), T(0), T(1));
+            x = select(tight, end, x);
+            moved = true;
+          }
+          if (moved) store_vec3<T, lanes>(span.x + at, x);
+        };
+        visit_particles<T, lanes>(span, 0, span.parts(), one);
+      });
+}
+
 /// What one lane after the other makes of `all`.
 template <class T, class Real, class F>
 [[gnu::always_inline]] inline Real over_lanes(const T& all, const F& f) {
@@ -380,6 +404,7 @@ constexpr Kernels<Real> make_kernels() {
       wind_on_sheet<Narrow, kNarrow, Real>,
       wind_on_sheet<Wide, kWide, Real>,
       wind_on_faces<P, Real>,
+      {tethers<Narrow, Wide, P, exact, Real>, tethers<Narrow, Wide, P, sqrt_free, Real>},
       motion_boxes<Narrow, Wide, P, Real>,
       largest_motion2<Narrow, Wide, P, Real>,
       find_pairs<Narrow, Real>,
