@@ -169,7 +169,7 @@ std::optional<RegularLinks> regular(const Scene& scene, LinkLayout layout) {
   auto links = regular_links(scene.mesh, scene.links);
   if (!links && layout == LinkLayout::interleaved)
     throw InputError(
-        "jakobsen: layout=interleaved needs a regular sheet of at least 17 columns with all links "
+        "jakobsen: layout=interleaved needs a regular sheet of at least 17 columns or rows with all links "
         "of a direction present and of one length; layout=batches takes any mesh");
   return links;
 }
