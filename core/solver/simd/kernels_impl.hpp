@@ -203,7 +203,7 @@ void load_and_store(const BatchRun<Real>& run, Real* x) {
 /// Calls f(place, present) for kWidth<T> particles after the other, of the parts [begin, end):
 /// `present` leaves out padding.
 template <class T, int lanes, class Real, class F>
-[[gnu::always_inline]] inline void visit_particles(const ParticleSpan<Real>& span,
+[[gnu::always_inline]] inline void visit_particles(const ParticleSpan<Real> span,
                                                    std::size_t begin, std::size_t end, const F& f) {
   static constexpr Real kNumbers[kWide] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   const auto from = [](std::size_t first, int l) __attribute__((always_inline)) {
@@ -237,8 +237,10 @@ template <class Narrow, class Wide, class P, class Real, class F>
 
 template <class Narrow, class Wide, class P, bool continuous, class Real,
           template <class> class SurfaceOf>
-void collide(const Contact<Real, SurfaceOf>& contact, const ParticleSpan<Real>& span,
+void collide(const Contact<Real, SurfaceOf>& contact_in, const ParticleSpan<Real>& span_in,
              std::size_t begin, std::size_t end) {
+  const Contact<Real, SurfaceOf> contact = contact_in;  // copies, which no store changes
+  const ParticleSpan<Real> span = span_in;
   with_lanes<Narrow, Wide, P>(
       span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
         using T = decltype(t);
@@ -246,11 +248,13 @@ void collide(const Contact<Real, SurfaceOf>& contact, const ParticleSpan<Real>& 
         const auto one = [&](std::size_t at, const auto& present) __attribute__((always_inline)) {
           Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
           const Vec3T<T> previous = load_vec3<T, lanes>(span.previous + at);
+          const auto near = present && contact.template near<continuous>(x, previous);
+          if (!any(near)) return;
           bool moved;
           if constexpr (continuous)
-            moved = any(contact.project_continuous(x, previous, present));
+            moved = any(contact.project_continuous(x, previous, near));
           else
-            moved = any(contact.project(x, previous, present));
+            moved = any(contact.project(x, previous, near));
           if (moved) store_vec3<T, lanes>(span.x + at, x);
         };
         visit_particles<T, lanes>(span, begin, end, one);
