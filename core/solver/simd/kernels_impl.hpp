@@ -262,7 +262,8 @@ void collide(const Contact<Real, SurfaceOf>& contact_in, const ParticleSpan<Real
 }
 
 template <class Narrow, class Wide, class P, Projection kind, class Real>
-void tethers(const ParticleSpan<Real>& span, std::span<const TetherTable<Real>> tables) {
+void tethers(const ParticleSpan<Real>& span_in, std::span<const TetherTable<Real>> tables) {
+  const ParticleSpan<Real> span = span_in;  // a copy, which no store changes
   with_lanes<Narrow, Wide, P>(
       span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
         using T = decltype(t);
