@@ -157,9 +157,10 @@ class Jakobsen final : public Solver {
   void verlet() {
     const Kernels<Real>& k = kernels<Real>(simd_);
     const auto kernel = p_.layout->stride() == kWide ? k.wide_verlet : k.narrow_verlet;
-    pool_.run(p_.layout->length() / kGrain, [&](std::size_t begin, std::size_t end) {
-      kernel(verlet_, begin * kGrain, end * kGrain);
-    });
+    pool_.run(
+        p_.layout->length() / kGrain,
+        [&](std::size_t begin, std::size_t end) { kernel(verlet_, begin * kGrain, end * kGrain); },
+        p_.size() >= ThreadPool::kWorthSharing);
   }
 
   int iterations_;

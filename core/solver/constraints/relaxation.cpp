@@ -115,12 +115,15 @@ class SheetPass final : public Pass<Real> {
   void apply(Particles<Real>& p, double, double) override {
     const RowBlocks blocks = sheet_.blocks();
     for (const int parity : {0, 1})
-      pool_.run(blocks.count(parity), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t block = begin; block < end; ++block) {
-          const auto [from, to] = blocks.of(parity, block);
-          project_(sheet_.sweep(), p.x.data(), from, to);
-        }
-      });
+      pool_.run(
+          blocks.count(parity),
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t block = begin; block < end; ++block) {
+              const auto [from, to] = blocks.of(parity, block);
+              project_(sheet_.sweep(), p.x.data(), from, to);
+            }
+          },
+          p.size() >= ThreadPool::kWorthSharing);
   }
 
   std::vector<PassCost> cost() const override { return costs_; }
@@ -148,10 +151,14 @@ class BatchPass final : public Pass<Real> {
 
   void apply(Particles<Real>& p, double, double) override {
     for (std::size_t phase = 0; phase < batches_.phases(); ++phase)
-      pool_.run(batches_.tiles(phase), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t tile = begin; tile < end; ++tile)
-          for (const BatchRun<Real>& run : batches_.runs(phase, tile)) project_(run, p.x.data());
-      });
+      pool_.run(
+          batches_.tiles(phase),
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t tile = begin; tile < end; ++tile)
+              for (const BatchRun<Real>& run : batches_.runs(phase, tile))
+                project_(run, p.x.data());
+          },
+          p.size() >= ThreadPool::kWorthSharing);
   }
 
   std::vector<PassCost> cost() const override { return costs_; }
@@ -169,7 +176,8 @@ std::optional<RegularLinks> regular(const Scene& scene, LinkLayout layout) {
   auto links = regular_links(scene.mesh, scene.links);
   if (!links && layout == LinkLayout::interleaved)
     throw InputError(
-        "jakobsen: layout=interleaved needs a regular sheet of at least 17 columns or rows with all links "
+        "jakobsen: layout=interleaved needs a regular sheet of at least 17 columns or rows with "
+        "all links "
         "of a direction present and of one length; layout=batches takes any mesh");
   return links;
 }

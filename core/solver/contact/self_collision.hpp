@@ -174,8 +174,8 @@ class SelfCollidePass final : public Pass<Real> {
   }
 
   /// Square of the largest motion of a particle against the cloth as a whole since it was at `then`
-  /// [m^2]: no two move by more than twice that against each other. The cloth moves as the middle of
-  /// the box of all motions.
+  /// [m^2]: no two move by more than twice that against each other. The cloth moves as the middle
+  /// of the box of all motions.
   Real largest_motion2(Particles<Real>& p, const Points<Real>& then,
                        const MotionBox<Real>& box) const {
     return kernels_.largest_motion2({p.x.data(), then.data(), p.layout->sheet(), p.size()},

@@ -78,7 +78,8 @@ std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link
   for (std::size_t d = 0; d < kDirections.size(); ++d) {
     if (count[d] == 0) continue;
     RegularLinks::Direction direction = kDirections[d];
-    const int complete = (grid.columns - std::abs(direction.columns)) * (grid.rows - direction.rows);
+    const int complete =
+        (grid.columns - std::abs(direction.columns)) * (grid.rows - direction.rows);
     if (count[d] != to_index(complete)) return {};
     direction.rest = rest[d];
     regular.directions.push_back(direction);

@@ -203,8 +203,8 @@ void load_and_store(const BatchRun<Real>& run, Real* x) {
 /// Calls f(place, present) for kWidth<T> particles after the other, of the parts [begin, end):
 /// `present` leaves out padding.
 template <class T, int lanes, class Real, class F>
-[[gnu::always_inline]] inline void visit_particles(const ParticleSpan<Real> span,
-                                                   std::size_t begin, std::size_t end, const F& f) {
+[[gnu::always_inline]] inline void visit_particles(const ParticleSpan<Real> span, std::size_t begin,
+                                                   std::size_t end, const F& f) {
   static constexpr Real kNumbers[kWide] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   const auto from = [](std::size_t first, int l) __attribute__((always_inline)) {
     return T(static_cast<Real>(first)) + load<T>(kNumbers + l);
@@ -333,8 +333,7 @@ MotionBoxes<Real> motion_boxes(const ParticleSpan<Real>& span, const Real* then)
         const auto one = [&](std::size_t at, const auto& present) __attribute__((always_inline)) {
           const Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
           const auto add = [&](int k, const Real* from) __attribute__((always_inline)) {
-            const Vec3T<T> m =
-                select(present, x - load_vec3<T, lanes>(from + at), starts[k]);
+            const Vec3T<T> m = select(present, x - load_vec3<T, lanes>(from + at), starts[k]);
             least[k] = {lesser(least[k].x, m.x), lesser(least[k].y, m.y), lesser(least[k].z, m.z)};
             most[k] = {greater(most[k].x, m.x), greater(most[k].y, m.y), greater(most[k].z, m.z)};
           };
