@@ -32,7 +32,7 @@ struct EffectBenchOptions {
   std::string solver;               ///< "jakobsen:iterations=1,substeps=15"
   int side = 0;                     ///< sheets of side x side vertices; 0: as the scene has it
   bool wall = false;  ///< wall time, as it has to be with threads; else CPU time of the process
-  int copies = 0;  ///< of each scene, to be timed together on two threads; needs `wall`; 0: none
+  int copies = 0;     ///< of each scene, to be timed together on two threads; needs `wall`; 0: none
   int rounds = 11;
   double seconds = 0.01;  ///< of one sample
   std::function<void(std::size_t done, std::size_t all)> progress = [](auto, auto) {};
