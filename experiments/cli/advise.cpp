@@ -11,7 +11,6 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/chart/palette.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
@@ -342,10 +341,6 @@ int run(Options options) {
     for (const SolverEntry* entry : all_solvers())
       if (entry->name != "external") options.solvers.emplace_back(entry->name);
   for (const std::string& solver : options.solvers) parse_solver(solver);
-  // What the first costs bounds how far the others need to be searched.
-  std::ranges::stable_sort(options.solvers, {}, [](const std::string& solver) {
-    return report::solver_place(parse_solver(solver).entry->name);
-  });
   Advisor advisor(options);
   const Result result = advisor.run();
   if (result.cut.empty() && std::ranges::all_of(result.tried, [](const Candidate& c) {

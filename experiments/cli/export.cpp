@@ -7,6 +7,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
@@ -144,7 +145,7 @@ int run(const Options& options) {
     std::cout << options.out << '\n';
   }
   const std::size_t missing = known.cases.size() - known.records.size();
-  if (missing > 0) std::cerr << missing << " cases were not run\n";
+  if (missing > 0) progress() << missing << " cases were not run\n";
   return missing > 0 ? kIncomplete : kPass;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
 
@@ -104,8 +105,9 @@ int write(const std::string& name, std::string text, const std::string& next, bo
     text.replace(at, 1, file.stem().string());
   write_durably(file, text);
   print_files({file.string()}, json);
-  std::cerr << "next: taut " << next << ' ' << (file.has_parent_path() ? file : "." / file).string()
-            << (next == "case" ? " jakobsen" : "") << '\n';
+  progress() << "next: taut " << next << ' '
+             << (file.has_parent_path() ? file : "." / file).string()
+             << (next == "case" ? " jakobsen" : "") << '\n';
   return kPass;
 }
 

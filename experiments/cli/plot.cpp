@@ -6,6 +6,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/claims/rivals.hpp"
@@ -49,18 +50,19 @@ std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
   return specs;
 }
 
-/// Keeps the cases at the commonest value of what is not on x, and says so: in the title and, if
-/// that leaves out cases, on standard error.
-std::string hold(const PlotSpec& spec, std::vector<Record>& records, const std::string& scene) {
+/// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
+/// and on standard error.
+std::string hold_other(const PlotSpec& spec, std::vector<Record>& records,
+                       const std::string& scene) {
   const std::string held = spec.x == "dt" ? "iterations" : "dt";
-  report::Slice slice = report::most_common(records, held, held == "dt" ? 1.0 / 64 : 8);
+  report::Slice slice = report::hold(records, held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
   records = std::move(slice.records);
   if (left_out == 0) return "";
   const std::string at = report::quantity(held).text(slice.value, 3);
   const std::string setting = held == "dt" ? "dt = " + at : at + " sweeps";
-  std::cerr << scene << ", " << spec.y << " over " << spec.x << ": " << setting << "; " << left_out
-            << " cases at other values are not drawn\n";
+  progress() << scene << ", " << spec.y << " over " << spec.x << ": " << setting << "; " << left_out
+             << " cases at other values are not drawn\n";
   return ", " + setting;
 }
 
@@ -73,7 +75,7 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
   std::vector<Record> records = study.records;
   std::erase_if(records, [&](const Record& r) { return r.scene != scene; });
   if (spec.kind == "scaling") spec.slope = 1;
-  const std::string held = spec.kind == "stability" ? "" : hold(spec, records, scene);
+  const std::string held = spec.kind == "stability" ? "" : hold_other(spec, records, scene);
   std::vector<report::TimeSeries> series;
   if (spec.kind == "series") series = report::stored_series(records, spec.y, store);
   if (const auto slope = study.slopes.find(scene); slope != study.slopes.end() &&

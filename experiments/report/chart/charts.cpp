@@ -186,7 +186,7 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
                        const std::string& y, const std::string& along, const std::string& held,
                        double preferred, const std::string& title, const std::string& caption) {
     const std::string over = along == "setting" ? "iterations" : along;
-    Slice slice = most_common(swept(input, scene, over, y), held, preferred);
+    Slice slice = hold(swept(input, scene, over, y), held, preferred);
     try {
       Chart chart = make_chart(kind, slice.records, x, y, along);
       for (Curve& curve : chart.curves)
@@ -201,7 +201,8 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
     }
   };
   const auto over = [](const std::string& y, const std::string& x) {
-    return quantity(y).title + " over " + (x == "dt" ? "the time step" : quantity(x).title);
+    return capitalised(quantity(y).title) + " over " +
+           (x == "dt" ? "the time step" : quantity(x).title);
   };
   const double step = 1.0 / 64;
   if (add("convergence", "convergence", "iterations", "stretch.rms", "iterations", "dt", step,
@@ -263,7 +264,7 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
 Chart cost_chart(const SceneBench& scene, std::span<const Record> records) {
   Chart chart = make_chart("cost", records, "cpu.per_second", "stretch.rms", "setting");
   chart.id = scene.scene + "-cost", chart.scene = scene.scene;
-  chart.title = chart.y.title + " over " + chart.x.title;
+  chart.title = capitalised(chart.y.title) + " over " + chart.x.title;
   chart.caption =
       "Down and left is better. Two runs of identical code: " + fixed(scene.control.low, 2) +
       " to " + fixed(scene.control.high, 2) + ".";

@@ -25,6 +25,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, References& refs) {
            {"scene", r.scene},
            {"solver", r.solver},
            {"settings", r.spec.solver},
+           {"parameters", r.params},
            {"brief", brief_settings(r.spec.solver)},
            {"studies", refs.studies_of(r)},
            {"dt", r.dt},
@@ -197,7 +198,8 @@ class Builder {
     for (const StudyResult& study : input_.studies)
       planned += std::max(study.planned, study.records.size()) - study.records.size();
     one["cases"] = cases, one["planned"] = cases + planned;
-    for (const Sure sure : {Sure::clear, Sure::likely, Sure::too_noisy, Sure::single_run})
+    for (const Sure sure :
+         {Sure::clear, Sure::likely, Sure::too_noisy, Sure::none, Sure::single_run})
       one["policy"][std::string(to_string(sure))] = meaning(sure);
     return one;
   }
@@ -344,7 +346,7 @@ class Builder {
       Chart chart{.id = name + "-over-time-" + slug(series.value),
                   .scene = name,
                   .kind = "series",
-                  .title = quantity(series.value).title + " over time",
+                  .title = capitalised(quantity(series.value).title) + " over time",
                   .x = quantity("t"),
                   .y = quantity(series.value),
                   .cost = {}};
