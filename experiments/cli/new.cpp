@@ -119,7 +119,8 @@ std::function<int()> bind(CLI::App& app) {
   for (CLI::App* sub : {study, scene})
     sub->add_option("NAME", *name, "NAME or path; the file is NAME.toml")->required();
   const auto json = std::make_shared<bool>(false);
-  for (CLI::App* sub : {study, scene}) add_json(*sub, *json, "The name of the file");
+  for (CLI::App* sub : {study, scene})
+    add_json(*sub->fallthrough(), *json, "The name of the file");  // --quiet is the verb's own
   return [name, study, json] {
     return study->parsed() ? write(*name, kStudy, "run", *json)
                            : write(*name, kScene, "case", *json);

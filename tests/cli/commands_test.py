@@ -122,12 +122,18 @@ colour = "red"
 
 class Verbs(CommandLine):
     def test_plots_of_values_over_time_and_what_is_held_is_said(self):
-        study = self.study(rest="axes.iterations = [1, 2]\naxes.time.dt = [0.02, 0.01]\n"
-                                '[[plot]]\nkind = "error-iterations"\nfile = "mine"\n')
+        plot = '[[plot]]\nkind = "error-iterations"\nfile = "mine"\n'
+        few = self.study("few.toml", rest="axes.iterations = [1, 2]\naxes.time.dt = [0.02, 0.01]\n" + plot)
+        self.taut("run", few)
+        drawn = self.taut("plot", few)
+        curves = {row["label"] for row in csv.DictReader((self.folder / drawn.out.split()[0]).with_suffix(".csv").read_text().splitlines())}
+        self.assertEqual(curves, {"Jakobsen 20.0\u00a0ms", "Jakobsen 10.0\u00a0ms"})
+        self.assertNotIn("not drawn", drawn.err)
+        study = self.study(rest="axes.iterations = [1, 2]\naxes.time.dt = [0.02, 0.01, 0.005, 0.004]\n" + plot)
         self.taut("run", study)
         drawn = self.taut("plot", study)
         self.assertIn("small-mine.svg", drawn.out)
-        self.assertIn("2 cases at other values are not drawn", drawn.err)
+        self.assertIn("6 cases at other values are not drawn", drawn.err)
         self.assertIn("dt = ", (self.folder / drawn.out.split()[0]).read_text())
         series = self.taut("plot", study, "--kind", "series", "--y", "stretch.rms")
         self.assertIn("Jakobsen 5 × 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
@@ -184,9 +190,10 @@ class Verbs(CommandLine):
         study = self.study()
         said = json.loads(self.taut("run", study, "--json").out)
         self.assertEqual((said["cases"], said["ran"], said["statuses"]), (1, 1, {"ok": 1}))
-        for words in [["run", study], ["case", "./small.toml", "jakobsen"], ["list", "solvers"],
-                      ["bench", "kernels", "--sizes", "8", "--rounds", "1", "--seconds", "0.0001"]]:
-            self.assertEqual(self.taut(*words, "--quiet").out, "", words)
+        for words in [["run", study], ["run", study, "--only", "failed"], ["case", "./small.toml", "jakobsen"], ["list", "solvers"],
+                      ["new", "study", "mine"], ["export", study], ["plot", study, "--kind", "error-iterations"], ["bench", "kernels", "--sizes", "8", "--rounds", "1", "--seconds", "0.0001"]]:
+            done = self.taut(*words, "--quiet")
+            self.assertEqual((done.out, done.err), ("", ""), words)
 
     def test_manual_and_completion_are_made_from_the_verbs(self):
         manual, completion = self.taut("--man").out, self.taut("--bash-completion").out

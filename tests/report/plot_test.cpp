@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -153,6 +154,28 @@ TEST(Curves, LabelsNameOnlyWhatVariesAndCurvesKeepTheirSolver) {
   EXPECT_EQ(curves[0].label, "Jakobsen exact");
   EXPECT_EQ(curves[1].label, "Jakobsen sqrt-free");
   EXPECT_EQ(curves[2].label, "Bullet");
+}
+
+TEST(Curves, TwoTimeStepsAreTwoSetsOfCurvesManyAreHeldAtOne) {
+  const auto all = synthetic::time_steps("hang");
+  auto few = all;
+  std::erase_if(few, [](const Record& r) { return r.dt != 0.001 && r.dt != 0.002; });
+  const Slice both = hold(few, "dt", 1.0 / 64), one = hold(all, "dt", 1.0 / 64);
+  EXPECT_TRUE(std::isnan(both.value));
+  EXPECT_EQ(one.value, 1.0 / 64);
+  std::set<std::string> labels;
+  for (const Curve& c : make_curves(both.records, "iterations", "stretch.rms", "iterations"))
+    labels.insert(c.label);
+  EXPECT_EQ(labels, (std::set<std::string>{"Jakobsen 1.00\u00A0ms", "Jakobsen 2.00\u00A0ms",
+                                           "Bullet 1.00\u00A0ms", "Bullet 2.00\u00A0ms"}));
+  EXPECT_EQ(make_curves(one.records, "iterations", "stretch.rms", "iterations").size(), 2U);
+}
+
+TEST(Curves, SolversStandAsTheRecordsHaveThem) {
+  auto records = synthetic::iterations("hang");
+  EXPECT_EQ(make_curves(records, "iterations", "stretch.rms", "iterations")[0].solver, "jakobsen");
+  std::ranges::reverse(records);
+  EXPECT_EQ(make_curves(records, "iterations", "stretch.rms", "iterations")[0].solver, "bullet");
 }
 
 TEST(Curves, AnExplodedCaseNeverEntersTheParetoFront) {

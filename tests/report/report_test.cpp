@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -179,6 +180,48 @@ TEST(Model, AFilmSaysWhetherItShowsWhatTheSentenceIsAbout) {
   input.media[0].clips[0].panels[0].key = input.studies[0].records[0].key;  // another setting
   EXPECT_FALSE(claim("stretch").contains("film"));
   EXPECT_TRUE(claim("stretch").contains("film_note"));
+}
+
+TEST(Model, SolversStandInTheOrderOfTheStudy) {
+  ReportInput input = example();
+  for (StudyResult& study : input.studies) std::ranges::reverse(study.records);
+  const Json solvers = model_of(input)["solvers"];
+  EXPECT_EQ(solvers[0]["id"], "bullet");
+  EXPECT_EQ(solvers[0]["colour"], model_of(example())["solvers"][1]["colour"]);
+}
+
+TEST(Model, AFilmShowsTheScenesOwnQuantityFirstAndWhatStaysZeroLast) {
+  ReportInput input = example();
+  input.media = {{.scene = "ball", .clips = {{.type = "image/png", .bytes = "x", .panels = {}}}}};
+  input.media[0].duration = 2.5;
+  for (const auto& [value, y] : {std::pair{"penetration.max", 1e-10}, {"slip.distance", 0.1}})
+    input.series.push_back({"ball", "bullet", "Bullet", value, {0, 1, 2}, {0, y, y}});
+  const Json model = model_of(input);
+  std::vector<std::string> shown;
+  for (const Json& track : model["films"][0]["tracks"]) shown.push_back(track["metric"]);
+  EXPECT_EQ(shown, (std::vector<std::string>{"slip.distance", "stretch.rms", "penetration.max"}));
+}
+
+TEST(Model, CostTablesCompareWhatAllSolversOfASceneHave) {
+  int seen = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const ReportInput input = made_up::Maker(seed).input();
+    if (!input.bench) continue;
+    const Json model = model_of(input);
+    std::map<std::string, Json> cases;
+    for (const Json& one : model["cases"]) cases[one["key"]] = one;
+    for (const Json& table : model["tables"]) {
+      const std::string id = table["id"];
+      const bool rivals = table["columns"].size() > 2;  // of one solver alone all is compared
+      for (const Json& row : table["rows"])
+        for (const Json& cell : row) {
+          if (!id.starts_with("cost-levels-") || !rivals || !cell.contains("case")) continue;
+          EXPECT_NE(cases.at(cell["case"])["parameters"].value("tethers", "off"), "on") << id;
+          ++seen;
+        }
+    }
+  }
+  EXPECT_GT(seen, 20);
 }
 
 TEST(Model, PicturesThatWouldBurstThePageAreLeftOutAndSaidSo) {

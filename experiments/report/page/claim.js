@@ -44,7 +44,7 @@ function evidenceValue(value, quantity) {
   const text = value.value === null ? statusOf(value.status).title : value.text ?? shown(value.value, quantity);
   const spread = interval(value.low, value.high, quantity);
   return el('span', {className: 'value'}, mark(value.solver), caseLink(value.case, text),
-            spread && ` (${spread})`, value.n > 1 && ` n\u00A0=\u00A0${value.n}`,
+            spread && ` (${spread})`, value.value !== null && value.n > 1 && ` n\u00A0=\u00A0${value.n}`,
             value.value !== null && value.status !== 'ok' && `, ${statusOf(value.status).title}`);
 }
 
