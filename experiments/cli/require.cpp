@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/key.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
@@ -241,12 +242,33 @@ Row summary(const Requirement& found) {
   std::string answers;
   for (const KeptAnswer& answer : found.answers)
     answers += (answers.empty() ? "" : ", ") + answer.name;
+  for (const std::string& what : found.not_done)
+    drop += (drop.empty() ? "not done: " : "; not done: ") + what;
   return {found.full.scene->name,
           found.chaotic ? number_text(found.horizon, 2) + " s" : "no",
           answers,
           drop.empty() ? "nothing" : drop,
-          keep.empty() ? "nothing" : keep,
+          keep.empty() ? (found.effects.empty() ? "-" : "nothing") : keep,
           found.time_ratio ? percent(found.time_ratio->mid) : "-"};
+}
+
+/// For the report.
+void leave(const Requirement& found, const Row& row, const fs::path& folder) {
+  make_folder(folder);
+  write_file(folder / "found.json",
+             to_text(Json{{"schema", "taut-require-1"},
+                          {"program", program_digest()},
+                          {"summary",
+                           {{"scene", row[0]},
+                            {"solver", found.full.choice.brief()},
+                            {"chaotic", found.chaotic ? "after " + row[1] : ""},
+                            {"answers", row[2]},
+                            {"drop", row[3]},
+                            {"keep", row[4]},
+                            {"time", row[5]},
+                            {"command", found.smallest ? command_of(found.smallest->spec) : ""}}}},
+                     1) +
+                 "\n");
 }
 
 int run_one(const Options& options, const std::string& scene, Json& all, std::vector<Row>& rows,
@@ -282,6 +304,7 @@ int run_one(const Options& options, const std::string& scene, Json& all, std::ve
         draw(found, store,
              options.picture.empty() || !alone ? folder / "models.png" : fs::path(options.picture));
   rows.push_back(summary(found));
+  if (!found.answers.empty()) leave(found, rows.back(), folder);
   if (options.json)
     all.push_back(json_of(found, store, picture, seconds(), options.patience));
   else if (alone)

@@ -57,6 +57,21 @@ class AllFrontiers(CommandLine):
         picture = pathlib.Path(text.out.splitlines()[-1])
         self.assertIn("<svg", (self.folder / picture).read_text())
 
+        # The report has it, and what `require` found.
+        required = json.loads(self.taut("require", "./small.toml", "--json").out)
+        study = self.study()
+        self.taut("run", study)
+        model = json.loads(self.taut("report", study, "--json").out)
+        tables = {table["id"]: table["rows"] for table in model["tables"]}
+        self.assertEqual(model["limits"]["tables"], ["required", "frontiers"])
+        self.assertEqual([row[0] for row in tables["frontiers"]], KNOBS)
+        for knob, row in zip(found, tables["frontiers"]):
+            self.assertIn(knob["lacks"] or knob["symptom"] or "as far as was asked", row[1])
+        (row,) = tables["required"]
+        self.assertEqual(row[0], "small")
+        for effect in required["effects"]:
+            self.assertIn(effect["name"], row[4] if effect["verdict"] == "drop" else row[5])
+
         def times(factor):
             def change(rows):
                 rows["time step"]["good"] *= factor

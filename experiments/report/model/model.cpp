@@ -168,6 +168,7 @@ class Builder {
     add_if(model, "charts", std::move(charts_));
     add_if(model, "maps", std::move(maps_));
     add_if(model, "films", std::move(films_));
+    add_if(model, "limits", json_of_limits(input_, tables_));
     add_if(model, "tables", std::move(tables_));
     add_if(model, "cost", std::move(cost));
     add_if(model, "truths", truths());
@@ -419,7 +420,7 @@ class Builder {
         at["unequal"] = "Unequal work: " + unequal + ".";
       one["studies"].push_back(std::move(at));
     }
-    one["claims"] = json_of_seed_claims();
+    one["claims"] = json_of_seed_claims(input_.truths);
     for (const auto& [what, value] : input_.provenance)
       one["facts"].push_back({{"name", what}, {"value", value}});
     for (const std::string& host : input_.cost_hosts)

@@ -43,6 +43,12 @@ function costSection() {
     all(cost.tables, tables).map((table) => tableNode(table, 'h3')));
 }
 
+function limitsSection() {
+  const shown = all(model.limits?.tables, tables);
+  return shown?.length ? section('limits', 'What scenes require, and how far solvers go',
+    shown.map((table) => tableNode(table, 'h3'))) : null;
+}
+
 function truthsSection() {
   const {truths} = model;
   if (!truths) return null;
@@ -81,8 +87,8 @@ function methodSection() {
     tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver)),
     method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,
     el('p', {}, 'This makes it all again:'), command(model.meta.command)),
-    method.claims && folded("Claims of Vasilovici's report", tableOf('Claims', ['section', 'claim', 'verdict', 'because'],
-      method.claims.map((c) => row(c.section, c.claim, c.verdict, c.because)))),
+    method.claims && folded("Claims of Vasilovici's report", tableOf('Claims', ['section', 'claim', 'verdict', 'because', 'measured'],
+      method.claims.map((c) => row(c.section, c.claim, c.verdict, c.because, c.figure ?? '–')))),
     folded('Metrics, build and machine', tableOf('Metrics', ['metric', 'definition', 'unit', 'window'], glossary),
            factList([...(method.facts ?? []), ...build])),
     list('What this does not show', method.limits?.map((text) => item(text))),
