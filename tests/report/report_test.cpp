@@ -90,7 +90,8 @@ TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   for (const char* part : {"meta", "solvers", "statuses", "metrics", "claims", "scenes", "charts",
                            "maps", "method", "missing", "cases"})
     EXPECT_TRUE(model.contains(part) && !model[part].empty()) << part;
-  for (const char* part : {"cost", "limits", "truths", "regressions", "films", "tables", "left_out"})
+  for (const char* part :
+       {"cost", "limits", "truths", "regressions", "films", "tables", "left_out"})
     EXPECT_FALSE(model.contains(part)) << part;
   EXPECT_EQ(model["missing"].size(), 4U);
   EXPECT_EQ(model["meta"]["title"], "Jakobsen and Bullet");
