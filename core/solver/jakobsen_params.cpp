@@ -39,9 +39,9 @@ constexpr ParamSpec kSpecs[] = {
     {.name = "order",
      .kind = Kind::choice,
      .default_value = "coloured",
-     .choices = "mesh|coloured|reversed|random",
+     .choices = "mesh|coloured|reversed|random|jolt",
      .help = "in which Gauss-Seidel visits the links; mesh is the scene's own order, as "
-             "published"},
+             "published; jolt is Jolt Physics' order"},
     {.name = "seed",
      .kind = Kind::integer,
      .default_value = "1",
@@ -128,7 +128,8 @@ constexpr Choice<std::optional<Jacobi>> kMethods[] = {
 constexpr Choice<Order> kOrders[] = {{"mesh", Order::mesh},
                                      {"coloured", Order::coloured},
                                      {"reversed", Order::reversed},
-                                     {"random", Order::random}};
+                                     {"random", Order::random},
+                                     {"jolt", Order::jolt}};
 constexpr Choice<LinkLayout> kLayouts[] = {{"auto", LinkLayout::automatic},
                                            {"interleaved", LinkLayout::interleaved},
                                            {"batches", LinkLayout::batches}};

@@ -45,7 +45,7 @@ std::vector<const TruthEntry*> choose(const Options& options) {
       throw InputError("unknown truth '" + name + "'" + suggestion(name, known) +
                        " (`taut verify --list` names all)");
   for (const std::string& solver : options.solvers)
-    if (solver != "reference") find_solver(solver);
+    if (solver != "reference") parse_solver(solver);
   std::vector<const TruthEntry*> chosen;
   for (const TruthEntry* truth : truths()) {
     const bool named =

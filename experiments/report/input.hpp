@@ -20,6 +20,7 @@ struct TimeSeries {
   std::vector<double> t;  ///< s
   std::vector<double> y;  ///< SI; NaN: no value at this moment
   std::string key = {};   ///< of the case; "": it is not stored
+  double floor = 0;       ///< of strain, by the rounding of a file of positions; 0: it is none
 };
 
 /// A study that was run, or as much of it as there is.

@@ -31,6 +31,11 @@ TimeSeries column(const Series& table, TimeSeries of) {
   return of;
 }
 
+double strain_floor(const Record& r) {
+  const double floor = value_of(r, kStrainFloor);
+  return std::isfinite(floor) ? floor : 0;
+}
+
 constexpr const char* kShown[] = {"stretch.rms", "penetration.max", "tunnelling.count",
                                   "slip.distance"};
 
@@ -41,8 +46,9 @@ std::vector<TimeSeries> series_of(const QuotedScene& quoted, const Rivals& rival
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
     if (!quoted.cases[i]) continue;
     const Record& r = *quoted.cases[i];
-    for (TimeSeries& series : shown_series(
-             store.series(r.key), {r.scene, r.solver, rivals.all[i].label, "", {}, {}, r.key}))
+    for (TimeSeries& series :
+         shown_series(store.series(r.key),
+                      {r.scene, r.solver, rivals.all[i].label, "", {}, {}, r.key, strain_floor(r)}))
       all.push_back(std::move(series));
   }
   return all;
@@ -216,8 +222,9 @@ std::vector<TimeSeries> stored_series(std::span<const Record> records, const std
   for (const Record& record : records) {
     const std::string knobs = knob_label(record, records);
     const std::string label = solver_title(record.solver) + (knobs.empty() ? "" : " " + knobs);
-    TimeSeries series = column(store.series(record.key),
-                               {record.scene, record.solver, label, value, {}, {}, record.key});
+    TimeSeries series = column(
+        store.series(record.key),
+        {record.scene, record.solver, label, value, {}, {}, record.key, strain_floor(record)});
     if (series.t.size() > 1) all.push_back(std::move(series));
   }
   return all;

@@ -32,11 +32,13 @@ struct Finding {
 /// Collects the findings of one truth and knows which solvers were asked for.
 class Findings {
  public:
-  /// `only`: names of solvers; empty: all subjects. References count as "reference".
+  /// `only`: names or texts of solvers; empty: all subjects. References count as "reference".
   explicit Findings(std::vector<std::string> only = {}) : only_(std::move(only)) {}
 
   /// Whether this subject's solver was asked for: spares the work if not.
   bool wants(std::string_view subject) const;
+  /// What was asked for: names, and whole texts of solvers from outside. Empty: all.
+  const std::vector<std::string>& asked() const { return only_; }
 
   /// |measured - expected| <= tolerance (absolute, in the quantity's unit).
   void equal(std::string_view subject, std::string_view quantity, std::string_view unit,

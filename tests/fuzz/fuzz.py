@@ -23,7 +23,7 @@ import time
 from generate import NASTY, Maker, mutate, toml
 
 CODES = {0, 1, 2, 3, 4, 5, 6, 130}  # experiments/command_line/verb.hpp
-STATUSES = {'ok', 'exploded', 'unsettled', 'extreme', 'unsupported', 'timeout', 'oom', 'crash', 'error'}
+STATUSES = {'ok', 'exploded', 'unsettled', 'extreme', 'unsupported', 'timeout', 'oom', 'crash', 'protocol', 'error'}
 SECONDS = 60  # of one command: more is a hang
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
 SMALL = ('[cloth]\ngrid = [3, 3]\nsize = [1, 1]\nmass = 0.1\npins = ["top-left"]\n'
@@ -254,8 +254,18 @@ def trajectory(attempt):
     attempt.taut('render', './small.toml', '--trajectory', 'run.traj', '--size', '320x240', '--quality', 'draft', '-o', 'x.png')
 
 
+def program(attempt):
+    """A solver from outside of which one answer is damaged."""
+    attempt.write('small.toml', SMALL)
+    hostile = SOURCES / 'tests/external/hostile.py'
+    text = f"external:cmd='python3 {hostile} random {attempt.random.randrange(10**9)}',timeout=1"
+    attempt.write('study.toml', f'question = "?"\nscenes = ["./small.toml"]\nsolvers = {toml([text, "jakobsen"])}\n')
+    attempt.run('./study.toml')
+    attempt.taut('external', 'probe', text, '--json')
+
+
 KINDS = {each.__name__: each for each in (scene_made, scene_damaged, mesh, solver, study_made, study_damaged, arguments, record, bench, session,
-                                          baseline, trajectory)}
+                                          baseline, trajectory, program)}
 SOLVERS = []
 
 

@@ -177,7 +177,7 @@ std::optional<RegularLinks> regular(const Scene& scene, LinkLayout layout) {
 template <class Real, Projection kind>
 std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const double> w,
                                             const RelaxationSettings& settings) {
-  const std::vector<Link> links = ordered(scene.links, scene.mesh, settings.order, settings.seed);
+  const std::vector<Link> links = ordered(scene, settings.order, settings.seed);
   auto constraints = make_distance_constraints<Real>(links, w, settings.omega);
   auto costs = family_costs(links, w, constraints.size() * sizeof constraints[0]);
   if (settings.jacobi)

@@ -141,6 +141,7 @@ std::string brief_settings(const std::string& solver) try {
     else if (value != spec.default_value)
       text += ", " + std::string(spec.name) + "=" + value;
   }
+  if (work == Work{} && !text.empty()) return text.substr(2);
   return work.text() + text;
 } catch (const InputError&) {
   const auto colon = solver.find(':');

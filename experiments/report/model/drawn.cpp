@@ -128,8 +128,8 @@ Json json_of(const Chart& chart, References& refs) {
                      {"factor", factor},
                      {"text", "theory: slope " + significant(*chart.slope, 2)}};
   if (chart.floor)
-    one["floor"] = {{"y", *chart.floor},
-                    {"text", "the reference's own error, " + chart.y.text(*chart.floor)}};
+    one["floor"] = {{"y", chart.floor->y},
+                    {"text", chart.floor->text + ", " + chart.y.text(chart.floor->y)}};
   if (chart.front)
     for (const Point& p : pareto_front(chart))
       one["front"].push_back({{"x", p.x}, {"y", p.y}, {"case", refs.key(*p.record)}});

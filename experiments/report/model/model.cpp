@@ -351,7 +351,8 @@ class Builder {
       chart.y.logarithmic = false;
       charts.try_emplace(series.value, std::move(chart)).first->second.series.push_back(series);
     }
-    for (const auto& [value, chart] : charts) {
+    for (auto& [value, chart] : charts) {
+      add_strain_floor(chart);
       scene["charts"].push_back(chart.id);
       charts_.push_back(json_of(chart, refs_));
     }

@@ -134,7 +134,7 @@ function caseValues(entry) {
 function fillCase(dialog, entry) {
   const status = statusOf(entry.status), film = films.get(entry.film);
   const [, settings = ''] = entry.settings.match(/^[^:]*:(.*)$/s) ?? [];
-  const pairs = settings.split(',').filter(Boolean).map((part) => part.split(/=(.*)/s));
+  const pairs = [...settings.matchAll(/([^=,]+)=('(?:[^']|'')*'|[^,]*)/g)].map(([, name, value]) => [name, value]);
   const facts = [
     {name: 'status', value: [glyphBox(entry.status), ` ${status.title}${entry.reason ? `: ${entry.reason}` : ''}`,
       entry.step >= 0 && `, step ${entry.step}`, entry.vertex >= 0 && `, vertex ${entry.vertex}`]},
