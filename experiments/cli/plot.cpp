@@ -1,5 +1,7 @@
 #include "experiments/report/plot/plot.hpp"
 
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -24,6 +26,16 @@ struct Options {
   bool json = false;
 };
 
+/// A plot's `slope`, the exponent of a theory; nothing if it names none.
+std::optional<double> exponent(const std::string& text) {
+  if (text.empty()) return {};
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || !std::isfinite(value))
+    throw InputError("slope = " + text + " in [[plot]]: expected a number");
+  return value;
+}
+
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
 /// for.
 std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
@@ -43,7 +55,8 @@ std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
                      .y = option("y"),
                      .along = option("along"),
                      .title = option("title"),
-                     .file = option("file")});
+                     .file = option("file"),
+                     .slope = exponent(option("slope"))});
   }
   if (specs.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
   return specs;
@@ -76,9 +89,9 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
   const std::string held = spec.kind == "stability" ? "" : hold(spec, records, scene);
   std::vector<report::TimeSeries> series;
   if (spec.kind == "series") series = report::stored_series(records, spec.y, store);
-  if (const auto slope = study.slopes.find(scene); slope != study.slopes.end() &&
-                                                   spec.kind == "error-iterations" &&
-                                                   spec.y.starts_with("stretch."))
+  if (const auto slope = study.slopes.find(scene);
+      slope != study.slopes.end() && spec.kind == "error-iterations" && spec.x == "iterations" &&
+      !spec.slope && spec.y.starts_with("stretch."))
     spec.slope = slope->second;
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
   if (const std::string unequal = report::unequal_work(records); !unequal.empty())

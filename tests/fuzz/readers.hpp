@@ -134,10 +134,10 @@ struct Reader {
 };
 
 inline constexpr Reader kReaders[] = {
-    {"scene", read_scene},   {"study", read_study},
-    {"mesh", read_mesh},     {"solver", read_solver},
-    {"record", read_record}, {"trajectory", read_trajectory_file},
-    {"bench", read_bench},   {"baseline", read_baseline_rows},
+    {"scene", read_scene},     {"study", read_study},
+    {"mesh", read_mesh},       {"solver", read_solver},
+    {"record", read_record},   {"trajectory", read_trajectory_file},
+    {"bench", read_bench},     {"baseline", read_baseline_rows},
     {"answers", read_answers},
 };
 

@@ -212,7 +212,7 @@ TEST(Rivals, OnlyWhatAnswersTheSameQuestionIsQuotedSideBySide) {
   for (const QuotedScene& quoted : rivals.scenes)
     EXPECT_EQ(std::ranges::count(quoted.cases, nullptr), 1) << "another grid is another question";
   for (const Rival& rival : rivals.all) EXPECT_EQ(rival.work.sweeps, 16);
-  EXPECT_EQ(rivals.work_text(), "16 sweeps");
+  EXPECT_EQ(rivals.work_text(), "1 × 16 (substeps × sweeps)");
 }
 
 TEST(Files, WhatCannotBeWrittenIsSaidBeforeAnythingIsDone) {

@@ -85,7 +85,8 @@ TEST(Relaxation, JacobiKeepsMirrorSymmetryAndGaussSeidelDoesNot) {
 
 TEST(Relaxation, EveryOrderVisitsEveryLinkOnce) {
   const Scene scene = hanging_sheet(40, 37);
-  for (const Order order : {Order::mesh, Order::coloured, Order::reversed, Order::random, Order::jolt}) {
+  for (const Order order :
+       {Order::mesh, Order::coloured, Order::reversed, Order::random, Order::jolt}) {
     std::vector<Link> links = ordered(scene, order, 7);
     const auto key = [](const Link& l) { return std::tuple(l.a, l.b, l.rest); };
     std::vector<std::tuple<int, int, double>> got, want;

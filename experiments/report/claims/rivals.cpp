@@ -125,7 +125,8 @@ Work work_of(const Record& r) {
     const double value = value_of(r, name);
     return std::isfinite(value) ? static_cast<int>(value) : -1;
   };
-  return {number("substeps"), number("iterations")};
+  const int substeps = number("substeps"), sweeps = number("iterations");
+  return {sweeps >= 0 ? std::max(1, substeps) : substeps, sweeps};  // whole steps are one substep
 }
 
 std::string brief_settings(const std::string& solver) try {
@@ -141,6 +142,7 @@ std::string brief_settings(const std::string& solver) try {
     else if (value != spec.default_value)
       text += ", " + std::string(spec.name) + "=" + value;
   }
+  if (work.sweeps >= 0) work.substeps = std::max(1, work.substeps);
   if (work == Work{} && !text.empty()) return text.substr(2);
   return work.text() + text;
 } catch (const InputError&) {
