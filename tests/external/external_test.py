@@ -169,6 +169,22 @@ class Everywhere(Programs):
         stretch = {r["solver"]: r["values"]["stretch.rms"] for r in self.records() if r["params"]["iterations"] == "1"}
         self.assertEqual(len(set(stretch.values())), 2, "the same program twice, and another")
 
+    def test_a_solver_written_from_the_document_runs_beside_bullet(self):
+        """In Perl, without an SDK; it has sweeps and no substeps: its steps are one."""
+        if not shutil.which("perl"):
+            self.skipTest("perl is not here")
+        perl = f"external:cmd='perl {HERE}/relax.pl'"
+        self.assertIn("It may be scored.", self.taut("external", "probe", f"perl {HERE}/relax.pl").out)
+        study = self.study(solvers=[perl, "bullet"], rest='[axes]\niterations = [1, 2]\n[[plot]]\nkind = "error-iterations"\n')
+        self.taut("run", study)
+        self.assertEqual([r["status"]["kind"] for r in self.records()], ["ok"] * 4)
+        self.taut("plot", study)
+        model, page = self.report(study)
+        headline, = [c["sentence"] for c in model["claims"] if c["id"] == "stretch"]
+        self.assertIn("at 1 \u00d7 2 (substeps \u00d7 sweeps)", headline)
+        self.assertIn("Relax perl", headline)
+        self.assertIn("relax-perl", page)
+
     def test_an_axis_is_not_taken_for_fixed_by_a_command_that_names_it(self):
         for name in ("toy.py", "taut_solver.py"):
             shutil.copy(SDK / name, self.folder)
@@ -207,8 +223,9 @@ class Everywhere(Programs):
         self.assertIn(file, page)
         floors = [chart["floor"] for chart in model["charts"] if "floor" in chart]
         self.assertTrue(any("rounding of the file" in one["text"] for one in floors), floors)
-        bench = self.taut("bench", study, "--rounds", 2, "--seconds", 0.01).out
-        self.assertIn("positions from a file: cost not measured", bench)
+        bench = json.loads(self.taut("bench", study, "--rounds", 2, "--seconds", 0.01, "--json").out)
+        timing, = [c for c in bench["scenes"][0]["cases"] if c["record"]["solver"] == file]
+        self.assertIn("positions from a file: cost not measured", timing["failure"])
         fronts = [p["case"] for chart in model["charts"] for p in chart.get("front", [])]
         self.assertNotIn(records[file]["key"], fronts)
         self.taut("case", "./small.toml", "positions:file=none.npy", expect=2)
