@@ -69,8 +69,8 @@ struct World {
   btDbvtBroadphase broadphase;
   DeformableSolver deformables;
   btDeformableMultiBodyConstraintSolver constraints;
-  btDeformableMultiBodyDynamicsWorld world{&dispatcher, &broadphase, &constraints, &configuration,
-                                           &deformables};
+  bullet_ref::BoundedWorld<btDeformableMultiBodyDynamicsWorld> world{
+      &dispatcher, &broadphase, &constraints, &configuration, &deformables};
 };
 
 int newton_steps(const Params& params) {

@@ -69,7 +69,8 @@ struct World {
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
-  btSoftRigidDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+  bullet_ref::BoundedWorld<btSoftRigidDynamicsWorld> world{&dispatcher, &broadphase, &solver,
+                                                           &configuration};
 };
 
 void configure_body(btSoftBody& body, const Scene& scene, const Params& params) {

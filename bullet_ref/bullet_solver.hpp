@@ -53,6 +53,25 @@ class BulletSolver : public Solver, public HoldsScene {
 /// What the entries of both solvers share.
 namespace bullet_ref {
 
+/// Throws SolverFailure "exploded (box)" if a vertex is so far out that the number of its cell in
+/// the colliders' distance fields overflows an int: Bullet would then read memory that is not its
+/// own.
+void require_cells(const btSoftBodyArray&);
+
+/// A world of Bullet's that checks where it moves vertices before it looks for their contacts
+/// there.
+template <class World>
+class BoundedWorld final : public World {
+ public:
+  using World::World;
+
+ private:
+  void predictUnconstraintMotion(btScalar h) override {
+    World::predictUnconstraintMotion(h);
+    require_cells(this->getSoftBodyArray());
+  }
+};
+
 inline constexpr ParamSpec kSubsteps = {
     .name = "substeps",
     .kind = ParamSpec::Kind::integer,
