@@ -59,9 +59,10 @@ class EnergyBudget {
 };
 
 /// The largest strain [1] that a link of this scene may show, whoever solves it, without the case
-/// being called extreme: 10 (eleven times its length) or, where they are larger, twice the strain
-/// that it starts with and twice that of the softest relaxation, one sweep a step (truth
-/// "legitimate strain": 2 (N - 1) g dt^2/l in a hanging chain; here by cuts, as in EnergyBudget).
+/// being called extreme: 10 (eleven times its length) or, where it is larger, twice that of the
+/// softest relaxation, one sweep a step (truth "legitimate strain": 2 (N - 1) g dt^2/l in a hanging
+/// chain; here by cuts, as in EnergyBudget), but at most 30: what a scene asks for beyond that, by
+/// its start, its step or its forces, belongs into no mean.
 double legitimate_strain(const Scene&);
 
 /// Theoretical settling time [s]: in it the slowest mode of a hanging cloth decays by 1/e. Relaxing
@@ -78,7 +79,8 @@ std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& s
 ///   exploded{energy}     kinetic energy above ten times EnergyBudget::available
 ///   exploded{box}        a coordinate beyond EnergyBudget::farthest
 ///   extreme{stretch}     a structural or shear link that is not between two pins was strained by
-///                        more than legitimate_strain(); it goes on, and what it gives is kept
+///                        more than legitimate_strain(); it goes on, and what it gives is kept.
+///                        "stretch, moves after five settling times": it would be unsettled, too
 ///   unsettled            the run lasted at least five settling times and yet, in its last settling
 ///                        time, a vertex is faster than 1e-3 sqrt(|g| L) (L: extent) and than the
 ///                        fastest ever seen times exp(-t/T)

@@ -21,7 +21,8 @@ struct Probed {
   Status status;
   /// However far it stretches: a large strain alone is no instability.
   bool stable() const {
-    return status.kind == Status::Kind::ok || status.kind == Status::Kind::extreme;
+    return status.kind == Status::Kind::ok ||
+           (status.kind == Status::Kind::extreme && status.reason == "stretch");
   }
   /// A crash is an answer; want of time or memory is none, nor is a broken protocol.
   bool known() const { return status.is_result() || status.kind == Status::Kind::crash; }
