@@ -10,6 +10,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/solver_texts.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/study/campaign.hpp"
@@ -341,7 +342,7 @@ int run(Options options) {
   if (options.solvers.empty())
     for (const SolverEntry* entry : all_solvers())
       if (entry->name != "external") options.solvers.emplace_back(entry->name);
-  for (const std::string& solver : options.solvers) parse_solver(solver);
+  check_solvers(options.solvers);
   // What the first costs bounds how far the others need to be searched.
   std::ranges::stable_sort(options.solvers, {}, [](const std::string& solver) {
     return report::solver_place(parse_solver(solver).entry->name);

@@ -3,6 +3,10 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
@@ -47,6 +51,33 @@ std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
   }
   if (specs.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
   return specs;
+}
+
+/// Throws InputError with every kind and value that there is not; of a study's own with its place.
+void check(const std::vector<PlotSpec>& specs, const Options& options, const Study& study,
+           std::span<const Record> records) {
+  const bool own = options.kind.empty() && options.x.empty() && options.y.empty();
+  std::vector<Diagnostic> wrong;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const auto collect = [&](const char* key, const auto& look) {
+      try {
+        look();
+      } catch (const InputError& error) {
+        Diagnostic d = error.diagnostics().front();
+        if (own) {
+          const SourceLocation& place = study.plots[i].places.at(key);
+          d.file = study.file.string(), d.line = place.line, d.column = place.column;
+        } else {
+          d.message = std::string("--") + key + ": " + d.message;
+        }
+        wrong.push_back(d);
+      }
+    };
+    collect("kind", [&] { report::find_plot_kind(specs[i].kind); });
+    for (const auto& [key, name] : {std::pair("x", specs[i].x), std::pair("y", specs[i].y)})
+      if (!name.empty()) collect(key, [&] { report::check_value_name(name, records); });
+  }
+  if (!wrong.empty()) throw InputError(wrong);
 }
 
 /// Keeps the cases at the commonest value of what is not on x, and says so: in the title and, if
@@ -103,11 +134,7 @@ int run(const Options& options) {
                                 (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                           : std::filesystem::path(options.out);
   const std::vector<PlotSpec> specs = wanted(options, study);
-  for (const PlotSpec& spec : specs) {
-    report::find_plot_kind(spec.kind);
-    for (const std::string& name : {spec.x, spec.y})
-      if (!name.empty()) report::check_value_name(name, result.records);
-  }
+  check(specs, options, study, result.records);
   make_folder(out);  // what cannot be written is said once, not for every scene
   std::vector<std::string> files;
   try {

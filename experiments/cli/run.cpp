@@ -42,20 +42,22 @@ void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
   std::vector<std::string> known = report::quantity_names();
   known.emplace_back("setting");
   for (const StudyAxis& axis : study.axes) known.push_back(axis.name);
-  const auto report = [&](std::size_t i, const std::string& text) {
-    wrong.push_back({study.file, 0, 0, "[[plot]] " + std::to_string(i + 1) + ": " + text});
+  const auto report = [&](std::size_t i, const char* key, const std::string& text) {
+    const SourceLocation& place = study.plots[i].places.at(key);
+    wrong.push_back({study.file, place.line, place.column, text});
   };
   for (std::size_t i = 0; i < study.plots.size(); ++i) {
     try {
       report::find_plot_kind(study.plots[i].kind);
     } catch (const InputError& error) {
-      report(i, error.diagnostics().front().text());
+      report(i, "kind", error.diagnostics().front().text());
     }
     for (const char* axis : {"x", "y", "along"})
       if (const auto at = study.plots[i].options.find(axis);
           at != study.plots[i].options.end() && std::ranges::count(known, at->second) == 0)
-        report(i, "unknown value '" + at->second + "' for " + axis + suggestion(at->second, known) +
-                      " (`taut list metrics`)");
+        report(i, axis,
+               "unknown value '" + at->second + "' for " + axis + suggestion(at->second, known) +
+                   " (`taut list metrics`)");
   }
 }
 

@@ -103,8 +103,11 @@ std::vector<Case> cases_of(const Study& study) {
       Case one = maker.make(spec);
       if (keys.insert(one.key).second) cases.push_back(std::move(one));
     } catch (const InputError& error) {
-      for (const Diagnostic& d : error.diagnostics())
+      for (Diagnostic d : error.diagnostics()) {
+        if (const auto at = study.places.find(d.file); at != study.places.end())
+          d = {study.file.string(), at->second.line, at->second.column, d.file + ": " + d.message};
         if (said.insert(d.text()).second) wrong.push_back(d);
+      }
     }
   };
   for (const std::string& scene : study.scenes)

@@ -177,9 +177,22 @@ class Input(CommandLine):
         os.mkfifo(self.folder / "pipe.toml")
         os.mkfifo(self.folder / "pipe.obj")
         self.refuse("./pipe.toml", "pipe.toml: no such scene file")
-        for mesh, says in [("/dev/zero", "is no regular file"), ("/proc/self/mem", "cannot be read"), ("pipe.obj", "is no regular file")]:
+        for mesh, says in [("/dev/zero", "/dev/zero: is no regular file"), ("/proc/self/mem", "/proc/self/mem: cannot be read"),
+                           ("pipe.obj", "pipe.obj: is no regular file"), ("none.obj", "none.obj: cannot be read: No such file")]:
             (self.folder / "mesh.toml").write_text(f'[cloth]\nmesh = "{mesh}"\nmass = 1\n')
+            self.refuse("./mesh.toml", "./mesh.toml:2:8: 'mesh' in [cloth] cannot be used: ")
             self.refuse("./mesh.toml", says)
+
+    def test_a_pipe_is_never_waited_for(self):
+        self.taut("run", self.study())
+        (self.folder / "results/runs/packs").mkdir()
+        for pipe in ("pipe.traj", "pipe.pc2", "pipe.npy", "pipe.toml", "results/runs/packs/pipe.pack"):
+            os.mkfifo(self.folder / pipe)
+        for words in (["render", "./small.toml", "--trajectory", "pipe.traj", "-o", "x.png"], ["external", "score", "./small.toml", "pipe.traj"],
+                      ["external", "score", "./small.toml", "pipe.pc2"], ["external", "score", "./small.toml", "pipe.npy"],
+                      ["run", "./pipe.toml"], ["case", "./small.toml", "jakobsen", "--set", 'cloth.mesh="pipe.npy"']):
+            self.assertRegex(self.taut(*words, expect=2).err, "is no regular file|no such study file", words)
+        self.taut("export", "./study.toml")
 
     def test_documents_without_bottom(self):
         for name, text in [("keys", ".".join(["a"] * 60_000) + " = 1\n"), ("tables", "[" + ".".join(["a"] * 60_000) + "]\n"),
