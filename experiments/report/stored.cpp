@@ -122,15 +122,18 @@ std::map<std::string, const T*> by_question(const std::vector<T>& all, const Nam
   return index;
 }
 
-std::vector<BenchedCase> all_timed(const Store& store, double& noise) {
-  std::vector<BenchedCase> all;
+/// What was timed, by host and processor.
+std::map<std::string, std::vector<BenchedCase>> all_timed(const Store& store, double& noise) {
+  std::map<std::string, std::vector<BenchedCase>> all;
   std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(store.root() / "bench", none))
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(store.root() / "bench", none))
     if (entry.path().extension() == ".json") {
       const BenchSession session = bench_from_json(read_text(entry.path()), entry.path().string());
+      std::vector<BenchedCase>& here = all[session.host + ", " + session.machine];
       for (const SceneBench& scene : session.scenes) {
         noise = std::max(noise, strayed(scene.control));
-        all.insert(all.end(), scene.cases.begin(), scene.cases.end());
+        here.insert(here.end(), scene.cases.begin(), scene.cases.end());
       }
     }
   return all;
@@ -153,13 +156,16 @@ Differences stored_differences(const Store& a, const Store& b) {
     if (const auto at = of_b.find(name); record && at != of_b.end() && at->second)
       found.pairs.emplace_back(*record, *at->second);
   found.only_a = in_a.size() - found.pairs.size(), found.only_b = in_b.size() - found.pairs.size();
-  const std::vector<BenchedCase> timed_a = all_timed(a, found.noise),
-                                 timed_b = all_timed(b, found.noise);
+  const auto timed_a = all_timed(a, found.noise), timed_b = all_timed(b, found.noise);
   const auto its_record = [](const BenchedCase& c) -> const Record& { return c.record; };
-  const auto costs = by_question(timed_b, names, its_record);
-  for (const auto& [name, one] : by_question(timed_a, names, its_record))
-    if (const auto at = costs.find(name); one && at != costs.end() && at->second)
-      found.timed.emplace_back(*one, *at->second);
+  for (const auto& [host, in_b_here] : timed_b) {
+    const auto same = timed_a.find(host);
+    if (same == timed_a.end()) continue;  // times of two hosts are not compared
+    const auto costs = by_question(in_b_here, names, its_record);
+    for (const auto& [name, one] : by_question(same->second, names, its_record))
+      if (const auto at = costs.find(name); one && at != costs.end() && at->second)
+        found.timed.emplace_back(*one, *at->second);
+  }
   return found;
 }
 
