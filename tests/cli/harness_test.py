@@ -253,7 +253,10 @@ class Store(CommandLine):
 
     def test_two_runs_share_a_folder(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
-        both = [self.start("run", study, "-j", 3, program="taut-faulty") for _ in range(2)]
+        both = [self.start("run", study, "-j", 3, program="taut-faulty")]
+        while not [*(self.folder / "results/runs/tmp").glob("*.*/heartbeat")]:  # a case is running: it is no leftover
+            time.sleep(0.01)
+        both.append(self.start("run", study, "-j", 3, program="taut-faulty"))
         for process in both:
             _, said = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 0, said)
@@ -397,7 +400,7 @@ class Store(CommandLine):
     def test_a_clock_that_jumps_changes_nothing(self):
         if SANITIZED:
             self.skipTest("the sanitizer wants to be the first that is preloaded")
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        study = self.study(solvers=["faulty:mode=slow"], rest='set = ["time.duration=2.5"]\naxes.variant = [0, 1]\n')  # seconds: looked at often
         whole = self.store_digest(self.taut("run", study, "--out", "whole", program="taut-faulty"))
         jumping = {**os.environ, "LD_PRELOAD": str(BINARIES / "libjumping_clock.so")}
         years = {subprocess.run(["date", "+%Y"], env=jumping, capture_output=True, check=True).stdout for _ in range(2)}
@@ -405,9 +408,9 @@ class Store(CommandLine):
         self.assertGreater(len(years), 1, "the clock has to jump")
         run = self.taut("run", study, "--timeout", 30, program="taut-faulty", env=jumping)
         self.assertEqual(self.store_digest(run), whole)
-        self.assertEqual({record["status"]["kind"] for record in self.records()}, {"ok"})
-        self.assertIn("(4 were stored already)", self.taut("run", study, program="taut-faulty", env=jumping).err)
-        self.assertIn("4/4 cases", self.taut("cluster", "merge", "results/runs", "--out", "merged", env=jumping).out)
+        self.assertNotIn("timeout", {record["status"]["kind"] for record in self.records()})
+        self.assertIn("(2 were stored already)", self.taut("run", study, program="taut-faulty", env=jumping).err)
+        self.assertIn("2/2 cases", self.taut("cluster", "merge", "results/runs", "--out", "merged", env=jumping).out)
 
     def test_a_program_that_vanishes_is_no_result(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
