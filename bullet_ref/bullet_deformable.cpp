@@ -21,35 +21,18 @@ namespace taut::solver::bullet_deformable {
 
 namespace {
 
-using Kind = ParamSpec::Kind;
 constexpr ParamSpec kParams[] = {
-    {.name = "stiffness",
-     .kind = Kind::real,
-     .unit = "N/m",
-     .default_value = "1000",
-     .min = 1e-6,
-     .max = 1e9,
-     .help = "spring constant of every link: the accuracy knob, for the scene's links are rigid"},
-    {.name = "implicit",
-     .kind = Kind::choice,
-     .default_value = "true",
-     .choices = "true|false",
-     .help = "backward Euler, or explicit springs (stable below k h^2/m of about 0.3)"},
-    {.name = "newton",
-     .kind = Kind::integer,
-     .default_value = "1",
-     .min = 1,
-     .max = 1000,
-     .help = "Newton steps at most per implicit substep (Bullet's default: 1)"},
+    ParamSpec::real(
+        "stiffness", "N/m", "1000", 1e-6, 1e9,
+        "spring constant of every link: the accuracy knob, for the scene's links are rigid"),
+    ParamSpec::choice("implicit", "true", "true|false",
+                      "backward Euler, or explicit springs (stable below k h^2/m of about 0.3)"),
+    ParamSpec::integer("newton", "1", 1, 1000,
+                       "Newton steps at most per implicit substep (Bullet's default: 1)"),
     bullet_ref::kSubsteps,
     bullet_ref::kPrecision,
-    {.name = "spring-damping",
-     .kind = Kind::real,
-     .unit = "N s/m",
-     .default_value = "0",
-     .min = 0,
-     .max = 1e6,
-     .help = "damping along every link, on top of the scene's (Bullet's default: 0.05)"},
+    ParamSpec::real("spring-damping", "N s/m", "0", 0, 1e6,
+                    "damping along every link, on top of the scene's (Bullet's default: 0.05)"),
     bullet_ref::kMargin,
     bullet_ref::kVoxel,
 };
@@ -69,8 +52,8 @@ struct World {
   btDbvtBroadphase broadphase;
   DeformableSolver deformables;
   btDeformableMultiBodyConstraintSolver constraints;
-  btDeformableMultiBodyDynamicsWorld world{&dispatcher, &broadphase, &constraints, &configuration,
-                                           &deformables};
+  bullet_ref::BoundedWorld<btDeformableMultiBodyDynamicsWorld> world{
+      &dispatcher, &broadphase, &constraints, &configuration, &deformables};
 };
 
 int newton_steps(const Params& params) {

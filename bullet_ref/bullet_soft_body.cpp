@@ -17,50 +17,31 @@ namespace taut::solver::bullet_soft_body {
 
 namespace {
 
-using Kind = ParamSpec::Kind;
 constexpr ParamSpec kParams[] = {
-    {.name = "iterations",
-     .kind = Kind::integer,
-     .default_value = "3",
-     .min = 0,
-     .max = 1e6,
-     .help = "m_cfg.piterations: sweeps over contacts and links per substep (Bullet's default: 1)"},
+    ParamSpec::integer(
+        "iterations", "3", 0, 1e6,
+        "m_cfg.piterations: sweeps over contacts and links per substep (Bullet's default: 1)"),
     bullet_ref::kSubsteps,
     bullet_ref::kPrecision,
-    {.name = "order",
-     .kind = Kind::choice,
-     .default_value = "contacts-first",
-     .choices = "contacts-first|links-first",
-     .help = "passes of one sweep: Bullet's own order, or ours (m_psequence)"},
-    {.name = "stiffness",
-     .kind = Kind::real,
-     .default_value = "1",
-     .min = 1e-6,
-     .max = 2,
-     .help = "kLST: share of a link's error that one projection removes; above 1 over-relaxes"},
-    {.name = "hardness",
-     .kind = Kind::real,
-     .default_value = "0.1",
-     .min = 0,
-     .max = 1,
-     .help = "kKHR: share of the penetration that one contact pass removes; 0.1 is Bullet's own"},
+    ParamSpec::choice("order", "contacts-first", "contacts-first|links-first",
+                      "passes of one sweep: Bullet's own order, or ours (m_psequence)"),
+    ParamSpec::real(
+        "stiffness", "", "1", 1e-6, 2,
+        "kLST: share of a link's error that one projection removes; above 1 over-relaxes"),
+    ParamSpec::real(
+        "hardness", "", "0.1", 0, 1,
+        "kKHR: share of the penetration that one contact pass removes; 0.1 is Bullet's own"),
     bullet_ref::kMargin,
     bullet_ref::kVoxel,
-    {.name = "friction",
-     .kind = Kind::choice,
-     .default_value = "own",
-     .choices = "refuse|own",
-     .help = "a scene with friction: refuse it, or use Bullet's own law, which is not Coulomb's"},
-    {.name = "faces",
-     .kind = Kind::choice,
-     .default_value = "on",
-     .choices = "on|off",
-     .help = "off: no faces, so that Bullet does not compute normals, which we do not either"},
-    {.name = "reorder",
-     .kind = Kind::choice,
-     .default_value = "off",
-     .choices = "off|on",
-     .help = "on: links in the order of Bullet's ReoptimizeLinkOrder, the same at every vertex"},
+    ParamSpec::choice(
+        "friction", "own", "refuse|own",
+        "a scene with friction: refuse it, or use Bullet's own law, which is not Coulomb's"),
+    ParamSpec::choice(
+        "faces", "on", "on|off",
+        "off: no faces, so that Bullet does not compute normals, which we do not either"),
+    ParamSpec::choice(
+        "reorder", "off", "off|on",
+        "on: links in the order of Bullet's ReoptimizeLinkOrder, the same at every vertex"),
 };
 
 /// A world with nothing in it; the order of members is the order in which Bullet wants them built.
@@ -69,7 +50,8 @@ struct World {
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
-  btSoftRigidDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+  bullet_ref::BoundedWorld<btSoftRigidDynamicsWorld> world{&dispatcher, &broadphase, &solver,
+                                                           &configuration};
 };
 
 void configure_body(btSoftBody& body, const Scene& scene, const Params& params) {

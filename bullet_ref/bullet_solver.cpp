@@ -2,6 +2,7 @@
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "bullet_ref/convert.hpp"
@@ -73,6 +74,20 @@ Scene BulletSolver::held_scene(RestLength rest_length) const {
 }
 
 namespace bullet_ref {
+
+void require_cells(const btSoftBodyArray& bodies) {
+  constexpr btScalar kFarthest = 1e6;  // m: with the least voxel 3e8 cells of three voxels
+  const auto near = [&](const btVector3& x) {
+    return std::abs(x.x()) <= kFarthest && std::abs(x.y()) <= kFarthest &&
+           std::abs(x.z()) <= kFarthest;
+  };
+  for (int b = 0; b < bodies.size(); ++b) {
+    if (bodies[b]->m_cfg.collisions == 0) continue;
+    const auto& nodes = bodies[b]->m_nodes;
+    for (int i = 0; i < nodes.size(); ++i)
+      if (!near(nodes[i].m_x) || !near(nodes[i].m_q)) throw SolverFailure("exploded", "box");
+  }
+}
 
 float substep_length(const Scene& scene, const Params& params) {
   return static_cast<float>(scene.dt / params.integer("substeps"));

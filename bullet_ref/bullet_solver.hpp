@@ -53,36 +53,36 @@ class BulletSolver : public Solver, public HoldsScene {
 /// What the entries of both solvers share.
 namespace bullet_ref {
 
-inline constexpr ParamSpec kSubsteps = {
-    .name = "substeps",
-    .kind = ParamSpec::Kind::integer,
-    .default_value = "1",
-    .min = 1,
-    .max = 1e6,
-    .help = "each step is this many calls of stepSimulation(dt / substeps)"};
-inline constexpr ParamSpec kPrecision = {.name = "precision",
-                                         .kind = ParamSpec::Kind::choice,
-                                         .default_value = "double",
-                                         .choices = "float|double",
-                                         .help = "which build of Bullet; float runs in taut-f32"};
-inline constexpr ParamSpec kMargin = {
-    .name = "margin",
-    .kind = ParamSpec::Kind::real,
-    .unit = "m",
-    .default_value = "0",
-    .min = 0,
-    .max = 1,
-    .help = "collision margin on top of the scene's thickness (Bullet's default: 0.25)"};
-inline constexpr ParamSpec kVoxel = {
-    .name = "voxel",
-    .kind = ParamSpec::Kind::real,
-    .unit = "m",
-    .default_value = "0.05",
-    .min = 1e-3,
-    .max = 10,
-    .help =
-        "grid spacing of the colliders' distance fields (Bullet's default: 0.25, in the "
-        "deformable world 0.005)"};
+/// Throws SolverFailure "exploded (box)" if a vertex is so far out that the number of its cell in
+/// the colliders' distance fields overflows an int: Bullet would then read memory that is not its
+/// own.
+void require_cells(const btSoftBodyArray&);
+
+/// A world of Bullet's that checks where it moves vertices before it looks for their contacts
+/// there.
+template <class World>
+class BoundedWorld final : public World {
+ public:
+  using World::World;
+
+ private:
+  void predictUnconstraintMotion(btScalar h) override {
+    World::predictUnconstraintMotion(h);
+    require_cells(this->getSoftBodyArray());
+  }
+};
+
+inline constexpr ParamSpec kSubsteps = ParamSpec::integer(
+    "substeps", "1", 1, 1e6, "each step is this many calls of stepSimulation(dt / substeps)");
+inline constexpr ParamSpec kPrecision = ParamSpec::choice(
+    "precision", "double", "float|double", "which build of Bullet; float runs in taut-f32");
+inline constexpr ParamSpec kMargin =
+    ParamSpec::real("margin", "m", "0", 0, 1,
+                    "collision margin on top of the scene's thickness (Bullet's default: 0.25)");
+inline constexpr ParamSpec kVoxel =
+    ParamSpec::real("voxel", "m", "0.05", 1e-3, 10,
+                    "grid spacing of the colliders' distance fields (Bullet's default: 0.25, in "
+                    "the deformable world 0.005)");
 
 /// One substep [s]: dt / substeps rounded to binary32, for btSoftRigidDynamicsWorld casts its time
 /// step to float even in the double build.

@@ -154,7 +154,11 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Lin
   try {
     if (name) surface = read_obj(folder / *name);
   } catch (const InputError& error) {
-    cloth.diagnostics().report(error.diagnostics());
+    for (const Diagnostic& d : error.diagnostics())
+      if (d.line > 0)
+        cloth.diagnostics().report({d});
+      else
+        cloth.report("mesh", "cannot be used: " + d.text());
   }
   for (Vec3& x : surface.vertices) {
     x = origin + rotation * (scale * x);

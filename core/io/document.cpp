@@ -176,7 +176,7 @@ std::string describe(const Value& value) {
 Diagnostic Document::diagnostic(const SourceLocation& place, const std::string& message) const {
   if (place.override < 0) return {file, place.line, place.column, message};
   const std::string& text = overrides[static_cast<std::size_t>(place.override)];
-  return {{}, 0, 0, "override '" + text + "': " + message};
+  return {text, 0, place.column, message};
 }
 
 Document parse_document(const std::string& file, const std::string& text,

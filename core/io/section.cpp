@@ -14,8 +14,8 @@ void Diagnostics::throw_if_any() {
   if (found_.empty()) return;
   // Overrides have no line and come last, as on the command line.
   std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return std::tuple(a.file.empty(), a.file, a.line, a.column) <
-           std::tuple(b.file.empty(), b.file, b.line, b.column);
+    return std::tuple(a.line == 0, a.file, a.line, a.column) <
+           std::tuple(b.line == 0, b.file, b.line, b.column);
   });
   throw InputError(found_);
 }

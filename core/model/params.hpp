@@ -17,6 +17,20 @@ struct ParamSpec {
   double min = 0, max = 0;         ///< inclusive; numbers only
   std::string_view choices;        ///< "exact|sqrt-free"; choices only
   std::string_view help;           ///< one line
+
+  static constexpr ParamSpec integer(std::string_view name, std::string_view default_value,
+                                     double min, double max, std::string_view help) {
+    return {name, Kind::integer, "", default_value, min, max, "", help};
+  }
+  static constexpr ParamSpec real(std::string_view name, std::string_view unit,
+                                  std::string_view default_value, double min, double max,
+                                  std::string_view help) {
+    return {name, Kind::real, unit, default_value, min, max, "", help};
+  }
+  static constexpr ParamSpec choice(std::string_view name, std::string_view default_value,
+                                    std::string_view choices, std::string_view help) {
+    return {name, Kind::choice, "", default_value, 0, 0, choices, help};
+  }
 };
 
 /// "key=value" of a solver's text. A value in quotes ('a, b' or "a, b") may hold commas; a quote

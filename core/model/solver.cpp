@@ -55,26 +55,31 @@ const SolverEntry& find_solver(std::string_view name, std::string_view params) {
 }
 
 SolverChoice parse_solver(std::string_view text) {
-  const auto colon = text.find(':');
-  const std::string_view name = text.substr(0, colon);
-  if (colon == std::string_view::npos) {
-    const SolverEntry& entry = find_solver(name);
-    return {&entry, Params(entry.name, entry.params, {})};
-  }
+  const std::size_t colon = text.find(':'),
+                    params_at = colon == text.npos ? text.size() : colon + 1;
+  const std::string_view params = text.substr(params_at);
+  std::vector<Diagnostic> wrong;
+  const auto report = [&](std::size_t at, const std::string& message) {
+    wrong.push_back({std::string(text), 0, static_cast<int>(at) + 1, message});
+  };
+  SolverChoice choice;
   try {
-    if (colon + 1 == text.size())
-      throw InputError({{{}, 0, 1, "expected key=value after the colon"}});
-    const SolverEntry& entry = find_solver(name, text.substr(colon + 1));
-    return {&entry, Params(entry.name, entry.params, text.substr(colon + 1))};
-  } catch (const InputError& error) {  // columns count from the start of the whole text
-    std::vector<Diagnostic> all = error.diagnostics();
-    for (Diagnostic& d : all) {
-      if (d.column == 0) continue;
-      d.column += static_cast<int>(colon) + 1;
-      d.file = text;
-    }
-    throw InputError(all);
+    choice.entry = &find_solver(text.substr(0, colon), params);
+  } catch (const InputError& error) {
+    for (const Diagnostic& d : error.diagnostics())
+      d.line > 0 ? wrong.push_back(d) : report(0, d.message);
+    for (const ParamItem& item : param_items(params))
+      if (!item.problem.empty()) report(params_at + item.at, item.problem);
   }
+  if (colon != text.npos && params.empty()) report(params_at, "expected key=value after the colon");
+  if (choice.entry) try {
+      choice.params = Params(choice.entry->name, choice.entry->params, params);
+    } catch (const InputError& error) {  // columns count from the start of the whole text
+      for (const Diagnostic& d : error.diagnostics())
+        report(params_at + static_cast<std::size_t>(d.column) - 1, d.message);
+    }
+  if (!wrong.empty()) throw InputError(wrong);
+  return choice;
 }
 
 std::string SolverChoice::canonical() const {

@@ -74,11 +74,12 @@ class Jakobsen final : public Solver {
   /// The published TimeStep(), substeps times with dt / substeps.
   void step(double t, double dt) override {
     const double h = dt / substeps_;
+    prepare_verlet(h);
     for (int s = 0; s < substeps_; ++s, t += h) {
       apply(forces_, t, h);  // AccumulateForces
-      verlet(h);             // Verlet
+      verlet();              // Verlet
       pins_.place(p_, t + h);
-      for (const auto* list : {&contact_.before, &contact_.sweep, &contact_.after})
+      for (const auto* list : {&constraints_, &contact_.before, &contact_.sweep, &contact_.after})
         for (auto& pass : *list) pass->begin(p_, t, h);
       apply(contact_.before, t, h);
       for (int k = 0; k < iterations_; ++k) {  // SatisfyConstraints
@@ -96,7 +97,7 @@ class Jakobsen final : public Solver {
       p_.x.set(i, state.x[i].template cast<Real>());
       p_.previous.set(i, previous.template cast<Real>());
     }
-    for (const auto* list : {&contact_.before, &contact_.sweep, &contact_.after})
+    for (const auto* list : {&constraints_, &contact_.before, &contact_.sweep, &contact_.after})
       for (auto& pass : *list) pass->restart();
   }
 
@@ -136,22 +137,30 @@ class Jakobsen final : public Solver {
     for (auto& pass : passes) pass->apply(p_, t, dt);
   }
 
+  /// Gravity and damping of substeps of dt [s]: as much work as integrating hundreds of particles.
+  void prepare_verlet(double dt) {
+    if (dt == prepared_for_) return;
+    for (std::size_t i = 0; i < kGrain; ++i) {
+      const int axis = p_.layout->axis(i);
+      g_[i] = static_cast<Real>(axis < 3 ? gravity_[axis] * dt * dt : 0);
+    }
+    verlet_ = {.x = p_.x.data(),
+               .previous = p_.previous.data(),
+               .a = p_.a.empty() ? nullptr : p_.a.data(),
+               .keep = static_cast<Real>(std::exp(-damping_ * dt)),
+               .dt2 = static_cast<Real>(dt * dt),
+               .g = g_};
+    prepared_for_ = dt;
+  }
+
   /// x* = x + (x - x') + a dt^2, the velocity x - x' damped.
-  void verlet(double dt) {
-    alignas(64) Real g[kGrain];
-    for (std::size_t i = 0; i < kGrain; ++i)
-      g[i] = static_cast<Real>(p_.layout->axis(i) < 3 ? gravity_[p_.layout->axis(i)] * dt * dt : 0);
-    const VerletStep<Real> step{.x = p_.x.data(),
-                                .previous = p_.previous.data(),
-                                .a = p_.a.empty() ? nullptr : p_.a.data(),
-                                .keep = static_cast<Real>(std::exp(-damping_ * dt)),
-                                .dt2 = static_cast<Real>(dt * dt),
-                                .g = g};
+  void verlet() {
     const Kernels<Real>& k = kernels<Real>(simd_);
     const auto kernel = p_.layout->stride() == kWide ? k.wide_verlet : k.narrow_verlet;
-    pool_.run(p_.layout->length() / kGrain, [&](std::size_t begin, std::size_t end) {
-      kernel(step, begin * kGrain, end * kGrain);
-    });
+    pool_.run(
+        p_.layout->length() / kGrain,
+        [&](std::size_t begin, std::size_t end) { kernel(verlet_, begin * kGrain, end * kGrain); },
+        p_.size() >= ThreadPool::kWorthSharing);
   }
 
   int iterations_;
@@ -163,6 +172,9 @@ class Jakobsen final : public Solver {
   ThreadPool pool_;
   Pins pins_;
   Particles<Real> p_;
+  alignas(64) Real g_[kGrain];
+  VerletStep<Real> verlet_{};
+  double prepared_for_ = 0;  ///< s; 0: for no substep yet
   PassList forces_;
   PassList constraints_;
   ContactPasses<Real> contact_;

@@ -10,102 +10,48 @@ namespace taut {
 
 namespace {
 
-using Kind = ParamSpec::Kind;
-
 constexpr ParamSpec kSpecs[] = {
-    {.name = "iterations",
-     .kind = Kind::integer,
-     .default_value = "3",
-     .min = 0,
-     .max = 1e6,
-     .help = "relaxation sweeps per substep; Vasilovici's report finds that 3 suffice"},
-    {.name = "substeps",
-     .kind = Kind::integer,
-     .default_value = "5",
-     .min = 1,
-     .max = 1e6,
-     .help = "each step is this many steps of dt / substeps; Jakobsen takes 1"},
-    {.name = "projection",
-     .kind = Kind::choice,
-     .default_value = "sqrt-free",
-     .choices = "exact|sqrt-free",
-     .help = "exact distance, or its first-order Taylor form without a square root"},
-    {.name = "method",
-     .kind = Kind::choice,
-     .default_value = "gauss-seidel",
-     .choices = "gauss-seidel|jacobi|jacobi-averaged|jacobi-underrelaxed",
-     .help = "links one after the other, or all at once: summed, averaged, or divided by the "
-             "largest number of links at a vertex"},
-    {.name = "order",
-     .kind = Kind::choice,
-     .default_value = "coloured",
-     .choices = "mesh|coloured|reversed|random",
-     .help = "in which Gauss-Seidel visits the links; mesh is the scene's own order, as "
-             "published"},
-    {.name = "seed",
-     .kind = Kind::integer,
-     .default_value = "1",
-     .min = 0,
-     .max = 2147483647,
-     .help = "of order=random"},
-    {.name = "omega",
-     .kind = Kind::real,
-     .default_value = "1",
-     .min = 0,
-     .max = 2,
-     .help = "relaxation factor: below 1 under-, above 1 over-relaxed"},
-    {.name = "contact",
-     .kind = Kind::choice,
-     .default_value = "continuous",
-     .choices = "continuous|discrete|before|after|freeze|halt",
-     .help = "response to colliders: out in every sweep, with a test against passing through "
-             "(continuous) or without (discrete); once, before or after the sweeps; or put on the "
-             "surface for good (freeze) or for a step (halt)"},
-    {.name = "faces",
-     .kind = Kind::choice,
-     .default_value = "off",
-     .choices = "off|on",
-     .help = "keep faces, not only vertices, out of balls and of the edges and corners of boxes"},
-    {.name = "self",
-     .kind = Kind::choice,
-     .default_value = "grid",
-     .choices = "grid|octree|off",
-     .help =
-         "self-collision where the scene has it: grid, octree as published by Vasilovici, or none"},
-    {.name = "tethers",
-     .kind = Kind::choice,
-     .default_value = "off",
-     .choices = "off|on",
-     .help = "long-range attachments: no vertex farther from a pin than along the cloth at rest"},
-    {.name = "levels",
-     .kind = Kind::integer,
-     .default_value = "1",
-     .min = 1,
-     .max = 20,
-     .help = "of a hierarchy, each with half the vertices of the finer one; 1: the cloth alone"},
-    {.name = "precision",
-     .kind = Kind::choice,
-     .default_value = "float",
-     .choices = "float|double",
-     .help = "scalar type of the simulation"},
-    {.name = "layout",
-     .kind = Kind::choice,
-     .default_value = "auto",
-     .choices = "auto|interleaved|batches",
-     .help =
-         "of the links under order=coloured: interleaved (AoSoA) for a regular sheet, or colour "
-         "batches for any mesh"},
-    {.name = "simd",
-     .kind = Kind::choice,
-     .default_value = "auto",
-     .choices = "auto|scalar|sse2|avx2|avx512",
-     .help = "instruction set; every one computes the same bits"},
-    {.name = "threads",
-     .kind = Kind::integer,
-     .default_value = "1",
-     .min = 1,
-     .max = 64,
-     .help = "that divide the sweeps of order=coloured; any number computes the same bits"},
+    ParamSpec::integer("iterations", "3", 0, 1e6,
+                       "relaxation sweeps per substep; Vasilovici's report finds that 3 suffice"),
+    ParamSpec::integer("substeps", "5", 1, 1e6,
+                       "each step is this many steps of dt / substeps; Jakobsen takes 1"),
+    ParamSpec::choice("projection", "sqrt-free", "exact|sqrt-free",
+                      "exact distance, or its first-order Taylor form without a square root"),
+    ParamSpec::choice("method", "gauss-seidel",
+                      "gauss-seidel|jacobi|jacobi-averaged|jacobi-underrelaxed",
+                      "links one after the other, or all at once: summed, averaged, or divided by "
+                      "the largest number of links at a vertex"),
+    ParamSpec::choice("order", "coloured", "mesh|coloured|reversed|random|jolt",
+                      "in which Gauss-Seidel visits the links; mesh is the scene's own order, as "
+                      "published; jolt is Jolt Physics' order"),
+    ParamSpec::integer("seed", "1", 0, 2147483647, "of order=random"),
+    ParamSpec::real("omega", "", "1", 0, 2,
+                    "relaxation factor: below 1 under-, above 1 over-relaxed"),
+    ParamSpec::choice("contact", "continuous", "continuous|discrete|before|after|freeze|halt",
+                      "response to colliders: out in every sweep, with a test against passing "
+                      "through (continuous) or without (discrete); once, before or after the "
+                      "sweeps; or put on the surface for good (freeze) or for a step (halt)"),
+    ParamSpec::choice(
+        "faces", "off", "off|on",
+        "keep faces, not only vertices, out of balls and of the edges and corners of boxes"),
+    ParamSpec::choice(
+        "self", "grid", "grid|octree|off",
+        "self-collision where the scene has it: grid, octree as published by Vasilovici, or none"),
+    ParamSpec::choice(
+        "tethers", "off", "off|on",
+        "long-range attachments: no vertex farther from a pin than along the cloth at rest"),
+    ParamSpec::integer(
+        "levels", "1", 1, 20,
+        "of a hierarchy, each with half the vertices of the finer one; 1: the cloth alone"),
+    ParamSpec::choice("precision", "float", "float|double", "scalar type of the simulation"),
+    ParamSpec::choice("layout", "auto", "auto|interleaved|batches",
+                      "of the links under order=coloured: interleaved (AoSoA) for a regular sheet, "
+                      "or colour batches for any mesh"),
+    ParamSpec::choice("simd", "auto", "auto|scalar|sse2|avx2|avx512",
+                      "instruction set; every one computes the same bits"),
+    ParamSpec::integer(
+        "threads", "1", 1, 64,
+        "that divide the sweeps of order=coloured; any number computes the same bits"),
 };
 
 template <class T>
@@ -128,7 +74,8 @@ constexpr Choice<std::optional<Jacobi>> kMethods[] = {
 constexpr Choice<Order> kOrders[] = {{"mesh", Order::mesh},
                                      {"coloured", Order::coloured},
                                      {"reversed", Order::reversed},
-                                     {"random", Order::random}};
+                                     {"random", Order::random},
+                                     {"jolt", Order::jolt}};
 constexpr Choice<LinkLayout> kLayouts[] = {{"auto", LinkLayout::automatic},
                                            {"interleaved", LinkLayout::interleaved},
                                            {"batches", LinkLayout::batches}};

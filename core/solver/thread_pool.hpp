@@ -20,8 +20,9 @@ class ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// A pass over fewer particles is done before another thread has come.
-  static constexpr std::size_t kWorthSharing = 4096;
+  /// A pass over fewer particles is done before another thread has come: with 64 x 64, two threads
+  /// are slower than one, with 96 x 96 they are faster (results/benchmarks/threads.md).
+  static constexpr std::size_t kWorthSharing = 8192;
 
   /// Calls work(begin, end) on parts of [0, count) at the same time, unless not `shared`; returns
   /// when all are done.

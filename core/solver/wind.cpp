@@ -35,22 +35,24 @@ class WindPass : public Pass<Real> {
 template <class Real>
 class SheetWindPass final : public WindPass<Real> {
  public:
-  SheetWindPass(const Scene& scene, std::span<const double> w, const SheetRows& sheet, Simd simd,
+  SheetWindPass(const Scene& scene, std::span<const double> w, const Layout& layout, Simd simd,
                 ThreadPool& pool)
       : WindPass<Real>(*scene.wind), items_(scene.mesh.triangles.size()), pool_(pool) {
-    const Grid& grid = *scene.mesh.grid;
-    const auto [rows, columns, lanes, vectors, stride] = sheet;
+    const auto [rows, columns, lanes, vectors, stride] = layout.sheet();
     blow_ = lanes == kWide ? kernels<Real>(simd).wide_wind : kernels<Real>(simd).narrow_wind;
     blocks_ = {rows - 1};
     const std::size_t row = to_index(lanes * vectors);
     w_.resize(to_index(rows) * row), diagonals_.resize(2 * row);
-    for (int i = 0; i < columns; ++i) {
-      const std::size_t place = to_index(i % vectors * lanes + i / vectors);
-      for (int j = 0; j < rows; ++j)
-        w_[to_index(j) * row + place] = static_cast<Real>(w[to_index(grid.index(i, j))]);
-      for (int j = 0; j < 2 && i + 1 < columns; ++j)  // as make_sheet splits them
-        diagonals_[to_index(j) * row + place] = (i + j) % 2 == 0 ? Real(1) : Real(-1);
+    const std::size_t lane_count = to_index(lanes);
+    for (std::size_t v = 0; v < w.size(); ++v) {
+      const std::size_t in_row = layout.slot(v) % stride;
+      w_[layout.slot(v) / stride * row + in_row / (3 * lane_count) * lane_count +
+         in_row % lane_count] = static_cast<Real>(w[v]);
     }
+    for (int i = 0; i + 1 < columns; ++i)
+      for (int j = 0; j < 2; ++j)  // as make_sheet splits them
+        diagonals_[to_index(j) * row + to_index(i % vectors * lanes + i / vectors)] =
+            (i + j) % 2 == 0 ? Real(1) : Real(-1);
     faces_ = {vectors, stride, {diagonals_.data(), diagonals_.data() + row}, w_.data()};
   }
 
@@ -125,7 +127,7 @@ template <class Real>
 std::unique_ptr<Pass<Real>> make_wind(const Scene& scene, std::span<const double> w,
                                       const Layout& layout, Simd simd, ThreadPool& pool) {
   if (layout.sheet().lanes > 1)
-    return std::make_unique<SheetWindPass<Real>>(scene, w, layout.sheet(), simd, pool);
+    return std::make_unique<SheetWindPass<Real>>(scene, w, layout, simd, pool);
   return std::make_unique<FaceWindPass<Real>>(scene, w, layout, simd);
 }
 

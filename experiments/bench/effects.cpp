@@ -7,6 +7,7 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
+#include "core/solver/thread_pool.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/timing.hpp"
 
@@ -46,6 +47,28 @@ Scene without_effects(Scene scene) {
   return scene;
 }
 
+/// Many sheets that know nothing of each other, on two threads: each of them makes every step.
+class Copies final : public Solver {
+ public:
+  Copies(const Scene& scene, const SolverChoice& choice, int count) {
+    for (int n = 0; n < count; ++n) sheets_.push_back(choice.entry->make(scene, choice.params));
+  }
+  void load(const State& state) override {
+    for (const auto& sheet : sheets_) sheet->load(state);
+  }
+  void step(double t, double dt) override {
+    threads_.run(sheets_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) sheets_[n]->step(t, dt);
+    });
+  }
+  void store(State& state) const override { sheets_.back()->store(state); }
+  std::vector<PassCost> step_cost() const override { return sheets_.back()->step_cost(); }
+
+ private:
+  std::vector<std::unique_ptr<Solver>> sheets_;
+  ThreadPool threads_{2};
+};
+
 /// One scene, with its effects and without them.
 class TimedScene {
  public:
@@ -57,13 +80,15 @@ class TimedScene {
             .dt = scene.dt,
             .refused = {},
             .whole = {},
-            .bare = {}};
+            .bare = {},
+            .copies = {}};
     if (const auto reasons = choice.entry->unsupported(scene, choice.params); !reasons.empty()) {
       row_.refused = reasons.front();
       return;
     }
     whole_ = choice.entry->make(scene, choice.params);
     bare_ = choice.entry->make(without_effects(scene), choice.params);
+    if (options.copies > 0) copies_ = std::make_unique<Copies>(scene, choice, options.copies);
     run_.emplace(scene, *whole_, scene.steps);
     State end;
     whole_->store(end);
@@ -80,6 +105,7 @@ class TimedScene {
     if (!row_.refused.empty()) return;
     row_.whole.push_back(time(*whole_));
     row_.bare.push_back(time(*bare_));
+    if (copies_) row_.copies.push_back(time(*copies_));
   }
 
   EffectRow take() { return std::move(row_); }
@@ -92,7 +118,7 @@ class TimedScene {
 
   EffectRow row_;
   bool wall_;
-  std::unique_ptr<Solver> whole_, bare_;
+  std::unique_ptr<Solver> whole_, bare_, copies_;
   std::optional<CheckpointedRun> run_;
   int steps_ = 1;
 };

@@ -17,8 +17,11 @@ struct EffectRow {
   /// Nanoseconds a vertex and step, two of each round: all effects; without wind, colliders and
   /// self-collision, from the same states.
   std::vector<double> whole, bare;
+  std::vector<double> copies;  ///< likewise: all copies of it on two threads, one step of each
 
   Interval cost() const { return bootstrap_median(whole); }
+  /// The copies over one sheet alone.
+  Interval times_one() const { return interleaved_ratio(copies, whole); }
   Interval times_bare() const { return interleaved_ratio(whole, bare); }
   /// A step of a vertex over one of `other`, which was timed in the same rounds.
   Interval times(const EffectRow& other) const { return interleaved_ratio(whole, other.whole); }
@@ -29,6 +32,7 @@ struct EffectBenchOptions {
   std::string solver;               ///< "jakobsen:iterations=1,substeps=15"
   int side = 0;                     ///< sheets of side x side vertices; 0: as the scene has it
   bool wall = false;  ///< wall time, as it has to be with threads; else CPU time of the process
+  int copies = 0;     ///< of each scene, to be timed together on two threads; needs `wall`; 0: none
   int rounds = 11;
   double seconds = 0.01;  ///< of one sample
   std::function<void(std::size_t done, std::size_t all)> progress = [](auto, auto) {};

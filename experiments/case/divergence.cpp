@@ -202,10 +202,7 @@ double EnergyBudget::farthest(double t) const {
 }
 
 double legitimate_strain(const Scene& scene) {
-  double start = 0;
-  for (const Link& link : scene.links)
-    start = std::max(start, strain_in_plane(scene, link, scene.start.x));
-  return std::max({10.0, 2 * start, 2 * softest(scene, hang(scene)).strain});
+  return std::clamp(2 * softest(scene, hang(scene)).strain, 10.0, 30.0);
 }
 
 std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& step_cost) {
@@ -289,9 +286,12 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
 }
 
 void DivergenceDetector::finish() {
-  if (status_.kind == Status::Kind::extreme || !settling_ || duration_ < 5 * *settling_) return;
+  if (!settling_ || duration_ < 5 * *settling_) return;
   const double decayed = peak_ * std::exp(-(duration_ - *settling_) / *settling_);
-  if (late_ > std::max(slow_, decayed))
+  if (late_ <= std::max(slow_, decayed)) return;
+  if (status_.kind == Status::Kind::extreme)
+    status_.reason += ", moves after five settling times";
+  else
     status_ = {Status::Kind::unsettled, "moves after five settling times", -1, late_vertex_};
 }
 

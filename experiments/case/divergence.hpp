@@ -19,8 +19,8 @@ namespace taut {
 ///   gravity  m |g| h: h is the discrete free fall |g| t (t + dt)/2, but for a piece of cloth that
 ///            is pinned at most its reach: twice the longest way along links from a pin, plus the
 ///            extension of the softest relaxation, one sweep a step, doubled for overshoot: a cut
-///            across c links with the mass M below it opens by M |g| dt^2 w/c (truth "hanging chain
-///            under k sweeps": e_j = (N - j) |g| dt^2)
+///            across c links with the mass M below it opens by M |g| dt^2 w/c (truth
+///            hanging-chain-sweeps: e_j = (N - j) |g| dt^2)
 ///   wind     law "relative": power c A (n.(u - v)) (n.v) <= c A |u|^2/4, times t;
 ///            law "literal": the speed c |u| t A/m of a vertex that is pushed all the time
 ///   motion   (2 V)^2 M/2, V the sum of the speeds that moving pins and colliders can impart: every
@@ -59,9 +59,10 @@ class EnergyBudget {
 };
 
 /// The largest strain [1] that a link of this scene may show, whoever solves it, without the case
-/// being called extreme: 10 (eleven times its length) or, where they are larger, twice the strain
-/// that it starts with and twice that of the softest relaxation, one sweep a step (truth
-/// "legitimate strain": 2 (N - 1) g dt^2/l in a hanging chain; here by cuts, as in EnergyBudget).
+/// being called extreme: 10 (eleven times its length) or, where it is larger, twice that of the
+/// softest relaxation, one sweep a step (truth legitimate-strain: 2 (N - 1) g dt^2/l in a hanging
+/// chain; here by cuts, as in EnergyBudget), but at most 30: what a scene asks for beyond that, by
+/// its start, its step or its forces, belongs into no mean.
 double legitimate_strain(const Scene&);
 
 /// Theoretical settling time [s]: in it the slowest mode of a hanging cloth decays by 1/e. Relaxing
@@ -71,14 +72,14 @@ double legitimate_strain(const Scene&);
 /// no such time is known: wind, motion, contact, no gravity, unpinned pieces, no sweeps.
 std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& step_cost);
 
-/// Judges a run, boundary by boundary (design: never by raw strain, which a soft solver may rightly
-/// bring to 500 %).
+/// Judges a run, step by step; never by strain, which a soft solver may rightly bring to 500 %.
 ///   error                the solver stored another number of vertices than the scene has
 ///   exploded{nonfinite}  a position or velocity is not finite
 ///   exploded{energy}     kinetic energy above ten times EnergyBudget::available
 ///   exploded{box}        a coordinate beyond EnergyBudget::farthest
 ///   extreme{stretch}     a structural or shear link that is not between two pins was strained by
-///                        more than legitimate_strain(); it goes on, and what it gives is kept
+///                        more than legitimate_strain(); it goes on, and what it gives is kept.
+///                        "stretch, moves after five settling times": it would be unsettled, too
 ///   unsettled            the run lasted at least five settling times and yet, in its last settling
 ///                        time, a vertex is faster than 1e-3 sqrt(|g| L) (L: extent) and than the
 ///                        fastest ever seen times exp(-t/T)

@@ -110,9 +110,11 @@ void TrajectoryWriter::write_bytes(const std::string& bytes) {
   throw InputError({{path_.string(), 0, 0, "cannot write the trajectory: " + why}});
 }
 
-TrajectoryReader::TrajectoryReader(const std::filesystem::path& path)
-    : path_(path), in_(path, std::ios::binary) {
+TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : path_(path) {
   std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    fail("is no regular file");  // opening a pipe waits for whoever writes into it
+  in_.open(path, std::ios::binary);
   const std::uint64_t bytes = std::filesystem::file_size(path, error);
   if (error || !in_) fail("cannot read: " + (error ? error.message() : "not a readable file"));
   read_header(bytes);

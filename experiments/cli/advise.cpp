@@ -10,11 +10,12 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/solver_texts.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/chart/palette.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
 #include "experiments/timing/answer.hpp"
 #include "experiments/timing/search.hpp"
 
@@ -235,7 +236,8 @@ std::string command(const Options& options, const Result& result) {
   std::string text = "taut bench " + options.scene;
   for (const std::string& value : options.settings) text += " --set '" + value + "'";
   const auto solver = [&](std::size_t i) {
-    text += " --solver " + parse_solver(result.bench.cases[i].record.spec.solver).brief();
+    text +=
+        " --solver " + shell_word(parse_solver(result.bench.cases[i].record.spec.solver).brief());
   };
   solver(*result.answer.best);
   if (result.answer.runner_up) solver(*result.answer.runner_up);
@@ -340,12 +342,9 @@ int run(Options options) {
   target_of(options);
   if (options.solvers.empty())
     for (const SolverEntry* entry : all_solvers())
-      if (entry->name != "external") options.solvers.emplace_back(entry->name);
-  for (const std::string& solver : options.solvers) parse_solver(solver);
-  // What the first costs bounds how far the others need to be searched.
-  std::ranges::stable_sort(options.solvers, {}, [](const std::string& solver) {
-    return report::solver_place(parse_solver(solver).entry->name);
-  });
+      if (entry->name != "external" && entry->name != "positions")
+        options.solvers.emplace_back(entry->name);
+  check_solvers(options.solvers);
   Advisor advisor(options);
   const Result result = advisor.run();
   if (result.cut.empty() && std::ranges::all_of(result.tried, [](const Candidate& c) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -8,6 +9,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/solver_texts.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
@@ -153,6 +155,7 @@ void bench_study(const std::string& name, const Options& options) {
 }
 
 void compare(const std::string& scene, const Options& options) {
+  check_solvers(options.solvers);
   std::vector<Case> cases;
   CaseMaker maker;
   for (const std::string& solver : options.solvers)
@@ -177,10 +180,18 @@ void compare(const std::string& scene, const Options& options) {
   }
 }
 
+/// Cores that a case keeps busy.
+int threads_of(const SolverChoice& choice) {
+  for (const ParamSpec& spec : choice.params.specs())
+    if (spec.name == "threads") return std::max(1, choice.params.integer("threads"));
+  return 1;
+}
+
 int run(const Options& options) {
   if (options.worker) {
     if (options.what.size() != 2) throw InputError("bench --worker takes a scene and a solver");
     const Case one = make_case({options.what[0], options.settings, options.what[1]});
+    if (std::getenv("SLURM_JOB_ID")) pin(threads_of(one.choice));
     return serve_timing(*one.scene, one.choice);
   }
   require_one_quiet_host();

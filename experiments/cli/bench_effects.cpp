@@ -20,7 +20,7 @@ struct Options {
   std::vector<std::string> scenes;
   std::string solver = "jakobsen:iterations=1,substeps=15";
   std::vector<int> sizes{0};
-  int rounds = 11;
+  int rounds = 11, copies = 0;
   double seconds = 0.01;
   bool wall = false, json = false;
 };
@@ -38,8 +38,11 @@ void print(const std::vector<EffectRow>& rows, const Options& options, int side)
       options.solver.c_str(),
       side == 0 ? "" : (", " + std::to_string(side) + " x " + std::to_string(side)).c_str(),
       options.wall ? "wall" : "CPU", kUnit);
-  std::printf("%-12s %-16s %8s %9s  %-22s %8s  %-20s\n", "", "", "vertices", "ns", "x hang, a step",
+  std::printf("%-12s %-16s %8s %9s  %-22s %8s  %-20s", "", "", "vertices", "ns", "x hang, a step",
               "a second", "x links alone");
+  if (options.copies > 0)
+    std::printf("  %d on two threads / %g of one", options.copies, options.copies / 2.0);
+  std::printf("\n");
   const EffectRow& unit = rows.front();
   for (const EffectRow& row : rows) {
     std::printf("%-12s %-16s %8zu ", row.scene.c_str(), row.effects.c_str(), row.vertices);
@@ -48,8 +51,14 @@ void print(const std::vector<EffectRow>& rows, const Options& options, int side)
       continue;
     }
     const Interval times = row.times(unit);
-    std::printf("%9.1f  %-22s %8.2f  %-20s\n", row.cost().mid, text(times).c_str(),
+    std::printf("%9.1f  %-22s %8.2f  %-20s", row.cost().mid, text(times).c_str(),
                 times.mid * unit.dt / row.dt, text(row.times_bare()).c_str());
+    if (options.copies > 0) {
+      const double half = options.copies / 2.0;
+      const auto [low, mid, high] = row.times_one();
+      std::printf("  %s", text({low / half, mid / half, high / half}).c_str());
+    }
+    std::printf("\n");
   }
   std::fflush(stdout);
 }
@@ -64,7 +73,8 @@ Json json_of(const std::vector<EffectRow>& rows, int side) {
                    {"dt", row.dt},
                    {"refused", row.refused},
                    {"ns", row.whole},
-                   {"links_alone_ns", row.bare}});
+                   {"links_alone_ns", row.bare},
+                   {"copies_ns", row.copies}});
   return all;
 }
 
@@ -80,17 +90,22 @@ std::function<int()> bind(CLI::App& app) {
       ->check(CLI::Range(1, 1000));
   app.add_option("--seconds", o->seconds, "Of one sample (default: 0.01)")->check(above_zero());
   app.add_flag("--wall", o->wall, "Wall time instead of CPU time: for threads=2");
+  app.add_option("--copies", o->copies,
+                 "Also so many sheets of each scene at once on two threads (implies --wall)")
+      ->check(CLI::Range(1, 4096));
   add_json(app, o->json, "Every row with its samples");
   return [o] {
     std::vector<std::string> scenes = o->scenes.empty() ? shipped("scenes") : o->scenes;
     std::erase(scenes, kUnit);
     scenes.insert(scenes.begin(), kUnit);
+    o->wall |= o->copies > 0;
     Json all = Json::array();
     for (const int side : o->sizes) {
       const auto rows = bench_effects({.scenes = scenes,
                                        .solver = o->solver,
                                        .side = side,
                                        .wall = o->wall,
+                                       .copies = o->copies,
                                        .rounds = o->rounds,
                                        .seconds = o->seconds,
                                        .progress = Countdown("timing round")});
@@ -113,5 +128,6 @@ TAUT_VERB(bench_effects) = {
     .summary = "Measures what wind, contact and self-collision cost beside links alone",
     .example =
         "taut bench effects\n  taut bench effects ball box --sizes 64,128\n  "
-        "taut bench effects --solver jakobsen:iterations=1,substeps=15,threads=2 --wall",
+        "taut bench effects --solver jakobsen:iterations=1,substeps=15,threads=2 --wall\n  "
+        "taut bench effects hang --copies 16",
     .bind = taut::verb::effects::bind};

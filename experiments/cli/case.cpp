@@ -1,3 +1,5 @@
+#include <chrono>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -9,6 +11,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/record_text.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/isolate.hpp"
@@ -55,15 +58,38 @@ void tell(const Snapshot& m, int steps) {
             << fastest << " m/s\n";
 }
 
+/// Says of a run that takes over ten seconds how far it is and how long it will last.
+class SlowRun {
+ public:
+  explicit SlowRun(int steps) : steps_(steps) {}
+  void at(int step) {
+    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (step == 0 || spent < next_) return;
+    next_ = spent + 10;
+    const double left = spent / step * (steps_ - step);
+    if (spent + left > 10)
+      progress() << "step " << step << "/" << steps_ << ", about " << std::lround(left)
+                 << " s left\n";
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  int steps_;
+  Clock::time_point start_ = Clock::now();
+  double next_ = 2;  ///< when to speak [s since the start]
+};
+
 int run(const Options& options) try {
   const Case one = options.which.make();
   continue_in_right_program(one.choice);
   if (!options.into.empty()) return run_into(one, options.into, options.frames);
 
   Keeper keeper(options.trajectory, one);
+  SlowRun slow(one.scene->steps);
   const CaseRun result = run_case(
       one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Snapshot& m) {
               keeper.append(m);
+              slow.at(m.step);
               if (options.verbose) tell(m, one.scene->steps);
             }});
   keeper.finish();

@@ -10,6 +10,7 @@
 #include "experiments/command_line/baseline_study.hpp"
 #include "experiments/command_line/colour.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/system/files.hpp"
@@ -43,10 +44,11 @@ int worse(int a, int b) {
   return kPass;
 }
 
-bool same_toolchain(const BaselineStudy& study) {
+bool same_toolchain(const BaselineStudy& study, bool strict) {
   if (study.toolchain == toolchain()) return true;
-  std::cerr << study.name << ": the baseline was made with\n    " << study.toolchain
-            << "\n  this program is made with\n    " << toolchain() << '\n';
+  (strict ? std::cerr : progress())
+      << study.name << ": the baseline was made with\n    " << study.toolchain
+      << "\n  this program is made with\n    " << toolchain() << '\n';
   return false;
 }
 
@@ -162,7 +164,7 @@ int check_study(const std::string& name, const Options& options, std::string& xm
       out << "no folder '" << folder << "' here; --baselines names another\n";
     return kNothing;
   }
-  const bool same = same_toolchain(study);
+  const bool same = same_toolchain(study, options.strict);
   if (!same && options.strict) return kEnvironment;
   const Comparison comparison = study.compare();
   notes.add(study, comparison);

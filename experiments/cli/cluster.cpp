@@ -93,6 +93,8 @@ int submit(const Submit& o) {
   if (fs::exists(folder))
     throw InputError(folder.string() + " is already there: `taut cluster status " +
                      folder.string() + "`, or name another with --folder");
+  fs::path there = folder.parent_path();  // what exists already of the folder's path
+  while (!there.empty() && !fs::exists(there)) there = there.parent_path();
   make_folder(folder / "log");
   Manifest manifest;
   try {
@@ -109,6 +111,8 @@ int submit(const Submit& o) {
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
+    for (fs::path made = folder.parent_path(); made != there; made = made.parent_path())
+      fs::remove(made, ignored);
     throw;
   }
   if (o.json)

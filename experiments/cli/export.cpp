@@ -7,6 +7,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
@@ -40,23 +41,29 @@ std::string axis_value(const CaseSpec& spec, const std::string& key) {
   return value;
 }
 
-/// What `taut bench STUDY` measured, on this host if it did so here, by the key of the case.
-std::map<std::string, BenchedCase> stored_costs(const Options& options, const Study& study) {
-  std::map<std::string, BenchedCase> costs;
+/// What `taut bench STUDY` measured on one host, on this one if it did so here.
+struct Costs {
+  std::string host;
+  std::map<std::string, BenchedCase> of;  ///< by the key of the case
+};
+
+Costs stored_costs(const Options& options, const Study& study) {
+  Costs costs;
   const std::vector<std::filesystem::path> files = bench_files(options.results, study.name);
   if (files.empty()) return costs;
   const std::filesystem::path& file = files.front();
-  for (SceneBench& scene : bench_from_json(read_text(file), file.string()).scenes)
+  BenchSession session = bench_from_json(read_text(file), file.string());
+  costs.host = session.host;
+  for (SceneBench& scene : session.scenes)
     for (BenchedCase& c : scene.cases)
-      if (c.timing.failure.empty()) costs[c.record.key] = std::move(c);
+      if (c.timing.failure.empty()) costs.of[c.record.key] = std::move(c);
   return costs;
 }
 
 /// One line a case; the names of the columns are the first.
 class TidyTable {
  public:
-  TidyTable(const StudyRecords& known, std::map<std::string, BenchedCase> costs)
-      : costs_(std::move(costs)) {
+  TidyTable(const StudyRecords& known, Costs costs) : costs_(std::move(costs)) {
     std::set<std::string> params;
     for (const Case& one : known.cases)
       for (const ParamSpec& spec : one.choice.entry->params) params.insert(std::string(spec.name));
@@ -71,8 +78,9 @@ class TidyTable {
   std::string text(const std::vector<Case>& cases) {
     begin({"scene", "solver"}), add(params_), add(axes_);
     add({"dt", "steps", "vertices", "links", "status", "reason", "step"}), add(values_);
-    if (!costs_.empty())
-      add({"cpu.per_second", "cpu.per_second.low", "cpu.per_second.high", "memory.peak"});
+    if (!costs_.of.empty())
+      add({"cpu.host", "cpu.per_second", "cpu.per_second.low", "cpu.per_second.high",
+           "memory.peak"});
     add({"case", "key"});
     for (const Case& one : cases) add_case(one);
     return out_ + "\n";
@@ -110,19 +118,19 @@ class TidyTable {
       const bool has = record && record->values.contains(name);
       add({has ? report::exact(record->values.at(name)) : ""});
     }
-    if (!costs_.empty()) add_cost(one);
+    if (!costs_.of.empty()) add_cost(one);
     add({one.id, one.key});
   }
 
   void add_cost(const Case& one) {
-    const auto at = costs_.find(one.key);
-    if (at == costs_.end()) return add({"", "", "", ""});
+    const auto at = costs_.of.find(one.key);
+    if (at == costs_.of.end()) return add({"", "", "", "", ""});
     const Interval cost = at->second.cost();
-    add({report::exact(cost.mid), report::exact(cost.low), report::exact(cost.high),
+    add({costs_.host, report::exact(cost.mid), report::exact(cost.low), report::exact(cost.high),
          std::to_string(at->second.timing.peak_bytes)});
   }
 
-  std::map<std::string, BenchedCase> costs_;
+  Costs costs_;
   std::map<std::string, const Record*> records_;
   std::vector<std::string> params_, axes_, values_;
   std::string out_;
@@ -144,7 +152,7 @@ int run(const Options& options) {
     std::cout << options.out << '\n';
   }
   const std::size_t missing = known.cases.size() - known.records.size();
-  if (missing > 0) std::cerr << missing << " cases were not run\n";
+  if (missing > 0) progress() << missing << " cases were not run\n";
   return missing > 0 ? kIncomplete : kPass;
 }
 

@@ -76,7 +76,8 @@ std::function<int()> bind_scene(CLI::App& app) {
   };
 }
 
-/// Downloads Jolt and registers it. Nothing of it is part of taut or of its set-up.
+/// Downloads Jolt and registers it; if that fails, nothing is registered. Nothing of it is part of
+/// taut or of its set-up.
 int install(const std::string& name) {
   namespace fs = std::filesystem;
   constexpr const char* kPackage = "jolt-physics@1.1.0";
@@ -85,21 +86,29 @@ int install(const std::string& name) {
     if (!on_path(needed))
       throw InputError(std::string(needed) + " is not here (apt install nodejs npm): no jolt");
   const fs::path registered = external::registered_folder(), folder = registered / "jolt";
-  std::cerr << "npm downloads " << kPackage << " (MIT, 13 MB; 46 MB unpacked) into "
-            << folder.string() << "; to be rid of it, delete that folder and jolt.toml\n";
-  make_folder(folder);
-  const fs::path ours = data_folder() / "external";
-  write_file(folder / "jolt.js", read_text(ours / "jolt" / "jolt.js"));
-  write_file(folder / "taut_solver.js", read_text(ours / "sdk" / "taut_solver.js"));
-  Process npm({"npm", "install", "--prefix", folder, "--no-save", "--no-audit", "--no-fund",
+  std::cerr << "npm downloads " << kPackage << " (MIT, 13 MB), of which 3 MB stay in "
+            << folder.string() << "; to be rid of it, delete that folder and "
+            << (registered / "jolt.toml").string() << '\n';
+  const Scratch scratch;
+  Process npm({"npm", "install", "--prefix", scratch.path(), "--no-save", "--no-audit", "--no-fund",
                "--ignore-scripts", kPackage},
               {.output = ProcessOptions::Stream::piped, .errors = ProcessOptions::Stream::piped});
   const std::string said = npm.read_all(600);
   if (const auto end = npm.wait(10); !end || !end->good())
     throw InputError("npm could not install " + std::string(kPackage) + ":\n" + said);
+  const fs::path package = fs::path("node_modules") / "jolt-physics",
+                 ours = data_folder() / "external";
+  const auto put = [&](const fs::path& from, const fs::path& to) {
+    make_folder((folder / to).parent_path());
+    write_file(folder / to, read_text(from));
+  };
+  for (const char* file : {"package.json", "LICENSE", "dist/jolt-physics.wasm-compat.js"})
+    put(scratch.path() / package / file, package / file);
+  put(ours / "jolt" / "jolt.js", "jolt.js");
+  put(ours / "sdk" / "taut_solver.js", "taut_solver.js");
   write_file(registered / "jolt.toml",
-             "cmd = \"node jolt/jolt.js\"\nfiles = "
-             "[\"jolt/taut_solver.js\", \"jolt/node_modules/jolt-physics/package.json\"]\n");
+             "cmd = \"node jolt/jolt.js\"\nfiles = [\"jolt/taut_solver.js\", "
+             "\"jolt/node_modules/jolt-physics/dist/jolt-physics.wasm-compat.js\"]\n");
   return probe({.command = "jolt"});
 }
 

@@ -6,12 +6,12 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
+#include "experiments/case/case.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/case/trajectory.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/record_text.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/external/motion_file.hpp"
+#include "experiments/external/recorded.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
@@ -40,31 +40,18 @@ std::vector<std::string> fitted(const Options& o) {
   return settings;
 }
 
-/// The motion as a trajectory, which `taut render` shows beside solvers.
-int draw(const Options& o, const Scene& scene, const std::vector<std::string>& settings,
-         external::MotionFile& motion) {
-  const Scratch scratch;
-  const std::filesystem::path file = scratch.path() / "positions.traj";
-  TrajectoryWriter writer(file, {.scene = scene.name,
-                                 .solver = "positions",
-                                 .frame_dt = scene.dt,
-                                 .vertices = scene.mesh.size(),
-                                 .triangles = scene.mesh.triangles});
-  for (int k = 0; k <= scene.steps; ++k) writer.append(k * scene.dt, {motion.frame(k), {}});
-  std::vector<std::string> words{o.scene, "--trajectory", file, "-o", o.picture};
+int draw(const Options& o, const CaseSpec& spec) {
+  std::vector<std::string> words{o.scene, "--solver", spec.solver, "-o", o.picture};
   for (const std::string& other : o.solvers) words.insert(words.end(), {"--solver", other});
-  for (const std::string& text : settings) words.insert(words.end(), {"--set", text});
+  for (const std::string& text : spec.overrides) words.insert(words.end(), {"--set", text});
   return invoke("render", words, o.json ? Output::discarded : Output::shown);
 }
 
 int run(const Options& o) {
-  const std::vector<std::string> settings = fitted(o);
-  const Scene scene = load_scene(find_scene(o.scene), settings);
-  external::MotionFile motion(scene, o.motion);
-  if (!motion.misfits().empty()) throw InputError(motion.misfits().front());
-  CaseRun scored = external::score(scene, motion, {.series_rows = o.series.empty() ? 0 : 120});
-  scored.record.id = scene.name + " " + o.motion.file.string();
-  scored.record.spec = {o.scene, settings, "positions"};
+  const Case one = CaseMaker().make({o.scene, fitted(o), external::solver_text(o.motion)});
+  for (const std::string& why : one.choice.entry->unsupported(*one.scene, one.choice.params))
+    throw InputError(why);
+  const CaseRun scored = run_case(one, {.series_rows = o.series.empty() ? 0 : 120});
   if (!o.series.empty()) write_durably(o.series, to_csv(scored.series));
   if (o.json) {
     std::cout << to_json(scored.record, 2) << '\n';
@@ -73,7 +60,7 @@ int run(const Options& o) {
       std::cout << name << ": " << value << '\n';
     print_record(scored.record);
   }
-  return o.picture.empty() ? kPass : draw(o, scene, settings, motion);
+  return o.picture.empty() ? kPass : draw(o, one.spec);
 }
 
 std::function<int()> bind(CLI::App& app) {

@@ -1,5 +1,7 @@
 #include "experiments/study/frontier.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iomanip>
 #include <iostream>
@@ -9,12 +11,22 @@
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
+#include "experiments/baseline/baseline.hpp"
+#include "experiments/case/key.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/extremes/extremes.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/plot/frontier_plot.hpp"
+#include "experiments/report/plot/gnuplot.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/timing/statistics.hpp"
 
 namespace taut::verb::frontier {
 
@@ -22,6 +34,9 @@ namespace {
 
 struct Options {
   CaseOptions which;
+  std::vector<std::string> all;  ///< solvers whose every knob is asked for; empty: one case
+  std::string baselines;
+  bool check = false, update = false;
   std::string of = "dt", out;
   std::optional<double> from, to;
   std::vector<double> expected;  ///< low and high, or empty
@@ -149,7 +164,148 @@ int judge(const Options& options, const Frontier& found) {
   return kRegression;
 }
 
+/// "0.12 s", "none" or, where nothing goes wrong, "-".
+std::string with_unit(double value, const std::string& unit) {
+  return std::isnan(value) ? "-" : number_text(value) + (unit.empty() ? "" : " " + unit);
+}
+
+std::string theory_text(const KnobFrontier& knob) {
+  if (knob.law.empty()) return "";
+  return (std::isnan(knob.theory) ? "beyond" : number_text(knob.theory)) + ": " + knob.law;
+}
+
+/// A row a knob, three columns a solver; the theory of a single one.
+void print_all(const std::vector<KnobFrontier>& found, std::size_t solvers) {
+  const std::size_t knobs = found.size() / solvers;
+  Row head{"knob"}, names{""};
+  for (std::size_t s = 0; s < solvers; ++s) {
+    head.insert(head.end(), {"good up to", "bad from", "what goes wrong"});
+    names.insert(names.end(), {found[s * knobs].solver, "", ""});
+  }
+  if (solvers == 1) head.emplace_back("theory"), names.emplace_back();
+  std::vector<Row> rows{names, head};
+  for (std::size_t k = 0; k < knobs; ++k) {
+    const std::string& unit = found[k].unit;
+    const bool common = found[(solvers - 1) * knobs + k].unit == unit;
+    Row row{found[k].knob + (unit.empty() || !common ? "" : " [" + unit + "]")};
+    for (std::size_t s = 0; s < solvers; ++s) {
+      const KnobFrontier& one = found[s * knobs + k];
+      if (!one.lacks.empty())
+        row.insert(row.end(), {"-", "-", "(" + one.lacks.substr(0, 40) + ")"});
+      else
+        row.insert(row.end(), {with_unit(one.good, common ? "" : one.unit),
+                               with_unit(one.bad, common ? "" : one.unit),
+                               std::isnan(one.bad) ? "nothing as far as was asked" : one.symptom});
+    }
+    if (solvers == 1) row.push_back(theory_text(found[k]));
+    rows.push_back(std::move(row));
+  }
+  print_columns(rows, 1);
+  for (const KnobFrontier& one : found) {
+    if (!one.at_start.empty())
+      std::cout << one.solver << ", " << one.knob << ": not counted, for it is so at "
+                << with_unit(one.from, one.unit) << " already: " << one.at_start << '\n';
+    if (!std::isnan(one.bad))
+      std::cout << one.solver << ", " << one.knob << ", " << one.symptom << ":\n    "
+                << reproduce(one.beyond) << '\n';
+  }
+}
+
+std::filesystem::path baseline_of(const Options& options) {
+  return std::filesystem::path(options.baselines) / "frontiers.jsonl";
+}
+
+/// Writes the rows of these solvers into the baseline and leaves those of others.
+int update_baseline(const Options& options, const std::vector<KnobFrontier>& found) {
+  const std::filesystem::path file = baseline_of(options);
+  std::vector<KnobFrontier> rows;
+  if (std::filesystem::exists(file)) rows = read_knobs(file);
+  std::erase_if(rows, [&](const KnobFrontier& row) {
+    return std::ranges::any_of(found, [&](const auto& f) { return f.solver == row.solver; });
+  });
+  rows.insert(rows.end(), found.begin(), found.end());
+  std::ranges::stable_sort(rows, {}, &KnobFrontier::solver);
+  make_folder(file.parent_path());
+  write_durably(file, to_json_lines(rows));
+  progress() << file.string() << '\n';
+  return kPass;
+}
+
+int check_baseline(const Options& options, const std::vector<KnobFrontier>& found) {
+  const std::filesystem::path file = baseline_of(options);
+  std::vector<KnobFrontier> before;
+  if (std::filesystem::exists(file)) before = read_knobs(file);
+  for (const KnobFrontier& knob : found)
+    if (std::ranges::none_of(before, [&](const auto& b) { return b.solver == knob.solver; })) {
+      std::cerr << "nothing to compare with: no frontiers of " << knob.solver << " in "
+                << file.string() << '\n';
+      return kNothing;
+    }
+  int code = kPass;
+  std::size_t compared = 0;
+  for (const FrontierChange& change : compare_frontiers(before, found)) {
+    const bool narrowed = change.kind == FrontierChange::Kind::narrowed;
+    if (narrowed) code = kRegression;
+    std::cerr << (narrowed                                       ? "NARROWED "
+                  : change.kind == FrontierChange::Kind::widened ? "widened  "
+                                                                 : "changed  ")
+              << change.solver << ", " << change.knob << ": " << change.text << '\n';
+  }
+  for (const KnobFrontier& knob : found) compared += knob.lacks.empty();
+  std::cerr << compared << " frontiers compared with " << file.string() << ": "
+            << (code == kPass ? "none is narrower" : "some are narrower") << '\n';
+  return code;
+}
+
+/// Every knob of one or two solvers.
+int run_all(const Options& options) {
+  const Store store(options.out);
+  std::vector<std::string> solvers;
+  for (const std::string& text : options.all) solvers.push_back(parse_solver(text).brief());
+  if (solvers.size() == 2 && solvers[0] == solvers[1])
+    throw InputError("--all: " + solvers[0] + " twice");
+  store.prepare();
+  const Session session(store, "taut frontier --all", {}, {});
+  std::vector<KnobFrontier> found;
+  for (const std::string& solver : solvers) {
+    const Countdown countdown("knob of " + solver);
+    const Extremes extremes =
+        find_extremes(solver, store, session,
+                      {.jobs = options.jobs,
+                       .limits = {},
+                       .shard = {},
+                       .only_failed = false,
+                       .frames = true,
+                       .progress = {}},
+                      [&](std::size_t done, std::size_t all) { countdown(done, all); });
+    if (extremes.interrupted) return kInterrupted;
+    const std::filesystem::path folder = std::filesystem::path(options.out) / kFrontiersFolder;
+    make_folder(folder);
+    write_file(folder / (report::slug(solver) + ".json"),
+               to_json(extremes.knobs, program_digest()));
+    found.insert(found.end(), extremes.knobs.begin(), extremes.knobs.end());
+  }
+  if (options.json)
+    std::cout << to_json(found, program_digest());
+  else
+    print_all(found, solvers.size());
+  try {
+    std::string stem = report::slug(solvers[0]);
+    if (solvers.size() == 2) stem += "-and-" + report::slug(solvers[1]);
+    const auto picture =
+        report::plot_frontiers(found, std::filesystem::path(options.out) / kFrontiersFolder, stem);
+    (options.json ? progress() : std::cout) << picture.string() << '\n';
+  } catch (const report::PlotError& error) {
+    std::cerr << "no picture: " << error.what() << '\n';
+  }
+  if (options.update) return update_baseline(options, found);
+  return options.check ? check_baseline(options, found) : kPass;
+}
+
 int run(const Options& options) {
+  if (!options.all.empty()) return run_all(options);
+  if (options.which.spec().scene.empty() || options.which.spec().solver.empty())
+    throw InputError("SCENE and SOLVER are required, or --all SOLVER");
   FrontierQuestion question{options.which.spec(), options.of, {}};
   question.range = range_of(question.base, options.of, options.from, options.to);
   question.range.tolerance = options.tolerance;
@@ -182,6 +338,21 @@ int run(const Options& options) {
 std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   options->which.bind(app);
+  for (const char* name : {"SCENE", "SOLVER"}) app.get_option(name)->required(false);
+  auto* all =
+      app.add_option("--all", options->all,
+                     "One or two solvers: every knob of theirs and of a small standard scene, with "
+                     "what goes wrong first, as a table and a picture; a minute or so")
+          ->expected(1, 2)
+          ->excludes("SCENE")
+          ->excludes("SOLVER");
+  options->baselines = results_folder() / "baselines";
+  app.add_option("--baselines", options->baselines,
+                 "Folder of the baselines (default: " + options->baselines + ")");
+  app.add_flag("--check", options->check,
+               "Exit 1 if a frontier of --all is narrower than in the baseline")
+      ->needs(all);
+  app.add_flag("--update", options->update, "Keep what --all finds as the baseline")->needs(all);
   app.add_option("--of", options->of,
                  "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
                  "(default: dt)");
@@ -208,5 +379,8 @@ TAUT_VERB(frontier) = {
     .example =
         "taut frontier chain mass-spring:substeps=1 --tolerance 0.001\n"
         "  taut frontier chain jakobsen:iterations=1,substeps=1,order=mesh --of omega --from 1\n"
-        "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000",
+        "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000\n"
+        "  taut frontier --all jakobsen bullet\n"
+        "Exit: 0 as expected; 1 another frontier than --expect, or one of --all is narrower than "
+        "the baseline;\n      4 nothing was answered or compared",
     .bind = taut::verb::frontier::bind};

@@ -6,6 +6,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
 
@@ -104,8 +105,9 @@ int write(const std::string& name, std::string text, const std::string& next, bo
     text.replace(at, 1, file.stem().string());
   write_durably(file, text);
   print_files({file.string()}, json);
-  std::cerr << "next: taut " << next << ' ' << (file.has_parent_path() ? file : "." / file).string()
-            << (next == "case" ? " jakobsen" : "") << '\n';
+  progress() << "next: taut " << next << ' '
+             << (file.has_parent_path() ? file : "." / file).string()
+             << (next == "case" ? " jakobsen" : "") << '\n';
   return kPass;
 }
 
@@ -117,7 +119,8 @@ std::function<int()> bind(CLI::App& app) {
   for (CLI::App* sub : {study, scene})
     sub->add_option("NAME", *name, "NAME or path; the file is NAME.toml")->required();
   const auto json = std::make_shared<bool>(false);
-  for (CLI::App* sub : {study, scene}) add_json(*sub, *json, "The name of the file");
+  for (CLI::App* sub : {study, scene})
+    add_json(*sub->fallthrough(), *json, "The name of the file");  // --quiet is the verb's own
   return [name, study, json] {
     return study->parsed() ? write(*name, kStudy, "run", *json)
                            : write(*name, kScene, "case", *json);

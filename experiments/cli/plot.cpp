@@ -1,11 +1,18 @@
 #include "experiments/report/plot/plot.hpp"
 
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/claims/rivals.hpp"
@@ -23,6 +30,16 @@ struct Options {
   std::string study, preset, kind, x, y, title, results = default_results(), out;
   bool json = false;
 };
+
+/// A plot's `slope`, the exponent of a theory; nothing if it names none.
+std::optional<double> exponent(const std::string& text) {
+  if (text.empty()) return {};
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || !std::isfinite(value))
+    throw InputError("slope = " + text + " in [[plot]]: expected a number");
+  return value;
+}
 
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
 /// for.
@@ -43,24 +60,53 @@ std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
                      .y = option("y"),
                      .along = option("along"),
                      .title = option("title"),
-                     .file = option("file")});
+                     .file = option("file"),
+                     .slope = exponent(option("slope"))});
   }
   if (specs.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
   return specs;
 }
 
-/// Keeps the cases at the commonest value of what is not on x, and says so: in the title and, if
-/// that leaves out cases, on standard error.
-std::string hold(const PlotSpec& spec, std::vector<Record>& records, const std::string& scene) {
+/// Throws InputError with every kind and value that there is not; of a study's own with its place.
+void check(const std::vector<PlotSpec>& specs, const Options& options, const Study& study,
+           std::span<const Record> records) {
+  const bool own = options.kind.empty() && options.x.empty() && options.y.empty();
+  std::vector<Diagnostic> wrong;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const auto collect = [&](const char* key, const auto& look) {
+      try {
+        look();
+      } catch (const InputError& error) {
+        Diagnostic d = error.diagnostics().front();
+        if (own) {
+          const SourceLocation& place = study.plots[i].places.at(key);
+          d.file = study.file.string(), d.line = place.line, d.column = place.column;
+        } else {
+          d.message = std::string("--") + key + ": " + d.message;
+        }
+        wrong.push_back(d);
+      }
+    };
+    collect("kind", [&] { report::find_plot_kind(specs[i].kind); });
+    for (const auto& [key, name] : {std::pair("x", specs[i].x), std::pair("y", specs[i].y)})
+      if (!name.empty()) collect(key, [&] { report::check_value_name(name, records); });
+  }
+  if (!wrong.empty()) throw InputError(wrong);
+}
+
+/// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
+/// and on standard error.
+std::string hold_other(const PlotSpec& spec, std::vector<Record>& records,
+                       const std::string& scene) {
   const std::string held = spec.x == "dt" ? "iterations" : "dt";
-  report::Slice slice = report::most_common(records, held, held == "dt" ? 1.0 / 64 : 8);
+  report::Slice slice = report::hold(records, held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
   records = std::move(slice.records);
   if (left_out == 0) return "";
   const std::string at = report::quantity(held).text(slice.value, 3);
   const std::string setting = held == "dt" ? "dt = " + at : at + " sweeps";
-  std::cerr << scene << ", " << spec.y << " over " << spec.x << ": " << setting << "; " << left_out
-            << " cases at other values are not drawn\n";
+  progress() << scene << ", " << spec.y << " over " << spec.x << ": " << setting << "; " << left_out
+             << " cases at other values are not drawn\n";
   return ", " + setting;
 }
 
@@ -73,12 +119,12 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
   std::vector<Record> records = study.records;
   std::erase_if(records, [&](const Record& r) { return r.scene != scene; });
   if (spec.kind == "scaling") spec.slope = 1;
-  const std::string held = spec.kind == "stability" ? "" : hold(spec, records, scene);
+  const std::string held = spec.kind == "stability" ? "" : hold_other(spec, records, scene);
   std::vector<report::TimeSeries> series;
   if (spec.kind == "series") series = report::stored_series(records, spec.y, store);
-  if (const auto slope = study.slopes.find(scene); slope != study.slopes.end() &&
-                                                   spec.kind == "error-iterations" &&
-                                                   spec.y.starts_with("stretch."))
+  if (const auto slope = study.slopes.find(scene);
+      slope != study.slopes.end() && spec.kind == "error-iterations" && spec.x == "iterations" &&
+      !spec.slope && spec.y.starts_with("stretch."))
     spec.slope = slope->second;
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
   if (const std::string unequal = report::unequal_work(records); !unequal.empty())
@@ -103,11 +149,7 @@ int run(const Options& options) {
                                 (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                           : std::filesystem::path(options.out);
   const std::vector<PlotSpec> specs = wanted(options, study);
-  for (const PlotSpec& spec : specs) {
-    report::find_plot_kind(spec.kind);
-    for (const std::string& name : {spec.x, spec.y})
-      if (!name.empty()) report::check_value_name(name, result.records);
-  }
+  check(specs, options, study, result.records);
   make_folder(out);  // what cannot be written is said once, not for every scene
   std::vector<std::string> files;
   try {

@@ -4,6 +4,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/solver_texts.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/film/recorded_runs.hpp"
 #include "experiments/render/image/video.hpp"
@@ -154,6 +155,7 @@ int run(Options options) {
   if (panels == 0 || panels > 4)
     throw InputError(
         "one to four --solver or --trajectory, for example --solver jakobsen --solver bullet");
+  check_solvers(options.what.solvers);
   if (!options.dt.empty()) options.what.overrides.push_back("time.dt=\"" + options.dt + "\"");
   if (!options.duration.empty())
     options.what.overrides.push_back("time.duration=\"" + options.duration + "\"");

@@ -158,6 +158,16 @@ int run(Options options) {
   } catch (const InputError& error) {
     left_out("check.json", error);
   }
+  try {
+    input.required = report::stored_requirements(options.results, program);
+  } catch (const InputError& error) {
+    left_out("require", error);
+  }
+  try {
+    input.frontiers = report::stored_frontiers(options.results, program);
+  } catch (const InputError& error) {
+    left_out("frontiers", error);
+  }
   if (options.json) {
     std::cout << report::make_model(input, 1) << '\n';
     return kPass;

@@ -2,12 +2,13 @@
 
 #include <chrono>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/key.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -59,8 +60,6 @@ std::string verdict(const EffectTrial& effect) {
   return effect.told().why.empty() ? "keep" : "keep: " + effect.told().why;
 }
 
-using Row = std::vector<std::string>;
-
 /// What is printed, as a table: head, the full model, its tolerances and noise, effects, the
 /// smallest model.
 std::vector<Row> table(const Requirement& found, std::size_t bytes) {
@@ -95,19 +94,6 @@ std::vector<Row> table(const Requirement& found, std::size_t bytes) {
   return rows;
 }
 
-void print(const std::vector<Row>& rows) {
-  std::vector<std::size_t> width(rows.front().size());
-  for (const Row& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
-  for (const Row& row : rows) {
-    std::cout << "  ";
-    for (std::size_t i = 0; i < row.size(); ++i)
-      std::cout << (i < 2 || i + 1 == row.size() ? std::left : std::right)
-                << std::setw(i + 1 == row.size() ? 0 : static_cast<int>(width[i])) << row[i]
-                << (i + 1 == row.size() ? "\n" : "  ");
-  }
-}
-
 std::string command_of(const CaseSpec& spec) {
   return "taut case " + shell_word(spec.scene) + " " +
          shell_word(parse_solver(spec.solver).brief());
@@ -123,7 +109,7 @@ void print_text(const Requirement& found, const Store& store, const std::string&
   std::cout << found.full.id << '\n';
   if (found.chaotic) std::cout << "  " << horizon_text(found) << '\n';
   for (const std::string& answer : found.given_up) std::cout << "  not kept: " << answer << '\n';
-  if (!found.effects.empty()) print(table(found, full_bytes(found, store)));
+  if (!found.effects.empty()) print_columns(table(found, full_bytes(found, store)), 2);
   if (found.smallest) {
     std::cout << "  smallest model  " << command_of(found.smallest->spec) << '\n';
     if (found.time_ratio)
@@ -256,12 +242,33 @@ Row summary(const Requirement& found) {
   std::string answers;
   for (const KeptAnswer& answer : found.answers)
     answers += (answers.empty() ? "" : ", ") + answer.name;
+  for (const std::string& what : found.not_done)
+    drop += (drop.empty() ? "not done: " : "; not done: ") + what;
   return {found.full.scene->name,
           found.chaotic ? number_text(found.horizon, 2) + " s" : "no",
           answers,
           drop.empty() ? "nothing" : drop,
-          keep.empty() ? "nothing" : keep,
+          keep.empty() ? (found.effects.empty() ? "-" : "nothing") : keep,
           found.time_ratio ? percent(found.time_ratio->mid) : "-"};
+}
+
+/// For the report.
+void leave(const Requirement& found, const Row& row, const fs::path& folder) {
+  make_folder(folder);
+  write_file(folder / "found.json",
+             to_text(Json{{"schema", "taut-require-1"},
+                          {"program", program_digest()},
+                          {"summary",
+                           {{"scene", row[0]},
+                            {"solver", found.full.choice.brief()},
+                            {"chaotic", found.chaotic ? "after " + row[1] : ""},
+                            {"answers", row[2]},
+                            {"drop", row[3]},
+                            {"keep", row[4]},
+                            {"time", row[5]},
+                            {"command", found.smallest ? command_of(found.smallest->spec) : ""}}}},
+                     1) +
+                 "\n");
 }
 
 int run_one(const Options& options, const std::string& scene, Json& all, std::vector<Row>& rows,
@@ -297,6 +304,7 @@ int run_one(const Options& options, const std::string& scene, Json& all, std::ve
         draw(found, store,
              options.picture.empty() || !alone ? folder / "models.png" : fs::path(options.picture));
   rows.push_back(summary(found));
+  if (!found.answers.empty()) leave(found, rows.back(), folder);
   if (options.json)
     all.push_back(json_of(found, store, picture, seconds(), options.patience));
   else if (alone)

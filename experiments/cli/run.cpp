@@ -42,20 +42,22 @@ void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
   std::vector<std::string> known = report::quantity_names();
   known.emplace_back("setting");
   for (const StudyAxis& axis : study.axes) known.push_back(axis.name);
-  const auto report = [&](std::size_t i, const std::string& text) {
-    wrong.push_back({study.file, 0, 0, "[[plot]] " + std::to_string(i + 1) + ": " + text});
+  const auto report = [&](std::size_t i, const char* key, const std::string& text) {
+    const SourceLocation& place = study.plots[i].places.at(key);
+    wrong.push_back({study.file, place.line, place.column, text});
   };
   for (std::size_t i = 0; i < study.plots.size(); ++i) {
     try {
       report::find_plot_kind(study.plots[i].kind);
     } catch (const InputError& error) {
-      report(i, error.diagnostics().front().text());
+      report(i, "kind", error.diagnostics().front().text());
     }
     for (const char* axis : {"x", "y", "along"})
       if (const auto at = study.plots[i].options.find(axis);
           at != study.plots[i].options.end() && std::ranges::count(known, at->second) == 0)
-        report(i, "unknown value '" + at->second + "' for " + axis + suggestion(at->second, known) +
-                      " (`taut list metrics`)");
+        report(i, axis,
+               "unknown value '" + at->second + "' for " + axis + suggestion(at->second, known) +
+                   " (`taut list metrics`)");
   }
 }
 
@@ -106,14 +108,14 @@ int finish_main_job(const MainJob& job, const Options& options) {
   const std::string jobs = std::to_string(options.jobs);
   invoke("bench", {job.bench, "--preset", job.preset, "--seconds", "0.015", "--out", options.out},
          Output::discarded);
-  std::cerr << "holding solvers to closed forms and published numbers\n";
+  progress() << "holding solvers to closed forms and published numbers\n";
   invoke("verify", {"-j", jobs, "--out", options.out + "/verify.json"}, Output::discarded);
-  std::cerr << "comparing with the committed baselines\n";
+  progress() << "comparing with the committed baselines\n";
   if (invoke("check", {"--record", "-j", jobs, "--out", options.out}) == kInterrupted)
     throw Interrupted();
   std::vector<std::string> arguments{"--results", options.out};  // none named: the main job's
   if (options.preset != job.preset) arguments.insert(arguments.end(), {"--preset", options.preset});
-  return invoke("report", arguments);
+  return invoke("report", arguments, options.json ? Output::discarded : Output::shown);
 }
 
 Json to_json(const CampaignProgress& campaign, const Options& options, const Store& store) {
@@ -146,18 +148,22 @@ void print_unequal_work(const std::vector<Study>& studies, const Store& store) {
   for (const Study& study : studies)
     if (const std::string unequal = report::unequal_work(collect(study, store).records);
         !unequal.empty())
-      std::cerr << study.name << ": unequal work: " << unequal << '\n';
+      progress() << study.name << ": unequal work: " << unequal << '\n';
 }
 
-void print_next(const Options& options) {
+void print_next(const Options& options, bool bare) {
   std::string which;
-  for (const std::string& study : options.studies) which += " " + shell_word(study);
+  for (const std::string& study : options.studies)
+    if (!bare) which += " " + shell_word(study);
   const std::string first = shell_word(options.studies.front());
   const std::string more = options.preset.empty() ? "" : " --preset " + options.preset;
   const std::string in =
       options.out == default_results() ? "" : " --results " + shell_word(options.out);
-  std::cerr << "next: taut report" << which << more << in << "\n      taut plot " << first << more
-            << in << "\n      taut export " << first << more << in << " -o table.csv\n";
+  progress() << "next: "
+             << (bare && !options.no_report ? "open report.html"
+                                            : "taut report" + which + more + in)
+             << "\n      taut plot " << first << more << in << "\n      taut export " << first
+             << more << in << " -o table.csv\n";
 }
 
 int run(Options options) {
@@ -178,7 +184,7 @@ int run(Options options) {
   const Store store(options.out);
   store.prepare();
   const Session session(store, command_line(options), cases, shard);
-  Progress progress;
+  Progress display;
   const CampaignProgress campaign =
       run_cases(cases, store, session,
                 {.jobs = options.jobs,
@@ -186,27 +192,28 @@ int run(Options options) {
                  .shard = shard,
                  .only_failed = options.only == "failed",
                  .progress = [&](const CampaignProgress& t, const Record* record) {
-                   progress.show(t, record);
+                   display.show(t, record);
                  }});
-  progress.finish(campaign);
+  display.finish(campaign);
   if (campaign.conflicts > 0)
     std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
               << (store.root() / "conflicts").string() << '\n';
   if (campaign.interrupted)
     std::cerr << "interrupted; the same command goes on where this one stopped\n";
-  std::cerr << "store " << store.digest() << '\n';
+  progress() << "store " << store.digest() << '\n';
   if (const int code = exit_code(campaign); code != kPass) return code;
   if (campaign.cases == 0 && options.only == "failed")
-    std::cerr << "no stored failure to run again\n";
-  if (bare && !options.no_report) return finish_main_job(job, options);
+    progress() << "no stored failure to run again\n";
+  if (bare && !options.no_report)
+    if (const int code = finish_main_job(job, options); code != kPass) return code;
   if (!options.values.empty())
     print_tables(studies, options, store);
   else if (options.json)
     std::cout << to_text(to_json(campaign, options, store), 1) << '\n';
-  else
+  else if (!bare || options.no_report)
     std::cout << options.out << '\n';
   print_unequal_work(studies, store);
-  print_next(options);
+  print_next(options, bare);
   return kPass;
 }
 

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -11,13 +12,16 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
+#include "experiments/baseline/claims_baseline.hpp"
 #include "experiments/case/key.hpp"
 #include "experiments/command_line/colour.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/truths/seed_claims.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut::verb::verify {
@@ -27,8 +31,11 @@ namespace {
 struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
-  bool json = false, verbose = false;
-  std::string out;
+  bool json = false, verbose = false, claims = false, update = false;
+  std::string out, baselines;
+
+  /// Whether every truth that a claim rests on is checked, for every solver.
+  bool of_all_claims() const { return names.empty() && solvers.empty() && section == 0; }
 };
 
 struct Outcome {
@@ -45,9 +52,13 @@ std::vector<const TruthEntry*> choose(const Options& options) {
       throw InputError("unknown truth '" + name + "'" + suggestion(name, known) +
                        " (`taut verify --list` names all)");
   for (const std::string& solver : options.solvers)
-    if (solver != "reference") find_solver(solver);
+    if (solver != "reference") parse_solver(solver);
   std::vector<const TruthEntry*> chosen;
   for (const TruthEntry* truth : truths()) {
+    if (options.claims && std::ranges::none_of(seed_claims(), [&](const SeedClaim& claim) {
+          return claim.truth == truth->name;
+        }))
+      continue;
     const bool named =
         options.names.empty() ||
         std::find(options.names.begin(), options.names.end(), truth->name) != options.names.end();
@@ -60,7 +71,7 @@ std::vector<const TruthEntry*> choose(const Options& options) {
   return chosen;
 }
 
-/// Checks the truths on `jobs` threads; outcomes stay in the catalogue's order.
+/// Checks the truths on `jobs` threads; outcomes stay in the order of the truths.
 std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const Options& options) {
   std::vector<Outcome> outcomes(chosen.size());
   std::atomic<std::size_t> next{0};
@@ -88,6 +99,14 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+std::vector<JudgedClaim> judged(const std::vector<Outcome>& outcomes) {
+  return judge_claims([&](std::string_view truth) -> const std::vector<Finding>* {
+    for (const Outcome& outcome : outcomes)
+      if (outcome.truth->name == truth) return &outcome.findings;
+    return nullptr;
+  });
+}
+
 Json to_json(const std::vector<Outcome>& outcomes) {
   Json list = Json::array();
   for (const auto& [truth, findings, seconds] : outcomes) {
@@ -110,7 +129,14 @@ Json to_json(const std::vector<Outcome>& outcomes) {
                     {"source", truth->source},
                     {"findings", rows}});
   }
-  return {{"schema", "taut-truths-1"}, {"program", program_digest()}, {"truths", list}};
+  Json claims = Json::array();
+  for (const auto& [section, claim, verdict, figure] : judged(outcomes))
+    claims.push_back(
+        {{"section", section}, {"claim", claim}, {"verdict", verdict}, {"figure", figure}});
+  return {{"schema", "taut-truths-1"},
+          {"program", program_digest()},
+          {"truths", list},
+          {"claims", claims}};
 }
 
 std::string value(double v) {
@@ -189,7 +215,38 @@ int summary(const std::vector<Outcome>& outcomes) {
   return counts[0] + counts[1] > 0 ? kPass : kNothing;
 }
 
+void print_claims(const std::vector<JudgedClaim>& claims) {
+  for (const auto& [section, claim, verdict, figure] : claims)
+    std::cout << section << "  " << claim << "\n      "
+              << coloured(verdict, verdict == "overturned" ? Colour::red : Colour::green)
+              << (figure.empty() ? "" : ": " + figure) << '\n';
+}
+
+/// Holds the verdicts of claims to those that were kept, or keeps them.
+int compare_with_baseline(const std::vector<JudgedClaim>& claims, const Options& options) {
+  const std::filesystem::path file = std::filesystem::path(options.baselines) / "claims.jsonl";
+  if (options.update) {
+    make_folder(file.parent_path());
+    write_durably(file, to_json_lines(claims));
+    progress() << file.string() << '\n';
+    return kPass;
+  }
+  if (!std::filesystem::exists(file)) {
+    std::cerr << "claims: no baseline " << file.string() << '\n';
+    return options.claims ? kNothing : kPass;
+  }
+  const std::vector<std::string> changes = compare_claims(read_claims(file), claims);
+  for (const std::string& change : changes) std::cerr << change << '\n';
+  std::cerr << claims.size() << " claims of Vasilovici's report: "
+            << (changes.empty() ? "every verdict is as it was"
+                                : std::to_string(changes.size()) + " changed")
+            << '\n';
+  return changes.empty() ? kPass : kRegression;
+}
+
 int run(const Options& options) {
+  if (options.update && !(options.claims && options.of_all_claims()))
+    throw InputError("--update keeps the verdicts of all claims: taut verify --claims --update");
   const std::vector<Outcome> outcomes = check(choose(options), options);
   const std::string json = to_text(to_json(outcomes), 1);
   if (!options.out.empty()) {
@@ -197,9 +254,14 @@ int run(const Options& options) {
   }
   if (options.json)
     std::cout << json << '\n';
+  else if (options.claims)
+    print_claims(judged(outcomes));
   else
     print_table(outcomes, options.verbose);
-  return summary(outcomes);
+  const int code = summary(outcomes);
+  if (!options.of_all_claims()) return code;
+  const int claims = compare_with_baseline(judged(outcomes), options);
+  return code == kPass ? claims : code;
 }
 
 int list() {
@@ -215,13 +277,19 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("TRUTH", options->names, "Truths to check by name; all if none is given");
   app.add_option("--solver", options->solvers,
                  "Only what binds these solvers (\"reference\": the references)");
-  app.add_option("--section", options->section, "Only one section of the catalogue")
+  app.add_option("--section", options->section, "Only one section of the truths")
       ->check(CLI::Range(1, 10));
   app.add_option("-j,--jobs", options->jobs,
                  "Threads (default: " + std::to_string(options->jobs) + ")")
       ->check(CLI::Range(1, 64));
   app.add_option("-o,--out", options->out, "Also write the findings as JSON to this file");
   app.add_flag("--json", options->json, "Findings as JSON instead of a table");
+  app.add_flag("--claims", options->claims,
+               "Only what holds the claims of Vasilovici's report, and their verdicts");
+  options->baselines = results_folder() / "baselines";
+  app.add_option("--baselines", options->baselines,
+                 "Folder of the baselines (default: " + options->baselines + ")");
+  app.add_flag("--update", options->update, "With --claims: keep their verdicts as the baseline");
   app.add_flag("--verbose", options->verbose, "Every number, with sources and times");
   app.add_flag("--list", *only_list, "Only name the truths");
   return [options, only_list] { return *only_list ? list() : run(*options); };
@@ -236,5 +304,7 @@ TAUT_VERB(verify) = {.name = "verify",
                      .example =
                          "taut verify --section 4 --solver jakobsen\n"
                          "  taut verify hanging-chain-sweeps --verbose\n"
-                         "Exit: 0 no truth is broken; 1 one is; 4 nothing was held to anything",
+                         "  taut verify --claims\n"
+                         "Exit: 0 no truth is broken, no verdict of a claim changed; 1 one is or "
+                         "did; 4 nothing was held to anything",
                      .bind = taut::verb::verify::bind};

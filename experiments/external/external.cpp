@@ -7,7 +7,9 @@
 
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/external/names.hpp"
 #include "experiments/external/program.hpp"
+#include "experiments/external/recorded.hpp"
 
 namespace taut::external {
 
@@ -17,13 +19,8 @@ namespace {
 
 constexpr ParamSpec kLeading[] = {
     {.name = "cmd", .kind = ParamSpec::Kind::text, .help = "The program that is called"},
-    {.name = "timeout",
-     .kind = ParamSpec::Kind::real,
-     .unit = "s",
-     .default_value = "30",
-     .min = 0.01,
-     .max = 86400,
-     .help = "Every answer has to come within this time"}};
+    ParamSpec::real("timeout", "s", "30", 0.01, 86400,
+                    "Every answer has to come within this time")};
 
 /// Stands for all programs where none is named.
 const SolverEntry kAny = {
@@ -83,7 +80,7 @@ std::vector<std::string> registered_names() {
   for (const auto& file : fs::directory_iterator(registered_folder(), none)) {
     const std::string name = file.path().stem();
     if (file.path().extension() != ".toml") continue;
-    if (name == kAny.name ||
+    if (name == kAny.name || name == kPositions.name ||
         std::ranges::any_of(solvers(), [&](auto* e) { return e->name == name; }))
       throw InputError(file.path().string() + ": there is already a solver '" + name + "'");
     names.push_back(name);
@@ -96,33 +93,42 @@ std::vector<std::string> registered_names() {
 const SolverEntry* program(const std::string& name, std::string_view params,
                            const Registered& solver, std::vector<ParamSpec> leading) {
   static std::mutex mutex;
-  static std::map<std::string, std::unique_ptr<Program>> programs;
+  static std::map<std::string, std::shared_ptr<Program>> programs;
   const std::lock_guard lock(mutex);
-  const std::string key =
-      name + '\n' + solver.command.text() + '\n' + std::to_string(solver.command.seconds);
-  auto& known = programs[key];
-  if (!known)
-    known = std::make_unique<Program>(name, solver.command, leading, params, solver.files);
+  const std::string command =
+      '\n' + solver.command.text() + '\n' + std::to_string(solver.command.seconds);
+  auto& known = programs[name + command];
+  if (!known) {
+    const std::string called = name == kAny.name ? "" : name;
+    known = std::make_shared<Program>(called, solver.command, leading, params, solver.files);
+    programs[std::string(known->entry().name) + command] = known;  // its canonical text names it so
+  }
   if (known->introduced()) return &known->entry();
-  auto& one = programs[key + '\n' + std::string(params)];
-  if (!one) one = std::make_unique<Program>(*known, std::move(leading), params);
+  auto& one = programs[name + command + '\n' + std::string(params)];
+  if (!one) one = std::make_shared<Program>(*known, std::move(leading), params);
   return &one->entry();
 }
 
+/// "mine:cmd='...'" and "mine:file=..." give a name to what they call.
 const SolverEntry* find(std::string_view name, std::string_view params) {
-  if (name == kAny.name) {
-    const std::vector<ParamItem> items = param_items(params);
-    if (std::ranges::find(items, "cmd", &ParamItem::key) == items.end()) return &kAny;
+  const std::string called(name);
+  if (!is_solver_name(name)) return nullptr;
+  if (fs::is_regular_file(file_of(called)))
+    return program(called, params, read_registered(file_of(called)), {});
+  const std::vector<ParamItem> items = param_items(params);
+  const auto has = [&](std::string_view key) {
+    return std::ranges::find(items, key, &ParamItem::key) != items.end();
+  };
+  if (has("cmd")) {
     const Registered solver{command_of("external:" + std::string(params)), {}};
-    return program("external", params, solver, {std::begin(kLeading), std::end(kLeading)});
+    return program(called, params, solver, {std::begin(kLeading), std::end(kLeading)});
   }
-  const std::string file(name);
-  if (file.find('/') != file.npos || !fs::is_regular_file(file_of(file))) return nullptr;
-  return program(file, params, read_registered(file_of(file)), {});
+  if (has("file")) return recorded(called, params);
+  return name == kAny.name ? &kAny : name == kPositions.name ? &kPositions : nullptr;
 }
 
 std::vector<const SolverEntry*> all() {
-  std::vector<const SolverEntry*> entries{&kAny};
+  std::vector<const SolverEntry*> entries{&kAny, &kPositions};
   for (const std::string& name : registered_names()) entries.push_back(find(name, ""));
   return entries;
 }

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
+#include "experiments/external/names.hpp"
 #include "experiments/external/scene_file.hpp"
 
 namespace taut::external {
@@ -23,18 +24,16 @@ constexpr double kLargestInteger = 2147483647;
 
 /// Calls `read`; whatever it finds wrong in an answer breaks the protocol.
 template <class Read>
-auto judged(Session& session, const Json& answer, const std::string& op, Read read) {
+auto judged(Session& session, Read read) {
   try {
-    return read(JsonReader(answer, "answer to '" + op + "'"));
+    return read();
   } catch (const InputError& error) {
     session.fail("protocol", error.what());
   }
 }
 
-bool is_name(std::string_view text) {
-  return !text.empty() && text.size() <= 40 && std::isalpha(static_cast<unsigned char>(text[0])) &&
-         std::ranges::all_of(
-             text, [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+JsonReader reader(const Json& answer, const std::string& op) {
+  return JsonReader(answer, "answer to '" + op + "'");
 }
 
 std::string text_or(const JsonReader& j, const char* key, const std::string& fallback = "") {
@@ -46,7 +45,7 @@ std::string text_or(const JsonReader& j, const char* key, const std::string& fal
 class SpecReader {
  public:
   SpecReader(Hello& hello, const std::string& name, const JsonReader& j) : hello_(hello), j_(j) {
-    if (!is_name(name) || name == "cmd" || name == "timeout")
+    if (!is_solver_name(name) || name == "cmd" || name == "timeout")
       j.fail("is no name for a parameter (letters, digits, _ and -; not cmd or timeout)");
     spec_.name = keep(name);
     spec_.unit = keep(text_or(j, "unit"));
@@ -110,22 +109,25 @@ Json typed(const ParamSpec& spec, std::string_view value) {
 
 }  // namespace
 
+std::unique_ptr<const Hello> read_hello(const Json& answer) {
+  const JsonReader j = reader(answer, "hello");
+  if (const std::string protocol = j.at("protocol").text(); protocol != kProtocol)
+    j.at("protocol").fail("'" + protocol + "' is not '" + std::string(kProtocol) + "'");
+  auto hello = std::make_unique<Hello>();
+  hello->name = j.at("name").text();
+  hello->version = j.at("version").text();
+  hello->summary = text_or(j, "summary", hello->name);
+  hello->source = text_or(j, "source", hello->name + " " + hello->version);
+  hello->unmeasurable = text_or(j, "unmeasurable");
+  if (const auto params = j.find("params"))
+    for (const auto& [name, spec] : params->members())
+      hello->params.push_back(SpecReader(*hello, name, spec).spec());
+  return hello;
+}
+
 std::unique_ptr<const Hello> say_hello(Session& session) {
   const Json answer = session.ask({{"op", "hello"}, {"protocol", kProtocol}});
-  return judged(session, answer, "hello", [](const JsonReader& j) {
-    if (const std::string protocol = j.at("protocol").text(); protocol != kProtocol)
-      j.at("protocol").fail("'" + protocol + "' is not '" + std::string(kProtocol) + "'");
-    auto hello = std::make_unique<Hello>();
-    hello->name = j.at("name").text();
-    hello->version = j.at("version").text();
-    hello->summary = text_or(j, "summary", hello->name);
-    hello->source = text_or(j, "source", hello->name + " " + hello->version);
-    hello->unmeasurable = text_or(j, "unmeasurable");
-    if (const auto params = j.find("params"))
-      for (const auto& [name, spec] : params->members())
-        hello->params.push_back(SpecReader(*hello, name, spec).spec());
-    return std::unique_ptr<const Hello>(std::move(hello));
-  });
+  return judged(session, [&] { return read_hello(answer); });
 }
 
 Json own_params(const Hello& hello, const Params& params) {
@@ -142,32 +144,34 @@ Json default_params(const Hello& hello) {
   return all;
 }
 
+SceneAnswer read_scene_answer(const Json& answer, int vertices) {
+  const JsonReader j = reader(answer, "scene");
+  SceneAnswer told;
+  if (const auto cannot = j.find("cannot")) told.cannot = cannot->texts();
+  if (!told.cannot.empty()) return told;
+  if (const int n = j.at("vertices").integer(); n != vertices)
+    j.at("vertices").fail(std::to_string(n) + " is not the scene's " + std::to_string(vertices));
+  if (const auto plan = j.find("plan"))
+    for (const JsonReader& p : plan->items()) {
+      const auto repeats = p.find("repeats"), bytes = p.find("bytes"),
+                 projections = p.find("projections");
+      told.plan.push_back({.pass = p.at("pass").text(),
+                           .items = p.at("items").count(),
+                           .repeats = repeats ? repeats->count() : 1,
+                           .bytes = bytes ? bytes->count() : 0,
+                           .projections = projections && projections->flag()});
+    }
+  if (const auto settings = j.find("settings"))
+    for (const auto& [name, value] : settings->members())
+      told.settings.emplace_back(name, value.text());
+  return told;
+}
+
 SceneAnswer give_scene(Session& session, const Scene& scene, const Json& params) {
   const auto file = session.folder() / "scene.json";
   write_file(file, scene_file(scene));
   const Json answer = session.ask({{"op", "scene"}, {"file", file.string()}, {"params", params}});
-  return judged(session, answer, "scene", [&](const JsonReader& j) {
-    SceneAnswer told;
-    if (const auto cannot = j.find("cannot")) told.cannot = cannot->texts();
-    if (!told.cannot.empty()) return told;
-    if (const int n = j.at("vertices").integer(); n != scene.mesh.size())
-      j.at("vertices")
-          .fail(std::to_string(n) + " is not the scene's " + std::to_string(scene.mesh.size()));
-    if (const auto plan = j.find("plan"))
-      for (const JsonReader& p : plan->items()) {
-        const auto repeats = p.find("repeats"), bytes = p.find("bytes"),
-                   projections = p.find("projections");
-        told.plan.push_back({.pass = p.at("pass").text(),
-                             .items = p.at("items").count(),
-                             .repeats = repeats ? repeats->count() : 1,
-                             .bytes = bytes ? bytes->count() : 0,
-                             .projections = projections && projections->flag()});
-      }
-    if (const auto settings = j.find("settings"))
-      for (const auto& [name, value] : settings->members())
-        told.settings.emplace_back(name, value.text());
-    return told;
-  });
+  return judged(session, [&] { return read_scene_answer(answer, scene.mesh.size()); });
 }
 
 void load_state(Session& session, const State& state) {
@@ -180,28 +184,33 @@ void load_state(Session& session, const State& state) {
   session.ask({{"op", "load"}, {"bytes", bytes.size()}}, bytes);
 }
 
+double read_step(const Json& answer) {
+  const auto said = reader(answer, "step").find("cpu_ns");
+  return said ? 1e-9 * said->number() : std::numeric_limits<double>::quiet_NaN();
+}
+
 double take_steps(Session& session, double t, double dt, int count) {
   const Json answer = session.ask({{"op", "step"}, {"t", t}, {"dt", dt}, {"count", count}});
-  return judged(session, answer, "step", [](const JsonReader& j) {
-    const auto said = j.find("cpu_ns");
-    return said ? 1e-9 * said->number() : std::numeric_limits<double>::quiet_NaN();
-  });
+  return judged(session, [&] { return read_step(answer); });
 }
 
 bool agrees(double word, double clock, double empty) {
   return std::abs(word - clock) <= 0.1 * clock + 2 * empty;
 }
 
+std::size_t read_store(const Json& answer, int vertices) {
+  const JsonReader j = reader(answer, "store");
+  const std::size_t bytes = j.at("bytes").count(), all = 2 * to_index(vertices) * sizeof(Vec3);
+  if (bytes != all)
+    j.at("bytes").fail("a state of " + std::to_string(vertices) + " vertices has " +
+                       std::to_string(all) + " bytes, not " + std::to_string(bytes));
+  return all;
+}
+
 void store_state(Session& session, int vertices, State& state) {
   const Json answer = session.ask({{"op", "store"}});
-  const auto n = static_cast<std::size_t>(vertices);
-  const std::size_t half = n * sizeof(Vec3);
-  judged(session, answer, "store", [&](const JsonReader& j) {
-    if (const std::size_t bytes = j.at("bytes").count(); bytes != 2 * half)
-      j.at("bytes").fail("a state of " + std::to_string(vertices) + " vertices has " +
-                         std::to_string(2 * half) + " bytes, not " + std::to_string(bytes));
-    return 0;
-  });
+  const std::size_t half = judged(session, [&] { return read_store(answer, vertices); }) / 2,
+                    n = to_index(vertices);
   const std::string bytes = session.take(2 * half);
   state.x.resize(n), state.v.resize(n);
   if (half == 0) return;

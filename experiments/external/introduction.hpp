@@ -18,15 +18,22 @@ struct Hello {
   std::deque<std::string> texts;  ///< what the views of `params` see
 };
 
-/// Says hello. Throws SolverFailure with what is wrong in the answer.
-std::unique_ptr<const Hello> say_hello(Session&);
-
 /// What a program answers to "scene".
 struct SceneAnswer {
   std::vector<std::string> cannot;  ///< why it would misread the scene; empty: it has loaded it
   std::vector<PassCost> plan;
   ResolvedSettings settings;
 };
+
+/// The answers to "hello", "scene", "step" and "store". Each throws InputError that says what is
+/// wrong; members that nobody knows are ignored.
+std::unique_ptr<const Hello> read_hello(const Json&);
+SceneAnswer read_scene_answer(const Json&, int vertices);
+double read_step(const Json&);  ///< s of CPU time by its own word; NaN: it does not say
+std::size_t read_store(const Json&, int vertices);  ///< bytes of a state that follow
+
+/// Says hello. Throws SolverFailure with what is wrong in the answer.
+std::unique_ptr<const Hello> say_hello(Session&);
 
 /// Gives the program a scene and the values of its own parameters.
 SceneAnswer give_scene(Session&, const Scene&, const Json& params);

@@ -68,47 +68,11 @@ double spacing(double c, Rounding rounding, int digits) {
                              single);
 }
 
+}  // namespace
+
 std::unique_ptr<PositionReader> open_motion(const std::filesystem::path& path) {
   if (path.extension() == ".traj") return std::make_unique<TrajectoryPositions>(path);
   return open_positions(path);
-}
-
-/// Plays a motion as a solver would compute it.
-class Playback final : public Solver {
- public:
-  explicit Playback(MotionFile& motion) : motion_(motion) {}
-  void load(const State& state) override { state_ = state; }
-  void step(double t, double dt) override {
-    std::vector<Vec3> next = motion_.frame(static_cast<int>(std::lround(t / dt)) + 1);
-    for (std::size_t i = 0; i < next.size(); ++i) state_.v[i] = (next[i] - state_.x[i]) / dt;
-    state_.x = std::move(next);
-  }
-  void store(State& state) const override { state = state_; }
-  std::vector<PassCost> step_cost() const override { return {}; }
-
- private:
-  MotionFile& motion_;
-  State state_;
-};
-
-thread_local MotionFile* playing = nullptr;  ///< an entry's functions know nothing else
-
-const SolverEntry kPositions = {
-    .name = "positions",
-    .summary = "Positions that another program computed",
-    .source = "experiments/external/FILES.md",
-    .make = [](const Scene&, const Params&) -> std::unique_ptr<Solver> {
-      return std::make_unique<Playback>(*playing);
-    },
-    .unsupported = [](const Scene&, const Params&) { return playing->misfits(); },
-    .resolved_settings = [](const Scene& scene,
-                            const Params&) { return playing->settings(scene); }};
-
-}  // namespace
-
-CaseRun score(const Scene& scene, MotionFile& motion, const RunOptions& options) {
-  playing = &motion;
-  return run_case(scene, {&kPositions, {}}, options);
 }
 
 MotionFile::MotionFile(const Scene& scene, const MotionOptions& options)

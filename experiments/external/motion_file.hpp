@@ -8,7 +8,6 @@
 #include "core/io/positions/positions.hpp"
 #include "core/model/scene.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/case/run_case.hpp"
 
 namespace taut::external {
 
@@ -27,6 +26,9 @@ struct StrainFloor {
   double rms = 0;  ///< expected, over the links
   double max = 0;  ///< no link is off by more
 };
+
+/// A file of positions or a trajectory of taut's own. Throws InputError.
+std::unique_ptr<PositionReader> open_motion(const std::filesystem::path&);
 
 /// A file of positions as a motion of a scene's cloth: in m, y up, in the scene's order.
 class MotionFile {
@@ -57,10 +59,5 @@ class MotionFile {
   std::vector<std::size_t> of_scene_;
   std::vector<std::string> misfits_;
 };
-
-/// Runs the motion through the harness as if a solver named "positions" computed it: the verdict,
-/// every metric, values over time. Its velocities are differences between frames. Precondition: no
-/// misfits.
-CaseRun score(const Scene&, MotionFile&, const RunOptions&);
 
 }  // namespace taut::external

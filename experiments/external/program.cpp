@@ -7,6 +7,7 @@
 
 #include "core/io/text_file.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/external/names.hpp"
 #include "experiments/external/probe.hpp"
 
 namespace taut::external {
@@ -116,6 +117,7 @@ Program::Program(std::string name, Command command, std::vector<ParamSpec> leadi
   } catch (const SolverFailure& failure) {
     failure_ = failure;
   }
+  if (name_.empty()) name_ = name_for(hello_ ? hello_->name : "external", command_.text());
   implementation_ = digest_of(command_, files, hello_ ? hello_->version : "");
   introduce(given);
 }

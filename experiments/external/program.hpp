@@ -17,9 +17,10 @@ namespace taut::external {
 class Program {
  public:
   /// Says hello. A program that answers it badly has an entry all the same, whose cases end as the
-  /// hello did: it costs its own cases, not the study. `leading` are the parameters that come
-  /// before its own, `given` the text of all, `files` what it is made of beside the files that the
-  /// command names. Throws InputError if it cannot be started.
+  /// hello did: it costs its own cases, not the study. `name`: "" names it after itself
+  /// (names.hpp). `leading` are the parameters that come before its own, `given` the text of all,
+  /// `files` what it is made of beside the files that the command names. Throws InputError if it
+  /// cannot be started.
   Program(std::string name, Command, std::vector<ParamSpec> leading, std::string_view given,
           const std::vector<std::string>& files);
   /// A program that did not introduce itself, called with other parameters.

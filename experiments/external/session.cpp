@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
 
@@ -138,30 +139,35 @@ void Session::send(const std::string& line, std::string_view bytes) {
     }
 }
 
-Json Session::ask_line(const std::string& line) {
-  op_ = line.substr(0, 60);
-  send(line + "\n", {});
-  const std::string said = take_line();
+Json parse_answer(const std::string& line) {
   try {
-    Json answer = parse_json(said);
+    Json answer = parse_json(line);
     if (answer.is_object()) return answer;
   } catch (const Json::exception&) {
   }
-  fail("protocol", "answered '" + op_ + "' with what is no JSON object: " + excerpt(said));
+  throw InputError("no JSON object: " + excerpt(line));
+}
+
+Json Session::answer() {
+  const std::string said = take_line();
+  if (ticks_at_start_ < 0) ticks_at_start_ = children_ticks();  // those of a script that became it
+  try {
+    return parse_answer(said);
+  } catch (const InputError& error) {
+    fail("protocol", "answered '" + op_ + "' with what is " + error.what());
+  }
+}
+
+Json Session::ask_line(const std::string& line) {
+  op_ = line.substr(0, 60);
+  send(line + "\n", {});
+  return answer();
 }
 
 Json Session::ask(const Json& request, std::string_view bytes) {
   op_ = request.at("op").get<std::string>();
   send(to_text(request) + "\n", bytes);
-  const std::string said = take_line();
-  if (ticks_at_start_ < 0) ticks_at_start_ = children_ticks();  // those of a script that became it
-  Json answer;
-  try {
-    answer = parse_json(said);
-  } catch (const Json::exception&) {
-  }
-  if (!answer.is_object())
-    fail("protocol", "answered '" + op_ + "' with what is no JSON object: " + excerpt(said));
+  Json answer = this->answer();
   const auto error = answer.find("error");
   if (error == answer.end()) return answer;
   const std::string why = error->is_string() ? error->get<std::string>() : to_text(*error);

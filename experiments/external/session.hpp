@@ -12,6 +12,9 @@
 
 namespace taut::external {
 
+/// A line of a program's output. Throws InputError unless it is a JSON object.
+Json parse_answer(const std::string& line);
+
 /// A running program that speaks taut-solver/1 over its standard input and output
 /// (experiments/external/README.md). Whatever it does wrong is a SolverFailure with the end of its
 /// standard error; it and all that it started die then, and with this object.
@@ -41,6 +44,7 @@ class Session {
 
  private:
   std::string take_line();
+  Json answer();
   /// Waits for more output; throws SolverFailure if there is none.
   void more(std::chrono::steady_clock::time_point deadline);
   long children_ticks() const;  ///< CPU time of its children that have ended

@@ -45,12 +45,11 @@ class Popping final : public Metric {
 }  // namespace
 }  // namespace taut::metric::popping
 
-TAUT_METRIC(popping) = {
-    .name = "popping",
-    .summary = "Sudden jumps of single vertices, as Vasilovici's halt makes them",
-    .source = "second difference of the positions, beyond gravity's own",
-    .values = taut::metric::popping::kValues,
-    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-      if (taut::free_vertices(scene).empty()) return nullptr;
-      return std::make_unique<taut::metric::popping::Popping>(scene);
-    }};
+TAUT_METRIC(popping) = {.name = "popping",
+                        .summary = "Sudden jumps of single vertices, as contact=halt makes them",
+                        .source = "second difference of the positions, beyond gravity's own",
+                        .values = taut::metric::popping::kValues,
+                        .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
+                          if (taut::free_vertices(scene).empty()) return nullptr;
+                          return std::make_unique<taut::metric::popping::Popping>(scene);
+                        }};

@@ -1,5 +1,6 @@
 #include "experiments/report/findings.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/model/input_error.hpp"
@@ -66,7 +67,42 @@ std::optional<Json> document(const std::filesystem::path& file, const std::strin
   return json;
 }
 
+/// Files below `results`/`folder` that end so, sorted.
+std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder,
+                                               const std::string& ending) {
+  std::vector<std::filesystem::path> files;
+  if (!std::filesystem::is_directory(folder)) return files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.path().string().ends_with(ending)) files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+RequiredModel required_of(const JsonReader& json) {
+  const auto text = [&](const char* key) { return json.at(key).text(); };
+  return {text("scene"), text("solver"), text("chaotic"), text("answers"),
+          text("drop"),  text("keep"),   text("time"),    text("command")};
+}
+
 }  // namespace
+
+std::vector<RequiredModel> stored_requirements(const std::filesystem::path& results,
+                                               std::string_view program) {
+  std::vector<RequiredModel> all;
+  for (const auto& file : files_below(results / "require", "found.json"))
+    if (const auto json = document(file, "taut-require-1", program))
+      all.push_back(required_of(JsonReader(*json, file.string()).at("summary")));
+  return all;
+}
+
+std::vector<KnobFrontier> stored_frontiers(const std::filesystem::path& results,
+                                           std::string_view program) {
+  std::vector<KnobFrontier> all;
+  for (const auto& file : files_below(results / kFrontiersFolder, ".json"))
+    if (const auto found = read_frontiers(file, program))
+      all.insert(all.end(), found->begin(), found->end());
+  return all;
+}
 
 std::optional<Truths> stored_truths(const std::filesystem::path& results,
                                     std::string_view program) {
@@ -89,6 +125,8 @@ std::optional<Truths> stored_truths(const std::filesystem::path& results,
       if (nearest) truths.rows.push_back(row_of(truth, *nearest));
       for (TruthRow& row : apart) truths.rows.push_back(std::move(row));
     }
+    for (const Json& claim : json->at("claims"))
+      truths.claims[claim.at("claim")] = {claim.at("verdict"), claim.at("figure")};
   } catch (const Json::exception& error) {
     throw InputError(file.string() + ": " + error.what());
   }

@@ -17,4 +17,12 @@ std::optional<Truths> stored_truths(const std::filesystem::path& results, std::s
 std::optional<Regressions> stored_regressions(const std::filesystem::path& results,
                                               std::string_view program);
 
+/// found.json of every scene that `taut require` was asked about, by name.
+std::vector<RequiredModel> stored_requirements(const std::filesystem::path& results,
+                                               std::string_view program);
+
+/// What `taut frontier --all` found, solver by solver.
+std::vector<KnobFrontier> stored_frontiers(const std::filesystem::path& results,
+                                           std::string_view program);
+
 }  // namespace taut::report

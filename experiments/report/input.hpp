@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/case/record.hpp"
+#include "experiments/extremes/extremes.hpp"
 #include "experiments/timing/bench.hpp"
 
 namespace taut::report {
@@ -20,6 +21,7 @@ struct TimeSeries {
   std::vector<double> t;  ///< s
   std::vector<double> y;  ///< SI; NaN: no value at this moment
   std::string key = {};   ///< of the case; "": it is not stored
+  double floor = 0;       ///< of strain, by the rounding of a file of positions; 0: it is none
 };
 
 /// A study that was run, or as much of it as there is.
@@ -113,6 +115,8 @@ struct Truths {
   int truths = 0, findings = 0;
   std::map<std::string, int> verdicts;  ///< findings by verdict
   std::vector<TruthRow> rows;
+  /// By claim of Vasilovici's report: its verdict now, and the number that it rests on.
+  std::map<std::string, std::pair<std::string, std::string>> claims = {};
 };
 
 /// What `taut check` found: how much was compared with the committed baselines and what moved.
@@ -122,6 +126,16 @@ struct Regressions {
   };
   int cases = 0, values = 0;
   std::vector<Row> rows;
+};
+
+/// What `taut require` found of one scene: the smallest model that keeps its answers.
+struct RequiredModel {
+  std::string scene, solver;
+  std::string chaotic;     ///< "after 0.4 s"; "" if it is not
+  std::string answers;     ///< kept
+  std::string drop, keep;  ///< effects that can go, and those that are required
+  std::string time;        ///< of the smallest model's run, of the full one's: "34 %"
+  std::string command;     ///< that runs the smallest model; "": nothing can go
 };
 
 /// Two results folders, of two builds or two machines.
@@ -151,6 +165,8 @@ struct ReportInput {
   std::optional<Truths> truths;                 ///< nullopt: not run
   std::optional<Regressions> regressions;       ///< nullopt: not checked
   std::optional<Differences> differences = {};  ///< nullopt: one folder alone
+  std::vector<RequiredModel> required = {};     ///< of the scenes that were asked about
+  std::vector<KnobFrontier> frontiers = {};     ///< solver by solver, knob by knob
   /// Inputs that could not be understood, and why: they are left out and said so.
   std::vector<std::pair<std::string, std::string>> left_out = {};
 };

@@ -31,6 +31,11 @@ TimeSeries column(const Series& table, TimeSeries of) {
   return of;
 }
 
+double strain_floor(const Record& r) {
+  const double floor = value_of(r, kStrainFloor);
+  return std::isfinite(floor) ? floor : 0;
+}
+
 constexpr const char* kShown[] = {"stretch.rms", "penetration.max", "tunnelling.count",
                                   "slip.distance"};
 
@@ -41,8 +46,9 @@ std::vector<TimeSeries> series_of(const QuotedScene& quoted, const Rivals& rival
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
     if (!quoted.cases[i]) continue;
     const Record& r = *quoted.cases[i];
-    for (TimeSeries& series : shown_series(
-             store.series(r.key), {r.scene, r.solver, rivals.all[i].label, "", {}, {}, r.key}))
+    for (TimeSeries& series :
+         shown_series(store.series(r.key),
+                      {r.scene, r.solver, rivals.all[i].label, "", {}, {}, r.key, strain_floor(r)}))
       all.push_back(std::move(series));
   }
   return all;
@@ -122,15 +128,18 @@ std::map<std::string, const T*> by_question(const std::vector<T>& all, const Nam
   return index;
 }
 
-std::vector<BenchedCase> all_timed(const Store& store, double& noise) {
-  std::vector<BenchedCase> all;
+/// What was timed, by host and processor.
+std::map<std::string, std::vector<BenchedCase>> all_timed(const Store& store, double& noise) {
+  std::map<std::string, std::vector<BenchedCase>> all;
   std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(store.root() / "bench", none))
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(store.root() / "bench", none))
     if (entry.path().extension() == ".json") {
       const BenchSession session = bench_from_json(read_text(entry.path()), entry.path().string());
+      std::vector<BenchedCase>& here = all[session.host + ", " + session.machine];
       for (const SceneBench& scene : session.scenes) {
         noise = std::max(noise, strayed(scene.control));
-        all.insert(all.end(), scene.cases.begin(), scene.cases.end());
+        here.insert(here.end(), scene.cases.begin(), scene.cases.end());
       }
     }
   return all;
@@ -153,13 +162,16 @@ Differences stored_differences(const Store& a, const Store& b) {
     if (const auto at = of_b.find(name); record && at != of_b.end() && at->second)
       found.pairs.emplace_back(*record, *at->second);
   found.only_a = in_a.size() - found.pairs.size(), found.only_b = in_b.size() - found.pairs.size();
-  const std::vector<BenchedCase> timed_a = all_timed(a, found.noise),
-                                 timed_b = all_timed(b, found.noise);
+  const auto timed_a = all_timed(a, found.noise), timed_b = all_timed(b, found.noise);
   const auto its_record = [](const BenchedCase& c) -> const Record& { return c.record; };
-  const auto costs = by_question(timed_b, names, its_record);
-  for (const auto& [name, one] : by_question(timed_a, names, its_record))
-    if (const auto at = costs.find(name); one && at != costs.end() && at->second)
-      found.timed.emplace_back(*one, *at->second);
+  for (const auto& [host, in_b_here] : timed_b) {
+    const auto same = timed_a.find(host);
+    if (same == timed_a.end()) continue;  // times of two hosts are not compared
+    const auto costs = by_question(in_b_here, names, its_record);
+    for (const auto& [name, one] : by_question(same->second, names, its_record))
+      if (const auto at = costs.find(name); one && at != costs.end() && at->second)
+        found.timed.emplace_back(*one, *at->second);
+  }
   return found;
 }
 
@@ -216,8 +228,9 @@ std::vector<TimeSeries> stored_series(std::span<const Record> records, const std
   for (const Record& record : records) {
     const std::string knobs = knob_label(record, records);
     const std::string label = solver_title(record.solver) + (knobs.empty() ? "" : " " + knobs);
-    TimeSeries series = column(store.series(record.key),
-                               {record.scene, record.solver, label, value, {}, {}, record.key});
+    TimeSeries series = column(
+        store.series(record.key),
+        {record.scene, record.solver, label, value, {}, {}, record.key, strain_floor(record)});
     if (series.t.size() > 1) all.push_back(std::move(series));
   }
   return all;

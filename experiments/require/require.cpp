@@ -22,7 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Shares of the patience by which a part of the work has to have ended.
-constexpr double kNoiseBy = 0.4, kTrialsBy = 0.65, kCombinedBy = 0.75, kVerifiedBy = 0.82,
+constexpr double kNoiseBy = 0.65, kTrialsBy = 0.65, kCombinedBy = 0.75, kVerifiedBy = 0.82,
                  kTimedBy = 0.97;
 constexpr int kTimingRounds = 4;
 
@@ -110,8 +110,10 @@ class Search {
     return !found_.interrupted;
   }
 
+  /// What is known of chaos holds none the less.
   bool give_up(const std::string& what) {
     found_.not_done.push_back(what);
+    drop_shape();
     return false;
   }
 
@@ -148,15 +150,22 @@ class Search {
       }
       found_.noise.push_back(most);
     }
+    drop_shape();
+  }
+
+  void drop_shape() {
     if (!found_.chaotic) return;
     for (std::size_t i = found_.answers.size(); i-- > 0;) {
       if (!found_.answers[i].is_shape()) continue;
-      found_.given_up.push_back("shape: a rounding error at the start moves it by " +
-                                text(found_.answers[i], found_.noise[i]));
+      const bool measured = i < found_.noise.size();
+      found_.given_up.push_back(
+          "shape: a rounding error at the start moves it by " +
+          text(found_.answers[i], measured ? found_.noise[i] : found_.answers[i].tolerance) +
+          (measured ? "" : " or more"));
       const auto place = static_cast<std::ptrdiff_t>(i);
       found_.answers.erase(found_.answers.begin() + place);
       found_.values.erase(found_.values.begin() + place);
-      found_.noise.erase(found_.noise.begin() + place);
+      if (measured) found_.noise.erase(found_.noise.begin() + place);
     }
   }
 

@@ -50,11 +50,12 @@ class BorderSearch {
 
   /// False if not all of them were answered; then the result stays `not_answered`.
   bool answers(const std::vector<double>& values) {
-    const std::vector<Status> statuses = trial_(values);
-    bool all = statuses.size() == values.size();
-    for (std::size_t i = 0; i < statuses.size(); ++i) {
-      result_.probes.push_back({values[i], statuses[i]});
-      all = all && statuses[i].kind != Status::Kind::unsupported;
+    const std::vector<Outcome> outcomes = trial_(values);
+    bool all = outcomes.size() == values.size();
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+      const Outcome& one = outcomes[i];
+      result_.probes.push_back({one, values[i]});
+      all = all && (one.status.kind != Status::Kind::unsupported || !one.symptom.empty());
     }
     std::sort(result_.probes.begin(), result_.probes.end(),
               [](const Probed& a, const Probed& b) { return a.value < b.value; });

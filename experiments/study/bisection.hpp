@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "experiments/case/record.hpp"
@@ -16,12 +17,19 @@ struct SearchRange {
                    ///< if from > 0): between two of them the frontier is taken to be one
 };
 
-struct Probed {
-  double value = 0;
+/// How one value turned out.
+struct Outcome {
   Status status;
+  std::string symptom = {};  ///< what is wrong by another measure than its status; "": nothing
+};
+
+struct Probed : Outcome {
+  double value = 0;
   /// However far it stretches: a large strain alone is no instability.
   bool stable() const {
-    return status.kind == Status::Kind::ok || status.kind == Status::Kind::extreme;
+    return symptom.empty() &&
+           (status.kind == Status::Kind::ok ||
+            (status.kind == Status::Kind::extreme && status.reason == "stretch"));
   }
   /// A crash is an answer; want of time or memory is none, nor is a broken protocol.
   bool known() const { return status.is_result() || status.kind == Status::Kind::crash; }
@@ -33,8 +41,8 @@ struct Frontier {
     bracketed,     ///< between `stable` and `unstable`
     all_stable,    ///< up to the end of the range
     none_stable,   ///< from its start on
-    not_answered,  ///< the solver cannot do the scene, it never had the time or memory, or the
-                   ///< search was interrupted
+    not_answered,  ///< the solver cannot do the scene and that is no symptom, it never had the time
+                   ///< or memory, or the search was interrupted
   };
   Kind kind = Kind::not_answered;
   double stable = 0, unstable = 0;   ///< the bracket; meaningless where `kind` says so
@@ -48,7 +56,7 @@ struct Frontier {
 std::string_view to_string(Frontier::Kind);
 
 /// Gives the outcome for each value; fewer if it was interrupted.
-using Trial = std::function<std::vector<Status>(const std::vector<double>&)>;
+using Trial = std::function<std::vector<Outcome>(const std::vector<double>&)>;
 
 /// Tries the coarse values, halves the first interval whose ends differ until it is narrow, then
 /// looks between `unstable` and the next coarse value for stable values that monotony would rule

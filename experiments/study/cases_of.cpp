@@ -33,13 +33,15 @@ std::vector<StudyAxis> scene_axes(const Study& study) {
 /// The parameters to vary of one solver: those that it has and that its text does not fix.
 std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) {
   const SolverChoice choice = parse_solver(text);
+  const auto colon = text.find(':');
+  const std::vector<ParamItem> given =
+      param_items(colon == text.npos ? "" : std::string_view(text).substr(colon + 1));
   std::vector<StudyAxis> chosen;
   for (const StudyAxis& axis : study.axes) {
     const auto specs = choice.entry->params;
     const bool has = std::any_of(specs.begin(), specs.end(),
                                  [&](const ParamSpec& spec) { return spec.name == axis.name; });
-    const bool fixed = text.find(':' + axis.name + '=') != std::string::npos ||
-                       text.find(',' + axis.name + '=') != std::string::npos;
+    const bool fixed = std::ranges::find(given, axis.name, &ParamItem::key) != given.end();
     if (has && !fixed) chosen.push_back(axis);
   }
   return chosen;
@@ -103,8 +105,11 @@ std::vector<Case> cases_of(const Study& study) {
       Case one = maker.make(spec);
       if (keys.insert(one.key).second) cases.push_back(std::move(one));
     } catch (const InputError& error) {
-      for (const Diagnostic& d : error.diagnostics())
+      for (Diagnostic d : error.diagnostics()) {
+        if (const auto at = study.places.find(d.file); at != study.places.end())
+          d = {study.file.string(), at->second.line, at->second.column, d.file + ": " + d.message};
         if (said.insert(d.text()).second) wrong.push_back(d);
+      }
     }
   };
   for (const std::string& scene : study.scenes)

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
 
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
@@ -26,15 +29,44 @@ bool of_scene(const std::string& of) { return of.find('.') != std::string::npos;
 
 }  // namespace
 
+void set_parameter(std::string& solver, const std::string& name, const std::string& value) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < solver.size(); ++i) {
+    if (solver[i] == '\'' || solver[i] == '"') quoted = !quoted;
+    if (quoted || (solver[i] != ':' && solver[i] != ',')) continue;
+    if (solver.compare(i + 1, name.size() + 1, name + "=") != 0) continue;
+    const std::size_t from = i + name.size() + 2;
+    solver.replace(from, std::min(solver.find(',', from), solver.size()) - from, value);
+    return;
+  }
+  solver += (solver.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
+}
+
+void set_override(std::vector<std::string>& overrides, const std::string& assignment) {
+  const std::string key = assignment.substr(0, assignment.find('=') + 1);
+  std::erase_if(overrides, [&](const std::string& one) { return one.starts_with(key); });
+  overrides.push_back(assignment);
+}
+
+double FrontierQuestion::setting(double value) const {
+  if (direction == Direction::up) return value;
+  if (direction == Direction::down_in_whole_numbers) return std::round(1 / value);
+  char text[32];  // six digits are more than a bracket has
+  std::snprintf(text, sizeof text, "%.6g", 1 / value);
+  return std::strtod(text, nullptr);
+}
+
 CaseSpec FrontierQuestion::at(double value) const {
   CaseSpec spec = base;
-  if (of == "dt")
-    spec.overrides.push_back("time.dt=\"" + shortest(value) + "\"");
-  else if (of_scene(of))
-    spec.overrides.push_back(of + "=" + shortest(value));
-  else
-    spec.solver +=
-        (spec.solver.find(':') == std::string::npos ? ":" : ",") + of + "=" + shortest(value);
+  const std::string text = shortest(setting(value));
+  std::istringstream names(of);
+  for (std::string name; std::getline(names, name, '|');)
+    if (name == "dt")
+      set_override(spec.overrides, "time.dt=\"" + text + "\"");
+    else if (of_scene(name))
+      set_override(spec.overrides, name + "=" + text);
+    else
+      set_parameter(spec.solver, name, text);
   return spec;
 }
 
@@ -45,7 +77,7 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
   if (of == "dt") {
     range.from = 1e-3, range.to = 0.5;
   } else if (!of_scene(of)) {
-    const ParamSpec& spec = find_param(choice, of);
+    const ParamSpec& spec = find_param(choice, of.substr(0, of.find('|')));
     if (spec.kind == ParamSpec::Kind::text)
       throw InputError("'" + of + "' is a text, not a number");
     if (spec.kind == ParamSpec::Kind::choice)
@@ -65,7 +97,8 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
 }
 
 CaseFrontier find_frontier(const FrontierQuestion& question, const Store& store,
-                           const Session& session, const CampaignOptions& options) {
+                           const Session& session, const CampaignOptions& options,
+                           const Judge& judge) {
   CaseFrontier result;
   CaseMaker maker;
   std::vector<std::pair<double, Record>> seen;
@@ -75,14 +108,14 @@ CaseFrontier find_frontier(const FrontierQuestion& question, const Store& store,
     const CampaignProgress campaign = run_cases(cases, store, session, options);
     result.ran += campaign.ran;
     result.interrupted = result.interrupted || campaign.interrupted;
-    std::vector<Status> statuses;
+    std::vector<Outcome> outcomes;
     for (std::size_t i = 0; i < cases.size(); ++i) {
       const std::optional<Record> record = store.find(cases[i]);
       if (!record) break;
       seen.emplace_back(values[i], *record);
-      statuses.push_back(record->status);
+      outcomes.push_back({record->status, judge ? judge(cases[i], *record) : ""});
     }
-    return statuses;
+    return outcomes;
   });
   std::sort(seen.begin(), seen.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -1,19 +1,36 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/study/bisection.hpp"
 #include "experiments/study/campaign.hpp"
 
 namespace taut {
 
+/// Adds an override of a scene ("cloth.grid=[9, 9]") in the place of one of the same key.
+void set_override(std::vector<std::string>& overrides, const std::string& assignment);
+
+/// Gives a parameter of a solver's text ("jakobsen:iterations=8") this value, whether it has one
+/// there or not. Precondition: it has no quotes.
+void set_parameter(std::string& solver, const std::string& name, const std::string& value);
+
+/// Which way a setting becomes harder. Downwards, the search goes up in 1/setting.
+enum class Direction { up, down, down_in_whole_numbers };
+
 /// How far one setting of a case can go.
 struct FrontierQuestion {
   CaseSpec base;
-  std::string of = "dt";  ///< "dt", a parameter of the solver, or a scene key ("wind.strength")
-  SearchRange range;
+  /// "dt", a parameter of the solver, or a scene key ("wind.strength"); several that take the same
+  /// value as "structural|shear".
+  std::string of = "dt";
+  SearchRange range;  ///< of the setting, or downwards of 1/setting
+  Direction direction = Direction::up;
 
+  /// The setting where the search is at `value`.
+  double setting(double value) const;
   /// The case with the setting at this value. Throws InputError what makes no sense.
   CaseSpec at(double value) const;
 };
@@ -31,9 +48,12 @@ struct CaseFrontier {
   bool interrupted = false;
 };
 
+/// What is wrong with a case by more than its status; "": nothing.
+using Judge = std::function<std::string(const Case&, const Record&)>;
+
 /// Every probe is a case of its own process, through the store.
 CaseFrontier find_frontier(const FrontierQuestion&, const Store&, const Session&,
-                           const CampaignOptions&);
+                           const CampaignOptions&, const Judge& = {});
 
 /// Where linear theory has the frontier (linear_stability.hpp).
 struct Prediction {

@@ -75,7 +75,8 @@ PackIndex PackIndex::of(const fs::path& root) {
   PackIndex index;
   std::error_code none;
   for (const auto& file : fs::directory_iterator(root / "packs", none))
-    if (file.path().extension() == ".pack") index.packs.push_back(file.path());
+    if (file.path().extension() == ".pack" && file.is_regular_file(none))
+      index.packs.push_back(file.path());
   std::ranges::sort(index.packs);
   std::unordered_map<std::string, std::string> results;  // of those that are results
   for (std::size_t i = 0; i < index.packs.size(); ++i) {

@@ -85,7 +85,8 @@ class StudyReader {
   void read_lists(Section& section) {
     strings(section, "scenes", study_.scenes, find_scene);
     if (strings(section, "solvers", study_.solvers, parse_solver)) remember_solvers();
-    strings(section, "set", study_.settings, [](const std::string&) {});
+    if (strings(section, "set", study_.settings, [](const std::string&) {}))
+      for (const Value& item : section.find("set")->items) study_.places[item.string] = item.place;
     if (const Value* axes = section.table("axes")) read_axes(*axes);
     if (const Value* list = section.find("exclude")) read_exclusions(section, *list);
   }
@@ -163,7 +164,12 @@ class StudyReader {
                                              "{ from, to, steps, scale }");
       return;
     }
-    if (!axis.of_scene()) check_values(axis, value);
+    if (!axis.of_scene())
+      check_values(axis, value);
+    else
+      for (std::size_t i = 0; i < axis.values.size(); ++i)
+        study_.places[axis.name + "=" + axis.values[i]] =
+            value.is_array() ? value.items[i].place : value.place;
     const auto same = [&](const StudyAxis& s) { return s.name == axis.name; };
     std::erase_if(study_.axes, same);
     study_.axes.push_back(std::move(axis));
@@ -267,9 +273,11 @@ class StudyReader {
         diagnostics_.report(table.keys[i].place, "unknown key '" + table.keys[i].text +
                                                      "' in [[plot]]" +
                                                      suggestion(table.keys[i].text, known));
-    for (std::size_t i = 0; i < table.items.size(); ++i)
-      (table.keys[i].text == "kind" ? plot.kind : plot.options[table.keys[i].text]) =
-          text_of(table.items[i], false);
+    for (std::size_t i = 0; i < table.items.size(); ++i) {
+      const std::string& key = table.keys[i].text;
+      (key == "kind" ? plot.kind : plot.options[key]) = text_of(table.items[i], false);
+      plot.places[key] = table.items[i].place;
+    }
     if (plot.kind.empty())
       diagnostics_.report(table.place, "missing key 'kind' in [[plot]]");
     else

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/io/document.hpp"
 #include "experiments/case/case.hpp"
 
 namespace taut {
@@ -27,6 +28,7 @@ struct Exclusion {
 struct Plot {
   std::string kind;
   std::map<std::string, std::string> options;  ///< "x", "y", "title", ...: numbers in shortest form
+  std::map<std::string, SourceLocation> places;  ///< of "kind" and of the options
 };
 
 /// A question and the cases that answer it: scenes x solvers x axes. A file of
@@ -43,6 +45,8 @@ struct Study {
   std::vector<StudyAxis> axes;
   std::vector<Exclusion> exclusions;
   std::vector<Plot> plots;
+  /// Where the file says what stands in `settings` and in the axes of scenes, by the override.
+  std::map<std::string, SourceLocation> places;
 };
 
 /// Reads a study by name or path; `preset` replaces what it names, and "" or a preset that this

@@ -1,5 +1,6 @@
 #include "experiments/timing/timing.hpp"
 
+#include <sched.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -125,6 +126,13 @@ int serve_timing(const Scene& scene, const SolverChoice& choice) {
       std::cout << kRefusal << error.what() << std::endl;
     }
   return 0;
+}
+
+void pin(int cores) {
+  cpu_set_t mine;
+  if (sched_getaffinity(0, sizeof mine, &mine) != 0) return;
+  for (int core = 0; core < CPU_SETSIZE && CPU_COUNT(&mine) > cores; ++core) CPU_CLR(core, &mine);
+  sched_setaffinity(0, sizeof mine, &mine);
 }
 
 TimingWorker::TimingWorker(const std::filesystem::path& program, const CaseSpec& spec)

@@ -79,6 +79,10 @@ class TimingWorker {
 /// The worker's side: reads requests from stdin and answers on stdout until the input ends.
 int serve_timing(const Scene&, const SolverChoice&);
 
+/// Keeps this process on as many of the cores that it may use, the last ones: no sample moves
+/// between cores. Nothing if it may use fewer.
+void pin(int cores);
+
 /// Which program can time the case: this one, or its sibling with the other build of Bullet.
 std::filesystem::path program_of(const CaseSpec&);
 

@@ -173,8 +173,8 @@ void flat_square(Findings& findings) {
     const SquareSlopes slopes = square_slopes(s, solver);
     findings.slope(solver(8), "slope in k of the RMS strain, 8 to 64 sweeps", slopes.strain.value,
                    slopes.strain.error, -1, 0.1);
-    // Diagonals carry the middle of the upper edge, so that it sags with the strain itself; the
-    // catalogue's k^-1/2 needs an edge that only its own tension carries.
+    // Diagonals carry the middle of the upper edge, so that it sags with the strain itself:
+    // k^-1. An edge that only its own tension carries would sag with k^-1/2.
     findings.slope(solver(8), "slope in k of the distance from the flat square",
                    slopes.distance.value, slopes.distance.error, -1, 0.1);
     findings.slope(solver(8), "slope in k of the asymmetry at rest", slopes.asymmetry.value,

@@ -11,7 +11,7 @@
 namespace taut {
 
 /// A solver on a scene, stepped by hand. Solvers that offer a link order get the mesh order, which
-/// the recurrences of the catalogue assume, unless the text chooses one.
+/// the recurrences of the truths assume, unless the text chooses one.
 class Probe {
  public:
   Probe(const Scene&, std::string_view solver);

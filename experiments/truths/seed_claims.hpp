@@ -13,8 +13,9 @@ struct SeedClaim {
   std::string_view section;  ///< of the report
   std::string_view claim;
   SeedVerdict verdict;
-  std::string_view because;  ///< the condition, the figure, or why it cannot be tested
-  std::string_view truth;    ///< by name: `taut verify` holds the verdict to it; "": none can
+  std::string_view because;      ///< the condition, the figure, or why it cannot be tested
+  std::string_view truth;        ///< by name: `taut verify` holds the verdict to it; "": none can
+  std::string_view figure = "";  ///< how the truth's number that is quoted begins; "": the first
 };
 
 /// All of them, in the report's order.

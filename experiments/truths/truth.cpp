@@ -28,7 +28,8 @@ std::string_view section_title(int section) {
 bool Findings::wants(std::string_view subject) const {
   if (only_.empty()) return true;
   std::string_view name = subject.substr(0, subject.find(':'));
-  return std::any_of(only_.begin(), only_.end(), [&](const std::string& o) { return o == name; });
+  return std::any_of(only_.begin(), only_.end(),
+                     [&](const std::string& o) { return o == name || o == subject; });
 }
 
 void Findings::add(Finding f) {

@@ -32,11 +32,13 @@ struct Finding {
 /// Collects the findings of one truth and knows which solvers were asked for.
 class Findings {
  public:
-  /// `only`: names of solvers; empty: all subjects. References count as "reference".
+  /// `only`: names or texts of solvers; empty: all subjects. References count as "reference".
   explicit Findings(std::vector<std::string> only = {}) : only_(std::move(only)) {}
 
   /// Whether this subject's solver was asked for: spares the work if not.
   bool wants(std::string_view subject) const;
+  /// What was asked for: names, and whole texts of solvers from outside. Empty: all.
+  const std::vector<std::string>& asked() const { return only_; }
 
   /// |measured - expected| <= tolerance (absolute, in the quantity's unit).
   void equal(std::string_view subject, std::string_view quantity, std::string_view unit,
@@ -62,7 +64,7 @@ class Findings {
   std::vector<Finding> findings_;
 };
 
-/// How a truth introduces itself: found by its TAUT_TRUTH line. Its place in the catalogue is
+/// How a truth introduces itself: found by its TAUT_TRUTH line. Its place in the list of truths is
 /// section.row, as in `taut verify --section 4`.
 struct TruthEntry {
   std::string_view name;  ///< "hanging-chain-sweeps"
@@ -77,7 +79,7 @@ struct TruthEntry {
 /// All truths (generated; see cmake/registry.cmake).
 std::span<const TruthEntry* const> truths();
 
-/// The title of a section of the catalogue.
+/// The title of a section of the list.
 std::string_view section_title(int section);
 
 }  // namespace taut

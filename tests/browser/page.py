@@ -177,7 +177,7 @@ def charts(checks):
     page.press("Enter")
     dialog = page.run("document.querySelector('dialog').open && document.querySelector('dialog').innerText") or ""
     one = next(c for c in model["cases"] if c["key"] == points[8]["case"])
-    checks.empty([w for w in (one["command"], "substeps", "exploded" if one["status"] != "ok" else "ok", "81 vertices", "RMS stretch", "No film") if w not in dialog],
+    checks.empty([w for w in (one["command"], "substeps", "python3 a.py, b=1", "exploded" if one["status"] != "ok" else "ok", "81 vertices", "RMS stretch", "No film") if w not in dialog],
                  "Enter opens the case: settings, values, status, film, command")
     checks.true(page.run("state.get('case')") == one["key"], "the case has a permalink")
     page.press("Escape")

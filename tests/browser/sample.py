@@ -39,7 +39,7 @@ def case(scene, solver, sweeps, dt, status="ok", stretch=None, depth=None):
     values = {name: v for name, v in (("stretch.rms", stretch), ("penetration.peak", depth)) if v is not None}
     key = f"{scene[:2]}{solver[:2]}{sweeps:03d}{round(dt * 1e6):06d}"
     return {"key": key, "id": f"{scene} dt={dt:.6g} {settings}", "scene": scene, "solver": solver, "settings": settings,
-            "brief": brief, "studies": ["sample"], "dt": dt, "steps": round(2 / dt), "vertices": 81, "links": 272,
+            "parameters": {"iterations": str(sweeps), "substeps": "1", "cmd": "python3 a.py, b=1"}, "brief": brief, "studies": ["sample"], "dt": dt, "steps": round(2 / dt), "vertices": 81, "links": 272,
             "projections": 272 * sweeps, "status": status, "values": values,
             "command": f"taut case {scene} {settings} --set 'time.dt={dt!r}'",
             **({"reason": "gained energy", "step": 7, "vertex": 3} if STATUS[status][1] else {})}
@@ -176,7 +176,7 @@ def make():
                         claim("differ", "note", "differences", "B leaves less than A.", values)]
     control = {"low": 0.97, "mid": 1, "high": 1.04, "n": 9}
     model["cost"] = {"machine": "a machine", "claims": ["costs"], "tables": ["levels-hang"], "scenes": [
-        {"scene": s, "control": control, "noisy": s == "ball", "noise": "identical code differed by 4 %", "charts": [f"{s}-cost"],
+        {"scene": s, "control": control, "noisy": s == "ball", "noise": "Two runs of identical code differed by up to 4 %.", "charts": [f"{s}-cost"],
          "tables": [f"levels-{s}"] if s == "ball" else []} for s in ("hang", "ball")]}
     rows = [{"section": "One", "statement": "a link returns", "source": "Jakobsen", "subject": s, "expected": "0.1 m", "measured": "0.1 m",
              "verdict": v, **({"why": "no square root"} if v == "deviates" else {})} for s, v in (("jakobsen", "passed"), ("bullet", "deviates"))]

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
+#include "experiments/case/run_case.hpp"
 
 namespace taut {
 namespace {
@@ -55,6 +57,24 @@ TEST(BulletDeformable, AHangingChainStretchesByTheWeightBelowEachLink) {
   }
   const double tip = -state.x.back().y() - 1;
   EXPECT_NEAR(tip, kMass * 9.81 * kLinks * (kLinks + 1) / (2 * kStiffness), 1e-7);
+}
+
+// An input that fuzzing found: pulled apart until a vertex is beyond the cells of the colliders'
+// distance fields, where Bullet reads memory that is not its own.
+TEST(BulletDeformable, AVertexBeyondTheDistanceFieldsEndsTheCaseNotTheProcess) {
+  const Scene scene = load_scene(TAUT_SOURCE_DIR "/tests/fuzz/corpus/scene/good-flies-apart.toml");
+  const Status status =
+      run_case(scene, parse_solver("bullet-deformable:stiffness=1000,substeps=23")).record.status;
+  EXPECT_EQ(status.kind, Status::Kind::exploded);
+  EXPECT_EQ(status.reason, "box");
+  Scene ball = load_scene(TAUT_SOURCE_DIR "/experiments/scenes/ball.toml", {"cloth.grid=[4, 4]"});
+  ball.start.x.back() = Vec3(1e12, 0, 0);
+  for (const char* text : {"bullet", "bullet-deformable"}) {
+    const SolverChoice choice = parse_solver(text);
+    const auto solver = choice.entry->make(ball, choice.params);
+    solver->load(ball.start);
+    EXPECT_THROW(solver->step(0, ball.dt), SolverFailure) << text;
+  }
 }
 
 // Without springs both schemes are symplectic Euler, so wind, damping, gravity and moving pins can

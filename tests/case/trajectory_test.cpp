@@ -1,6 +1,7 @@
 #include "experiments/case/trajectory.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -110,6 +111,9 @@ TEST_F(TrajectoryTest, BadFilesSayWhatIsWrong) {
   EXPECT_NE(message_of_reading().find("without a whole frame"), std::string::npos);
   std::fstream(path_, std::ios::in | std::ios::out | std::ios::binary).seekp(8).put(2);
   EXPECT_NE(message_of_reading().find("version 2"), std::string::npos);
+  fs::remove(path_);
+  ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
+  EXPECT_NE(message_of_reading().find("is no regular file"), std::string::npos);
   EXPECT_THROW(TrajectoryWriter("/nowhere/x.traj", header(TrajectoryHeader::Real::f32, false)),
                InputError);
 }

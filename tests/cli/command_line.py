@@ -59,7 +59,7 @@ class CommandLine(unittest.TestCase):
 
 
 def main():
-    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)  # names what it skips: `taut test` repeats that
 
 
 assert os.name == "posix"

@@ -7,6 +7,7 @@ import json
 import math
 import pathlib
 import re
+import socket
 import struct
 import subprocess
 import tomllib
@@ -46,14 +47,20 @@ class BadInput(CommandLine):
                 self.refuse("case", "hang", f"jakobsen:iterations={value}", says=f"iterations={value}")
             self.refuse("case", "hang", f"jakobsen:substeps={value}", says=f"substeps={value}")
         for dt in ["0", "-0.01", "nan", "fast", "1/0"]:
-            self.refuse("case", "hang", "jakobsen", "--dt", dt, says="dt")
+            self.refuse("case", "hang", "jakobsen", "--dt", dt, says=f'time.dt="{dt}": column 9: ')
         self.refuse("case", "hang", "jakobsen:iterations=1e99,precision=quad,,omega=1,omega=2,itertions=1",
                     says=["column 10: jakobsen: iterations=1e99 is not a whole number", "column 26: jakobsen: precision=quad is not one of",
                           "column 41: jakobsen: expected key=value, got ''", "column 50: jakobsen: parameter 'omega' is given twice",
                           "column 58: jakobsen: unknown parameter 'itertions'; did you mean 'iterations'?"])
         self.refuse("case", "hang", "jakobsen:,,,", says=["column 10: ", "column 11: ", "column 12: ", "column 13: "])
         self.refuse("case", "hang", "jakobsen:", says="column 10: expected key=value")
-        self.refuse("case", "hnag", "jakobsne", says=["unknown scene 'hnag'", "unknown solver 'jakobsne'"])
+        self.refuse("case", "hnag", "jakobsne:n=1,,", says=["unknown scene 'hnag'", "jakobsne:n=1,,: column 1: unknown solver 'jakobsne'",
+                                                            "column 14: expected key=value", "column 15: expected key=value"])
+        for words in (["bench", "hang"], ["render", "hang", "-o", "x.png"], ["advise", "hang", "--error", "1%"]):
+            self.refuse(*words, "--solver", "jakobsne", "--solver", "bullet:iterations=-1,omega=2",
+                        says=["jakobsne: column 1: unknown solver", "omega=2: column 8: bullet: iterations=-1 is outside",
+                              "omega=2: column 22: bullet: unknown parameter 'omega'"])
+        self.refuse("case", "hang", ":,,,", says=["column 1: unknown solver ''", *(f"column {i}: expected key=value" for i in (2, 3, 4, 5))])
         self.refuse("case", "hang", "xpbd:iterations=10000000", says="is outside 0 to 1000000")
         self.refuse("run", "iterations", "--shard", "5/4", says="shard 5/4 does not exist")
         self.refuse("run", "iterations", "--shard", "two", says="expected i/n")
@@ -107,8 +114,8 @@ colour = "red"
                           "'iteratons'; did you mean 'iterations'?", "bad.toml:9:1: unknown key 'colour' in [[plot]]"])
         plot = '[[plot]]\nkind = "error-iteration"\ny = "stretch.rmss"\n'
         self.refuse("run", self.study(rest=plot),
-                    says=["unknown kind of plot 'error-iteration'; did you mean 'error-iterations'?",
-                          "unknown value 'stretch.rmss' for y; did you mean 'stretch.rms'?"])
+                    says=["study.toml:5:8: unknown kind of plot 'error-iteration'; did you mean 'error-iterations'?",
+                          "study.toml:6:5: unknown value 'stretch.rmss' for y; did you mean 'stretch.rms'?"])
         nothing = self.taut("run", self.study(rest='exclude = [{ solver = "jakobsen" }]\n'), expect=4)
         self.assertIn("no case", nothing.err)
 
@@ -117,17 +124,33 @@ colour = "red"
         self.refuse("run", self.study(scenes=["hang", "./small.toml"]), says=["small.toml:", "unknown key 'mas'"])
 
     def test_a_swept_scene_key_that_does_not_exist(self):
-        self.refuse("run", self.study(rest='[axes]\n"time.td" = [1]\n'), says="unknown key 'td'")
+        self.refuse("run", self.study(rest='[axes]\n"time.td" = [1]\n'), says="study.toml:5:14: time.td=1: unknown key 'td'")
+
+    def test_a_bad_value_of_a_sweep_has_its_place_in_the_study(self):
+        rest = 'set = ["time.duration=1", "cloth.mass=-2"]\n[axes]\n"time.dt" = ["1/64", -1]\n"forces.damping" = { from = -2, to = 1, steps = 2 }\n'
+        self.refuse("run", self.study(solvers=["jakobsne", "bullet"], rest=rest), says="study.toml:3:13: unknown solver 'jakobsne'")
+        for verb in (["run"], ["cluster", "submit", "--on", "slurm", "--dry-run"], ["plot"], ["export"], ["report"], ["bench"]):
+            self.refuse(*verb, self.study(rest=rest),
+                        says=["study.toml:4:27: cloth.mass=-2: 'mass' in [cloth]", "study.toml:6:22: time.dt=-1: 'dt' in [time]",
+                              "study.toml:7:20: forces.damping=-2: 'damping' in [forces]"])
+        self.refuse("run", self.study(rest='axes.order = ["mesh", "messh"]\naxes.iterations = [1, 1e99]\n'),
+                    says=["study.toml:4:24: jakobsen: order=messh is not one of", "study.toml:5:23: jakobsen: iterations=1e+99 is not a whole number"])
 
 
 class Verbs(CommandLine):
     def test_plots_of_values_over_time_and_what_is_held_is_said(self):
-        study = self.study(rest="axes.iterations = [1, 2]\naxes.time.dt = [0.02, 0.01]\n"
-                                '[[plot]]\nkind = "error-iterations"\nfile = "mine"\n')
+        plot = '[[plot]]\nkind = "error-iterations"\nfile = "mine"\n'
+        few = self.study("few.toml", rest="axes.iterations = [1, 2]\naxes.time.dt = [0.02, 0.01]\n" + plot)
+        self.taut("run", few)
+        drawn = self.taut("plot", few)
+        curves = {row["label"] for row in csv.DictReader((self.folder / drawn.out.split()[0]).with_suffix(".csv").read_text().splitlines())}
+        self.assertEqual(curves, {"Jakobsen 20.0\u00a0ms", "Jakobsen 10.0\u00a0ms"})
+        self.assertNotIn("not drawn", drawn.err)
+        study = self.study(rest="axes.iterations = [1, 2]\naxes.time.dt = [0.02, 0.01, 0.005, 0.004]\n" + plot)
         self.taut("run", study)
         drawn = self.taut("plot", study)
         self.assertIn("small-mine.svg", drawn.out)
-        self.assertIn("2 cases at other values are not drawn", drawn.err)
+        self.assertIn("6 cases at other values are not drawn", drawn.err)
         self.assertIn("dt = ", (self.folder / drawn.out.split()[0]).read_text())
         series = self.taut("plot", study, "--kind", "series", "--y", "stretch.rms")
         self.assertIn("Jakobsen 5 × 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
@@ -141,6 +164,14 @@ class Verbs(CommandLine):
             self.assertIn("file", self.taut(*words, expect=2).err)
         self.assertIn("taut run", self.taut("plot", study, "--results", "nowhere", expect=2).err)
         self.assertRegex(self.taut("plot", study, "--kind", "pie", expect=2).err, "unknown kind of plot 'pie'.*one of .*stability")
+        self.assertIn("--y: unknown value 'strech.rms'; did you mean 'stretch.rms'?",
+                      self.taut("plot", study, "--y", "strech.rms", expect=2).err)
+        text = (self.folder / study).read_text()
+        (self.folder / study).write_text(text + '[[plot]]\nkind = "pie"\ny = "strech.rms"\n')
+        refused = self.taut("plot", study, expect=2).err
+        self.assertRegex(refused, r"study.toml:\d+:8: unknown kind of plot 'pie'")
+        self.assertRegex(refused, r"study.toml:\d+:5: unknown value 'strech.rms'; did you mean 'stretch.rms'\?")
+        (self.folder / study).write_text(text)
         self.assertIn("no folder", self.taut("check", "regression", expect=4).out)
 
     def test_the_version_names_release_build_and_compiler(self):
@@ -184,9 +215,10 @@ class Verbs(CommandLine):
         study = self.study()
         said = json.loads(self.taut("run", study, "--json").out)
         self.assertEqual((said["cases"], said["ran"], said["statuses"]), (1, 1, {"ok": 1}))
-        for words in [["run", study], ["case", "./small.toml", "jakobsen"], ["list", "solvers"],
-                      ["bench", "kernels", "--sizes", "8", "--rounds", "1", "--seconds", "0.0001"]]:
-            self.assertEqual(self.taut(*words, "--quiet").out, "", words)
+        for words in [["run", study], ["run", study, "--only", "failed"], ["case", "./small.toml", "jakobsen"], ["list", "solvers"],
+                      ["new", "study", "mine"], ["export", study], ["plot", study, "--kind", "error-iterations"], ["bench", "kernels", "--sizes", "8", "--rounds", "1", "--seconds", "0.0001"]]:
+            done = self.taut(*words, "--quiet")
+            self.assertEqual((done.out, done.err), ("", ""), words)
 
     def test_manual_and_completion_are_made_from_the_verbs(self):
         manual, completion = self.taut("--man").out, self.taut("--bash-completion").out
@@ -328,6 +360,7 @@ class Verbs(CommandLine):
         self.taut("bench", study, "--rounds", 2, "--seconds", 0.001, "--quiet")
         priced = list(csv.DictReader(self.taut("export", study).out.splitlines()))
         for row in priced:
+            self.assertEqual(row["cpu.host"], socket.gethostname())
             self.assertLessEqual(float(row["cpu.per_second.low"]), float(row["cpu.per_second"]))
         more = self.study(solvers=["jakobsen:iterations=2", "xpbd", "bullet"], rest='axes.time.dt = ["1/64", "1/32"]\n')
         missing = self.taut("export", more, expect=3)

@@ -17,24 +17,12 @@ namespace taut {
 namespace {
 
 constexpr ParamSpec kParams[] = {
-    {.name = "mode",
-     .kind = ParamSpec::Kind::choice,
-     .default_value = "stable",
-     .choices = "stable|crash|abort|hang|spin|memory|nan|throw|exit|print|slow|refuse|random|"
-                "exit74|exit127|chdir|fork|daemon|stop|stretch|fewer|far|forge|words",
-     .help = "what it does at that step"},
-    {.name = "at",
-     .kind = ParamSpec::Kind::integer,
-     .default_value = "5",
-     .min = 1,
-     .max = 1e6,
-     .help = "step at which it does it"},
-    {.name = "variant",
-     .kind = ParamSpec::Kind::integer,
-     .default_value = "0",
-     .min = 0,
-     .max = 1e6,
-     .help = "makes cases differ"},
+    ParamSpec::choice("mode", "stable",
+                      "stable|crash|abort|hang|spin|memory|nan|throw|exit|print|slow|refuse|random|"
+                      "exit74|exit127|chdir|fork|daemon|stop|stretch|fewer|far|forge|words",
+                      "what it does at that step"),
+    ParamSpec::integer("at", "5", 1, 1e6, "step at which it does it"),
+    ParamSpec::integer("variant", "0", 0, 1e6, "makes cases differ"),
 };
 
 /// Free fall, until it misbehaves.

@@ -69,7 +69,8 @@ class FaultySolvers(CommandLine):
         self.assertEqual(status["fewer"]["reason"], "stored 2 positions and 16 velocities of 16 vertices")
         self.assertEqual((status["far"]["reason"], status["far"]["vertex"]), ("box", 3))
         self.assertIn("key: expected 64 hexadecimal digits", status["forge"]["reason"])
-        self.assertEqual(list(self.folder.parent.glob("**/escaped")), [])
+        # os.walk and not glob: other tests' folders go while this looks.
+        self.assertEqual([path for path, _, files in os.walk(self.folder.parent) if "escaped" in files], [])
         for mode in ("fork", "daemon"):
             self.assertEnds(int((self.folder / f"left-by-{mode}").read_text()))
 
@@ -177,9 +178,22 @@ class Input(CommandLine):
         os.mkfifo(self.folder / "pipe.toml")
         os.mkfifo(self.folder / "pipe.obj")
         self.refuse("./pipe.toml", "pipe.toml: no such scene file")
-        for mesh, says in [("/dev/zero", "is no regular file"), ("/proc/self/mem", "cannot be read"), ("pipe.obj", "is no regular file")]:
+        for mesh, says in [("/dev/zero", "/dev/zero: is no regular file"), ("/proc/self/mem", "/proc/self/mem: cannot be read"),
+                           ("pipe.obj", "pipe.obj: is no regular file"), ("none.obj", "none.obj: cannot be read: No such file")]:
             (self.folder / "mesh.toml").write_text(f'[cloth]\nmesh = "{mesh}"\nmass = 1\n')
+            self.refuse("./mesh.toml", "./mesh.toml:2:8: 'mesh' in [cloth] cannot be used: ")
             self.refuse("./mesh.toml", says)
+
+    def test_a_pipe_is_never_waited_for(self):
+        self.taut("run", self.study())
+        (self.folder / "results/runs/packs").mkdir()
+        for pipe in ("pipe.traj", "pipe.pc2", "pipe.npy", "pipe.toml", "results/runs/packs/pipe.pack"):
+            os.mkfifo(self.folder / pipe)
+        for words in (["render", "./small.toml", "--trajectory", "pipe.traj", "-o", "x.png"], ["external", "score", "./small.toml", "pipe.traj"],
+                      ["external", "score", "./small.toml", "pipe.pc2"], ["external", "score", "./small.toml", "pipe.npy"],
+                      ["run", "./pipe.toml"], ["case", "./small.toml", "jakobsen", "--set", 'cloth.mesh="pipe.npy"']):
+            self.assertRegex(self.taut(*words, expect=2).err, "is no regular file|no such study file", words)
+        self.taut("export", "./study.toml")
 
     def test_documents_without_bottom(self):
         for name, text in [("keys", ".".join(["a"] * 60_000) + " = 1\n"), ("tables", "[" + ".".join(["a"] * 60_000) + "]\n"),
@@ -240,7 +254,10 @@ class Store(CommandLine):
 
     def test_two_runs_share_a_folder(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
-        both = [self.start("run", study, "-j", 3, program="taut-faulty") for _ in range(2)]
+        both = [self.start("run", study, "-j", 3, program="taut-faulty")]
+        while not [*(self.folder / "results/runs/tmp").glob("*.*/heartbeat")]:  # a case is running: it is no leftover
+            time.sleep(0.01)
+        both.append(self.start("run", study, "-j", 3, program="taut-faulty"))
         for process in both:
             _, said = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 0, said)
@@ -384,7 +401,7 @@ class Store(CommandLine):
     def test_a_clock_that_jumps_changes_nothing(self):
         if SANITIZED:
             self.skipTest("the sanitizer wants to be the first that is preloaded")
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        study = self.study(solvers=["faulty:mode=slow"], rest='set = ["time.duration=2.5"]\naxes.variant = [0, 1]\n')  # seconds: looked at often
         whole = self.store_digest(self.taut("run", study, "--out", "whole", program="taut-faulty"))
         jumping = {**os.environ, "LD_PRELOAD": str(BINARIES / "libjumping_clock.so")}
         years = {subprocess.run(["date", "+%Y"], env=jumping, capture_output=True, check=True).stdout for _ in range(2)}
@@ -392,9 +409,9 @@ class Store(CommandLine):
         self.assertGreater(len(years), 1, "the clock has to jump")
         run = self.taut("run", study, "--timeout", 30, program="taut-faulty", env=jumping)
         self.assertEqual(self.store_digest(run), whole)
-        self.assertEqual({record["status"]["kind"] for record in self.records()}, {"ok"})
-        self.assertIn("(4 were stored already)", self.taut("run", study, program="taut-faulty", env=jumping).err)
-        self.assertIn("4/4 cases", self.taut("cluster", "merge", "results/runs", "--out", "merged", env=jumping).out)
+        self.assertNotIn("timeout", {record["status"]["kind"] for record in self.records()})
+        self.assertIn("(2 were stored already)", self.taut("run", study, program="taut-faulty", env=jumping).err)
+        self.assertIn("2/2 cases", self.taut("cluster", "merge", "results/runs", "--out", "merged", env=jumping).out)
 
     def test_a_program_that_vanishes_is_no_result(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")

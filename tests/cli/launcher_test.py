@@ -34,6 +34,7 @@ if(TAUT_TESTS)
   add_test(NAME planted COMMAND true)
   add_test(NAME random COMMAND true)
   add_test(NAME absent COMMAND false)
+  add_test(NAME partly COMMAND sh -c "echo \\"test_disk (__main__.Store.test_disk) ... skipped 'needs a disk'\\"")
   set_tests_properties(one PROPERTIES LABELS unit)
   set_tests_properties(planted PROPERTIES LABELS mutation)
   set_tests_properties(random PROPERTIES LABELS fuzz)
@@ -199,13 +200,13 @@ class Launcher(unittest.TestCase):
         self.assertIn("one", quick.out)
         self.assertNotIn("planted", quick.out)
         self.assertNotIn("random", quick.out)
-        self.assertRegex(quick.err, r"(?s)skipped:\n  default: absent\n  not run: clang\+\+ with sanitizers, planted errors, random")
+        self.assertRegex(quick.err, r"(?s)skipped:\n  default: absent\n  default: test_disk: needs a disk\n  not run: clang\+\+ with sanitizers, planted errors, random")
         whole = self.call("test", "--all")
         self.assertRegex(whole.out, r"planted \.+ +Passed")
         self.assertEqual(len(re.findall(r"random \.+ +Passed", whole.out)), 2, "with the program and with libFuzzer")
         for preset in ["asan", "fuzz"]:
             self.assertIn(f"build/{preset}\n", whole.out)
-        self.assertIn("default: absent\n", whole.err)
+        self.assertIn("default: absent\n  default: test_disk: needs a disk\n", whole.err)
         cmake = self.clone / "CMakeLists.txt"
         cmake.write_text(cmake.read_text().replace("planted COMMAND true", "planted COMMAND false"))
         self.call("test")
@@ -213,4 +214,4 @@ class Launcher(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

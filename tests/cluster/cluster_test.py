@@ -221,6 +221,31 @@ class Shards(Cluster):
         self.assertIn("1/1 cases", again.err)
 
 
+class Bench(Cluster):
+    def cores_of_a_worker(self, solver, **environment):
+        worker = self.start("bench", "--worker", "./small.toml", solver, stdin=subprocess.PIPE, env={**os.environ, **environment})
+        self.addCleanup(worker.communicate)
+        self.assertEqual(worker.stdout.readline(), "ready\n")
+        return os.sched_getaffinity(worker.pid)
+
+    def test_in_a_slurm_job_a_sample_stays_on_a_core_for_each_thread(self):
+        mine = os.sched_getaffinity(0)
+        if len(mine) < 2:
+            self.skipTest("one core")
+        self.assertEqual(self.cores_of_a_worker("jakobsen"), mine)
+        for solver, cores in [("jakobsen", 1), ("bullet", 1), ("jakobsen:threads=2", 2)]:
+            pinned = self.cores_of_a_worker(solver, SLURM_JOB_ID="1")
+            self.assertEqual((len(pinned), pinned <= mine), (cores, True), solver)
+
+    def test_a_job_of_several_nodes_or_a_part_of_one_does_not_time(self):
+        for name, value, said in [("SLURM_JOB_NUM_NODES", "2", "sbatch --nodes=1"), ("SLURM_CPUS_ON_NODE", "1", "sbatch --exclusive")]:
+            if name == "SLURM_CPUS_ON_NODE" and os.cpu_count() == 1:
+                continue
+            refused = self.taut("bench", self.study(), env={**os.environ, "SLURM_JOB_ID": "1", name: value}, expect=2)
+            self.assertIn(said, refused.err)
+            self.assertFalse((self.folder / "results").exists())
+
+
 class Starts(Cluster):
     """Two starts of one shard, starts that die, disks that are full."""
 

@@ -1,5 +1,5 @@
 // A study of many cheap cases: planned, packed by shards, merged and read back. Prints what each
-// part costs; TAUT_SCALE_CASES=100000 makes the table of results/benchmarks/store.md.
+// part costs; TAUT_SCALE_CASES=100000 makes the table of results/benchmarks/cluster.md.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -39,15 +39,17 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-Study many(int cases) {
-  Study study;
-  study.name = "many", study.scenes = {"hang"}, study.solvers = {"jakobsen"};
-  study.settings = {"cloth.grid=[4, 4]", "time.duration=0.1"};
-  StudyAxis iterations{"iterations", {}}, seeds{"seed", {}};
-  for (int i = 1; i <= 100; ++i) iterations.values.push_back(std::to_string(i));
-  for (int i = 1; i <= cases / 100; ++i) seeds.values.push_back(std::to_string(i));
-  study.axes = {iterations, seeds};
-  return study;
+/// The study, in a file: `taut report ROOT/many.toml --results ROOT/merged` reads what is left
+/// here.
+Study many(int cases, const fs::path& root) {
+  const std::string seeds = std::to_string(cases / 100);
+  make_folder(root);
+  write_file(root / "many.toml",
+             "question = \"What do many cases cost?\"\nscenes = [\"hang\"]\nsolvers = "
+             "[\"jakobsen\"]\nset = [\"cloth.grid=[4, 4]\", \"time.duration=0.1\"]\n[axes]\n"
+             "iterations = { from = 1, to = 100, steps = 100 }\nseed = { from = 1, to = " +
+                 seeds + ", steps = " + seeds + " }\n");
+  return load_study((root / "many.toml").string());
 }
 
 TEST(StoreScale, ManyCheapCases) {
@@ -59,7 +61,7 @@ TEST(StoreScale, ManyCheapCases) {
   const fs::path folder = root / "folder";
   std::cout << "| " << count << " cases | s | MB held then |\n|---|---|---|\n";
   Stopwatch watch;
-  const Study study = many(count);
+  const Study study = many(count, root);
   std::vector<std::size_t> sizes;
   {
     Manifest manifest = plan(study, {}, folder);
@@ -80,6 +82,9 @@ TEST(StoreScale, ManyCheapCases) {
       for (const PlannedCase& one : manifest.cases) {
         if (one.shard != shard) continue;
         done.record.key = one.key, done.record.id = one.id, done.record.spec = one.spec;
+        const SolverChoice choice = parse_solver(one.spec.solver);
+        for (const std::string name : {"iterations", "seed"})
+          done.record.params[name] = choice.params.value(name);
         store.commit(parts, done.record);
       }
       store.flush();

@@ -21,6 +21,7 @@ from command_line import BINARIES, CommandLine, main  # noqa: E402
 SDK = HERE.parents[1] / "experiments" / "external" / "sdk"
 os.environ["TAUT_SDK"] = str(SDK)
 os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+USERS_SOLVERS = os.environ.get("TAUT_SOLVERS")
 LISTING = "jakobsen:substeps=1,order=mesh,projection=exact,precision=double,iterations="
 TOYS = {"python": f"python3 {SDK}/toy.py", "cpp": str(BINARIES / "tests" / "taut_toy_solver"), "node": f"node {SDK}/toy.js"}
 
@@ -137,6 +138,169 @@ class Toys(Programs):
         (self.solvers / "mine.toml").write_text("cmd = 'no-such-program'\nspeed = 3\n")
         self.assertRegex(self.taut("case", "./small.toml", "mine", expect=2).err, r"mine.toml:2:1: unknown key 'speed'")
         self.assertEqual(self.case("external", "./small.toml")["status"]["kind"], "unsupported")
+
+
+class Everywhere(Programs):
+    """A program and a file of positions wherever a solver may stand."""
+
+    def report(self, study):
+        model = json.loads(self.taut("report", study, "--no-media", "--json").out)
+        self.taut("report", study, "--no-media")
+        return model, (self.folder / "report.html").read_text()
+
+    def test_two_commands_are_two_solvers(self):
+        for name in ("toy.py", "taut_solver.py"):
+            shutil.copy(SDK / name, self.folder)
+        (self.folder / "other.py").write_text((self.folder / "toy.py").read_text().replace("self.sweeps = ", "self.sweeps = 3 * "))
+        study = self.study(solvers=["external:cmd='python3 toy.py'", "external:cmd='python3 other.py'", "named:cmd='python3 other.py -v'"],
+                           rest='[axes]\niterations = [1, 2]\n[[plot]]\nkind = "error-iterations"\n')
+        self.taut("run", study)
+        names = {r["solver"]: r["params"]["cmd"] for r in self.records()}
+        self.assertEqual(len(self.records()), 6)
+        self.assertEqual(sorted(names.values()), ["python3 other.py", "python3 other.py -v", "python3 toy.py"])
+        self.assertEqual(names["named"], "python3 other.py -v")
+        for name in set(names) - {"named"}:
+            self.assertRegex(name, "^toy-python-[0-9a-f]{4}$")
+        self.taut("plot", study)
+        curves = (self.folder / "results/runs/figures/study/small-error-iterations-stretch.rms-over-iterations.csv").read_text()
+        self.assertEqual({line.split(",")[1] for line in curves.splitlines()[1:]}, set(names))
+        model, page = self.report(study)
+        self.assertEqual({s["id"] for s in model["solvers"]}, set(names))
+        stretch = {r["solver"]: r["values"]["stretch.rms"] for r in self.records() if r["params"]["iterations"] == "1"}
+        self.assertEqual(len(set(stretch.values())), 2, "the same program twice, and another")
+
+    def test_a_solver_written_from_the_document_runs_beside_bullet(self):
+        """In Perl, without an SDK; it has sweeps and no substeps: its steps are one."""
+        if not shutil.which("perl"):
+            self.skipTest("perl is not here")
+        perl = f"external:cmd='perl {HERE}/relax.pl'"
+        self.assertIn("It may be scored.", self.taut("external", "probe", f"perl {HERE}/relax.pl").out)
+        study = self.study(solvers=[perl, "bullet"], rest='[axes]\niterations = [1, 2]\n[[plot]]\nkind = "error-iterations"\n')
+        self.taut("run", study)
+        self.assertEqual([r["status"]["kind"] for r in self.records()], ["ok"] * 4)
+        self.taut("plot", study)
+        model, page = self.report(study)
+        headline, = [c["sentence"] for c in model["claims"] if c["id"] == "stretch"]
+        self.assertIn("at 1 \u00d7 2 (substeps \u00d7 sweeps)", headline)
+        self.assertIn("Relax perl", headline)
+        self.assertIn("relax-perl", page)
+
+    def test_an_axis_is_not_taken_for_fixed_by_a_command_that_names_it(self):
+        for name in ("toy.py", "taut_solver.py"):
+            shutil.copy(SDK / name, self.folder)
+        study = self.study(solvers=["external:cmd='python3 toy.py a,iterations=7'"], rest="[axes]\niterations = [1, 2]\n")
+        self.taut("run", study)
+        self.assertEqual(sorted(r["params"]["iterations"] for r in self.records()), ["1", "2"])
+
+    def test_positions_stand_beside_solvers(self):
+        self.taut("case", "./small.toml", LISTING + "4", "--trajectory", "run.pc2")
+        self.taut("case", "./small.toml", LISTING + "4", "--trajectory", "other.npy")
+        study = self.study(solvers=["bullet", LISTING + "4", "positions:file=run.pc2", "named:file=other.npy"],
+                           rest='[axes]\niterations = [1, 4]\n[[plot]]\nkind = "error-iterations"\n'
+                           '[[plot]]\nkind = "series"\ny = "stretch.rms"\n[[plot]]\nkind = "work-precision"\n')
+        self.taut("run", study)
+        records = {r["solver"]: r for r in self.records()}
+        self.assertEqual({r["status"]["kind"] for r in records.values()}, {"ok"})
+        file, = [name for name in records if name.startswith("positions-")]
+        inside, floor = records["jakobsen"]["values"], float(dict(records[file]["resolved_settings"])["floor of strain"].split()[0])
+        self.assertTrue(1e-9 < floor < 1e-6, floor)
+        for name, value in inside.items():
+            if name.startswith(("stretch", "shear", "structural", "compression")):
+                self.assertAlmostEqual(records[file]["values"][name], value, delta=30 * floor, msg=name)
+                self.assertAlmostEqual(records["named"]["values"][name], value, delta=1e-12, msg=name)
+        self.taut("plot", study)
+        figures = self.folder / "results/runs/figures/study"
+        error = (figures / "small-error-iterations-stretch.rms-over-iterations.csv").read_text().splitlines()
+        level = [line.split(",") for line in error if f",{file}," in line]
+        self.assertEqual([row[3] for row in level], ["1", "4"], "a level across the chart")
+        self.assertEqual(len({row[6] for row in level}), 1)
+        for drawn in ("small-error-iterations-stretch.rms-over-iterations.svg", "small-series-stretch.rms-over-t.svg"):
+            self.assertIn("rounding of the file of positions", (figures / drawn).read_text())
+        model, page = self.report(study)
+        fairness = model["scenes"][0]["fairness"]
+        place = [column["solver"] for column in fairness["columns"]].index(file)
+        self.assertEqual([row["values"][place] for row in fairness["rows"] if row["name"] == "cost"], ["not measured"])
+        self.assertIn(file, page)
+        floors = [chart["floor"] for chart in model["charts"] if "floor" in chart]
+        self.assertTrue(any("rounding of the file" in one["text"] for one in floors), floors)
+        bench = json.loads(self.taut("bench", study, "--rounds", 2, "--seconds", 0.01, "--json").out)
+        timing, = [c for c in bench["scenes"][0]["cases"] if c["record"]["solver"] == file]
+        self.assertIn("positions from a file: cost not measured", timing["failure"])
+        fronts = [p["case"] for chart in model["charts"] for p in chart.get("front", [])]
+        self.assertNotIn(records[file]["key"], fronts)
+        self.taut("case", "./small.toml", "positions:file=none.npy", expect=2)
+        self.assertIn("has 33 frames, the scene needs 65",
+                      json.loads(self.taut("case", "./small.toml", "positions:file=run.pc2", "--duration", 1, "--json").out)["status"]["reason"])
+        self.taut("render", "./small.toml", "--solver", "positions:file=run.pc2", "--solver", "bullet", "-o", "end.png")
+
+    def test_verbs(self):
+        toy = f"external:cmd='{TOYS['cpp']} --'"
+        frontier = self.taut("frontier", "./small.toml", toy, "--from", 0.01, "--to", 0.05).out
+        self.assertIn("largest stable dt", frontier)
+        advise = self.taut("advise", "./small.toml", "--error", "1%", "--solver", toy, "--patience", 20, "--rounds", 2).out
+        self.assertIn("toy-cpp-", advise)
+        reproduce, = [line.split(None, 1)[1] for line in advise.splitlines() if line.strip().startswith("reproduce")]
+        self.assertIn("'\\''", reproduce, "quotes for a shell")
+        verify = self.taut("verify", "--solver", toy)
+        self.assertIn("any-solver", verify.out)
+        self.assertIn("4 passed", verify.err)
+        wrong = self.taut("verify", "--solver", f"external:cmd='python3 {HERE}/wrong.py pins'", expect=1)
+        self.assertIn("broken", wrong.out)
+        study = self.study(solvers=[toy, "jakobsen:substeps=1,order=mesh"], rest="[axes]\niterations = [1, 4]\n")
+        self.taut("baseline", "update", study, "--baselines", "kept", "--why", "new")
+        self.taut("check", study, "--baselines", "kept")
+        torture = self.study("torture.toml", scenes=["torture/smallest", "torture/step-huge"], solvers=[toy])
+        self.taut("run", torture, "--timeout", 10)
+        self.taut("require", "./small.toml", toy, "--patience", 20, expect=None)
+
+
+class Jolt(Programs):
+    """`taut external install jolt` with an npm that downloads nothing."""
+
+    def setUp(self):
+        super().setUp()
+        if not shutil.which("node"):
+            self.skipTest("node is not here")
+        tools = self.folder / "tools"
+        tools.mkdir()
+        (tools / "npm").write_text("""#!/bin/sh
+test -e "$TAUT_NPM_FAILS" && echo "npm error network" >&2 && exit 1
+while [ "$1" != --prefix ]; do shift; done
+mkdir -p "$2/node_modules/jolt-physics/dist" && cd "$2/node_modules/jolt-physics" || exit 1
+echo '{"version": "0", "type": "module"}' >package.json
+echo MIT >LICENSE
+echo 'export default 1' >dist/jolt-physics.wasm-compat.js
+echo more >dist/large.js
+""")
+        (tools / "npm").chmod(0o755)
+        self.path = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "TAUT_NPM_FAILS": str(self.folder / "fails")}
+
+    def test_it_says_what_it_downloads_and_keeps_what_it_needs(self):
+        done = self.taut("external", "install", "jolt", env=self.path, expect=1)  # this npm's Jolt is none: the probe says so
+        self.assertRegex(done.err, r"npm downloads jolt-physics@1.1.0 \(MIT, 13 MB\), of which 3 MB stay in .*/solvers/jolt; to be rid of it")
+        kept = sorted(str(f.relative_to(self.solvers)) for f in self.solvers.rglob("*") if f.is_file())
+        package = "jolt/node_modules/jolt-physics/"
+        self.assertEqual(kept, sorted(["jolt.toml", "jolt/jolt.js", "jolt/taut_solver.js", package + "LICENSE", package + "package.json",
+                                       package + "dist/jolt-physics.wasm-compat.js"]))
+
+    def test_a_download_that_fails_registers_nothing(self):
+        (self.folder / "fails").write_text("")
+        self.assertIn("npm error network", self.taut("external", "install", "jolt", env=self.path, expect=2).err)
+        self.assertEqual(list(self.solvers.rglob("*")), [])
+        self.assertIn("there is jolt", self.taut("external", "install", "havok", expect=2).err)
+
+    def test_the_real_one_runs(self):
+        """Not downloaded by tests: `taut external install jolt` first."""
+        home = os.environ.get("XDG_CONFIG_HOME") or pathlib.Path.home() / ".config"
+        installed = pathlib.Path(USERS_SOLVERS or pathlib.Path(home) / "taut" / "solvers")
+        if not (installed / "jolt.toml").exists():
+            self.skipTest(f"no jolt in {installed}: taut external install jolt")
+        os.environ["TAUT_SOLVERS"] = str(installed)
+        study = self.study(solvers=["jolt", LISTING + "1"], rest="[axes]\nsubsteps = [2, 8]\n")
+        self.taut("run", study)
+        self.assertEqual({r["status"]["kind"] for r in self.records()}, {"ok"})
+        stretch = {r["params"]["substeps"]: r["values"]["stretch.rms"] for r in self.records() if r["solver"] == "jolt"}
+        self.assertLess(stretch["8"], stretch["2"])
 
 
 class Hostile(Programs):

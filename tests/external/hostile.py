@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""A program that passes the probe and misbehaves in the fifth step of any other scene, as MODE says; MODE hello-*: at once."""
+"""A program that passes the probe and misbehaves in the fifth step of any other scene, as MODE says; MODE hello-*: at once;
+MODE random SEED: one of its answers is damaged."""
 
 import array
 import json
 import os
+import pathlib
+import random
 import struct
 import subprocess
 import sys
@@ -11,11 +14,22 @@ import time
 
 MODE = sys.argv[1]
 OUT = sys.stdout.buffer
+CHANCE = random.Random(sys.argv[2] if MODE == "random" else 0)
+left = CHANCE.choice([0, 0, *range(1, 14)]) if MODE == "random" else -1  # answers until the damaged one
 
 
 def answer(told, more=b""):
-    OUT.write(json.dumps(told).encode() + b"\n" + more)
+    global left
+    text = json.dumps(told).encode() + b"\n" + more
+    if left == 0:
+        sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fuzz"))
+        text = __import__("generate").mutate(CHANCE, text)
+    left -= real
+    OUT.write(text)
     OUT.flush()
+
+
+real = True  # the scene is none of the probe's
 
 
 def spin(seconds):
@@ -61,7 +75,8 @@ def main():
         time.sleep(1000)
     if MODE == "hello-garbage":
         print("Loading model...", flush=True)
-    n = x = v = gravity = pins = None
+    global real
+    n = x = v = gravity = None
     steps = 0
     for line in sys.stdin.buffer:
         request = json.loads(line)

@@ -23,7 +23,8 @@ import time
 from generate import NASTY, Maker, mutate, toml
 
 CODES = {0, 1, 2, 3, 4, 5, 6, 130}  # experiments/command_line/verb.hpp
-STATUSES = {'ok', 'exploded', 'unsettled', 'extreme', 'unsupported', 'timeout', 'oom', 'crash', 'error'}
+STATUSES = {'ok', 'exploded', 'unsettled', 'extreme', 'unsupported', 'timeout', 'oom', 'crash', 'protocol', 'error'}
+LEGITIMATE = 30  # strain that no scene has without being called extreme: experiments/case/divergence.hpp
 SECONDS = 60  # of one command: more is a hang
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
 SMALL = ('[cloth]\ngrid = [3, 3]\nsize = [1, 1]\nmass = 0.1\npins = ["top-left"]\n'
@@ -54,6 +55,8 @@ def judge_record(record):
         raise Finding(f"a case crashed: {record['status']['reason']}")
     if status in ('ok', 'unsettled', 'extreme') and len(record['digest']) != 64:
         raise Finding('a completed case without a final state')
+    if status in ('ok', 'unsettled') and (record['values'].get('stretch.peak') or 0) > LEGITIMATE:
+        raise Finding(f"{status} with a strain of {record['values']['stretch.peak']}")
     if not record['dt'] > 0:
         raise Finding('a time step that is none')
 
@@ -133,7 +136,7 @@ class Attempt:
         elif verb == 'run':
             self.run('./study.toml')
         elif verb == 'merge':
-            self.taut('merge', 'results/runs', '--out', 'merged')
+            self.taut('cluster', 'merge', 'results/runs', '--out', 'merged')
         else:
             self.taut(verb, './study.toml')
 
@@ -199,8 +202,9 @@ def arguments(attempt):
     attempt.write('study.toml', STUDY)
     texts = NASTY + ['-1', 'nan', '1e999', '0', '99999999999999999999', '1/0', '', 'x' * 5000, '/dev/null', '/', '.', './study.toml']
     words = {'case': ['./small.toml', 'jakobsen'], 'plan': ['./small.toml', 'jakobsen'], 'run': ['./study.toml'], 'export': ['./study.toml'],
-             'plot': ['./study.toml'], 'merge': ['results'], 'check': ['./study.toml'], 'list': ['scenes'], 'new': ['scene', 'x'],
-             'report': ['./study.toml'], 'frontier': ['./small.toml', 'jakobsen'], 'render': ['./small.toml']}
+             'plot': ['./study.toml'], 'cluster merge': ['results'], 'cluster submit': ['./study.toml', '--on', 'slurm', '--dry-run'],
+             'external score': ['./small.toml', './small.toml'], 'require': ['./small.toml', 'jakobsen'], 'check': ['./study.toml'],
+             'list': ['scenes'], 'new': ['scene', 'x'], 'report': ['./study.toml'], 'frontier': ['./small.toml', 'jakobsen'], 'render': ['./small.toml']}
     verb = attempt.random.choice(sorted(words))
     given = words[verb]
     option = attempt.random.choice(['--dt', '--duration', '--set', '--preset', '--shard', '--only', '--timeout', '--memory', '-j', '--table',
@@ -210,7 +214,7 @@ def arguments(attempt):
         given = given + [option, text]
     else:
         given = given[:-1] + [text]
-    attempt.taut(verb, *given)
+    attempt.taut(*verb.split(), *given)
 
 
 def damage(attempt, pattern):
@@ -233,7 +237,7 @@ def record(attempt):
 
 
 def bench(attempt):
-    damage(attempt, 'results/runs/bench/*.json')
+    damage(attempt, 'results/runs/bench/*/*.json')
     attempt.look()
 
 
@@ -254,8 +258,18 @@ def trajectory(attempt):
     attempt.taut('render', './small.toml', '--trajectory', 'run.traj', '--size', '320x240', '--quality', 'draft', '-o', 'x.png')
 
 
+def program(attempt):
+    """A solver from outside of which one answer is damaged."""
+    attempt.write('small.toml', SMALL)
+    hostile = SOURCES / 'tests/external/hostile.py'
+    text = f"external:cmd='python3 {hostile} random {attempt.random.randrange(10**9)}',timeout=1"
+    attempt.write('study.toml', f'question = "?"\nscenes = ["./small.toml"]\nsolvers = {toml([text, "jakobsen"])}\n')
+    attempt.run('./study.toml')
+    attempt.taut('external', 'probe', text, '--json')
+
+
 KINDS = {each.__name__: each for each in (scene_made, scene_damaged, mesh, solver, study_made, study_damaged, arguments, record, bench, session,
-                                          baseline, trajectory)}
+                                          baseline, trajectory, program)}
 SOLVERS = []
 
 

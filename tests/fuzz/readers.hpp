@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <iostream>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -15,6 +17,7 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
+#include "experiments/external/introduction.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/bench.hpp"
@@ -106,16 +109,36 @@ inline void read_baseline_rows(const std::string& bytes) {
   for (const BaselineRow& row : rows) reproduce(row);
 }
 
+/// The lines with which a program answers "hello", "scene" (of four vertices), "step" and "store".
+inline void read_answers(const std::string& bytes) {
+  std::istringstream lines(bytes);
+  const auto next = [&] {
+    std::string line;
+    if (!std::getline(lines, line)) throw InputError("an answer is missing");
+    return external::parse_answer(line);
+  };
+  const auto hello = external::read_hello(next());
+  const Params params(hello->name, hello->params, "");
+  expect(Params(hello->name, hello->params, params.canonical()).canonical() == params.canonical(),
+         "defaults are values of their parameters");
+  external::own_params(*hello, params);
+  for (const PassCost& pass : external::read_scene_answer(next(), 4).plan)
+    expect(pass.items < SIZE_MAX / 2, "a pass visits a number of items");
+  external::read_step(next());
+  expect(external::read_store(next(), 4) == 4 * sizeof(double) * 6, "a state has its size");
+}
+
 struct Reader {
   std::string_view name;  ///< also of its folder in corpus/
   void (*read)(const std::string& bytes);
 };
 
 inline constexpr Reader kReaders[] = {
-    {"scene", read_scene},   {"study", read_study},
-    {"mesh", read_mesh},     {"solver", read_solver},
-    {"record", read_record}, {"trajectory", read_trajectory_file},
-    {"bench", read_bench},   {"baseline", read_baseline_rows},
+    {"scene", read_scene},     {"study", read_study},
+    {"mesh", read_mesh},       {"solver", read_solver},
+    {"record", read_record},   {"trajectory", read_trajectory_file},
+    {"bench", read_bench},     {"baseline", read_baseline_rows},
+    {"answers", read_answers},
 };
 
 }  // namespace taut::fuzz

@@ -4,131 +4,18 @@
 
 #include <functional>
 #include <map>
-#include <regex>
 #include <set>
 
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/model/model.hpp"
 #include "experiments/system/json.hpp"
+#include "tests/report/cost_reader.hpp"
 #include "tests/report/made_up.hpp"
 
 namespace taut::report {
 namespace {
 
-using Names = std::vector<std::string>;
-using Scenes = std::multiset<std::string>;
-
-std::string solver_of(std::string label) {
-  for (char& c : label) c = static_cast<char>(std::tolower(c));
-  return label;
-}
-
-std::string label_of(std::string solver) {
-  if (solver == "xpbd") return "XPBD";
-  solver[0] = static_cast<char>(std::toupper(solver[0]));
-  return solver;
-}
-
-/// Every match of a pattern, as the texts of its groups ("" where a group took no part).
-std::vector<Names> matches(const std::string& text, const std::string& pattern) {
-  static std::map<std::string, std::regex> known;
-  const std::regex& regex = known.try_emplace(pattern, pattern).first->second;
-  std::vector<Names> all;
-  for (std::sregex_iterator at(text.begin(), text.end(), regex), end; at != end; ++at)
-    all.emplace_back(at->begin(), at->end());
-  return all;
-}
-
-/// "ball, box and hang"
-Names names_in(const std::string& list) {
-  Names names;
-  for (const Names& m : matches(list, "([a-z]+)(, | and |$)")) names.push_back(m[1]);
-  return names;
-}
-
-constexpr const char* kNumber = "(10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|[0-9./]+(?:×10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?)";
-std::string pattern(std::string text) {  // "#": a number
-  for (std::size_t at; (at = text.find('#')) != std::string::npos;) text.replace(at, 1, kNumber);
-  return text;
-}
-
-/// A number as the page writes it: "0.31", "1.2×10⁻⁵", "1/11".
-double number_in(const std::string& text) {
-  if (text.starts_with("1/")) return 1 / std::stod(text.substr(2));
-  const auto ten = text.find("10⁻");
-  if (ten == std::string::npos) return std::stod(text);
-  const std::vector<std::string> raised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  int power = 0;
-  for (std::string rest = text.substr(ten + std::string("10⁻").size());;) {
-    const auto digit =
-        std::ranges::find_if(raised, [&](const std::string& d) { return rest.starts_with(d); });
-    if (digit == raised.end()) break;
-    power = 10 * power + static_cast<int>(digit - raised.begin());
-    rest = rest.substr(digit->size());
-  }
-  return (ten == 0 ? 1 : std::stod(text)) * std::pow(10, -power);
-}
-
-/// Two digits are printed.
-bool near(double printed, double true_value) {
-  return std::abs(printed - true_value) <= 0.06 * std::abs(true_value) + 1e-12;
-}
-
-/// Some of `solvers` is not as `solver`, and so on: the raw records, asked without anything that
-/// claims are made with.
-class Raw {
- public:
-  explicit Raw(const ReportInput& input) {
-    std::set<std::string> keys;
-    for (const StudyResult& study : input.studies)
-      for (const Record& r : study.records)
-        if (keys.insert(r.key).second)
-          all.push_back(&r), scenes.insert(r.scene), solvers.insert(r.solver);
-  }
-  std::vector<const Record*> all;
-  std::set<std::string> scenes, solvers;
-
-  static int number(const Record& r, const char* name) {
-    return r.params.contains(name) ? std::stoi(r.params.at(name)) : -1;
-  }
-  static bool good(const Record& r) {
-    return r.status.kind == Status::Kind::ok || r.status.kind == Status::Kind::unsettled;
-  }
-  static std::optional<double> value(const Record* r, const std::string& metric) {
-    if (!r || !good(*r) || !r->values.contains(metric)) return {};
-    const double v = r->values.at(metric);
-    return std::isnan(v) ? std::nullopt : std::optional(v);
-  }
-  /// (substeps, sweeps) of a case; -1: the solver has none.
-  static std::pair<int, int> work(const Record& r) {
-    return {number(r, "substeps"), number(r, "iterations")};
-  }
-  using Works = std::map<std::string, std::pair<int, int>>;  // by solver
-
-  /// Of the cases at these works the one whose time step most solvers ran, of equals the nearest to
-  /// 1/64 s.
-  const Record* quoted(const std::string& scene, const std::string& solver,
-                       const Works& works) const {
-    std::map<double, std::map<std::string, const Record*>> at;
-    for (const Record* r : all) {
-      if (r->scene == scene && works.contains(r->solver) && work(*r) == works.at(r->solver))
-        at[r->dt].try_emplace(r->solver, r);
-    }
-    const auto rank = [](const auto& entry) {
-      return std::pair(-static_cast<int>(entry.second.size()),
-                       std::abs(std::log(entry.first * 64)));
-    };
-    const auto best = std::ranges::min_element(at, {}, rank);
-    return best != at.end() && best->second.contains(solver) ? best->second.at(solver) : nullptr;
-  }
-
-  /// Whether some work was run by all solvers, which then have to be compared at it.
-  bool any_work_in_common() const {
-    std::map<std::pair<int, int>, std::set<std::string>> who;
-    for (const Record* r : all) who[work(*r)].insert(r->solver);
-    return std::ranges::any_of(who, [&](const auto& w) { return w.second == solvers; });
-  }
-};
+using namespace reading;
 
 /// Reads one claim after the other; what is false is a failure of the test.
 class Reader {
@@ -138,6 +25,9 @@ class Reader {
   void read(const Claim& claim, const std::vector<Claim>& all) {
     SCOPED_TRACE(claim.id + ": " + claim.sentence);
     text_ = claim.sentence;
+    const CostReader costs(input_, claim);
+    if (claim.id.starts_with("differences-cost-"))
+      return costs.difference_of_cost(claim.id.substr(17));
     if (claim.about == "differences") return difference(claim.id);
     const bool of_work = claim.id.starts_with("stretch") || claim.id.starts_with("depth");
     if (of_work) read_work();
@@ -148,20 +38,14 @@ class Reader {
     if (claim.id == "failures") return failures();
     if (claim.id.starts_with("stretch-")) return scene_stretch(claim.about);
     if (claim.id.starts_with("depth-")) return scene_depth(claim.about);
-    if (claim.id.starts_with("cost-")) return cost(claim.id.substr(5));
-    if (claim.id.starts_with("work-")) return same_work(claim.id.substr(5));
-    if (claim.id.starts_with("only-")) return only();
+    if (claim.id.starts_with("cost-")) return costs.cost(claim.id.substr(5));
+    if (claim.id.starts_with("work-")) return costs.same_work(claim.id.substr(5));
+    if (claim.id.starts_with("only-")) return costs.only(claim.id.substr(claim.id.rfind('-') + 1));
     ADD_FAILURE() << "nobody can read this claim";
   }
 
  private:
-  /// What follows `opening` up to the full stop; "" if it is not said.
-  std::string said(const std::string& opening) const {
-    const auto at = text_.find(opening);
-    if (at == std::string::npos) return "";
-    const auto from = at + opening.size(), stop = text_.find(". ", from);
-    return text_.substr(from, (stop == std::string::npos ? text_.size() - 1 : stop) - from);
-  }
+  std::string said(const std::string& opening) const { return said_after(text_, opening); }
 
   /// "at 1 × 16 (substeps × sweeps)", "at unequal work (Jakobsen 5 × 16, XPBD 1 substeps; ...)".
   void read_work() {
@@ -359,6 +243,8 @@ class Reader {
         failed += !Raw::good(*r) && r->status.kind != Status::Kind::unsupported;
       }
       named.insert(solver_of(m[1]));
+      for (const StudyResult& study : input_.studies)
+        EXPECT_NE(said(" Counted in the studies ").find(study.name), std::string::npos);
       EXPECT_EQ(m[2] == "none" ? 0 : std::stoi(m[2]), failed);
       EXPECT_EQ(std::stoi(m[3]), total);
     }
@@ -405,188 +291,6 @@ class Reader {
     });
   }
 
-  // Costs: the bench's samples, of cases that completed, without what only one solver has.
-  static bool tethered(const BenchedCase& c) {
-    return c.record.params.contains("tethers") && c.record.params.at("tethers") == "on";
-  }
-  static bool counts(const BenchedCase& c) {
-    return Raw::good(c.record) && c.timing.failure.empty();
-  }
-  static double cost_of(const BenchedCase& c) { return median(c.timing.samples) / c.record.dt; }
-  static bool cheaper(const BenchedCase& a, const BenchedCase* b) {
-    return !b || cost_of(a) < cost_of(*b);
-  }
-  static bool has(const SceneBench& scene, const std::string& solver) {
-    return std::ranges::any_of(scene.cases,
-                               [&](const auto& c) { return c.record.solver == solver; });
-  }
-  static double noise_of(const SceneBench& scene) {
-    return std::max(1 / scene.control.low, scene.control.high) - 1;
-  }
-  static double ratio_of(const BenchedCase& a, const BenchedCase& b) {
-    return interleaved_ratio(a.timing.samples, b.timing.samples).mid;
-  }
-  const SceneBench& bench(const std::string& scene) const {
-    return *std::ranges::find(input_.bench->scenes, scene, &SceneBench::scene);
-  }
-  const BenchedCase* cheapest(const SceneBench& scene, const std::string& solver, bool with) const {
-    const BenchedCase* best = nullptr;
-    for (const BenchedCase& c : scene.cases)
-      if (c.record.solver == solver && counts(c) && tethered(c) == with &&
-          c.record.values.at("stretch.rms") <= 0.01 && cheaper(c, best))
-        best = &c;
-    return best;
-  }
-  /// Who is compared with `other`: the first by place that was timed.
-  std::string first_beside(const std::string& other) const {
-    for (const char* name : {"jakobsen", "bullet", "xpbd"})
-      for (const SceneBench& scene : input_.bench->scenes)
-        if (has(scene, name)) return name;
-    return other;
-  }
-  /// Tried at the last value of both knobs that a search would try.
-  static bool searched(const SceneBench& scene, const std::string& solver) {
-    int substeps = 0, sweeps = 0;
-    for (const BenchedCase& c : scene.cases)
-      if (c.record.solver == solver)
-        substeps = std::max(substeps, Raw::number(c.record, "substeps")),
-        sweeps = std::max(sweeps, Raw::number(c.record, "iterations"));
-    return substeps >= 1024 && sweeps >= 128;
-  }
-
-  /// Who is said to need less where, by how much and how sure; gives the scenes judged.
-  Scenes directions(const std::string& first, const std::string& other,
-                    const std::map<std::string, double>& ratios) const {
-    Scenes judged;
-    double noise = 0, sum = 0;
-    for (const auto& [scene, ratio] : ratios)
-      noise = std::max(noise, noise_of(bench(scene))), sum += std::log(ratio);
-    const auto each = [&](const std::string& words, const auto& check) {
-      for (const std::string& scene : names_in(said(words))) {
-        judged.insert(scene);
-        ASSERT_TRUE(ratios.contains(scene)) << scene;
-        check(std::log(ratios.at(scene)), std::log(1 + noise_of(bench(scene))));
-      }
-    };
-    const double tolerance = std::log(1.05) - 1e-9;
-    each(" Less with " + label_of(first) + " on ", [&](double change, double stray) {
-      EXPECT_LT(change, -std::max(tolerance, stray - 1e-9));
-    });
-    each(" Less with " + label_of(other) + " on ", [&](double change, double stray) {
-      EXPECT_GT(change, std::max(tolerance, stray - 1e-9));
-    });
-    each(" Too noisy to judge on ",
-         [&](double change, double stray) { EXPECT_LE(std::abs(change), stray + 1e-9); });
-    each(" No difference that can be told on ", [](double, double) {});
-    const double mean = ratios.empty() ? std::nan("")  // and no sentence may state one
-                                       : std::exp(sum / static_cast<double>(ratios.size()));
-    const auto factor = matches(
-        text_,
-        pattern("([A-Z][A-Za-z]+) uses #(\u00A0%)? of the CPU time of ([A-Z][A-Za-z]+) \\([^;]*; "
-                "geometric mean over ([^)]*)\\)"));
-    if (!factor.empty()) {
-      const Names& m = factor[0];
-      const double share = number_in(m[2]) / (m[3].empty() ? 1 : 100);
-      EXPECT_LT(share, 1);
-      EXPECT_PRED2(near, share, solver_of(m[1]) == first ? mean : 1 / mean);
-      EXPECT_EQ(solver_of(solver_of(m[1]) == first ? m[4] : m[1]), other);
-      EXPECT_EQ(names_in(m[5]).size(), ratios.size());
-    } else if (!ratios.empty()) {
-      const auto even = matches(text_, pattern(" over [A-Za-z]+ #,"));
-      EXPECT_EQ(even.size(), 1U);
-      for (const Names& m : even) EXPECT_PRED2(near, number_in(m[1]), mean);
-    }
-    if (!ratios.empty()) {
-      const auto stray = matches(text_, pattern("identical code differed by up to #\u00A0%"));
-      EXPECT_EQ(stray.size(), 1U);
-      for (const Names& m : stray) EXPECT_PRED2(near, number_in(m[1]) / 100, noise);
-    }
-    return judged;
-  }
-
-  void cost(const std::string& other) const {
-    const std::string first = first_beside(other);
-    std::map<std::string, double> ratios;
-    std::map<std::string, double> logs;
-    Scenes expected;
-    for (const SceneBench& scene : input_.bench->scenes) {
-      if (!has(scene, first)) continue;
-      expected.insert(scene.scene);
-      const BenchedCase *ours = cheapest(scene, first, false),
-                        *theirs = cheapest(scene, other, false);
-      if (!ours || !theirs) continue;
-      ratios[scene.scene] = ratio_of(*ours, *theirs);
-      logs[first] += std::log(cost_of(*ours)), logs[other] += std::log(cost_of(*theirs));
-    }
-    Scenes named = directions(first, other, ratios);
-    const auto check = [&](const std::string& words, bool ours, bool theirs, bool timed) {
-      for (const std::string& name : names_in(said(words))) {
-        named.insert(name);
-        EXPECT_EQ(cheapest(bench(name), other, false) != nullptr, theirs) << words << name;
-        EXPECT_EQ(has(bench(name), other), timed) << words << name;
-        EXPECT_TRUE(!timed || (cheapest(bench(name), first, false) != nullptr) == ours) << name;
-      }
-    };
-    for (const auto& [missing, having] : {std::pair(other, first), {first, other}})
-      for (const bool to_the_end : {false, true}) {
-        const std::string words =
-            (to_the_end ? " Never reached by " : " Reached by no setting tried of ") +
-            label_of(missing) + (to_the_end ? ", tried to the end of its knobs" : "") +
-            ", but by " + label_of(having) + " on ";
-        check(words, having == first, having == other, true);
-        for (const std::string& name : names_in(said(words)))
-          EXPECT_EQ(searched(bench(name), missing), to_the_end) << words << name;
-      }
-    const std::string b = label_of(other);
-    check(" Reached by no setting tried on ", false, false, true);
-    check(" Not timed with " + b + " on ", false, false, false);
-    EXPECT_EQ(named, expected);
-    for (const Names& m :
-         matches(said(" CPU time per simulated second: "), pattern("([A-Z][A-Za-z]+) #\u00A0ms")))
-      EXPECT_PRED2(near, number_in(m[2]) / 1e3,
-                   std::exp(logs[solver_of(m[1])] / static_cast<double>(ratios.size())));
-  }
-
-  void same_work(const std::string& other) const {
-    const std::string first = first_beside(other);
-    std::map<std::string, double> ratios;
-    for (const SceneBench& scene : input_.bench->scenes) {
-      double sum = 0;
-      int n = 0;
-      for (const auto& [substeps, sweeps] :
-           {std::pair{1, 4}, {1, 16}, {4, 1}, {8, 2}, {1024, 1}, {1, 128}}) {
-        const BenchedCase *ours = nullptr, *theirs = nullptr;
-        for (const BenchedCase& c : scene.cases) {
-          if (!counts(c) || tethered(c) || Raw::number(c.record, "substeps") != substeps ||
-              Raw::number(c.record, "iterations") != sweeps)
-            continue;
-          if (c.record.solver == first) ours = &c;
-          if (c.record.solver == other) theirs = &c;
-        }
-        if (ours && theirs) sum += std::log(ratio_of(*ours, *theirs)), ++n;
-      }
-      if (n > 0) ratios[scene.scene] = std::exp(sum / n);
-    }
-    EXPECT_EQ(directions(first, other, ratios).size(), ratios.size());
-  }
-
-  void only() const {
-    EXPECT_EQ(text_.find("With tethers, which "), 0U);
-    EXPECT_NE(text_.find(" does not have, Jakobsen reaches"), std::string::npos);
-    const auto clauses =
-        matches(text_, pattern("on ([a-z]+) #\u00A0ms(, #(\u00A0%)? of without)?"));
-    EXPECT_FALSE(clauses.empty());
-    for (const Names& m : clauses) {
-      const BenchedCase *with = cheapest(bench(m[1]), "jakobsen", true),
-                        *without = cheapest(bench(m[1]), "jakobsen", false);
-      ASSERT_TRUE(with);
-      EXPECT_PRED2(near, number_in(m[2]) / 1e3, cost_of(*with));
-      if (m[3].empty()) continue;
-      ASSERT_TRUE(without);
-      EXPECT_PRED2(near, number_in(m[4]) / (m[5].empty() ? 1 : 100), ratio_of(*with, *without));
-    }
-  }
-
   /// Two folders: counts, directions and the largest change, from the pairs themselves.
   void difference(const std::string& id) const {
     const Differences& d = *input_.differences;
@@ -606,7 +310,6 @@ class Reader {
       EXPECT_EQ(std::stoi(of[0][2]) + named, std::stoi(of[0][1]));
       return;
     }
-    if (id.starts_with("differences-cost-")) return difference_of_cost(id.substr(17));
     const std::map<std::string, std::pair<std::string, double>> metrics{
         {"differences-stretch.rms", {"stretch.rms", 100}},
         {"differences-penetration.peak", {"penetration.peak", 1e3}},
@@ -639,25 +342,6 @@ class Reader {
     EXPECT_EQ(std::stoi(m[0][3]), more);
     const double a = number_in(m[0][4]) / scale, b = number_in(m[0][5]) / scale;
     EXPECT_NEAR(std::abs(b - a) / std::max({a, b, 1e-300}), largest, 0.02);
-  }
-
-  void difference_of_cost(const std::string& solver) const {
-    double sum = 0;
-    int n = 0;
-    for (const auto& [a, b] : input_.differences->timed)
-      if (a.record.solver == solver && counts(a) && counts(b))
-        sum += std::log(cost_of(b) / cost_of(a)), ++n;
-    const auto cases = matches(text_, ", (\\d+) cases? in sessions");
-    ASSERT_EQ(cases.size(), 1U);
-    EXPECT_EQ(std::stoi(cases[0][1]), n);
-    if (n == 0) return;
-    const double change = sum / n, stray = std::log1p(input_.differences->noise);
-    const auto uses = matches(text_, pattern("(A|B) uses #(\u00A0%)? of the CPU time of"));
-    EXPECT_EQ(uses.size(), std::abs(change) > std::max(std::log(1.05), stray) ? 1U : 0U);
-    for (const Names& m : uses) {
-      const double share = number_in(m[2]) / (m[3].empty() ? 1 : 100);
-      EXPECT_PRED2(near, share, std::exp(m[1] == "B" ? change : -change));
-    }
   }
 
   /// One number for one thing: what a tile's bar says stands in the headline.

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
@@ -154,6 +156,28 @@ TEST(Curves, LabelsNameOnlyWhatVariesAndCurvesKeepTheirSolver) {
   EXPECT_EQ(curves[2].label, "Bullet");
 }
 
+TEST(Curves, TwoTimeStepsAreTwoSetsOfCurvesManyAreHeldAtOne) {
+  const auto all = synthetic::time_steps("hang");
+  auto few = all;
+  std::erase_if(few, [](const Record& r) { return r.dt != 0.001 && r.dt != 0.002; });
+  const Slice both = hold(few, "dt", 1.0 / 64), one = hold(all, "dt", 1.0 / 64);
+  EXPECT_TRUE(std::isnan(both.value));
+  EXPECT_EQ(one.value, 1.0 / 64);
+  std::set<std::string> labels;
+  for (const Curve& c : make_curves(both.records, "iterations", "stretch.rms", "iterations"))
+    labels.insert(c.label);
+  EXPECT_EQ(labels, (std::set<std::string>{"Jakobsen 1.00\u00A0ms", "Jakobsen 2.00\u00A0ms",
+                                           "Bullet 1.00\u00A0ms", "Bullet 2.00\u00A0ms"}));
+  EXPECT_EQ(make_curves(one.records, "iterations", "stretch.rms", "iterations").size(), 2U);
+}
+
+TEST(Curves, SolversStandAsTheRecordsHaveThem) {
+  auto records = synthetic::iterations("hang");
+  EXPECT_EQ(make_curves(records, "iterations", "stretch.rms", "iterations")[0].solver, "jakobsen");
+  std::ranges::reverse(records);
+  EXPECT_EQ(make_curves(records, "iterations", "stretch.rms", "iterations")[0].solver, "bullet");
+}
+
 TEST(Curves, AnExplodedCaseNeverEntersTheParetoFront) {
   auto records = synthetic::iterations("hang");
   for (Record& r : records)
@@ -195,8 +219,12 @@ TEST(Format, NumbersReadAsPeopleWriteThem) {
   EXPECT_EQ(exact(0.1), "0.1");
   EXPECT_EQ(base64("Man"), "TWFu");
   EXPECT_EQ(base64("M"), "TQ==");
-  EXPECT_EQ(slug("../a b/ç"), "a-b");
-  EXPECT_EQ(slug("-o"), "o");
+  EXPECT_EQ(slug("a-b_c.2"), "a-b_c.2");
+  EXPECT_TRUE(slug("../a b/ç").starts_with("a-b-"));
+  EXPECT_TRUE(slug("-o").starts_with("o-"));
+  std::set<std::string> slugs;
+  for (const char* name : {"a-b", "a b", "a_b", "a+b", "a--b", "a-b-", "-a-b", "ç", "é", ""})
+    EXPECT_TRUE(slugs.insert(slug(name)).second) << name;
   EXPECT_EQ(slug(std::string(300, 'a') + "b").size(), 129U);
   EXPECT_NE(slug(std::string(300, 'a') + "b"), slug(std::string(300, 'a') + "c"));
   EXPECT_EQ(joined({"ball", "box", "hang"}), "ball, box and hang");

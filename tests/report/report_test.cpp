@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -90,7 +91,8 @@ TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   for (const char* part : {"meta", "solvers", "statuses", "metrics", "claims", "scenes", "charts",
                            "maps", "method", "missing", "cases"})
     EXPECT_TRUE(model.contains(part) && !model[part].empty()) << part;
-  for (const char* part : {"cost", "truths", "regressions", "films", "tables", "left_out"})
+  for (const char* part :
+       {"cost", "limits", "truths", "regressions", "films", "tables", "left_out"})
     EXPECT_FALSE(model.contains(part)) << part;
   EXPECT_EQ(model["missing"].size(), 4U);
   EXPECT_EQ(model["meta"]["title"], "Jakobsen and Bullet");
@@ -181,6 +183,48 @@ TEST(Model, AFilmSaysWhetherItShowsWhatTheSentenceIsAbout) {
   EXPECT_TRUE(claim("stretch").contains("film_note"));
 }
 
+TEST(Model, SolversStandInTheOrderOfTheStudy) {
+  ReportInput input = example();
+  for (StudyResult& study : input.studies) std::ranges::reverse(study.records);
+  const Json solvers = model_of(input)["solvers"];
+  EXPECT_EQ(solvers[0]["id"], "bullet");
+  EXPECT_EQ(solvers[0]["colour"], model_of(example())["solvers"][1]["colour"]);
+}
+
+TEST(Model, AFilmShowsTheScenesOwnQuantityFirstAndWhatStaysZeroLast) {
+  ReportInput input = example();
+  input.media = {{.scene = "ball", .clips = {{.type = "image/png", .bytes = "x", .panels = {}}}}};
+  input.media[0].duration = 2.5;
+  for (const auto& [value, y] : {std::pair{"penetration.max", 1e-10}, {"slip.distance", 0.1}})
+    input.series.push_back({"ball", "bullet", "Bullet", value, {0, 1, 2}, {0, y, y}});
+  const Json model = model_of(input);
+  std::vector<std::string> shown;
+  for (const Json& track : model["films"][0]["tracks"]) shown.push_back(track["metric"]);
+  EXPECT_EQ(shown, (std::vector<std::string>{"slip.distance", "stretch.rms", "penetration.max"}));
+}
+
+TEST(Model, CostTablesCompareWhatAllSolversOfASceneHave) {
+  int seen = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const ReportInput input = made_up::Maker(seed).input();
+    if (!input.bench) continue;
+    const Json model = model_of(input);
+    std::map<std::string, Json> cases;
+    for (const Json& one : model["cases"]) cases[one["key"]] = one;
+    for (const Json& table : model["tables"]) {
+      const std::string id = table["id"];
+      const bool rivals = table["columns"].size() > 2;  // of one solver alone all is compared
+      for (const Json& row : table["rows"])
+        for (const Json& cell : row) {
+          if (!id.starts_with("cost-levels-") || !rivals || !cell.contains("case")) continue;
+          EXPECT_NE(cases.at(cell["case"])["parameters"].value("tethers", "off"), "on") << id;
+          ++seen;
+        }
+    }
+  }
+  EXPECT_GT(seen, 20);
+}
+
 TEST(Model, PicturesThatWouldBurstThePageAreLeftOutAndSaidSo) {
   ReportInput input = example();
   const Clip clip{.type = "video/mp4", .bytes = std::string(4'000'000, 'x'), .panels = {}};
@@ -212,7 +256,7 @@ TEST(Rivals, OnlyWhatAnswersTheSameQuestionIsQuotedSideBySide) {
   for (const QuotedScene& quoted : rivals.scenes)
     EXPECT_EQ(std::ranges::count(quoted.cases, nullptr), 1) << "another grid is another question";
   for (const Rival& rival : rivals.all) EXPECT_EQ(rival.work.sweeps, 16);
-  EXPECT_EQ(rivals.work_text(), "16 sweeps");
+  EXPECT_EQ(rivals.work_text(), "1 × 16 (substeps × sweeps)");
 }
 
 TEST(Files, WhatCannotBeWrittenIsSaidBeforeAnythingIsDone) {

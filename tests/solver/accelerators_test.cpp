@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/model/index.hpp"
 #include "core/solver/constraints/hierarchy.hpp"
 #include "core/solver/constraints/tethers.hpp"
 #include "tests/support/cloths.hpp"
@@ -60,6 +61,19 @@ TEST(Tethers, HoldAHangingSheetAndLeaveASlackOneAlone) {
   scene.gravity.setZero();
   for (Vec3& x : scene.start.x) x *= 0.9;
   EXPECT_EQ(simulate(scene, listing("tethers=on"), 1).x, simulate(scene, listing(), 1).x);
+}
+
+TEST(Tethers, FollowPinsThatMove) {
+  for (const int nu : {5, 20}) {
+    Scene scene = hanging_sheet(nu, 9);
+    scene.pin_motions = {{.vertices = scene.pins, .motion = {.velocity = {0, 2, 1}}}};
+    const State state = simulate(scene, listing("iterations=20,order=coloured,tethers=on"), 64);
+    for (const Tether& t : make_tethers(scene)) {
+      const Vec3 line = state.x[to_index(t.vertex)] - state.x[to_index(t.pin)];
+      EXPECT_LT(line.norm(), 1.01 * t.length);
+    }
+    EXPECT_GT(state.x.back().y(), scene.start.x.back().y() + 1);
+  }
 }
 
 /// A net that is held by corners closer than it is wide shears: its vertices are farther from the

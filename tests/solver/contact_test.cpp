@@ -357,6 +357,25 @@ void expect_first_hit(const Shape_& shape) {
   EXPECT_GT(misses, 100);
 }
 
+/// What is quickly said to lie beyond the surface and its way does so, and most of what does is
+/// found.
+template <template <class> class SurfaceOf>
+void expect_beyond_is_outside(const auto& shape) {
+  const SurfaceOf<double> fast = surface_of(shape);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<> number(-1, 1);
+  int beyond = 0, outside = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 x(number(random), number(random), number(random));
+    const double way = std::abs(0.3 * number(random)), thickness = 0.01 * (k % 3);
+    const bool out = surface(shape, x).distance >= thickness + way;
+    const bool said = fast.beyond(vec3t<double>(x), way * way, thickness);
+    EXPECT_TRUE(out || !said);
+    beyond += said, outside += out;
+  }
+  EXPECT_GT(beyond, outside * 7 / 10);
+}
+
 TEST(Contact, ClosedFormsAgreeWithTheModelAndWithMarching) {
   const Ball ball{{0.1, -0.2, 0.05}, 0.4};
   Box box{{0.1, 0.1, -0.1}, {0.3, 0.2, 0.5}};
@@ -364,6 +383,8 @@ TEST(Contact, ClosedFormsAgreeWithTheModelAndWithMarching) {
   expect_model_surface<PlaneSurface>(Plane{Vec3(1, 2, 2) / 3, 0.2});
   expect_model_surface<BallSurface>(ball);
   expect_model_surface<BoxSurface>(box);
+  expect_beyond_is_outside<BallSurface>(ball);
+  expect_beyond_is_outside<BoxSurface>(box);
   expect_first_hit<BallSurface>(ball);
   expect_first_hit<BoxSurface>(box);
 }

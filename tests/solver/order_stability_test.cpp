@@ -126,7 +126,7 @@ Growth growth(const Scene& scene, const std::vector<Link>& links, double omega, 
 TEST(OrderStability, OvershootingSweepsPumpWavesThatTravelWithThem) {
   const auto of = [](const LinkChoice& families, Order order, double omega) {
     const Scene scene = hanging_sheet(32, 32, families);
-    return growth(scene, ordered(scene.links, scene.mesh, order, 1), omega, 128);
+    return growth(scene, ordered(scene, order, 1), omega, 128);
   };
   const LinkChoice threads{.structural = true}, all{true, true, true};
   for (const Order order : {Order::mesh, Order::reversed}) {
@@ -148,9 +148,7 @@ TEST(OrderStability, OvershootingSweepsPumpWavesThatTravelWithThem) {
 TEST(OrderStability, SmallMotionsOfTheFlatSheetDieOutInEveryOrder) {
   for (const int n : {6, 9}) {
     const Scene scene = hanging_sheet(n, n);
-    const auto of = [&](Order order) {
-      return modes(scene, ordered(scene.links, scene.mesh, order, 1));
-    };
+    const auto of = [&](Order order) { return modes(scene, ordered(scene, order, 1)); };
     for (const Order order : {Order::mesh, Order::reversed, Order::coloured, Order::random})
       EXPECT_LT(of(order).growth, 1) << n;
     // sequential orders turn corrections into travelling waves, coloured ones hardly do

@@ -85,8 +85,9 @@ TEST(Relaxation, JacobiKeepsMirrorSymmetryAndGaussSeidelDoesNot) {
 
 TEST(Relaxation, EveryOrderVisitsEveryLinkOnce) {
   const Scene scene = hanging_sheet(40, 37);
-  for (const Order order : {Order::mesh, Order::coloured, Order::reversed, Order::random}) {
-    std::vector<Link> links = ordered(scene.links, scene.mesh, order, 7);
+  for (const Order order :
+       {Order::mesh, Order::coloured, Order::reversed, Order::random, Order::jolt}) {
+    std::vector<Link> links = ordered(scene, order, 7);
     const auto key = [](const Link& l) { return std::tuple(l.a, l.b, l.rest); };
     std::vector<std::tuple<int, int, double>> got, want;
     for (const Link& l : links) got.push_back(key(l));

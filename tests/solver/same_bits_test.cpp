@@ -27,7 +27,9 @@ std::vector<Scene> scenes() {
                                         {65, 7, Lumping::area},
                                         {68, 5, Lumping::equal},
                                         {17, 40, Lumping::equal},
-                                        {24, 9, Lumping::area}}) {
+                                        {24, 9, Lumping::area},
+                                        {7, 66, Lumping::area},
+                                        {16, 21, Lumping::equal}}) {
     Scene scene = crumpled(hanging_sheet(nu, nv, {true, true, true}, lumping), 0.3 / nu);
     scene.damping = 0.3;
     all.push_back(std::move(scene));
@@ -83,6 +85,21 @@ TEST(SameBits, OfWindForEveryInstructionSetAndNumberOfThreads) {
   }
 }
 
+TEST(SameBits, OfTethersForEveryInstructionSet) {
+  for (const Scene& scene : scenes())
+    for (const char* projection : {"exact", "sqrt-free"})
+      for (const char* layout : {"auto", "batches"}) {
+        const std::string method = std::string("jakobsen:iterations=2,tethers=on,layout=") +
+                                   layout + ",projection=" + projection;
+        const State want = simulate(scene, method + ",simd=scalar", 20);
+        for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+          if (available(simd)) {
+            const std::string with = method + ",simd=" + std::string(to_string(simd));
+            EXPECT_TRUE(same_bits(simulate(scene, with, 20), want)) << with;
+          }
+      }
+}
+
 /// A plane, a ball and a turned box that rises and spins, where the sheet falls past them.
 std::vector<Collider> obstacles(const Scene& scene) {
   Vec3 middle = Vec3::Zero();
@@ -118,7 +135,7 @@ TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
 }
 
 TEST(SameBits, OfWindAndContactThatThreadsShare) {
-  Scene scene = crumpled(hanging_sheet(68, 64), 0.005);
+  Scene scene = crumpled(hanging_sheet(92, 90), 0.005);
   ASSERT_GE(scene.start.x.size(), ThreadPool::kWorthSharing);
   scene.colliders = obstacles(scene);
   scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.2};
@@ -137,7 +154,15 @@ State one_by_one(Scene scene, std::vector<Link> order, const std::string& more) 
 }
 
 TEST(SameBits, InterleavedSheetsAreTheGenericPathInTheirOrder) {
-  for (const auto& [nu, nv] : {std::pair{31, 33}, {65, 7}, {17, 40}, {24, 9}, {64, 9}, {130, 21}})
+  for (const auto& [nu, nv] : {std::pair{31, 33},
+                               {65, 7},
+                               {17, 40},
+                               {24, 9},
+                               {64, 9},
+                               {130, 21},
+                               {9, 24},
+                               {16, 65},
+                               {2, 17}})
     for (const LinkChoice& families :
          {LinkChoice{true, true, true}, LinkChoice{true, false, true}}) {
       Scene scene = crumpled(hanging_sheet(nu, nv, families), 0.3 / nu);
@@ -171,8 +196,10 @@ TEST(SameBits, BatchesAreTheGenericPathInTheirOrder) {
 }
 
 TEST(SameBits, NarrowAndIncompleteSheetsAreNotInterleaved) {
-  const Scene narrow = hanging_sheet(16, 40);
-  EXPECT_FALSE(regular_links(narrow.mesh, narrow.links));
+  for (const auto& [nu, nv] : {std::pair{16, 16}, {1, 40}}) {
+    const Scene narrow = hanging_sheet(nu, nv);
+    EXPECT_FALSE(regular_links(narrow.mesh, narrow.links));
+  }
   Scene cut = hanging_sheet(20, 20);
   EXPECT_TRUE(regular_links(cut.mesh, cut.links));
   cut.links.pop_back();

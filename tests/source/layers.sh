@@ -23,13 +23,14 @@ experiments/external     | ((core/(model|io)|experiments/(system|case|external))
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
 experiments/cluster      | (core/(model|io)|experiments/(system|case|study|cluster))/
 experiments/timing       | (core/model|experiments/(system|case|timing))/
-experiments/baseline     | (core/(model|io)|experiments/(system|case|study|baseline))/
+experiments/extremes     | (core/(model|io)|experiments/(system|case|study|extremes))/
+experiments/baseline     | (core/(model|io)|experiments/(system|case|study|truths|baseline))/
 experiments/require      | (core/(model|io)|experiments/(system|metrics|case|study|timing|require))/
 experiments/truths       | (core/(model|reference)|experiments/(metrics|case|truths))/
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/(model|io)|experiments/(system|case|render))/
-experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
+experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|extremes|truths|report))/
 experiments/bench        | (core/(model|io|solver|reference)|experiments/(system|timing|bench))/
 experiments/film         | (core/(model|io)|experiments/(system|case|render|report|film))/
 '
@@ -64,7 +65,7 @@ check() {
       [[ -n $file ]] || continue
       printf '%s:%s: %s may not include %s\n' "$file" "$line" "$folder" "${text#*include }"
       bad=1
-    done < <(grep -rnE --include='*.?pp' '^#include "' "$folder" | grep -vE "#include \"($allowed|[a-z_0-9]+\.inc)" || true)
+    done < <(grep -rnE --include='*.?pp' '^#include "' "$folder" | grep -vE "#include \"($allowed)" || true)
   done < <(sed 's/ | /|/' <<<"$rules" | sed 's/ *|/|/')
   while IFS= read -r rule; do
     [[ -n $rule ]] || continue
@@ -109,6 +110,7 @@ core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
 core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
 core/solver/contact/planted.cpp|"core/solver/constraints/relaxation.hpp"
 experiments/cluster/planted.cpp|"experiments/timing/bench.hpp"
+experiments/extremes/planted.cpp|"experiments/timing/bench.hpp"
 experiments/require/planted.cpp|"experiments/report/chart/format.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
 experiments/render/image/planted.cpp|"experiments/render/opengl/camera.hpp"

@@ -17,12 +17,12 @@ using Kind = Status::Kind;
 
 Trial outcome(std::function<Kind(double)> of, int* count = nullptr) {
   return [of, count](const std::vector<double>& values) {
-    std::vector<Status> statuses;
+    std::vector<Outcome> outcomes;
     for (const double value : values) {
-      statuses.push_back({of(value), "", -1, -1});
+      outcomes.push_back({{of(value), "", -1, -1}});
       if (count) ++*count;
     }
-    return statuses;
+    return outcomes;
   };
 }
 
@@ -53,7 +53,7 @@ TEST(Frontier, SaysWhenARangeHasNone) {
   EXPECT_EQ(find_frontier(range, outcome([](double) { return Kind::timeout; })).kind,
             Frontier::Kind::not_answered);
   const Frontier cut =
-      find_frontier(range, [](const std::vector<double>&) { return std::vector<Status>{}; });
+      find_frontier(range, [](const std::vector<double>&) { return std::vector<Outcome>{}; });
   EXPECT_EQ(cut.kind, Frontier::Kind::not_answered) << "interrupted";
 }
 
@@ -83,6 +83,34 @@ TEST(Frontier, WantOfTimeIsNoInstability) {
   EXPECT_NEAR(found.stable, 0.2, 0.004);
 }
 
+TEST(Frontier, ASymptomEndsWhatIsGoodThoughTheRunDoesNot) {
+  const Frontier found =
+      find_frontier({.from = 1, .to = 100}, [](const std::vector<double>& values) {
+        std::vector<Outcome> outcomes;
+        for (const double x : values)
+          outcomes.push_back({{x < 60 ? Kind::ok : Kind::unsupported, "", -1, -1},
+                              x < 20   ? ""
+                              : x < 60 ? "tunnels"
+                                       : "refuses"});
+        return outcomes;
+      });
+  EXPECT_EQ(found.kind, Frontier::Kind::bracketed);
+  EXPECT_NEAR(found.stable, 20, 0.2);
+  EXPECT_EQ(found.at(found.unstable)->symptom, "tunnels");
+}
+
+TEST(Frontier, AParameterIsSetWhereItStands) {
+  const auto set = [](std::string solver) {
+    set_parameter(solver, "omega", "2");
+    return solver;
+  };
+  EXPECT_EQ(set("jakobsen"), "jakobsen:omega=2");
+  EXPECT_EQ(set("jakobsen:omega=1.5"), "jakobsen:omega=2");
+  EXPECT_EQ(set("jakobsen:iterations=2,omega=1,substeps=3"),
+            "jakobsen:iterations=2,omega=2,substeps=3");
+  EXPECT_EQ(set("external:cmd='a,omega=1'"), "external:cmd='a,omega=1',omega=2");
+}
+
 TEST(Frontier, QuestionsBecomeCases) {
   const CaseSpec base{"chain", {}, "jakobsen:iterations=2"};
   EXPECT_EQ((FrontierQuestion{base, "dt", {}}.at(0.01).overrides.back()), "time.dt=\"0.01\"");
@@ -90,6 +118,15 @@ TEST(Frontier, QuestionsBecomeCases) {
             "jakobsen:iterations=2,omega=1.5");
   EXPECT_EQ((FrontierQuestion{base, "wind.strength", {}}.at(3).overrides.back()),
             "wind.strength=3");
+  EXPECT_EQ((FrontierQuestion{base, "cloth.size.0|cloth.size.1", {}}.at(3).overrides),
+            (std::vector<std::string>{"cloth.size.0=3", "cloth.size.1=3"}));
+  EXPECT_EQ((FrontierQuestion{base, "iterations", {}, Direction::down_in_whole_numbers}
+                 .at(1 / 7.2)
+                 .solver),
+            "jakobsen:iterations=7");
+  EXPECT_EQ(
+      (FrontierQuestion{base, "wind.strength", {}, Direction::down}.at(1 / 8.0).overrides.back()),
+      "wind.strength=8");
   EXPECT_EQ(range_of(base, "omega", 0.5, {}).from, 0.5);
   EXPECT_EQ(range_of(base, "omega", {}, {}).to, 2);
   EXPECT_TRUE(range_of(base, "substeps", 1, 9).whole);
@@ -152,15 +189,15 @@ Frontier measured(const Scene& scene, const std::string& solver, double from, do
   return find_frontier(
       {.from = from, .to = to, .tolerance = 2e-3, .coarse = 5},
       [&](const std::vector<double>& values) {
-        std::vector<Status> statuses;
+        std::vector<Outcome> outcomes;
         for (const double dt : values) {
           Scene tried = scene;
           tried.dt = dt;
           tried.steps = 3000;
-          statuses.push_back(
-              run_case(tried, parse_solver(solver), {.measure = false}).record.status);
+          outcomes.push_back(
+              {run_case(tried, parse_solver(solver), {.measure = false}).record.status});
         }
-        return statuses;
+        return outcomes;
       });
 }
 

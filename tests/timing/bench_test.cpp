@@ -2,9 +2,11 @@
 #include "experiments/timing/bench.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <cstdlib>
+#include <thread>
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
@@ -107,6 +109,22 @@ TEST(BenchFiles, HostsAndBuildsStayApart) {
   EXPECT_EQ(back.build, mine.build);
   EXPECT_TRUE(bench_files(results, "scaling").empty());
   std::filesystem::remove_all(results);
+}
+
+TEST(BenchFiles, AProcessStaysOnTheCoresThatItIsPinnedTo) {
+  std::thread([] {  // a thread's own set of cores
+    cpu_set_t before, after;
+    ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+    pin(CPU_COUNT(&before) + 1);
+    ASSERT_EQ(sched_getaffinity(0, sizeof after, &after), 0);
+    EXPECT_TRUE(CPU_EQUAL(&before, &after)) << "it has fewer";
+    pin(1);
+    ASSERT_EQ(sched_getaffinity(0, sizeof after, &after), 0);
+    EXPECT_EQ(CPU_COUNT(&after), 1);
+    CPU_AND(&before, &before, &after);
+    EXPECT_EQ(CPU_COUNT(&before), 1) << "one of its own";
+  })
+      .join();
 }
 
 TEST(BenchFiles, AJobOnSeveralNodesOrASharedOneDoesNotTime) {

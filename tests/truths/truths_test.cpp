@@ -1,4 +1,4 @@
-// The catalogue of truths as a whole, how findings are judged, and the references that are kept.
+// The list of truths as a whole, how findings are judged, and the references that are kept.
 #include <gtest/gtest.h>
 
 #include <cmath>

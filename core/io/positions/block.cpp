@@ -23,12 +23,13 @@ void OutputFile::write_at(std::uint64_t offset, std::string_view bytes) {
 }
 
 std::string first_bytes(const std::filesystem::path& path, std::size_t most) {
-  std::ifstream in(path, std::ios::binary);
   std::error_code error;
-  if (!in || !std::filesystem::is_regular_file(path, error))
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw InputError({{path.string(), 0, 0, "is no regular file"}});  // a pipe would be waited for
+  std::ifstream in(path, std::ios::binary);
+  if (!in)
     throw InputError(
-        {{path.string(), 0, 0,
-          in ? "is no regular file" : std::string("cannot be read: ") + std::strerror(errno)}});
+        {{path.string(), 0, 0, std::string("cannot be read: ") + std::strerror(errno)}});
   std::string bytes(most, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(most));
   bytes.resize(static_cast<std::size_t>(in.gcount()));

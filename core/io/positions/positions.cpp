@@ -42,8 +42,6 @@ const Format& format_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-bool names_positions(const std::filesystem::path& path) { return find_format(path) != nullptr; }
-
 std::unique_ptr<PositionReader> open_positions(const std::filesystem::path& path) {
   return format_of(path).open(path);
 }

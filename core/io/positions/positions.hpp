@@ -45,9 +45,6 @@ class PositionReader {
   PositionsHeader header_;
 };
 
-/// Whether a name ends in one of the extensions above.
-bool names_positions(const std::filesystem::path&);
-
 /// Throws InputError with file and line or byte: unreadable, another extension, a malformed header,
 /// counts that do not agree with the size of the file, a missing frame of a sequence.
 std::unique_ptr<PositionReader> open_positions(const std::filesystem::path&);

@@ -115,12 +115,15 @@ class SheetPass final : public Pass<Real> {
   void apply(Particles<Real>& p, double, double) override {
     const RowBlocks blocks = sheet_.blocks();
     for (const int parity : {0, 1})
-      pool_.run(blocks.count(parity), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t block = begin; block < end; ++block) {
-          const auto [from, to] = blocks.of(parity, block);
-          project_(sheet_.sweep(), p.x.data(), from, to);
-        }
-      });
+      pool_.run(
+          blocks.count(parity),
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t block = begin; block < end; ++block) {
+              const auto [from, to] = blocks.of(parity, block);
+              project_(sheet_.sweep(), p.x.data(), from, to);
+            }
+          },
+          p.size() >= ThreadPool::kWorthSharing);
   }
 
   std::vector<PassCost> cost() const override { return costs_; }
@@ -148,10 +151,14 @@ class BatchPass final : public Pass<Real> {
 
   void apply(Particles<Real>& p, double, double) override {
     for (std::size_t phase = 0; phase < batches_.phases(); ++phase)
-      pool_.run(batches_.tiles(phase), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t tile = begin; tile < end; ++tile)
-          for (const BatchRun<Real>& run : batches_.runs(phase, tile)) project_(run, p.x.data());
-      });
+      pool_.run(
+          batches_.tiles(phase),
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t tile = begin; tile < end; ++tile)
+              for (const BatchRun<Real>& run : batches_.runs(phase, tile))
+                project_(run, p.x.data());
+          },
+          p.size() >= ThreadPool::kWorthSharing);
   }
 
   std::vector<PassCost> cost() const override { return costs_; }
@@ -169,7 +176,8 @@ std::optional<RegularLinks> regular(const Scene& scene, LinkLayout layout) {
   auto links = regular_links(scene.mesh, scene.links);
   if (!links && layout == LinkLayout::interleaved)
     throw InputError(
-        "jakobsen: layout=interleaved needs a regular sheet of at least 17 columns with all links "
+        "jakobsen: layout=interleaved needs a regular sheet of at least 17 columns or rows with "
+        "all links "
         "of a direction present and of one length; layout=batches takes any mesh");
   return links;
 }
@@ -177,7 +185,7 @@ std::optional<RegularLinks> regular(const Scene& scene, LinkLayout layout) {
 template <class Real, Projection kind>
 std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const double> w,
                                             const RelaxationSettings& settings) {
-  const std::vector<Link> links = ordered(scene.links, scene.mesh, settings.order, settings.seed);
+  const std::vector<Link> links = ordered(scene, settings.order, settings.seed);
   auto constraints = make_distance_constraints<Real>(links, w, settings.omega);
   auto costs = family_costs(links, w, constraints.size() * sizeof constraints[0]);
   if (settings.jacobi)
@@ -195,7 +203,7 @@ std::vector<std::unique_ptr<Pass<Real>>> accelerators(const Scene& scene, std::s
       passes.push_back(std::make_unique<HierarchyPass<Real, kind>>(std::move(levels), w.size()));
   if (settings.tethers)
     if (auto tethers = make_tethers(scene); !tethers.empty())
-      passes.push_back(std::make_unique<TetherPass<Real, kind>>(std::move(tethers)));
+      passes.push_back(std::make_unique<TetherPass<Real>>(scene, tethers, kind, settings.simd));
   return passes;
 }
 

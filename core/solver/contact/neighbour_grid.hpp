@@ -57,7 +57,7 @@ class NeighbourGrid {
   /// Calls visit(a, b) once for every pair less than `reach` [m], > 0, apart.
   template <class Visit>
   void pairs(const Points<Real>& x, Real reach, const Visit& visit) {
-    moving_pairs(x, x, reach, reach, visit);
+    find(x, nullptr, reach, reach, visit);
   }
 
   /// The same for those less than `within` and their own way since `previous` apart, together at
@@ -65,6 +65,19 @@ class NeighbourGrid {
   template <class Visit>
   void moving_pairs(const Points<Real>& x, const Points<Real>& previous, Real within, Real reach,
                     const Visit& visit) {
+    find(x, &previous, within, reach, visit);
+  }
+
+ private:
+  static constexpr std::size_t kAtOnce = 1024;
+  using Coordinates = std::array<std::vector<Real>, 3>;
+
+  static constexpr Real kCells = 1000000;
+
+  /// previous: null if none has moved.
+  template <class Visit>
+  void find(const Points<Real>& x, const Points<Real>* previous, Real within, Real reach,
+            const Visit& visit) {
     x.read([&](const auto& at) { sort(x, previous, reach, at); });
     const auto point_to = [](const Coordinates& c, const Real*(&to)[3]) {
       for (std::size_t axis = 0; axis < 3; ++axis) to[axis] = c[axis].data();
@@ -77,6 +90,7 @@ class NeighbourGrid {
                                  .layer = layer_,
                                  .within = within,
                                  .ignored = ignored_,
+                                 .moving = previous != nullptr,
                                  .blocks = blocks_.data(),
                                  .found = found_.data(),
                                  .room = found_.size()};
@@ -87,12 +101,6 @@ class NeighbourGrid {
         visit(particles_[found_[f].a], particles_[found_[f].b]);
     }
   }
-
- private:
-  static constexpr std::size_t kAtOnce = 1024;
-  using Coordinates = std::array<std::vector<Real>, 3>;
-
-  static constexpr Real kCells = 1000000;
 
   [[gnu::always_inline]] static void set(Coordinates& to, std::size_t k, const Vec4T<Real>& p) {
     to[0][k] = p.v[0], to[1][k] = p.v[1], to[2][k] = p.v[2];
@@ -127,7 +135,7 @@ class NeighbourGrid {
   }
 
   template <class At>
-  void sort(const Points<Real>& x, const Points<Real>& previous, Real reach, const At& at) {
+  void sort(const Points<Real>& x, const Points<Real>* previous, Real reach, const At& at) {
     fit_grid(x, reach, at);
     std::uint32_t* const starts = starts_.data();
     std::fill(starts_.begin(), starts_.end(), 0);
@@ -138,7 +146,8 @@ class NeighbourGrid {
       const std::uint32_t bucket = buckets_[i], k = --starts[bucket];
       particles_[k] = static_cast<std::uint32_t>(i), sorted_buckets_[k] = bucket;
       const Vec4T<Real> p = at(x, i);
-      set(now_, k, p), set(moved_, k, p - at(previous, i));
+      set(now_, k, p);
+      if (previous) set(moved_, k, p - at(*previous, i));
       if (!rest_.empty()) set(at_rest_, k, rest_[i]);
     }
   }

@@ -7,6 +7,7 @@
 
 #include "core/model/scene.hpp"
 #include "core/solver/contact/neighbour_grid.hpp"
+#include "core/solver/contact/projector.hpp"
 #include "core/solver/layout/order.hpp"
 #include "core/solver/layout/particles.hpp"
 
@@ -42,11 +43,13 @@ class SelfCollidePass final : public Pass<Real> {
 
   void begin(Particles<Real>& p, double, double) override {
     if (!placed_) place(p);
-    if (moved_more(p, p.previous, diameter_ / 8)) {
-      const Real motion = largest_motion(p, p.previous);
-      stride_ == 1 ? search_step<true>(p, motion) : search_step<false>(p, motion);
-    } else if (!searched_ || moved_more(p, searched_at_, skin_ / 4)) {
-      search_steps(p, largest_motion(p, p.previous));
+    const auto [step, search] =
+        kernels_.motion_boxes(span_of(p, p.x), searched_ ? searched_at_.data() : p.previous.data());
+    const auto motion = [&](const auto& box) { return largest_motion(p, p.previous, box); };
+    if (moved_more(p, p.previous, step, diameter_ / 8)) {
+      stride_ == 1 ? search_step<true>(p, motion(step)) : search_step<false>(p, motion(step));
+    } else if (!searched_ || moved_more(p, searched_at_, search, skin_ / 4)) {
+      search_steps(p, motion(step));
       searched_at_ = p.x, searched_ = true;
     }
   }
@@ -170,25 +173,27 @@ class SelfCollidePass final : public Pass<Real> {
             wa == wb ? Real(0.5) : wa / (wa + wb)};
   }
 
-  static ParticleSpan<Real> since(const Points<Real>& then, Particles<Real>& p) {
-    return {p.x.data(), then.data(), p.layout->sheet(), p.size()};
+  /// Square of the largest motion of a particle against the cloth as a whole since it was at `then`
+  /// [m^2]: no two move by more than twice that against each other. The cloth moves as the middle
+  /// of the box of all motions.
+  Real largest_motion2(Particles<Real>& p, const Points<Real>& then,
+                       const MotionBox<Real>& box) const {
+    return kernels_.largest_motion2({p.x.data(), then.data(), p.layout->sheet(), p.size()},
+                                    Real(0.5) * (box.least + box.most));
+  }
+  Real largest_motion(Particles<Real>& p, const Points<Real>& then,
+                      const MotionBox<Real>& box) const {
+    return std::sqrt(largest_motion2(p, then, box));
   }
 
-  /// The largest motion of a particle against the cloth as a whole since it was at `then` [m]: no
-  /// two move by more than twice that against each other. The cloth moves as the middle of all
-  /// motions.
-  Real largest_motion(Particles<Real>& p, const Points<Real>& then) const {
-    const auto [least, most] = kernels_.motion_box(since(then, p));
-    return std::sqrt(kernels_.largest_motion2(since(then, p), Real(0.5) * (least + most)));
-  }
-
-  /// Whether that is at least `distance`. Mostly it lies far below, as half the diagonal of a box
-  /// around all motions says.
-  bool moved_more(Particles<Real>& p, const Points<Real>& then, Real distance) const {
-    const auto [least, most] = kernels_.motion_box(since(then, p));
-    if (norm(most - least) * Real(0.5001) < distance) return false;
-    const Vec3T<Real> middle = Real(0.5) * (least + most);
-    return kernels_.largest_motion2(since(then, p), middle) >= distance * distance;
+  /// Whether that is at least `distance`. Mostly the box alone says so: it is at most half the
+  /// diagonal and at least half the longest side.
+  bool moved_more(Particles<Real>& p, const Points<Real>& then, const MotionBox<Real>& box,
+                  Real distance) const {
+    const Vec3T<Real> sides = box.most - box.least;
+    if (norm(sides) * Real(0.5001) < distance) return false;
+    if (greater(greater(sides.x, sides.y), sides.z) * Real(0.4999) >= distance) return true;
+    return largest_motion2(p, then, box) >= distance * distance;
   }
 
   void find_close_at_rest(const Scene& scene) {

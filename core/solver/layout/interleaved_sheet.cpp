@@ -22,11 +22,12 @@ constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::str
                                                               {2, 0, Family::bend, 0},
                                                               {0, 2, Family::bend, 0}}};
 
-/// One vector more than a row needs: rows of a power of two would share cache sets.
-SheetRows rows_of(const Grid& grid) {
-  const int lanes = grid.nu >= 4 * kWide ? kWide : kNarrow;
-  const int vectors = (grid.nu + lanes - 1) / lanes;
-  return {grid.nv, grid.nu, lanes, vectors, to_index((vectors + 1) * 3 * lanes)};
+/// One vector more than a row needs where neighbouring rows would share cache sets.
+SheetRows rows_of(const SheetSides& grid) {
+  const int lanes = grid.columns >= 4 * kWide ? kWide : kNarrow;
+  const int vectors = (grid.columns + lanes - 1) / lanes;
+  const int padding = vectors % 32 == 0 ? 1 : 0;
+  return {grid.rows, grid.columns, lanes, vectors, to_index((vectors + padding) * 3 * lanes)};
 }
 
 }  // namespace
@@ -41,17 +42,28 @@ RowBlocks::Rows RowBlocks::of(int parity, std::size_t block) const {
   return {begin, std::min(begin + kBlockRows, rows)};
 }
 
+/// A side that is long enough lies along the lanes, if there are two the first.
+std::optional<SheetSides> sides_of(const Grid& grid) {
+  if (grid.nu >= kFewestColumns) return SheetSides{grid.nu, grid.nv, false};
+  if (grid.nv >= kFewestColumns && grid.nu >= 2) return SheetSides{grid.nv, grid.nu, true};
+  return {};
+}
+
 std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link> links) {
-  if (!mesh.grid || mesh.grid->nu < kFewestColumns) return {};
-  const Grid grid = *mesh.grid;
-  if (mesh.triangles != make_sheet({.nu = grid.nu, .nv = grid.nv}).triangles) return {};
+  if (!mesh.grid) return {};
+  const auto sides = sides_of(*mesh.grid);
+  if (!sides) return {};
+  const SheetSides grid = *sides;
+  if (mesh.triangles != make_sheet({.nu = mesh.grid->nu, .nv = mesh.grid->nv}).triangles) return {};
   RegularLinks regular{grid, {}};
   std::array<std::vector<bool>, kDirections.size()> seen;
   std::array<std::size_t, kDirections.size()> count{};
   std::array<double, kDirections.size()> rest{};
   for (const Link& link : links) {
-    const int from = std::min(link.a, link.b), to = std::max(link.a, link.b);
-    const int columns = to % grid.nu - from % grid.nu, rows = to / grid.nu - from / grid.nu;
+    const bool forward = std::pair(grid.row(link.a), grid.column(link.a)) <
+                         std::pair(grid.row(link.b), grid.column(link.b));
+    const int from = forward ? link.a : link.b, to = forward ? link.b : link.a;
+    const int columns = grid.column(to) - grid.column(from), rows = grid.row(to) - grid.row(from);
     std::size_t d = 0;
     while (d < kDirections.size() &&
            (kDirections[d].columns != columns || kDirections[d].rows != rows ||
@@ -66,7 +78,8 @@ std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link
   for (std::size_t d = 0; d < kDirections.size(); ++d) {
     if (count[d] == 0) continue;
     RegularLinks::Direction direction = kDirections[d];
-    const int complete = (grid.nu - std::abs(direction.columns)) * (grid.nv - direction.rows);
+    const int complete =
+        (grid.columns - std::abs(direction.columns)) * (grid.rows - direction.rows);
     if (count[d] != to_index(complete)) return {};
     direction.rest = rest[d];
     regular.directions.push_back(direction);
@@ -75,15 +88,14 @@ std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link
   return regular;
 }
 
-Layout interleaved_layout(const Grid& grid) {
+Layout interleaved_layout(const SheetSides& grid) {
   const SheetRows sheet = rows_of(grid);
   const auto [rows, columns, lanes, vectors, stride] = sheet;
-  std::vector<std::uint32_t> slots;
-  slots.reserve(to_index(grid.size()));
+  std::vector<std::uint32_t> slots(to_index(grid.size()));
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i)
-      slots.push_back(static_cast<std::uint32_t>(to_index(j) * stride +
-                                                 to_index(i % vectors * 3 * lanes + i / vectors)));
+      slots[to_index(grid.index(i, j))] = static_cast<std::uint32_t>(
+          to_index(j) * stride + to_index(i % vectors * 3 * lanes + i / vectors));
   return Layout::interleaved(std::move(slots), sheet);
 }
 
@@ -91,7 +103,7 @@ template <class Real>
 InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<const double> w,
                                          double omega)
     : links_(links) {
-  const Grid& grid = links.grid;
+  const SheetSides& grid = links.grid;
   const SheetRows in_memory = rows_of(grid);
   const int lanes = sweep_.lanes = in_memory.lanes;
   sweep_.vectors = in_memory.vectors;
@@ -105,7 +117,7 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
     to = {.left = columns < 0 ? rows : 0,
           .right = columns < 0 ? 0 : rows,
           .columns = std::abs(columns),
-          .rows = grid.nv - rows,
+          .rows = grid.rows - rows,
           .rest = static_cast<Real>(std::max(rest, kTinyLength)),
           .equal_share = 0,
           .row = nullptr};
@@ -118,7 +130,7 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
     };
     for (int j = 0; j < to.rows; ++j) {
       std::vector<Real> row(to_index(2 * lanes * sweep_.vectors), Real(0));
-      for (int i = 0; i + to.columns < grid.nu; ++i) {
+      for (int i = 0; i + to.columns < grid.columns; ++i) {
         const int k = i % sweep_.vectors, lane = i / sweep_.vectors;
         const Real left = shares(i, j, true), right = shares(i, j, false);
         row[to_index(2 * lanes * k + lane)] = left;
@@ -156,7 +168,7 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
 
 template <class Real>
 std::vector<Link> InterleavedSheet<Real>::order() const {
-  const Grid& grid = links_.grid;
+  const SheetSides& grid = links_.grid;
   std::vector<Link> links;
   for (const int parity : {0, 1})
     for (std::size_t block = 0; block < blocks().count(parity); ++block)
@@ -166,7 +178,7 @@ std::vector<Link> InterleavedSheet<Real>::order() const {
                        links_.directions[static_cast<std::size_t>(&d - sweep_.direction)].family;
                    visit_vectors(sweep_, d, [&](int k) {
                      for (int lane = 0; lane < sweep_.lanes; ++lane)
-                       if (const int i = lane * sweep_.vectors + k; i + d.columns < grid.nu)
+                       if (const int i = lane * sweep_.vectors + k; i + d.columns < grid.columns)
                          links.push_back({grid.index(i, j + d.left),
                                           grid.index(i + d.columns, j + d.right),
                                           static_cast<double>(d.rest), family});

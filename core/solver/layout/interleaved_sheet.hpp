@@ -12,6 +12,17 @@
 
 namespace taut {
 
+/// A grid as it is laid out: its columns are cut into strips. `across`: they are the grid's rows.
+struct SheetSides {
+  int columns = 0, rows = 0;
+  bool across = false;
+  int size() const { return columns * rows; }
+  /// The vertex in column i of row j, and back.
+  int index(int i, int j) const { return across ? i * rows + j : j * columns + i; }
+  int column(int v) const { return across ? v / rows : v % columns; }
+  int row(int v) const { return across ? v % rows : v / columns; }
+};
+
 /// The links of a regular sheet: every link of the directions that are present, of one length each.
 struct RegularLinks {
   struct Direction {
@@ -19,13 +30,13 @@ struct RegularLinks {
     Family family = Family::structural;
     double rest = 0;  ///< m
   };
-  Grid grid;
+  SheetSides grid;
   std::vector<Direction> directions;  ///< in the order of the sweep
 };
 
 /// What `links` are if an interleaved sheet can hold them: all six directions or some, each
-/// complete, without duplicates, of one length to 1e-9; at least 17 columns, below which lanes
-/// would overlap; and the faces are those of make_sheet.
+/// complete, without duplicates, of one length to 1e-9; at least 17 columns, or else 17 rows and 2
+/// columns, below which lanes would overlap; and the faces are those of make_sheet.
 std::optional<RegularLinks> regular_links(const Mesh&, std::span<const Link>);
 
 /// Blocks of rows, first the even ones, then the odd ones: those of one parity share no row, even
@@ -41,7 +52,7 @@ struct RowBlocks {
 
 /// Where an interleaved sheet (simd/kernels.hpp) keeps each vertex. Vertices past the last column
 /// are padding that falls freely and that nobody looks at.
-Layout interleaved_layout(const Grid&);
+Layout interleaved_layout(const SheetSides&);
 
 /// A Gauss-Seidel sweep over an interleaved sheet, block after block; the directions one after the
 /// other within a block.
@@ -53,7 +64,7 @@ class InterleavedSheet {
   InterleavedSheet(const InterleavedSheet&) = delete;  // it points into itself
 
   const SheetSweep<Real>& sweep() const { return sweep_; }
-  RowBlocks blocks() const { return {links_.grid.nv}; }
+  RowBlocks blocks() const { return {links_.grid.rows}; }
 
   /// The links in the order in which the sweep visits them.
   std::vector<Link> order() const;

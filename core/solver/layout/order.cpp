@@ -118,10 +118,10 @@ std::vector<Link> flatten(const std::vector<Phase>& phases) {
   return links;
 }
 
-std::vector<Link> ordered(std::span<const Link> links, const Mesh& mesh, Order order,
-                          std::uint32_t seed) {
-  if (order == Order::coloured) return flatten(colour(links, mesh));
-  std::vector<Link> list(links.begin(), links.end());
+std::vector<Link> ordered(const Scene& scene, Order order, std::uint32_t seed) {
+  if (order == Order::coloured) return flatten(colour(scene.links, scene.mesh));
+  if (order == Order::jolt) return jolt_order(scene);
+  std::vector<Link> list = scene.links;
   if (order == Order::reversed) std::reverse(list.begin(), list.end());
   if (order == Order::random) {
     // Fisher-Yates by hand: std::shuffle differs between standard libraries

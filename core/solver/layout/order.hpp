@@ -51,7 +51,8 @@ enum class Order {
   mesh,      ///< as the scene lists them
   coloured,  ///< independent groups, tile by tile
   reversed,  ///< the scene's list backwards
-  random     ///< shuffled once, by seed
+  random,    ///< shuffled once, by seed
+  jolt       ///< as Jolt Physics' soft body sorts its edges
 };
 
 /// Links that share no vertex, so that their order among themselves does not matter.
@@ -71,7 +72,10 @@ std::vector<std::uint32_t> tile_ranks(std::span<const Link>, const Mesh&);
 /// All links, one after the other.
 std::vector<Link> flatten(const std::vector<Phase>&);
 
-/// The links in the given order; seed is for Order::random.
-std::vector<Link> ordered(std::span<const Link>, const Mesh&, Order, std::uint32_t seed);
+/// As Jolt Physics 5.3 to 5.5 sorts a soft body's edges that start at scene.start (Optimize()).
+std::vector<Link> jolt_order(const Scene&);
+
+/// The scene's links in the given order; seed is for Order::random.
+std::vector<Link> ordered(const Scene&, Order, std::uint32_t seed);
 
 }  // namespace taut

@@ -33,24 +33,29 @@ struct Contact {
     return surface.clear(x, T(thickness));
   }
 
-  /// Moves x, where it is `present`, out to the nearest point at the scene's thickness, then
-  /// against its slip since `previous`. Says where it did: not where x was outside.
-  template <class T, class Mask>
-  [[gnu::always_inline]] Mask project(Vec3T<T>& x, const Vec3T<T>& previous,
-                                      const Mask& present) const {
-    Mask inside = present && !clear(x);
-    if (any(inside)) inside = push(x, motion(previous), surface.nearest(x), inside);
-    return inside;
+  /// Where x may be inside; continuous: or has come from `previous` through the surface. Quick.
+  template <bool continuous, class T>
+  [[gnu::always_inline]] auto near(const Vec3T<T>& x, const Vec3T<T>& previous) const {
+    if constexpr (continuous)
+      return !surface.beyond(x, squared_norm(x - motion(previous)), T(thickness));
+    else
+      return !clear(x);
   }
 
-  /// The same, but back to the side from which the particle came in, even if it has passed through
-  /// since.
+  /// Moves x, where it is `inside`, out to the nearest point at the scene's thickness, then against
+  /// its slip since `previous`. Says where it did: not where x was outside.
+  template <class T, class Mask>
+  [[gnu::always_inline]] Mask project(Vec3T<T>& x, const Vec3T<T>& previous,
+                                      const Mask& inside) const {
+    return push(x, motion(previous), surface.nearest(x), inside);
+  }
+
+  /// The same where it is `near`, but back to the side from which the particle came in, even if it
+  /// has passed through since.
   template <class T, class Mask>
   [[gnu::always_inline]] Mask project_continuous(Vec3T<T>& x, const Vec3T<T>& previous,
-                                                 const Mask& present) const {
+                                                 Mask near) const {
     const Vec3T<T> from = motion(previous);
-    Mask near = present && !surface.beyond(x, squared_norm(x - from), T(thickness));
-    if (!any(near)) return near;
     const auto passing = near && !surface.misses(from, x);
     near = near && !clear(x);
     if (!any(near || passing)) return near;

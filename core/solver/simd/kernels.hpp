@@ -135,10 +135,21 @@ struct CollideKernels {
   Collide<Real, BoxSurface> box, box_continuous;
 };
 
-/// Between which bounds the motions x - previous of all particles lie [m].
+/// One tether of each particle, in the particles' layout: its pin and, where their x are, its
+/// length [m]; 0: none.
+template <class Real>
+struct TetherTable {
+  const Real *pin, *length;
+};
+
+/// Between which bounds the motions of all particles lie [m].
 template <class Real>
 struct MotionBox {
   Vec3T<Real> least, most;
+};
+template <class Real>
+struct MotionBoxes {
+  MotionBox<Real> since_previous, since_then;
 };
 
 /// A search looks at up to so many particles at once.
@@ -164,6 +175,7 @@ struct NeighbourSearch {
   std::uint32_t particles, bucket_count;  ///< the latter a power of two
   std::uint32_t row, layer;               ///< buckets from a cell to the next in y and in z
   Real within, ignored;                   ///< m
+  bool moving;                            ///< false: none has moved, and `moved` is not read
   SearchBlock* blocks;                    ///< scratch: [particles + 10]
   CandidatePair* found;                   ///< [room], at least particles + 11 kSearchLanes
   std::size_t room;
@@ -190,7 +202,11 @@ struct Kernels {
   void (*narrow_wind)(const WindStep<Real>&, const SheetFaces<Real>&, int begin, int end);
   void (*wide_wind)(const WindStep<Real>&, const SheetFaces<Real>&, int begin, int end);
   void (*wind_on_faces)(const WindStep<Real>&, std::span<const FaceBatch<Real>>);
-  MotionBox<Real> (*motion_box)(const ParticleSpan<Real>&);
+  /// Pulls particles that are farther than their length from their pin to it, table after table; by
+  /// Projection.
+  void (*tethers[2])(const ParticleSpan<Real>&, std::span<const TetherTable<Real>>);
+  /// Of all particles since the span's `previous` and since they were at `then`, laid out alike.
+  MotionBoxes<Real> (*motion_boxes)(const ParticleSpan<Real>&, const Real* then);
   /// Square of the largest motion against `middle` [m^2].
   Real (*largest_motion2)(const ParticleSpan<Real>&, const Vec3T<Real>& middle);
   FindPairs<Real> find_pairs;

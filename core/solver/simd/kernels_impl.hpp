@@ -16,20 +16,27 @@
 
 namespace taut {
 
-template <class T, class Real>
-void verlet(const VerletStep<Real>& s, std::size_t begin, std::size_t end) {
+/// s: a copy, which no store changes.
+template <class T, bool forces, class Real>
+[[gnu::always_inline]] inline void integrate(const VerletStep<Real> s, std::size_t begin,
+                                             std::size_t end) {
   const T keep(s.keep), dt2(s.dt2);
   for (std::size_t i = begin; i < end; i += kGrain)
+#pragma GCC unroll 12
     for (std::size_t l = 0; l < kGrain; l += kWidth<T>) {
       const T x = load<T>(s.x + i + l);
       T moved = x + (keep * (x - load<T>(s.previous + i + l)) + load<T>(s.g + l));
-      if (s.a) {
+      if constexpr (forces) {
         moved = moved + load<T>(s.a + i + l) * dt2;
         store(s.a + i + l, T(0.0));
       }
       store(s.x + i + l, moved);
       store(s.previous + i + l, x);
     }
+}
+template <class T, class Real>
+void verlet(const VerletStep<Real>& s, std::size_t begin, std::size_t end) {
+  s.a ? integrate<T, true>(s, begin, end) : integrate<T, false>(s, begin, end);
 }
 
 /// All links between two vectors of an interleaved sheet.
@@ -196,8 +203,8 @@ void load_and_store(const BatchRun<Real>& run, Real* x) {
 /// Calls f(place, present) for kWidth<T> particles after the other, of the parts [begin, end):
 /// `present` leaves out padding.
 template <class T, int lanes, class Real, class F>
-[[gnu::always_inline]] inline void visit_particles(const ParticleSpan<Real>& span,
-                                                   std::size_t begin, std::size_t end, const F& f) {
+[[gnu::always_inline]] inline void visit_particles(const ParticleSpan<Real> span, std::size_t begin,
+                                                   std::size_t end, const F& f) {
   static constexpr Real kNumbers[kWide] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   const auto from = [](std::size_t first, int l) __attribute__((always_inline)) {
     return T(static_cast<Real>(first)) + load<T>(kNumbers + l);
@@ -230,8 +237,10 @@ template <class Narrow, class Wide, class P, class Real, class F>
 
 template <class Narrow, class Wide, class P, bool continuous, class Real,
           template <class> class SurfaceOf>
-void collide(const Contact<Real, SurfaceOf>& contact, const ParticleSpan<Real>& span,
+void collide(const Contact<Real, SurfaceOf>& contact_in, const ParticleSpan<Real>& span_in,
              std::size_t begin, std::size_t end) {
+  const Contact<Real, SurfaceOf> contact = contact_in;  // copies, which no store changes
+  const ParticleSpan<Real> span = span_in;
   with_lanes<Narrow, Wide, P>(
       span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
         using T = decltype(t);
@@ -239,14 +248,41 @@ void collide(const Contact<Real, SurfaceOf>& contact, const ParticleSpan<Real>& 
         const auto one = [&](std::size_t at, const auto& present) __attribute__((always_inline)) {
           Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
           const Vec3T<T> previous = load_vec3<T, lanes>(span.previous + at);
+          const auto near = present && contact.template near<continuous>(x, previous);
+          if (!any(near)) return;
           bool moved;
           if constexpr (continuous)
-            moved = any(contact.project_continuous(x, previous, present));
+            moved = any(contact.project_continuous(x, previous, near));
           else
-            moved = any(contact.project(x, previous, present));
+            moved = any(contact.project(x, previous, near));
           if (moved) store_vec3<T, lanes>(span.x + at, x);
         };
         visit_particles<T, lanes>(span, begin, end, one);
+      });
+}
+
+template <class Narrow, class Wide, class P, Projection kind, class Real>
+void tethers(const ParticleSpan<Real>& span_in, std::span<const TetherTable<Real>> tables) {
+  const ParticleSpan<Real> span = span_in;  // a copy, which no store changes
+  with_lanes<Narrow, Wide, P>(
+      span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
+        using T = decltype(t);
+        constexpr int lanes = of_layout;
+        const auto one = [&](std::size_t at, const auto&) __attribute__((always_inline)) {
+          Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
+          bool moved = false;
+          for (const TetherTable<Real>& table : tables) {
+            Vec3T<T> pin = load_vec3<T, lanes>(table.pin + at), end = x;
+            const T length = load_vec3<T, lanes>(table.length + at).x;
+            const auto tight = length > T(0) && squared_norm(x - pin) > length * length;
+            if (!any(tight)) continue;
+            project_distance<kind>(pin, end, select(tight, length, T(1)), T(0), T(1));
+            x = select(tight, end, x);
+            moved = true;
+          }
+          if (moved) store_vec3<T, lanes>(span.x + at, x);
+        };
+        visit_particles<T, lanes>(span, 0, span.parts(), one);
       });
 }
 
@@ -260,29 +296,59 @@ template <class T, class Real, class F>
   return result;
 }
 
+/// Of packed particles, x y z 0 after x y z 0: as they lie there, in vectors of whole particles.
+template <class T, class Real>
+MotionBox<Real> packed_motion_box(const Real* x, const Real* then, std::size_t particles) {
+  const std::size_t last = 4 * particles - kWidth<T>;  // what is seen twice changes nothing
+  T least = load<T>(x) - load<T>(then), most = least;
+  for (std::size_t i = 0; i < last + kWidth<T>; i += kWidth<T>) {
+    const std::size_t at = i < last ? i : last;
+    const T moved = load<T>(x + at) - load<T>(then + at);
+    least = lesser(least, moved), most = greater(most, moved);
+  }
+  Real low[kWidth<T>], high[kWidth<T>];
+  std::memcpy(low, &least, sizeof low), std::memcpy(high, &most, sizeof high);
+  for (int l = 4; l < kWidth<T>; ++l)
+    low[l % 4] = lesser(low[l % 4], low[l]), high[l % 4] = greater(high[l % 4], high[l]);
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
 template <class Narrow, class Wide, class P, class Real>
-MotionBox<Real> motion_box(const ParticleSpan<Real>& span) {
-  MotionBox<Real> box{};
+MotionBoxes<Real> motion_boxes(const ParticleSpan<Real>& span, const Real* then) {
+  if constexpr (kWidth<P> >= 4)
+    if (span.sheet.lanes == kPackedLanes && 4 * span.particles >= kWidth<P>)
+      return {packed_motion_box<P>(span.x, span.previous, span.particles),
+              packed_motion_box<P>(span.x, then, span.particles)};
+  MotionBoxes<Real> boxes{};
   with_lanes<Narrow, Wide, P>(
       span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
         using T = decltype(t);
         constexpr int lanes = of_layout;
-        constexpr Real kMost = std::numeric_limits<Real>::max();
-        Vec3T<T> least{T(kMost), T(kMost), T(kMost)}, most = T(-1) * least;
+        const auto first = [&](const Real* from) __attribute__((always_inline)) {
+          const auto moved = [&](int axis) { return T(span.x[axis * lanes] - from[axis * lanes]); };
+          return Vec3T<T>{moved(0), moved(1), moved(2)};
+        };
+        const Vec3T<T> starts[2] = {first(span.previous), first(then)};
+        Vec3T<T> least[2] = {starts[0], starts[1]}, most[2] = {starts[0], starts[1]};
         const auto one = [&](std::size_t at, const auto& present) __attribute__((always_inline)) {
-          const Vec3T<T> moved =
-              load_vec3<T, lanes>(span.x + at) - load_vec3<T, lanes>(span.previous + at);
-          const Vec3T<T> low = select(present, moved, least), high = select(present, moved, most);
-          least = {lesser(least.x, low.x), lesser(least.y, low.y), lesser(least.z, low.z)};
-          most = {greater(most.x, high.x), greater(most.y, high.y), greater(most.z, high.z)};
+          const Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
+          const auto add = [&](int k, const Real* from) __attribute__((always_inline)) {
+            const Vec3T<T> m = select(present, x - load_vec3<T, lanes>(from + at), starts[k]);
+            least[k] = {lesser(least[k].x, m.x), lesser(least[k].y, m.y), lesser(least[k].z, m.z)};
+            most[k] = {greater(most[k].x, m.x), greater(most[k].y, m.y), greater(most[k].z, m.z)};
+          };
+          add(0, span.previous), add(1, then);
         };
         visit_particles<T, lanes>(span, 0, span.parts(), one);
         const auto low = [](const T& all) { return over_lanes<T, Real>(all, lesser<Real>); };
         const auto high = [](const T& all) { return over_lanes<T, Real>(all, greater<Real>); };
-        box = {{low(least.x), low(least.y), low(least.z)},
-               {high(most.x), high(most.y), high(most.z)}};
+        const auto box = [&](int k) -> MotionBox<Real> {
+          return {{low(least[k].x), low(least[k].y), low(least[k].z)},
+                  {high(most[k].x), high(most[k].y), high(most[k].z)}};
+        };
+        boxes = {box(0), box(1)};
       });
-  return box;
+  return boxes;
 }
 
 template <class Narrow, class Wide, class P, class Real>
@@ -342,7 +408,8 @@ constexpr Kernels<Real> make_kernels() {
       wind_on_sheet<Narrow, kNarrow, Real>,
       wind_on_sheet<Wide, kWide, Real>,
       wind_on_faces<P, Real>,
-      motion_box<Narrow, Wide, P, Real>,
+      {tethers<Narrow, Wide, P, exact, Real>, tethers<Narrow, Wide, P, sqrt_free, Real>},
+      motion_boxes<Narrow, Wide, P, Real>,
       largest_motion2<Narrow, Wide, P, Real>,
       find_pairs<Narrow, Real>,
       in_registers<Wide, sqrt_free, Real>,

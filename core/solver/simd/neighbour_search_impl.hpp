@@ -43,8 +43,8 @@ template <class T, class Real>
   return q.particles;
 }
 
-/// The particle whose neighbours are looked for, in every lane.
-template <class T>
+/// The particle whose neighbours are looked for, in every lane; not `moving`: none has moved.
+template <class T, bool moving>
 struct Query {
   Vec3T<T> now, moved, rest;
   T within2, ignored2;
@@ -52,18 +52,22 @@ struct Query {
   template <class Real>
   [[gnu::always_inline]] Query(const NeighbourSearch<Real>& q, std::uint32_t k)
       : now(spread(q.now, k)),
-        moved(spread(q.moved, k)),
         rest(spread(q.rest, k)),
         within2(q.within * q.within),
-        ignored2(q.ignored * q.ignored) {}
+        ignored2(q.ignored * q.ignored) {
+    if constexpr (moving) moved = spread(q.moved, k);
+  }
 
   /// Which of those from m on are near it.
   template <class Real>
   [[gnu::always_inline]] std::uint32_t near(const NeighbourSearch<Real>& q, std::uint32_t m) const {
-    // |gap| < within + |way|, without the roots
-    const T way2 = squared_norm(moved - lanes(q.moved, m));
-    const T more = squared_norm(now - lanes(q.now, m)) - way2 - within2;
-    const auto within = more < T(0.0) || more * more < T(4.0) * within2 * way2;
+    const T gap2 = squared_norm(now - lanes(q.now, m));
+    auto within = gap2 < within2;
+    if constexpr (moving) {  // |gap| < within + |way|, without the roots
+      const T way2 = squared_norm(moved - lanes(q.moved, m));
+      const T more = gap2 - way2 - within2;
+      within = more < T(0.0) || more * more < T(4.0) * within2 * way2;
+    }
     return bits(within && squared_norm(rest - lanes(q.rest, m)) >= ignored2);
   }
 
@@ -78,9 +82,9 @@ struct Query {
   }
 };
 
-template <class T, class Real>
-std::size_t find_pairs(const NeighbourSearch<Real>& search, std::uint32_t& next) {
-  const NeighbourSearch<Real> q = search;  // a copy: what is written below does not change it
+/// q: a copy, which nothing that is written changes.
+template <class T, bool moving, class Real>
+std::size_t find_pairs(const NeighbourSearch<Real> q, std::uint32_t& next) {
   CandidatePair* found = q.found;
   std::uint32_t k = next;
   for (bool room = true; room && k < q.particles;) {
@@ -91,7 +95,7 @@ std::size_t find_pairs(const NeighbourSearch<Real>& search, std::uint32_t& next)
     for (; k < end; ++k) {
       room = q.found + q.room - found >= most;
       if (!room) break;
-      const Query<T> query(q, k);
+      const Query<T, moving> query(q, k);
       const auto add = [&](std::uint32_t m, std::uint32_t mask) __attribute__((always_inline)) {
         for (mask &= query.near(q, m); mask != 0; mask &= mask - 1)
           *found++ = {k, m + static_cast<std::uint32_t>(__builtin_ctz(mask))};
@@ -103,6 +107,11 @@ std::size_t find_pairs(const NeighbourSearch<Real>& search, std::uint32_t& next)
   }
   next = k;
   return static_cast<std::size_t>(found - q.found);
+}
+template <class T, class Real>
+std::size_t find_pairs(const NeighbourSearch<Real>& search, std::uint32_t& next) {
+  return search.moving ? find_pairs<T, true, Real>(search, next)
+                       : find_pairs<T, false, Real>(search, next);
 }
 
 }  // namespace taut

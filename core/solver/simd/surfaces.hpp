@@ -68,11 +68,12 @@ struct BallSurface {
     const T reach = T(radius) + thickness;
     return squared_norm(x - spread_out<T>(center)) >= reach * reach;
   }
-  /// (reach + way)^2 <= 2 (reach^2 + way^2).
+  /// Farther away than reach + way, without the roots and by more than they would be rounded.
   template <class T>
   [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
-    const T reach = T(radius) + thickness;
-    return squared_norm(x - spread_out<T>(center)) >= T(2) * (reach * reach + way2);
+    const T reach = T(radius) + thickness, reach2 = reach * reach;
+    const T more = squared_norm(x - spread_out<T>(center)) - reach2 - way2;
+    return more >= T(0) && more * more >= T(4.001) * reach2 * way2;
   }
   /// Both ends lie beyond the plane that touches the ball towards `from`.
   template <class T>
@@ -124,10 +125,11 @@ struct BoxSurface {
     const T reach = T(far) + thickness;
     return squared_norm(out) >= reach * reach || largest(excess(turned(out))) >= thickness;
   }
+  /// Farther than the way beyond one side.
   template <class T>
   [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
-    const T reach = T(far) + thickness;
-    return squared_norm(x - spread_out<T>(center)) >= T(2) * (reach * reach + way2);
+    const T more = largest(excess(local(x))) - thickness;
+    return more >= T(0) && more * more >= T(1.001) * way2;
   }
   /// Both ends lie beyond the same side.
   template <class T>

@@ -59,7 +59,10 @@ template <class T, int lanes, class Real>
 
 /// Rows [begin, end) of the quads of an interleaved sheet.
 template <class T, int lanes, class Real>
-void wind_on_sheet(const WindStep<Real>& wind, const SheetFaces<Real>& faces, int begin, int end) {
+void wind_on_sheet(const WindStep<Real>& wind_in, const SheetFaces<Real>& faces_in, int begin,
+                   int end) {
+  const WindStep<Real> wind = wind_in;  // copies, which no store changes
+  const SheetFaces<Real> faces = faces_in;
   const int vectors = faces.vectors;
   for (int j = begin; j < end; ++j) {
     const std::size_t row = static_cast<std::size_t>(j) * faces.stride;
@@ -82,7 +85,8 @@ void wind_on_sheet(const WindStep<Real>& wind, const SheetFaces<Real>& faces, in
 
 /// Faces of packed particles, in their order.
 template <class T, class Real>
-void wind_on_faces(const WindStep<Real>& wind, std::span<const FaceBatch<Real>> batches) {
+void wind_on_faces(const WindStep<Real>& wind_in, std::span<const FaceBatch<Real>> batches) {
+  const WindStep<Real> wind = wind_in;  // a copy, which no store changes
   for (const FaceBatch<Real>& batch : batches) {
     Real force[4 * kLanes];
     for (int g = 0; g < kLanes; g += kWidth<T>) {

@@ -14,6 +14,12 @@ namespace taut::report {
 
 namespace {
 
+bool is_setting(const std::string& name) {
+  return name == "iterations" || name == "dt" || name == "substeps" || name == "vertices";
+}
+
+bool plays_a_file(const Record& r) { return std::isfinite(value_of(r, kStrainFloor)); }
+
 /// The study with most distinct values of `setting` on a scene, cut to that scene; empty if none
 /// has two. Only records with a value of `needs` make a study count.
 std::vector<Record> swept(const ReportInput& input, const std::string& scene,
@@ -22,30 +28,52 @@ std::vector<Record> swept(const ReportInput& input, const std::string& scene,
   std::vector<Record> best;
   std::size_t most = 1;
   for (const StudyResult& study : input.studies) {
-    std::vector<Record> here;
+    std::vector<Record> here, levels;
     std::set<double> values;
     bool any = needs.empty();
     for (const Record& r : study.records) {
       const double value = value_of(r, setting);
-      if (r.scene != scene || !std::isfinite(value)) continue;
+      if (r.scene != scene) continue;
+      if (is_setting(setting) && plays_a_file(r)) levels.push_back(r);
+      if (!std::isfinite(value)) continue;
       any = any || std::isfinite(value_of(r, needs));
       values.insert(value);
       here.push_back(r);
     }
     if (!any || values.size() <= most) continue;
     most = values.size(), best = std::move(here);
+    best.insert(best.end(), levels.begin(), levels.end());
     if (study_name) *study_name = study.name;
   }
   return best;
 }
 
-bool is_setting(const std::string& name) {
-  return name == "iterations" || name == "dt" || name == "substeps" || name == "vertices";
-}
-
 std::string held_text(const std::string& setting, double value) {
   const Quantity q = quantity(setting);
   return q.unit.empty() ? q.text(value, 3) + " " + q.title : q.title + " " + q.text(value, 3);
+}
+
+constexpr const char* kRounding = "rounding of the file of positions";
+
+void raise_floor(Chart& chart, double y, const char* text) {
+  if (y > 0 && !(chart.floor && chart.floor->y >= y)) chart.floor = {y, text};
+}
+
+/// Positions from a file have no sweeps and no substeps: their value is a level across the chart.
+void draw_levels(Chart& chart) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points)
+      if (std::isfinite(p.x)) low = std::min(low, p.x), high = std::max(high, p.x);
+  for (Curve& curve : chart.curves) {
+    Point level = curve.points.front();
+    if (!(low < high) || std::isfinite(level.x) || !plays_a_file(*level.record)) continue;
+    curve.points.clear();
+    for (const double x : {low, high}) {
+      level.x = level.along = x;
+      curve.points.push_back(level);
+    }
+  }
 }
 
 /// The record without its two swept settings, so that all cells of a map share the others.
@@ -73,6 +101,14 @@ struct Scope {
 
 }  // namespace
 
+void add_strain_floor(Chart& chart) {
+  if (!chart.y.name.starts_with("stretch.")) return;
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points)
+      raise_floor(chart, value_of(*p.record, kStrainFloor), kRounding);
+  for (const TimeSeries& series : chart.series) raise_floor(chart, series.floor, kRounding);
+}
+
 bool failed(const Point& p) { return !completed(*p.record); }
 
 Chart make_chart(std::string kind, std::span<const Record> records, const std::string& x,
@@ -86,6 +122,7 @@ Chart make_chart(std::string kind, std::span<const Record> records, const std::s
               .along = along,
               .curves = make_curves(records, x, y, along),
               .cost = {}};
+  if (is_setting(x)) draw_levels(chart);
   bool any = false;
   std::set<double> values;
   for (Curve& curve : chart.curves) {
@@ -122,7 +159,7 @@ std::vector<Point> pareto_front(const Chart& chart) {
   std::vector<Point> points, front;
   for (const Curve& curve : chart.curves)
     for (const Point& p : curve.points)
-      if (p.measured()) points.push_back(p);
+      if (p.measured() && p.x > 0) points.push_back(p);  // 0: nobody knows its work
   std::ranges::sort(points, {}, [](const Point& p) { return std::pair(p.x, p.y); });
   for (const Point& p : points)
     if (front.empty() || p.y < front.back().y) front.push_back(p);
@@ -186,13 +223,14 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
                        const std::string& y, const std::string& along, const std::string& held,
                        double preferred, const std::string& title, const std::string& caption) {
     const std::string over = along == "setting" ? "iterations" : along;
-    Slice slice = most_common(swept(input, scene, over, y), held, preferred);
+    Slice slice = hold(swept(input, scene, over, y), held, preferred);
     try {
       Chart chart = make_chart(kind, slice.records, x, y, along);
       for (Curve& curve : chart.curves)
         for (Point& p : curve.points) p.record = scope.find(*p.record);
       chart.id = scene + "-" + id, chart.scene = scene, chart.title = title,
       chart.caption = caption;
+      add_strain_floor(chart);
       if (std::isfinite(slice.value)) chart.held = held_text(held, slice.value);
       charts.push_back(std::move(chart));
       return true;
@@ -201,7 +239,8 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
     }
   };
   const auto over = [](const std::string& y, const std::string& x) {
-    return quantity(y).title + " over " + (x == "dt" ? "the time step" : quantity(x).title);
+    return capitalised(quantity(y).title) + " over " +
+           (x == "dt" ? "the time step" : quantity(x).title);
   };
   const double step = 1.0 / 64;
   if (add("convergence", "convergence", "iterations", "stretch.rms", "iterations", "dt", step,
@@ -215,8 +254,8 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
           "solvers."))
     for (const Curve& curve : charts.back().curves)
       for (const Point& p : curve.points)
-        if (const double floor = value_of(*p.record, "reference.floor"); floor > 0)
-          charts.back().floor = std::max(charts.back().floor.value_or(0), floor);
+        raise_floor(charts.back(), value_of(*p.record, "reference.floor"),
+                    "the reference's own error");
   const bool timed =
       std::ranges::any_of(swept(input, scene, "iterations", "stretch.rms"),
                           [](const Record& r) { return std::isfinite(value_of(r, kCpuValue)); });
@@ -263,7 +302,7 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
 Chart cost_chart(const SceneBench& scene, std::span<const Record> records) {
   Chart chart = make_chart("cost", records, "cpu.per_second", "stretch.rms", "setting");
   chart.id = scene.scene + "-cost", chart.scene = scene.scene;
-  chart.title = chart.y.title + " over " + chart.x.title;
+  chart.title = capitalised(chart.y.title) + " over " + chart.x.title;
   chart.caption =
       "Down and left is better. Two runs of identical code: " + fixed(scene.control.low, 2) +
       " to " + fixed(scene.control.high, 2) + ".";

@@ -24,8 +24,13 @@ struct Chart {
   std::vector<double> ticks = {};       ///< of x: the values of a swept setting, SI, ascending
   bool join = true;                     ///< the points of a curve by a line
   std::optional<double> slope = {};     ///< the theory's exponent
-  std::optional<double> floor = {};     ///< the reference's own error
-  bool front = false;                   ///< with the Pareto front
+  /// Below it a value says nothing: why, and how much.
+  struct Floor {
+    double y = 0;
+    std::string text;  ///< "the reference's own error"
+  };
+  std::optional<Floor> floor = {};
+  bool front = false;                         ///< with the Pareto front
   std::map<std::string, Interval> cost = {};  ///< by case key: the interval of x
 };
 
@@ -33,6 +38,9 @@ struct Chart {
 /// Throws InputError if no record has both, or only failures have x.
 Chart make_chart(std::string kind, std::span<const Record>, const std::string& x,
                  const std::string& y, const std::string& along);
+
+/// Draws the rounding of files of positions into a chart of strain.
+void add_strain_floor(Chart&);
 
 /// Whether the point has no value to be drawn: it failed.
 bool failed(const Point&);

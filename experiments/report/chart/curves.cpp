@@ -102,17 +102,19 @@ std::vector<Curve> make_curves(std::span<const Record> records, const std::strin
     std::ranges::stable_sort(curve.points, {}, [](const Point& p) {
       return std::isnan(p.along) ? std::numeric_limits<double>::infinity() : p.along;
     });
-  // Later curves are drawn above earlier ones, everywhere alike.
-  std::ranges::stable_sort(
-      curves, {}, [](const Curve& c) { return std::pair(solver_place(c.solver), c.solver); });
+  // Later curves are drawn above earlier ones: solver after solver, as the records have them.
+  std::map<std::string, std::size_t> first;
+  for (std::size_t i = 0; i < curves.size(); ++i) first.try_emplace(curves[i].solver, i);
+  std::ranges::stable_sort(curves, {}, [&](const Curve& c) { return first.at(c.solver); });
   return curves;
 }
 
-Slice most_common(std::span<const Record> records, const std::string& setting, double preferred) {
+Slice hold(std::span<const Record> records, const std::string& setting, double preferred) {
+  constexpr std::size_t kMostSets = 3;
   std::map<double, int> counts;
   for (const Record& record : records)
     if (const double value = value_of(record, setting); std::isfinite(value)) ++counts[value];
-  if (counts.empty())
+  if (counts.empty() || (counts.size() > 1 && counts.size() <= kMostSets))
     return {{records.begin(), records.end()}, std::numeric_limits<double>::quiet_NaN()};
   const auto badness = [&](double value) { return std::abs(std::log(value / preferred)); };
   const auto best = std::ranges::max_element(counts, [&](const auto& a, const auto& b) {

@@ -38,12 +38,13 @@ std::vector<Curve> make_curves(std::span<const Record>, const std::string& x, co
                                const std::string& along);
 
 /// The records at the value of `setting` which most of them share (ties: nearest to `preferred`),
-/// with that value in SI units; all records and NaN if none has the setting.
+/// with that value in SI units. All records and NaN if two or three values were tried, which are
+/// that many sets of curves, or if none has the setting.
 struct Slice {
   std::vector<Record> records;
   double value = 0;
 };
-Slice most_common(std::span<const Record>, const std::string& setting, double preferred);
+Slice hold(std::span<const Record>, const std::string& setting, double preferred);
 
 /// Fitted exponent p of y ~ x^p over the measured, positive points with x >= from; NaN with fewer
 /// than three.

@@ -191,23 +191,28 @@ std::string base64(std::string_view bytes) {
 }
 
 std::string slug(std::string_view text) {
+  constexpr std::size_t kMost = 120;  // a file name has 255 bytes, with extensions and more
   std::string out;
   for (const char c : text) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '.';
+                       c == '-' || c == '.' || c == '_';
     if (plain && !(out.empty() && (c == '-' || c == '.')))
       out += c;
     else if (!out.empty() && out.back() != '-')
       out += '-';
   }
-  constexpr std::size_t kMost = 120;  // a file name has 255 bytes, with extensions and more
-  if (out.size() > kMost) {           // what is cut off still tells names apart
-    char digits[20];
-    std::snprintf(digits, sizeof digits, "-%08zx", std::hash<std::string>{}(out)&0xFFFFFFFFU);
-    out = out.substr(0, kMost) + digits;
-  }
+  out.resize(std::min(out.size(), kMost));
   while (!out.empty() && (out.back() == '-' || out.back() == '.')) out.pop_back();
-  return out.empty() ? "x" : out;
+  if (!out.empty() && out == text) return out;
+  char digits[20];  // what was replaced or cut off still tells names apart
+  std::snprintf(digits, sizeof digits, "-%08zx", std::hash<std::string_view>{}(text)&0xFFFFFFFFU);
+  return (out.empty() ? "x" : out) + digits;
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
 }
 
 std::string joined(const std::vector<std::string>& names) {

@@ -27,9 +27,13 @@ std::string csv_field(
                         ///< with = + - @ gets a ' in front: a spreadsheet would run it
 std::string gnuplot_string(std::string_view);  ///< a literal that no text can leave; one line
 std::string base64(std::string_view bytes);
-/// Letters, digits, '-' and '.' only, a letter or digit first, at most 129: safe as a file name and
-/// as an HTML id.
+/// Letters, digits, '-', '_' and '.' only, '-' and '.' not first, at most 129: safe as a file name
+/// and as an HTML id. A text of which something was replaced or cut off gets a digest: two texts
+/// never share one.
 std::string slug(std::string_view);
+
+/// With a capital first letter, if it is a plain one: for headings.
+std::string capitalised(std::string);
 
 /// "ball, box and plane"
 std::string joined(const std::vector<std::string>& names);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <stdexcept>
+
+#include "core/model/solver.hpp"
+#include "experiments/report/chart/format.hpp"
 
 namespace taut::report {
 
@@ -31,36 +33,35 @@ Colour colour(std::string_view name) {
 }
 
 struct Look {
-  std::string_view solver, colour, shape;
+  std::string_view colour, shape;
   int marker;
   std::string_view dash;
 };
-/// In the order of lists and pictures. The second's line is dashed because a correct pair
-/// coincides: the first must show through.
-constexpr std::array kPlaced{
-    Look{"jakobsen", "s-blue", "circle", 7, ""},
-    Look{"bullet", "s-orange", "square", 5, "9 4"},
-    Look{"xpbd", "s-green", "triangle-down", 11, "9 3 2 3"},
-    Look{"mass-spring", "s-purple", "triangle", 9, "3 3"},
-    Look{"bullet-deformable", "s-magenta", "diamond", 13, "9 3 2 3"},
-};
-constexpr std::array kOthers{
-    Look{"", "s-teal", "pentagon", 15, "12 3"},
-    Look{"", "s-brown", "triangle", 9, "5 3"},
-    Look{"", "s-slate", "square", 5, "6 2"},
+/// By the solver's place among those of this program. Most lines are dashed because a correct pair
+/// coincides: the lower one must show through.
+constexpr std::array kLooks{
+    Look{"s-orange", "square", 5, "9 4"},
+    Look{"s-magenta", "diamond", 13, "9 3 2 3"},
+    Look{"s-blue", "circle", 7, ""},
+    Look{"s-purple", "triangle", 9, "3 3"},
+    Look{"s-green", "triangle-down", 11, "9 3 2 3"},
+    Look{"s-teal", "pentagon", 15, "12 3"},
+    Look{"s-brown", "triangle", 9, "5 3"},
+    Look{"s-slate", "square", 5, "6 2"},
 };
 
 }  // namespace
 
-int solver_place(std::string_view solver) {
-  return static_cast<int>(std::ranges::find(kPlaced, solver, &Look::solver) - kPlaced.begin());
-}
-
 SolverStyle solver_style(std::string_view solver) {
-  const auto place = static_cast<std::size_t>(solver_place(solver));
-  std::uint32_t hash = 2166136261U;  // FNV-1a: stable across runs and machines
-  for (const char c : solver) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
-  const Look& look = place < kPlaced.size() ? kPlaced[place] : kOthers[hash % kOthers.size()];
+  const auto known = solvers();
+  auto place = static_cast<std::size_t>(std::ranges::find(known, solver, &SolverEntry::name) -
+                                        known.begin());
+  if (place == known.size()) {
+    std::size_t hash = 0;
+    for (const char c : solver) hash = 31 * hash + static_cast<unsigned char>(c);
+    place += hash % (kLooks.size() - std::min(place, kLooks.size() - 1));
+  }
+  const Look& look = kLooks[place % kLooks.size()];
   return {colour(look.colour), look.shape, look.marker, look.dash};
 }
 
@@ -69,9 +70,7 @@ std::string solver_title(std::string_view solver) {
   std::string title(solver);
   std::ranges::replace(title, '_', ' ');
   std::ranges::replace(title, '-', ' ');
-  if (!title.empty() && title[0] >= 'a' && title[0] <= 'z')
-    title[0] = static_cast<char>(title[0] - 'a' + 'A');
-  return title;
+  return capitalised(title);
 }
 
 StatusStyle status_style(Status::Kind kind) {

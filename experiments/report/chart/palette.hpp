@@ -23,14 +23,12 @@ struct SolverStyle {
   std::string_view dash = "";  ///< lengths of strokes and gaps: "9 4"; "": solid
 };
 
-/// By its place, else by its name: the same in every figure, whatever else is drawn beside it.
+/// By its place among the solvers of this program, of others by its name: the same in every figure,
+/// whatever else is drawn beside it.
 SolverStyle solver_style(std::string_view solver);
 
 /// What people call a solver: "bullet-deformable" -> "Bullet deformable", "xpbd" -> "XPBD".
 std::string solver_title(std::string_view solver);
-
-/// Its place in lists and pictures, from 0; all that have none share the last.
-int solver_place(std::string_view solver);
 
 /// How a status is drawn in maps, and the glyph that stands for it everywhere.
 struct StatusStyle {

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "experiments/metrics/metric.hpp"
@@ -80,6 +81,11 @@ double value_of(const Record& record, std::string_view name) {
   if (name == "vertices") return record.vertices;
   if (name == "links") return record.links;
   if (name == "projections") return static_cast<double>(record.projections);
+  if (name == kStrainFloor) {
+    for (const auto& [line, text] : record.resolved_settings)
+      if (line == "floor of strain") return std::strtod(text.c_str(), nullptr);
+    return kNaN;
+  }
   const std::string key(name);
   if (const auto value = record.values.find(key); value != record.values.end())
     return value->second;

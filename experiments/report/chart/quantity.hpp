@@ -13,6 +13,9 @@ namespace taut::report {
 /// any scene key that its case sets to a number ("wind.strength"). NaN if it has none.
 double value_of(const Record&, std::string_view name);
 
+/// Of a case that plays positions from a file: the RMS strain that their rounding makes.
+inline constexpr std::string_view kStrainFloor = "strain.floor";
+
 /// How a quantity is shown: `shown = scale * SI value`, in `unit`.
 struct Quantity {
   std::string name;

@@ -34,17 +34,19 @@ Evidence::Seen seen_of(const Record& r, const std::string& label) {
 }  // namespace
 
 std::string_view to_string(Sure sure) {
-  constexpr std::array<std::string_view, 4> kWords{"clear", "likely", "too noisy", "single run"};
+  constexpr std::array<std::string_view, 5> kWords{"clear", "likely", "too noisy", "no difference",
+                                                   "single run"};
   return kWords[static_cast<std::size_t>(sure)];
 }
 
 std::string_view meaning(Sure sure) {
-  constexpr std::array<std::string_view, 4> kMeanings{
+  constexpr std::array<std::string_view, 5> kMeanings{
       "the whole 95 % interval is further from 1 than 5 % and than identical code differed from "
       "itself, which was less than 5 %",
       "the 95 % interval excludes 1, and its middle is further from 1 than 5 % and than identical "
       "code differed from itself",
       "identical code differed from itself by more than the difference",
+      "the 95 % interval has 1 in it, or its middle is within 5 % of 1",
       "computed, not timed: the same build gives the same bits on every run, so there is no "
       "spread"};
   return kMeanings[static_cast<std::size_t>(sure)];
@@ -66,11 +68,11 @@ std::optional<double> Evidence::look(const std::string& label, const Record& r) 
   return has ? std::optional(value) : std::nullopt;
 }
 
-void Evidence::look(const BenchedCase& c, const std::string& label) {
+void Evidence::look(const BenchedCase& c, const Interval& cost, const std::string& label) {
   Seen seen = seen_of(c.record, label);
   seen.n = c.timing.samples.size();
   if (c.stable()) {
-    seen.interval = c.cost();
+    seen.interval = cost;
     if (quantity_.name == "cpu.per_step")
       for (double* end : {&seen.interval->low, &seen.interval->mid, &seen.interval->high})
         *end *= c.record.dt;

@@ -16,6 +16,7 @@ enum class Sure {
   clear,      ///< the whole interval is beyond the tolerance and beyond what identical code showed
   likely,     ///< the interval excludes 1 and its middle is beyond both
   too_noisy,  ///< identical code differed from itself by more
+  none,       ///< no difference that can be told
   single_run  ///< computed, not timed: the same bits on every run, no spread known
 };
 std::string_view to_string(Sure);
@@ -33,8 +34,8 @@ class Evidence {
 
   /// The case's value; nothing if the case did not complete or the value has no meaning there.
   std::optional<double> look(const std::string& label, const Record&);
-  /// The same of a measured cost; `show` is the interval with its unit.
-  void look(const BenchedCase&, const std::string& label);
+  /// The same of what BenchedCase::cost() gives of it [s per simulated second].
+  void look(const BenchedCase&, const Interval& cost, const std::string& label);
   /// Why something did not go in: a sentence.
   void leave_out(const std::string& sentence);
 

@@ -16,7 +16,13 @@ struct SceneRatio {
   std::string scene;
   Interval ratio;  ///< cost of ours over that of theirs
   Interval control;
-  const BenchedCase *ours = nullptr, *theirs = nullptr;
+  Interval ours = {}, theirs = {};  ///< costs
+};
+
+/// A scene's cases with their costs and errors: an interval is a bootstrap, made once.
+struct Timed {
+  const SceneBench& bench;
+  std::vector<Candidate> candidates = bench.candidates(kPricedMetric);
 };
 
 /// Two solvers by whose costs a claim is made.
@@ -42,23 +48,25 @@ Admits shared_knobs(const SceneBench& scene, const Pair& pair) {
 }
 
 /// The cheapest admitted case of `solver` that reaches the error; nothing: none does.
-std::optional<std::size_t> cheapest(const SceneBench& scene, const std::string& solver,
+std::optional<std::size_t> cheapest(const Timed& scene, const std::string& solver,
                                     const Admits& admits) {
-  std::vector<Candidate> candidates = scene.candidates(kPricedMetric);
+  std::vector<Candidate> candidates = scene.candidates;
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (!admits(scene.cases[i])) candidates[i].failure = "not admitted";
+    if (!admits(scene.bench.cases[i])) candidates[i].failure = "not admitted";
   return best_for({.error = kPricedError}, candidates, solver);
 }
 
-bool timed(const SceneBench& scene, const std::string& solver) {
-  return std::ranges::any_of(scene.cases,
-                             [&](const BenchedCase& c) { return c.record.solver == solver; });
+bool timed(const Timed& scene, const std::string& solver) {
+  return std::ranges::find(scene.candidates, solver, &Candidate::solver) != scene.candidates.end();
 }
 
-void look_at(Evidence& evidence, const SceneBench& scene, const Pair& pair, const Admits& admits) {
-  for (const BenchedCase& c : scene.cases)
+void look_at(Evidence& evidence, const Timed& scene, const Pair& pair, const Admits& admits) {
+  for (std::size_t i = 0; i < scene.candidates.size(); ++i) {
+    const BenchedCase& c = scene.bench.cases[i];
     if (admits(c) && (c.record.solver == pair.first || c.record.solver == pair.other))
-      evidence.look(c, c.record.solver == pair.first ? pair.first_label : pair.other_label);
+      evidence.look(c, scene.candidates[i].cost,
+                    c.record.solver == pair.first ? pair.first_label : pair.other_label);
+  }
 }
 
 std::string share_interval(const Interval& r) {
@@ -85,11 +93,16 @@ std::string noise_text(double noise) {
          "\u00A0%.";
 }
 
+/// Of two that were judged; where there is no difference nothing was.
+Sure less_sure(Sure a, Sure b) {
+  return a == Sure::none ? b : b == Sure::none ? a : std::max(a, b);
+}
+
 /// The mean over scenes, who is cheaper where, and how sure all that is.
 struct Verdicts {
   std::string text;
-  Sure sure = Sure::clear;
-  std::string strong;  ///< the factor
+  Sure sure = Sure::none;  ///< the least sure of all that was judged
+  std::string strong;      ///< the factor
 };
 
 Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
@@ -97,7 +110,7 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
   std::vector<Interval> all;
   Verdicts verdicts;
   double noise = 0;
-  const auto sure = [&](Sure s) { verdicts.sure = std::max(verdicts.sure, s); };
+  const auto sure = [&](Sure s) { verdicts.sure = less_sure(verdicts.sure, s); };
   for (const SceneRatio& r : ratios) {
     all.push_back(r.ratio), names.push_back(r.scene);
     noise = std::max(noise, strayed(r.control));
@@ -135,7 +148,7 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
 }
 
 /// The priced error, each at the cheapest setting tried with what both have.
-void claim_price(const BenchSession& bench, const Pair& pair, bool with_tile,
+void claim_price(const std::vector<Timed>& scenes, const Pair& pair, bool with_tile,
                  std::vector<Claim>& claims) {
   const Quantity q = quantity(kPricedMetric);
   const std::string level = q.text(kPricedError, 1) + " " + q.title;
@@ -144,39 +157,40 @@ void claim_price(const BenchSession& bench, const Pair& pair, bool with_tile,
   std::vector<SceneRatio> ratios;
   std::vector<std::string> absent;
   std::map<std::string, std::vector<std::string>> missed;  // scenes, by how a solver missed it
-  for (const SceneBench& scene : bench.scenes) {
+  for (const Timed& scene : scenes) {
+    const SceneBench& bench = scene.bench;
     if (!timed(scene, pair.first)) continue;
     if (!timed(scene, pair.other)) {
-      absent.push_back(scene.scene);
+      absent.push_back(bench.scene);
       continue;
     }
-    const Admits shared = shared_knobs(scene, pair);
+    const Admits shared = shared_knobs(bench, pair);
     look_at(evidence, scene, pair, shared);
     const auto ours = cheapest(scene, pair.first, shared);
     const auto theirs = cheapest(scene, pair.other, shared);
     if (ours && theirs)
-      ratios.push_back({scene.scene, *scene.ratio(*ours, *theirs), scene.control,
-                        &scene.cases[*ours], &scene.cases[*theirs]});
+      ratios.push_back({bench.scene, *bench.ratio(*ours, *theirs), bench.control,
+                        scene.candidates[*ours].cost, scene.candidates[*theirs].cost});
     else if (ours)
-      missed[not_reached(scene, pair.other, pair.other_label) + ", but by " + pair.first_label]
-          .push_back(scene.scene);
+      missed[not_reached(bench, pair.other, pair.other_label) + ", but by " + pair.first_label]
+          .push_back(bench.scene);
     else if (theirs)
-      missed[not_reached(scene, pair.first, pair.first_label) + ", but by " + pair.other_label]
-          .push_back(scene.scene);
+      missed[not_reached(bench, pair.first, pair.first_label) + ", but by " + pair.other_label]
+          .push_back(bench.scene);
     else
-      missed["Reached by no setting tried"].push_back(scene.scene);
+      missed["Reached by no setting tried"].push_back(bench.scene);
   }
   if (evidence.seen().empty()) return;
   const std::string opening = "For " + level +
                               " in the last second, each at the cheapest setting tried with what "
                               "both have: ";
   std::string rest;
-  for (const auto& [how, scenes] : missed) rest += clause(how + " on ", scenes);
+  for (const auto& [how, names] : missed) rest += clause(how + " on ", names);
   rest += clause("Not timed with " + pair.other_label + " on ", absent);
   const std::string id = "cost-" + pair.other;
   if (ratios.empty()) {
     claims.emplace_back(id, ClaimKind::headline, "cost",
-                        opening + "no scene where both reach it." + rest, Sure::clear,
+                        opening + "no scene where both reach it." + rest, Sure::single_run,
                         std::vector{evidence});
     return;
   }
@@ -184,8 +198,7 @@ void claim_price(const BenchSession& bench, const Pair& pair, bool with_tile,
   std::vector<Interval> costs[2];
   std::vector<std::string> names;
   for (const SceneRatio& r : ratios)
-    costs[0].push_back(r.ours->cost()), costs[1].push_back(r.theirs->cost()),
-        names.push_back(r.scene);
+    costs[0].push_back(r.ours), costs[1].push_back(r.theirs), names.push_back(r.scene);
   std::vector<Bar> bars;
   std::vector<std::string> parts;
   const Quantity cpu = quantity("cpu.per_second");
@@ -209,13 +222,14 @@ void claim_price(const BenchSession& bench, const Pair& pair, bool with_tile,
 }
 
 /// A step of the same substeps and sweeps.
-void claim_same_work(const BenchSession& bench, const Pair& pair, std::vector<Claim>& claims) {
+void claim_same_work(const std::vector<Timed>& scenes, const Pair& pair,
+                     std::vector<Claim>& claims) {
   Evidence evidence("cpu.per_step",
                     "cheapest case of each solver at the same substeps and sweeps; geometric mean "
                     "over these, then over scenes");
   std::vector<SceneRatio> means;
   std::set<Work> works;
-  for (const SceneBench& scene : bench.scenes) {
+  for (const auto& [scene, candidates] : scenes) {
     const Admits shared = shared_knobs(scene, pair);
     std::map<Work, std::pair<std::optional<std::size_t>, std::optional<std::size_t>>> cheapest;
     for (std::size_t i = 0; i < scene.cases.size(); ++i) {
@@ -224,19 +238,19 @@ void claim_same_work(const BenchSession& bench, const Pair& pair, std::vector<Cl
       if (!c.stable() || !shared(c) || work.sweeps < 0 || work.substeps < 0) continue;
       if (c.record.solver != pair.first && c.record.solver != pair.other) continue;
       auto& at = c.record.solver == pair.first ? cheapest[work].first : cheapest[work].second;
-      if (!at || c.cost().mid < scene.cases[*at].cost().mid) at = i;
+      if (!at || candidates[i].cost.mid < candidates[*at].cost.mid) at = i;
     }
     std::vector<Interval> ratios;
     for (const auto& [work, both] : cheapest) {
       if (!both.first || !both.second) continue;
       const BenchedCase &ours = scene.cases[*both.first], &theirs = scene.cases[*both.second];
       if (ours.record.dt != theirs.record.dt) continue;
-      evidence.look(ours, pair.first_label), evidence.look(theirs, pair.other_label);
+      evidence.look(ours, candidates[*both.first].cost, pair.first_label);
+      evidence.look(theirs, candidates[*both.second].cost, pair.other_label);
       ratios.push_back(*scene.ratio(*both.first, *both.second));
       works.insert(work);
     }
-    if (!ratios.empty())
-      means.push_back({scene.scene, geometric_mean(ratios), scene.control, nullptr, nullptr});
+    if (!ratios.empty()) means.push_back({scene.scene, geometric_mean(ratios), scene.control});
   }
   if (means.empty()) return;
   std::vector<std::string> names;
@@ -249,30 +263,41 @@ void claim_same_work(const BenchSession& bench, const Pair& pair, std::vector<Cl
 }
 
 /// What a solver gains by a knob that the other one lacks, said apart.
-void claim_extras(const BenchSession& bench, const Pair& pair, std::vector<Claim>& claims) {
+void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
+                  std::vector<Claim>& claims) {
   const Quantity q = quantity(kPricedMetric), cpu = quantity("cpu.per_second");
   Evidence evidence("cpu.per_second", "cheapest case that reaches the level, with and without");
-  std::vector<std::string> clauses;
+  std::vector<std::string> clauses, missed;
   std::set<std::string> knobs;
-  Sure sure = Sure::clear;
+  std::optional<Sure> sure;
   double noise = 0;
-  for (const SceneBench& scene : bench.scenes) {
-    if (!timed(scene, pair.other)) continue;
+  for (const Timed& timed_scene : timed_scenes) {
+    if (!timed(timed_scene, pair.other)) continue;
+    const auto& [scene, candidates] = timed_scene;
     const auto theirs = params_of(scene, pair.other);
     const Admits shared = shared_knobs(scene, pair);
     const auto used = [&](const BenchedCase& c) { return extras(c.record, theirs); };
-    const auto with = cheapest(scene, pair.first, [&](const auto& c) { return !used(c).empty(); });
-    const auto without = cheapest(scene, pair.first, shared);
-    if (!with) continue;
+    const auto with =
+        cheapest(timed_scene, pair.first, [&](const auto& c) { return !used(c).empty(); });
+    const auto without = cheapest(timed_scene, pair.first, shared);
+    if (!with) {
+      if (std::ranges::any_of(scene.cases, [&](const BenchedCase& c) {
+            return c.record.solver == pair.first && !used(c).empty();
+          }))
+        missed.push_back(scene.scene);
+      continue;
+    }
+    noise = std::max(noise, strayed(scene.control));
     for (const std::string& knob : used(scene.cases[*with])) knobs.insert(knob);
-    evidence.look(scene.cases[*with], pair.first_label + " with");
-    std::string text = "on " + scene.scene + " " + cpu.text(scene.cases[*with].cost().mid);
+    const Interval& cost = candidates[*with].cost;
+    evidence.look(scene.cases[*with], cost, pair.first_label + " with");
+    std::string text = "on " + scene.scene + " " + cpu.text(cost.mid);
     if (without) {
-      evidence.look(scene.cases[*without], pair.first_label + " without");
+      evidence.look(scene.cases[*without], candidates[*without].cost,
+                    pair.first_label + " without");
       const Interval ratio = *scene.ratio(*with, *without);
       const auto judged = judge_ratio(ratio, scene.control);
-      noise = std::max(noise, strayed(scene.control));
-      if (judged) sure = std::max(sure, *judged);
+      sure = less_sure(sure.value_or(Sure::none), judged.value_or(Sure::none));
       const bool told = judged && *judged != Sure::too_noisy;
       const std::string than = told && ratio.mid > 1 ? ", more than" : ", the same as";
       text += told && ratio.mid < 1 ? ", " + share_text(ratio.mid) + " of" : than;
@@ -285,12 +310,13 @@ void claim_extras(const BenchSession& bench, const Pair& pair, std::vector<Claim
   if (clauses.empty()) return;
   std::string text;
   for (const std::string& one : clauses) text += (text.empty() ? "" : "; ") + one;
+  if (!missed.empty()) text += "; not reached by the settings tried on " + joined(missed);
   claims.emplace_back(
       "only-" + pair.first + "-" + pair.other, ClaimKind::note, "only",
       "With " + joined({knobs.begin(), knobs.end()}) + ", which " + pair.other_label +
           " does not have, " + pair.first_label + " reaches " + q.text(kPricedError, 1) + " " +
           q.title + " for this CPU time per simulated second: " + text + "." + noise_text(noise),
-      sure, std::vector{evidence});
+      sure.value_or(Sure::single_run), std::vector{evidence});
 }
 
 }  // namespace
@@ -299,20 +325,22 @@ std::vector<Claim> cost_claims(const ReportInput& input) {
   std::vector<Claim> claims;
   if (!input.bench) return claims;
   std::vector<std::string> names;
-  for (const SceneBench& scene : input.bench->scenes)
+  std::vector<Timed> scenes;
+  for (const SceneBench& scene : input.bench->scenes) {
+    scenes.push_back({scene});
     for (const std::string& solver : solvers_of(scene))
       if (std::ranges::find(names, solver) == names.end()) names.push_back(solver);
+  }
   if (names.empty()) return claims;  // nothing was timed
-  std::ranges::stable_sort(names, {}, solver_place);
   const std::string first = names.front();
   const auto label = [&](const std::string& solver) { return solver_title(solver); };
   for (const std::string& other : names) {
     if (other == first) continue;
     const Pair pair{first, other, label(first), label(other)};
-    claim_same_work(*input.bench, pair, claims);
-    claim_price(*input.bench, pair, names.size() == 2, claims);
-    claim_extras(*input.bench, pair, claims);
-    claim_extras(*input.bench, {other, first, label(other), label(first)}, claims);
+    claim_same_work(scenes, pair, claims);
+    claim_price(scenes, pair, names.size() == 2, claims);
+    claim_extras(scenes, pair, claims);
+    claim_extras(scenes, {other, first, label(other), label(first)}, claims);
   }
   return claims;
 }

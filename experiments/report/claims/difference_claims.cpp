@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "experiments/report/chart/format.hpp"
@@ -59,9 +58,8 @@ std::optional<Claim> claim_values(const Differences& differences, const std::str
     where = case_name(other) + ": " + q.text(*a, 3) + " in A, " + q.text(*b, 3) + " in B";
   }
   if (compared == 0) return {};
-  std::string text = q.title + ", " + std::to_string(compared) +
+  std::string text = capitalised(q.title) + ", " + std::to_string(compared) +
                      (compared == 1 ? " case" : " cases") + " that completed in both: ";
-  text[0] = static_cast<char>(std::toupper(text[0]));
   text += less + more == 0
               ? "the same to the bit."
               : "less in B in " + std::to_string(less) + ", more in " + std::to_string(more) +
@@ -81,8 +79,9 @@ Claim claim_cost(const Differences& differences, const std::string& solver) {
   std::vector<double> ratios;
   for (const auto& [a, b] : differences.timed) {
     if (a.record.solver != solver) continue;
-    evidence.look(a, "A"), evidence.look(b, "B");
-    if (a.stable() && b.stable()) ratios.push_back(b.cost().mid / a.cost().mid);
+    const Interval cost_a = a.cost(), cost_b = b.cost();
+    evidence.look(a, cost_a, "A"), evidence.look(b, cost_b, "B");
+    if (a.stable() && b.stable()) ratios.push_back(cost_b.mid / cost_a.mid);
   }
   const double mean = ratios.empty() ? 1 : geometric_mean(ratios);
   const double change = std::abs(std::log(mean)), noise = differences.noise;
@@ -98,8 +97,11 @@ Claim claim_cost(const Differences& differences, const std::string& solver) {
     text += (mean < 1 ? "B uses " : "A uses ") + share_text(mean < 1 ? mean : 1 / mean) +
             " of the CPU time of " + (mean < 1 ? "A" : "B");
   text += "; identical code differed by up to " + significant(100 * noise, 2) + "\u00A0%.";
-  return {"differences-cost-" + solver,           ClaimKind::headline, "differences", text,
-          noisy ? Sure::too_noisy : Sure::likely, {evidence}};
+  const Sure sure = ratios.empty() ? Sure::single_run
+                    : noisy        ? Sure::too_noisy
+                    : told         ? Sure::likely
+                                   : Sure::none;
+  return {"differences-cost-" + solver, ClaimKind::headline, "differences", text, sure, {evidence}};
 }
 
 }  // namespace
@@ -115,7 +117,6 @@ std::vector<Claim> difference_claims(const ReportInput& input) {
   for (const auto& [a, b] : differences.timed)
     if (std::ranges::find(solvers, a.record.solver) == solvers.end())
       solvers.push_back(a.record.solver);
-  std::ranges::stable_sort(solvers, {}, solver_place);
   for (const std::string& solver : solvers) claims.push_back(claim_cost(differences, solver));
   return claims;
 }

@@ -278,11 +278,13 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
                     "that every solver tried");
   std::vector<std::pair<std::string, std::vector<std::string>>> clauses;  // with their scenes
   std::vector<std::vector<double>> found(with_sweeps.size());
+  std::vector<std::string> names;
   bool limited = false, none = false;
   for (const QuotedScene& quoted : rivals.scenes) {
     const std::string& scene = quoted.question.scene;
     const StepMap map = step_map(with_sweeps, scene);
     if (map.steps.size() < kLeastSteps) continue;
+    names.push_back(scene);
     std::vector<std::string> works, parts;
     for (const Work& work : map.works) works.push_back(work.text());
     for (std::size_t i = 0; i < with_sweeps.size(); ++i) {
@@ -322,13 +324,16 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
                     Sure::single_run, {evidence});
   claims.push_back(claim);
   if (!none)
-    claims.push_back(claim.tile(
-        limited ? "Largest stable time step" : "No time step that was tried failed",
-        "Up to which every case completed, at all the work that every solver tried.", bars));
+    claims.push_back(
+        claim.tile(limited ? "Largest stable time step" : "No time step that was tried failed",
+                   "Up to it every case completed on " + joined(names) +
+                       ", with all substeps and sweeps that every solver tried" +
+                       (names.size() > 1 ? "; geometric mean." : "."),
+                   bars));
 }
 
 void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
-  Evidence evidence("steps", "count of cases by status, all studies, all settings");
+  Evidence evidence("steps", "count of cases by status, all settings");
   std::vector<std::string> parts, refused;
   for (const Rival& rival : rivals.all) {
     const std::vector<const Record*>& cases = rivals.by_solver.at(rival.solver);
@@ -349,10 +354,13 @@ void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
     if (unsupported > 0) refused.push_back(name + " " + std::to_string(unsupported));
   }
   if (evidence.seen().empty()) return;
-  claims.emplace_back(
-      "failures", ClaimKind::headline, "failures",
-      "Cases that failed: " + joined(parts) + "." + sentence_if(" Not supported: ", refused),
-      Sure::single_run, std::vector{evidence});
+  claims.emplace_back("failures", ClaimKind::headline, "failures",
+                      "Cases that failed: " + joined(parts) + "." +
+                          sentence_if(rivals.studies.size() == 1 ? " Counted in the study "
+                                                                 : " Counted in the studies ",
+                                      rivals.studies) +
+                          sentence_if(" Not supported: ", refused),
+                      Sure::single_run, std::vector{evidence});
 }
 
 /// One scene, values side by side, failures by name.

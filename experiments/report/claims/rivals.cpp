@@ -125,7 +125,8 @@ Work work_of(const Record& r) {
     const double value = value_of(r, name);
     return std::isfinite(value) ? static_cast<int>(value) : -1;
   };
-  return {number("substeps"), number("iterations")};
+  const int substeps = number("substeps"), sweeps = number("iterations");
+  return {sweeps >= 0 ? std::max(1, substeps) : substeps, sweeps};  // whole steps are one substep
 }
 
 std::string brief_settings(const std::string& solver) try {
@@ -141,6 +142,8 @@ std::string brief_settings(const std::string& solver) try {
     else if (value != spec.default_value)
       text += ", " + std::string(spec.name) + "=" + value;
   }
+  if (work.sweeps >= 0) work.substeps = std::max(1, work.substeps);
+  if (work == Work{} && !text.empty()) return text.substr(2);
   return work.text() + text;
 } catch (const InputError&) {
   const auto colon = solver.find(':');
@@ -148,17 +151,21 @@ std::string brief_settings(const std::string& solver) try {
 }
 
 std::string unequal_work(std::span<const Record> records) {
-  std::map<std::pair<int, std::string>, std::set<Work>> works;  // by solver, in their order
+  std::map<std::string, std::set<Work>> works;
+  std::vector<std::string> solvers;
   for (const Record& r : records)
-    if (const Work work = work_of(r); work.sweeps > 0)
-      works[{solver_place(r.solver), r.solver}].insert(work);
+    if (const Work work = work_of(r); work.sweeps > 0) {
+      if (!works.contains(r.solver)) solvers.push_back(r.solver);
+      works[r.solver].insert(work);
+    }
   if (works.size() < 2) return "";
   std::set<Work> common = works.begin()->second;
   std::string text;
-  for (const auto& [solver, own] : works) {
-    std::erase_if(common, [&own = own](const Work& work) { return !own.contains(work); });
+  for (const std::string& solver : solvers) {
+    const std::set<Work>& own = works[solver];
+    std::erase_if(common, [&](const Work& work) { return !own.contains(work); });
     const Work &first = *own.begin(), &last = *own.rbegin();
-    text += (text.empty() ? "" : ", ") + solver_title(solver.second) + " " + first.text() +
+    text += (text.empty() ? "" : ", ") + solver_title(solver) + " " + first.text() +
             (own.size() > 1 ? " to " + last.text() : "");
   }
   return common.empty() ? text + " (substeps × sweeps)" : "";
@@ -198,13 +205,14 @@ Rivals rivals_of(const ReportInput& input) {
   const auto add = [](std::vector<std::string>& names, const std::string& name) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
-  for (const StudyResult& study : input.studies)
+  for (const StudyResult& study : input.studies) {
+    add(rivals.studies, study.name);
     for (const Record& r : study.records) {
       if (!keys.insert(r.key.empty() ? r.id : r.key).second) continue;
       add(solvers, r.solver), add(scenes, r.scene);
       rivals.by_solver[r.solver].push_back(&r);
     }
-  std::ranges::stable_sort(solvers, {}, solver_place);
+  }
   for (const std::string& solver : solvers)
     rivals.all.push_back(choose(solver, rivals.by_solver[solver]));
   choose_work(rivals.all);

@@ -55,8 +55,9 @@ struct QuotedScene {
 
 /// Who is compared, and at which work single values are quoted. Points into the input.
 struct Rivals {
-  std::vector<Rival> all;           ///< in the order of solver_place()
+  std::vector<Rival> all;           ///< in order of appearance
   std::vector<QuotedScene> scenes;  ///< every scene that a study ran
+  std::vector<std::string> studies;
 
   const QuotedScene* quoted(const std::string& scene) const;
   /// Every case of every solver and choice, each once.

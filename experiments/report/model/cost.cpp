@@ -60,13 +60,26 @@ void add_ratio(Json& cell, const Interval& times, const Interval& control) {
   if (sure) cell["sure"] = to_string(*sure);
 }
 
+/// Without the cases that use a knob which another solver of the scene lacks: a table compares what
+/// all have, what only one has is said apart.
+SceneBench with_shared_knobs(SceneBench bench) {
+  std::map<std::string, std::map<std::string, std::string>> params;
+  for (const BenchedCase& c : bench.cases) params[c.record.solver] = c.record.params;
+  std::erase_if(bench.cases, [&](const BenchedCase& c) {
+    return std::ranges::any_of(params, [&](const auto& other) {
+      return other.first != c.record.solver && !extras(c.record, other.second).empty();
+    });
+  });
+  return bench;
+}
+
 Json levels_table(const CostScene& scene) {
   const Quantity q = quantity(kPricedMetric), cpu = quantity("cpu.per_second");
   Json table{{"id", "cost-levels-" + scene.bench.scene},
              {"title", "Cost of an error"},
              {"caption",
-              "CPU time per simulated second, its 95 % interval, and the setting; "
-              "every setting tried."},
+              "CPU time per simulated second, its 95 % interval, and the setting: the cheapest "
+              "that was tried, with what all solvers of the scene have."},
              {"columns", Json::array()}};
   table["columns"].push_back({{"title", "to reach"}, {"metric", kPricedMetric}});
   for (const std::string& solver : solvers_of(scene.bench))
@@ -95,7 +108,7 @@ Json budgets_table(const CostScene& scene) {
              {"title", "Error within a budget"},
              {"caption",
               "The least error within a budget of CPU time per frame of 1/60 s, what it "
-              "costs and with which setting."},
+              "costs and with which setting, of those that were tried with what all solvers have."},
              {"columns", Json::array()}};
   table["columns"].push_back({{"title", "within, per frame"}});
   const std::vector<Candidate> candidates = scene.bench.candidates(kPricedMetric);
@@ -148,21 +161,22 @@ Json answer_row(const CostScene& scene) {
 }
 
 /// Dolan and More's performance profiles at a few factors.
-Json profile_table(const BenchSession& session) {
-  const std::vector<Profile> profiles = performance_profiles(session.scenes, kPricedMetric);
+Json profile_table(const std::vector<SceneBench>& scenes) {
+  const std::vector<Profile> profiles = performance_profiles(scenes, kPricedMetric);
   const std::size_t problems = profiles.empty() ? 0 : profiles.front().ratios.size();
   Json table{{"id", "cost-profiles"},
              {"title", "How often each solver is within a factor of the cheapest"},
-             {"caption", "Of " + std::to_string(problems) + " problems, an error of " +
+             {"caption", "Share of " + std::to_string(problems) + " problems: an error of " +
                              quantity(kPricedMetric).title +
-                             " to be reached on a scene, with as many settings of every solver; a "
-                             "solver that does not get there is infinitely dear."},
+                             " to be reached on a scene. Every solver has equally many settings of "
+                             "a scene, with what all of its solvers have."},
              {"columns", Json::array({{{"title", "solver"}}})},
              {"rows", Json::array()}};
   constexpr double kFactors[] = {1, 1.5, 2, 4, 10};
   for (const double factor : kFactors)
-    table["columns"].push_back({{"title", "within " + significant(factor) + " times"}});
-  table["columns"].push_back({{"title", "ever"}});
+    table["columns"].push_back(
+        {{"title", factor == 1 ? "the cheapest" : "within " + exact(factor) + " ×"}});
+  table["columns"].push_back({{"title", "at any cost"}});
   for (const Profile& profile : profiles) {
     if (problems == 0) break;
     Json row = Json::array({solver_title(profile.solver)});
@@ -178,24 +192,28 @@ Json profile_table(const BenchSession& session) {
 
 Json json_of_cost(const BenchSession& session, References& refs, Json& charts, Json& tables) {
   Json cost{{"machine", session.machine}};
-  Json answers{{"id", "cost-answers"},
-               {"title", "Cheapest setting for " + quantity(kPricedMetric).text(kPricedError, 1) +
-                             " " + quantity(kPricedMetric).title},
-               {"columns", Json::array()}};
+  Json answers{
+      {"id", "cost-answers"},
+      {"title", "Cheapest setting for " + quantity(kPricedMetric).text(kPricedError, 1) + " " +
+                    quantity(kPricedMetric).title},
+      {"caption", "With what all solvers of a scene have; what only one has is said apart."},
+      {"columns", Json::array()}};
   for (const char* title :
        {"scene", "cheapest setting", "CPU time per simulated second", "the others", "ask again"})
     answers["columns"].push_back({{"title", title}});
   refs.use("cpu.per_second"), refs.use("cpu.per_step");
+  std::vector<SceneBench> shared;
   for (const SceneBench& bench : session.scenes) {
     const std::vector<Record> records = BenchSession{"", "", {bench}}.records();
-    const CostScene scene{bench, records, refs};
+    shared.push_back(with_shared_knobs(bench));
+    const CostScene scene{shared.back(), records, refs};
     Json one{
         {"scene", bench.scene},
         {"control", json_interval(bench.control,
                                   bench.cases.empty() ? 0 : bench.cases[0].timing.samples.size())},
         {"noisy", strayed(bench.control) > kAlike - 1},
-        {"noise", "timing noise: two runs of identical code differed by up to " +
-                      significant(100 * strayed(bench.control), 2) + "\u00A0%"}};
+        {"noise", "Timing noise: two runs of identical code differed by up to " +
+                      significant(100 * strayed(bench.control), 2) + "\u00A0%."}};
     try {
       const Chart chart = cost_chart(bench, records);
       charts.push_back(json_of(chart, refs));
@@ -212,7 +230,7 @@ Json json_of_cost(const BenchSession& session, References& refs, Json& charts, J
   }
   cost["tables"].push_back("cost-answers");
   tables.push_back(std::move(answers));
-  if (Json profiles = profile_table(session); !profiles["rows"].empty()) {
+  if (Json profiles = profile_table(shared); !profiles["rows"].empty()) {
     cost["tables"].push_back(profiles["id"]);
     tables.push_back(std::move(profiles));
   }

@@ -53,12 +53,23 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
     cut.t.resize(static_cast<std::size_t>(end)), cut.y.resize(static_cast<std::size_t>(end));
     if (cut.t.size() > 1) by_value[series.value].push_back(json_of(cut, refs));
   }
+  // The scene's own quantity before stretch, which every scene has; last what stays zero but for
+  // rounding.
+  constexpr double kNoise = 1e-6;
+  const auto place = [&](const std::string& value) {
+    double largest = 0;
+    for (const TimeSeries& series : input.series)
+      if (series.scene == scene && series.value == value)
+        for (const double y : series.y)
+          if (std::isfinite(y)) largest = std::max(largest, std::abs(y));
+    return largest < kNoise ? 2 : value.starts_with("stretch.") ? 1 : 0;
+  };
   Json tracks;
-  // The scene's own quantity before stretch, which every scene has.
-  for (const bool own : {true, false})
+  for (const int wanted : {0, 1, 2})
     for (auto& [value, series] : by_value)
-      if (own != value.starts_with("stretch."))
-        tracks.push_back({{"metric", value}, {"title", refs.use(value).title}, {"series", series}});
+      if (place(value) == wanted)
+        tracks.push_back(
+            {{"metric", value}, {"title", capitalised(refs.use(value).title)}, {"series", series}});
   return tracks;
 }
 
@@ -128,8 +139,8 @@ Json json_of(const Chart& chart, References& refs) {
                      {"factor", factor},
                      {"text", "theory: slope " + significant(*chart.slope, 2)}};
   if (chart.floor)
-    one["floor"] = {{"y", *chart.floor},
-                    {"text", "the reference's own error, " + chart.y.text(*chart.floor)}};
+    one["floor"] = {{"y", chart.floor->y},
+                    {"text", chart.floor->text + ", " + chart.y.text(chart.floor->y)}};
   if (chart.front)
     for (const Point& p : pareto_front(chart))
       one["front"].push_back({{"x", p.x}, {"y", p.y}, {"case", refs.key(*p.record)}});

@@ -25,6 +25,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, References& refs) {
            {"scene", r.scene},
            {"solver", r.solver},
            {"settings", r.spec.solver},
+           {"parameters", r.params},
            {"brief", brief_settings(r.spec.solver)},
            {"studies", refs.studies_of(r)},
            {"dt", r.dt},
@@ -168,6 +169,7 @@ class Builder {
     add_if(model, "charts", std::move(charts_));
     add_if(model, "maps", std::move(maps_));
     add_if(model, "films", std::move(films_));
+    add_if(model, "limits", json_of_limits(input_, tables_));
     add_if(model, "tables", std::move(tables_));
     add_if(model, "cost", std::move(cost));
     add_if(model, "truths", truths());
@@ -197,7 +199,8 @@ class Builder {
     for (const StudyResult& study : input_.studies)
       planned += std::max(study.planned, study.records.size()) - study.records.size();
     one["cases"] = cases, one["planned"] = cases + planned;
-    for (const Sure sure : {Sure::clear, Sure::likely, Sure::too_noisy, Sure::single_run})
+    for (const Sure sure :
+         {Sure::clear, Sure::likely, Sure::too_noisy, Sure::none, Sure::single_run})
       one["policy"][std::string(to_string(sure))] = meaning(sure);
     return one;
   }
@@ -344,14 +347,15 @@ class Builder {
       Chart chart{.id = name + "-over-time-" + slug(series.value),
                   .scene = name,
                   .kind = "series",
-                  .title = quantity(series.value).title + " over time",
+                  .title = capitalised(quantity(series.value).title) + " over time",
                   .x = quantity("t"),
                   .y = quantity(series.value),
                   .cost = {}};
       chart.y.logarithmic = false;
       charts.try_emplace(series.value, std::move(chart)).first->second.series.push_back(series);
     }
-    for (const auto& [value, chart] : charts) {
+    for (auto& [value, chart] : charts) {
+      add_strain_floor(chart);
       scene["charts"].push_back(chart.id);
       charts_.push_back(json_of(chart, refs_));
     }
@@ -419,7 +423,7 @@ class Builder {
         at["unequal"] = "Unequal work: " + unequal + ".";
       one["studies"].push_back(std::move(at));
     }
-    one["claims"] = json_of_seed_claims();
+    one["claims"] = json_of_seed_claims(input_.truths);
     for (const auto& [what, value] : input_.provenance)
       one["facts"].push_back({{"name", what}, {"value", value}});
     for (const std::string& host : input_.cost_hosts)

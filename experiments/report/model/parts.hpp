@@ -48,8 +48,10 @@ Json json_of(const SceneMedia&, const ReportInput&, References&, std::size_t& bu
 Json json_of_cost(const BenchSession&, References&, Json& charts, Json& tables);
 /// What two folders have otherwise; its table goes to those of the model.
 Json json_of(const Differences&, References&, Json& tables);
-/// What Vasilovici's report claims, with verdicts.
-Json json_of_seed_claims();
+/// What scenes require and how far solvers go; null without either. Its tables go to the model's.
+Json json_of_limits(const ReportInput&, Json& tables);
+/// What Vasilovici's report claims, with verdicts: as its truths say now, if they were checked.
+Json json_of_seed_claims(const std::optional<Truths>&);
 /// Settings of every rival on a scene, row by row; null without a case.
 Json json_of_fairness(const QuotedScene&, const Rivals&, const References&);
 

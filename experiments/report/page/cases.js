@@ -133,15 +133,13 @@ function caseValues(entry) {
 /** The dialog of one case: how it ended, its settings, its values, its film, and the command that runs it again. */
 function fillCase(dialog, entry) {
   const status = statusOf(entry.status), film = films.get(entry.film);
-  const [, settings = ''] = entry.settings.match(/^[^:]*:(.*)$/s) ?? [];
-  const pairs = settings.split(',').filter(Boolean).map((part) => part.split(/=(.*)/s));
   const facts = [
     {name: 'status', value: [glyphBox(entry.status), ` ${status.title}${entry.reason ? `: ${entry.reason}` : ''}`,
       entry.step >= 0 && `, step ${entry.step}`, entry.vertex >= 0 && `, vertex ${entry.vertex}`]},
     {name: 'time step', value: shown(entry.dt, metric('dt'), 4)}, {name: 'steps', value: entry.steps},
     {name: 'cloth', value: `${count(entry.vertices, 'vertex', 'vertices')}, ${count(entry.links, 'link')}`},
     {name: 'work', value: `${entry.projections} projections per step`},
-    ...pairs.map(([name, value]) => ({name: short(name), value})),
+    ...Object.entries(entry.parameters).map(([name, value]) => ({name: short(name), value})),
     {name: 'studies', value: entry.studies.join(', ')}, {name: 'case', value: el('code', {}, entry.id)}];
   dialog.setAttribute('aria-labelledby', 'case-title');
   dialog.replaceChildren(

@@ -92,6 +92,10 @@ function swatch(series) {
   return svg.node();
 }
 
+/** Whether the reference's own error is drawn: unless it lies far below all points. */
+const floorShown = ({floor, series}) => floor.y > d3.min(series.flatMap((s) => s.points)
+    .flatMap((p) => p.failed ? [] : [p.y, p.low]).filter((v) => v > 0)) / 30;
+
 /** The key: series, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
 function chartKey(spec, kind) {
   const points = spec.series.flatMap((s) => s.points), grey = (dash) => swatch({colour: 'var(--muted)', dash});
@@ -101,7 +105,7 @@ function chartKey(spec, kind) {
   return el('ul', {className: 'key'},
     spec.series.map((s) => entry(swatch(s), short(s.label, 60), solverOf(s.solver).order)),
     spec.theory && entry(grey('4 3'), spec.theory.text),
-    spec.floor && entry(grey('1 3'), spec.floor.text),
+    spec.floor && entry(floorShown(spec) ? grey('1 3') : '', spec.floor.text + (floorShown(spec) ? '' : ': below the plot')),
     spec.front && entry(grey(''), 'no setting is better in both'),
     failed.map((s) => entry(el('b', {}, s.glyph), `above the plot: ${s.title}`)),
     kind === 'log' && points.some((p) => p.zero) && entry(el('b', {}, '▲'), 'on the axis: exactly zero'),
@@ -114,7 +118,8 @@ function chartKey(spec, kind) {
 function chartFigure(spec) {
   const points = spec.series.flatMap((s) => s.points);
   const heading = el('h4', {}, short(spec.title, 120));
-  const note = el('p', {className: 'note'}, [spec.held, spec.caption].filter(Boolean).join('; '));
+  const held = spec.held && spec.held[0].toUpperCase() + spec.held.slice(1) + '.';
+  const note = el('p', {className: 'note'}, [held, spec.caption].filter(Boolean).join(' '));
   if (points.length && points.every((p) => p.zero))
     return el('figure', {className: 'card chart flat', id: `chart-${spec.id}`}, el('figcaption', {}, heading, note),
               el('p', {}, `Every value is exactly zero (${count(points.length, 'case')}).`));
@@ -173,8 +178,7 @@ function drawChart(svg, spec, view, width) {
   const [yLow, yHigh] = [box.height - box.bottom - floor, box.top + strip];
   const numbers = (list, scale) => list.filter((v) => typeof v === 'number').map((v) => v * scale);
   const measured = flat.filter((p) => !p.failed).flatMap((p) => [p.y, p.low, p.high]);
-  // The reference's own error belongs into the picture unless it lies far below all of it.
-  if (spec.floor && spec.floor.y > d3.min(measured.filter((v) => v > 0)) / 30) measured.push(spec.floor.y);
+  if (spec.floor && floorShown(spec)) measured.push(spec.floor.y);
   const up = numbers(measured, y.scale);
   const across = numbers(flat.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale);
   const ys = view.transform.rescaleY(scaleOf(view.kind, up, [yLow, yHigh]));
@@ -213,7 +217,7 @@ function drawChart(svg, spec, view, width) {
     area.append('path').attr('class', 'theory')
         .attr('d', d3.line()(ends.map((v) => [px(v), py(spec.theory.factor * v ** spec.theory.slope)])));
   }
-  if (spec.floor) area.append('path').attr('class', 'floor').attr('d', `M${left},${py(spec.floor.y)}H${width - right}`);
+  if (spec.floor && floorShown(spec)) area.append('path').attr('class', 'floor').attr('d', `M${left},${py(spec.floor.y)}H${width - right}`);
   const inside = (v) => v >= left && v <= width - right + 1;
   spec.series.forEach((s, order) => {
     const solver = solverOf(s.solver), colour = solverColour(s.solver);

@@ -15,6 +15,10 @@ function caseLink(key, ...text) {
   return choice({case: key}, {className: 'to-case', title: short(cases.get(key).id, 160)}, ...text);
 }
 
+/** A text in which "1 × 16" is not broken over two lines. */
+const unbroken = (text) => text.split(/(\d+ × \d+)/)
+    .map((part, i) => i % 2 ? el('span', {className: 'work'}, part) : part);
+
 /** The sentence with its strong parts and its solvers marked. */
 function sentence({sentence: text, strong}) {
   const marked = [...(strong ?? []).map((part) => ({part, make: () => el('b', {}, part)})),
@@ -25,11 +29,11 @@ function sentence({sentence: text, strong}) {
   let plain = '';
   for (let at = 0; at < text.length;) {
     const found = marked.find(({part}) => text.startsWith(part, at));
-    if (found) nodes.push(plain, found.make());
+    if (found) nodes.push(unbroken(plain), found.make());
     plain = found ? '' : plain + text[at];
     at += found ? found.part.length : 1;
   }
-  return [...nodes, plain];
+  return [...nodes, unbroken(plain)];
 }
 
 /** Entries of an object by solver, in the order of the solvers. */
@@ -40,7 +44,7 @@ function evidenceValue(value, quantity) {
   const text = value.value === null ? statusOf(value.status).title : value.text ?? shown(value.value, quantity);
   const spread = interval(value.low, value.high, quantity);
   return el('span', {className: 'value'}, mark(value.solver), caseLink(value.case, text),
-            spread && ` (${spread})`, value.n > 1 && ` n\u00A0=\u00A0${value.n}`,
+            spread && ` (${spread})`, value.value !== null && value.n > 1 && ` n\u00A0=\u00A0${value.n}`,
             value.value !== null && value.status !== 'ok' && `, ${statusOf(value.status).title}`);
 }
 
@@ -81,8 +85,8 @@ function claimNode(claim) {
   const film = films.get(claim.film);
   return dismissable(el('div', {className: `claim ${claim.kind}`, id: `claim-${claim.id}`},
     el('p', {}, sentence(claim), ' ', sureness(claim),
-       film && [' ', choice({scene: film.scene, at: 'film'}, {className: 'film-link'}, 'its film')],
-       claim.film_note && el('small', {}, ' ', claim.film_note)),
+       film && [' ', choice({scene: film.scene, at: 'film'}, {className: 'film-link'}, `film of ${short(film.scene, 40)}`)],
+       claim.film_note && el('small', {}, ' ', unbroken(claim.film_note))),
     basis(claim)));
 }
 
@@ -90,14 +94,16 @@ function claimNode(claim) {
 function tileNode(claim) {
   const quantity = metric(claim.metric), bars = claim.bars ?? [];
   const largest = d3.max(bars, (bar) => bar.value ?? 0) || 1;
-  return dismissable(el('article', {className: 'claim tile', id: `claim-${claim.id}`},
+  const said = claims.has(claim.id.replace(/^tile-/, '')) && claim.id.startsWith('tile-');
+  return dismissable(el('article', {className: `claim tile ${said ? 'said' : ''}`, id: `claim-${claim.id}`},
     el('h2', {}, claim.heading ?? quantity.title),
     el('ul', {}, bars.map((bar) => el('li', {},
       named(bar.solver), el('span', {className: 'amount'}, bar.text ?? shown(bar.value, quantity)),
       el('span', {className: 'bar', 'aria-hidden': 'true'},
          el('i', {style: `width:${100 * (bar.value ?? 0) / largest}%;background:${solverColour(bar.solver)}`})),
       bar.note && el('small', {}, bar.note)))),
-    el('p', {}, sentence(claim), ' ', sureness(claim)), basis(claim)));
+    el('p', {}, sentence(claim), ' ', sureness(claim),
+       said && el('span', {className: 'print-only'}, 'It rests on what its sentence above does.')), basis(claim)));
 }
 
 /** All claims of a kind about something; those named are left out. */

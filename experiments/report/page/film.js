@@ -26,7 +26,9 @@ function timeChart(track, seek, until) {
     if (!width) return;
     svg.attr('viewBox', `0 0 ${width} ${h}`).attr('width', width).attr('height', h).selectAll('*').remove();
     const values = track.series.flatMap((s) => s.y).filter((v) => v !== null).map((v) => v * quantity.scale);
-    const ys = scaleOf('linear', values.length ? [0, ...values] : [], [h - foot, 8]);
+    // Rounding, below a millionth of the unit, lies on the axis.
+    const least = d3.max(values) > 0 ? 1e-6 * quantity.scale : 0;
+    const ys = scaleOf('linear', [0, least, ...values], [h - foot, 8]);
     const axis = svg.append('g').attr('class', 'axis y')
         .call(d3.axisLeft(ys).tickValues(ys.ticks(3)).tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
     const left = Math.ceil(axis.node().getBBox().width) + 4;

@@ -51,7 +51,8 @@ const placeOf = (id) => document.getElementById(id) ??
 
 function start() {
   paint();
-  const sections = [answerSection(), differencesSection(), sceneSection(), costSection(), truthsSection(),
+  const sections = [answerSection(), differencesSection(), sceneSection(), costSection(), limitsSection(),
+                    truthsSection(),
                     regressionSection(), casesSection(), methodSection()].filter(Boolean);
   document.getElementById('main').append(...sections);
   contents(sections);

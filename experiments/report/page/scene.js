@@ -56,7 +56,7 @@ function scenePart(scene) {
     figures.length ? el('div', {className: 'grid'}, figures.map(figureOf)) : null,
     mapsOf(scene),
     priced && el('section', {className: 'part'}, el('h3', {}, `What accuracy costs on ${short(scene.title)}`),
-      note(`Timing noise: ${priced.noise}. `, priced.noisy && el('b', {}, 'Too noisy to judge.')),
+      note(priced.noise, priced.noisy && el('b', {}, ' No difference here is called clear.')),
       el('div', {className: 'grid'}, costs.map(figureOf), all(priced.tables, tables).map((table) => tableNode(table)))),
     scene.fairness && fairness(scene.fairness),
     scene.facts?.length ? folded('The scene in numbers', factList(scene.facts)) : null);

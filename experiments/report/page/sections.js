@@ -43,6 +43,12 @@ function costSection() {
     all(cost.tables, tables).map((table) => tableNode(table, 'h3')));
 }
 
+function limitsSection() {
+  const shown = all(model.limits?.tables, tables);
+  return shown?.length ? section('limits', 'What scenes require, and how far solvers go',
+    shown.map((table) => tableNode(table, 'h3'))) : null;
+}
+
 function truthsSection() {
   const {truths} = model;
   if (!truths) return null;
@@ -52,12 +58,14 @@ function truthsSection() {
   const part = (title, rows, open) => el('details', {open}, el('summary', {}, `${title} (${rows.length})`),
                                          tableOf(title, columns, rows.map(line)));
   const apart = truths.rows.filter((r) => r.verdict !== 'passed');
-  const counts = Object.entries(truths.verdicts).map(([verdict, n]) => `${n} ${verdict}`).join(', ');
+  const words = {passed: 'passed', deviates: 'deviate as explained', 'not claimed': 'not claimed', broken: 'broken'};
+  const counts = Object.entries(words).filter(([verdict]) => truths.verdicts[verdict])
+      .map(([verdict, word]) => `${truths.verdicts[verdict]} ${word}`).join(', ');
   return section('truths', 'Checked against theory', el('div', {className: 'card'},
     el('p', {}, el('b', {}, truths.verdicts.broken ? `${truths.verdicts.broken} broken. ` : 'None is broken. '),
        `${count(truths.truths, 'statement')}, ${count(truths.findings, 'number')} compared: ${counts}.`),
-    apart.length ? part('where a solver differs, and why', apart, apart.length <= 6) : null,
-    part('each statement, with the number nearest to its tolerance', truths.rows, false)));
+    apart.length ? part('Where a solver differs, and why', apart, apart.length <= 6) : null,
+    part('Each statement, with the number nearest to its tolerance', truths.rows, false)));
 }
 
 function regressionSection() {
@@ -72,7 +80,7 @@ function regressionSection() {
 function methodSection() {
   const {method, missing, left_out: leftOut} = model;
   const refused = ({reason, scenes: on}) => el('div', {}, `${on.join(', ')}: ${reason}`);
-  const solver = (s) => row(named(s.id), s.summary, s.source, s.settings, s.unsupported?.map(refused) ?? '–');
+  const solver = (s) => row(named(s.id), s.summary, s.source, s.settings || '–', s.unsupported?.map(refused) ?? '–');
   const study = (s) => item(el('b', {}, s.name), `: ${s.question} `, el('span', {className: 'note'},
     `(${s.cases}${s.cases < s.planned ? ` of ${s.planned}` : ''} cases)`), s.unequal && el('p', {}, s.unequal));
   const glossary = Object.values(model.metrics).filter((m) => m.help).map((m) => row(m.title, m.help, m.unit, m.window));
@@ -81,8 +89,8 @@ function methodSection() {
     tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver)),
     method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,
     el('p', {}, 'This makes it all again:'), command(model.meta.command)),
-    method.claims && folded("Claims of Vasilovici's report", tableOf('Claims', ['section', 'claim', 'verdict', 'because'],
-      method.claims.map((c) => row(c.section, c.claim, c.verdict, c.because)))),
+    method.claims && folded("Claims of Vasilovici's report", tableOf('Claims', ['section', 'claim', 'verdict', 'because', 'measured'],
+      method.claims.map((c) => row(c.section, c.claim, c.verdict, c.because, c.figure ?? '–')))),
     folded('Metrics, build and machine', tableOf('Metrics', ['metric', 'definition', 'unit', 'window'], glossary),
            factList([...(method.facts ?? []), ...build])),
     list('What this does not show', method.limits?.map((text) => item(text))),

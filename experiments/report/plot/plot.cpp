@@ -77,6 +77,12 @@ bool any_positive(const Chart& chart, bool of_y) {
   return false;
 }
 
+/// The chart's floor as a line from edge to edge.
+std::string floor_line(const Chart::Floor& floor, const Quantity& y) {
+  return exact(floor.y * y.scale) + " with lines dt (1,3) lc rgb '#5B6472' title " +
+         gnuplot_string(floor.text + ", " + y.text(floor.y));
+}
+
 Sheet curves_sheet(const Chart& chart, const std::string& title) {
   Sheet sheet;
   const bool log_x = chart.x.logarithmic && any_positive(chart, false),
@@ -90,6 +96,8 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
       if (!p.measured() || (log_y && !(p.y > 0))) continue;
       low = std::min(low, p.y * chart.y.scale), high = std::max(high, p.y * chart.y.scale);
     }
+  if (chart.floor && chart.floor->y * chart.y.scale > low / 30)  // else far below the picture
+    low = std::min(low, chart.floor->y * chart.y.scale);
   const double floor = log_y ? low / 3 : std::min(0.0, low);
   const double top = log_y ? high * 3 : high + 0.12 * (high - floor + (high == floor ? 1 : 0));
   sheet.settings = "set title " + gnuplot_string(title) + "\n" +
@@ -151,6 +159,7 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
                "*(x/" + exact(chart.x.scale) + ")**" + exact(*chart.slope) +
                " with lines dt (4,4) lc rgb '#5B6472' title 'theory: slope " + exact(*chart.slope) +
                "'");
+  if (chart.floor) sheet.draw(floor_line(*chart.floor, chart.y));
   if (chart.front) {
     std::string steps;
     for (const Point& p : pareto_front(chart))
@@ -181,6 +190,10 @@ Sheet series_sheet(std::span<const TimeSeries> all, const std::string& value,
                dash_of(series.solver, variants[series.solver]++) + " title " +
                gnuplot_string(series.label));
   }
+  Chart chart{.id = {}, .scene = {}, .kind = {}, .title = {}, .x = x, .y = y};
+  chart.series.assign(all.begin(), all.end());
+  add_strain_floor(chart);
+  if (chart.floor) sheet.draw(floor_line(*chart.floor, y));
   if (i == 0) throw InputError("no series of '" + value + "' was recorded");
   return sheet;
 }
@@ -331,6 +344,7 @@ PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
     sheet = map_sheet(make_maps(records, records.front().scene, spec.x, spec.y), spec.title);
   } else {
     Chart chart = make_chart(spec.kind, records, spec.x, spec.y, spec.along);
+    add_strain_floor(chart);
     chart.slope = spec.slope, chart.front = spec.kind == "work-precision";
     sheet = curves_sheet(chart, spec.title);
   }

@@ -10,7 +10,7 @@
 namespace {
 
 constexpr taut::ParamSpec kParams[] = {
-    {.name = "gravity", .default_value = "1", .max = 10, .help = "Factor of the scene's gravity"}};
+    taut::ParamSpec::real("gravity", "", "1", 0, 10, "Factor of the scene's gravity")};
 
 class Fall final : public taut::Solver {
  public:

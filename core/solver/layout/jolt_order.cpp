@@ -1,0 +1,144 @@
+// The links as Jolt Physics 5's soft body visits its edges after Optimize(), which it demands:
+// batches of neighbouring vertices for its threads, the one with most links first, in each the
+// links nearest to a pin first; then the links between batches. Positions in float, as Jolt holds
+// them, so that ties are the same.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <tuple>
+
+#include "core/solver/layout/order.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr std::size_t kBatch = 256;  ///< vertices
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+using Point = std::array<float, 3>;  ///< m
+
+float distance2(const Point& a, const Point& b) {
+  const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  return x * x + y * y + z * z;
+}
+
+class Batches {
+ public:
+  Batches(const std::vector<Point>& x, const Adjacency& neighbours)
+      : x_(x), neighbours_(neighbours), batch_(x.size(), kNone) {
+    std::vector<int> own;
+    for (int start; (start = farthest_out()) != kNone;) {
+      for (int next = start; next != kNone && own.size() < kBatch; next = nearest(own)) {
+        own.push_back(next);
+        batch_[to_index(next)] = count_;
+      }
+      if (own.size() > kBatch / 2) own.clear(), ++count_;  // else the next start joins it
+    }
+  }
+
+  /// The batch of a link: its ends', or count() if they are in different ones or in what is left.
+  int of(const Link& link) const {
+    const int a = batch_[to_index(link.a)];
+    return a == batch_[to_index(link.b)] ? a : count_;
+  }
+  int count() const { return count_; }
+
+ private:
+  static constexpr int kNone = -1;
+
+  /// Of the vertices without a batch the lowest along their longest axis, then along the others.
+  int farthest_out() const {
+    Point low{kInfinity, kInfinity, kInfinity}, size{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      float high = -kInfinity;
+      for (std::size_t v = 0; v < x_.size(); ++v)
+        if (batch_[v] == kNone)
+          low[k] = std::min(low[k], x_[v][k]), high = std::max(high, x_[v][k]);
+      size[k] = high - low[k];
+    }
+    const std::size_t longest =
+        size[0] > size[1] ? (size[2] > size[0] ? 2 : 0) : (size[2] > size[1] ? 2 : 1);
+    std::size_t shortest =
+        size[0] < size[1] ? (size[2] < size[0] ? 2 : 0) : (size[2] < size[1] ? 2 : 1);
+    if (shortest == longest) shortest = (longest + 1) % 3;
+    const auto along = [&](std::size_t v) {
+      return std::tuple(x_[v][longest], x_[v][3 - longest - shortest], x_[v][shortest]);
+    };
+    int best = kNone;
+    for (std::size_t v = 0; v < x_.size(); ++v)
+      if (batch_[v] == kNone && (best == kNone || along(v) < along(to_index(best))))
+        best = static_cast<int>(v);
+    return best;
+  }
+
+  /// Of the free neighbours of these vertices the one with most links to them, then the one nearest
+  /// to the first of them.
+  int nearest(const std::vector<int>& own) const {
+    int best = kNone;
+    std::pair<std::ptrdiff_t, float> least{0, 0};  // links, counted down, and distance
+    for (const int vertex : own)
+      for (const auto& [v, link] : neighbours_.of(vertex)) {
+        if (batch_[to_index(v)] != kNone) continue;
+        const std::pair rank{-std::ranges::count_if(neighbours_.of(v),
+                                                    [&](const Adjacency::End& end) {
+                                                      return batch_[to_index(end.vertex)] == count_;
+                                                    }),
+                             distance2(x_[to_index(v)], x_[to_index(own.front())])};
+        if (best == kNone || rank < least) best = v, least = rank;
+      }
+    return best;
+  }
+
+  const std::vector<Point>& x_;
+  const Adjacency& neighbours_;
+  std::vector<int> batch_;
+  int count_ = 0;
+};
+
+/// m, along links from the nearest vertex that is pinned; infinite without one.
+std::vector<float> ways_to_pins(const Scene& scene, const std::vector<Point>& x,
+                                const Adjacency& neighbours) {
+  std::vector<float> way(x.size(), kInfinity);
+  using Reached = std::pair<float, int>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
+  const std::vector<double> w = inverse_masses(scene);
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (w[v] == 0) way[v] = 0, next.emplace(0.0f, static_cast<int>(v));
+  while (!next.empty()) {
+    const int from = next.top().second;
+    next.pop();
+    for (const auto& [v, link] : neighbours.of(from))
+      if (const float there =
+              way[to_index(from)] + std::sqrt(distance2(x[to_index(v)], x[to_index(from)]));
+          there < way[to_index(v)])
+        way[to_index(v)] = there, next.emplace(there, v);
+  }
+  return way;
+}
+
+}  // namespace
+
+std::vector<Link> jolt_order(const Scene& scene) {
+  std::vector<Point> x;
+  for (const Vec3& p : scene.start.x)
+    x.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+  const Adjacency neighbours(scene.links, scene.mesh.size());
+  const Batches batches(x, neighbours);
+  const std::vector<float> way = ways_to_pins(scene, x, neighbours);
+  std::vector<int> size(to_index(batches.count()) + 1);
+  for (const Link& link : scene.links) --size[to_index(batches.of(link))];
+  size.back() = 1;  // the links between batches come after the largest and the smallest
+  std::vector<Link> links = scene.links;
+  std::ranges::stable_sort(links, {}, [&](const Link& link) {
+    const int batch = batches.of(link);
+    return std::tuple(size[to_index(batch)], batch,
+                      std::min(way[to_index(link.a)], way[to_index(link.b)]),
+                      std::min(link.a, link.b));
+  });
+  return links;
+}
+
+}  // namespace taut

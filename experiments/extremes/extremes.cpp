@@ -1,0 +1,179 @@
+#include "experiments/extremes/extremes.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/model/shortest.hpp"
+#include "experiments/case/trajectory.hpp"
+#include "experiments/extremes/symptom.hpp"
+
+namespace taut {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& all) {
+  std::string text;
+  for (const std::string& one : all) text += (text.empty() ? "" : ", ") + one;
+  return text;
+}
+
+/// To its end.
+bool ran(const Record& record) {
+  const Status::Kind kind = record.status.kind;
+  return kind == Status::Kind::ok || kind == Status::Kind::unsettled ||
+         kind == Status::Kind::extreme;
+}
+
+Seen look(const Case& one, const Record& record, const Store& store) {
+  Seen seen{one, record, {}};
+  if (!ran(record) || !store.has_frames(one.key)) return seen;
+  TrajectoryReader motion(store.folder(one.key) / kFramesFile);
+  if (motion.frames() > 0) seen.end = motion.read(motion.frames() - 1).state.x;
+  return seen;
+}
+
+/// The search for one knob.
+class KnobSearch {
+ public:
+  KnobSearch(Knob knob, std::string solver, const Store& store)
+      : knob_(std::move(knob)), store_(store) {
+    found_.solver = std::move(solver), found_.knob = knob_.name, found_.unit = knob_.unit;
+    found_.lacks = knob_.lacks;
+  }
+
+  /// False: interrupted.
+  bool run(const Session& session, const CampaignOptions& options) {
+    if (!found_.lacks.empty()) return true;
+    const FrontierQuestion& question = knob_.question;
+    found_.downwards = question.direction != Direction::up;
+    found_.from = question.setting(question.range.from);
+    found_.to = question.setting(question.range.to);
+    const Case first = make_case(question.at(question.range.from));
+    if (run_cases({first}, store_, session, options).interrupted) return false;
+    const std::optional<Record> record = store_.find(first);
+    if (!record) return false;
+    if (!ran(*record)) {
+      found_.lacks = record->status.reason.empty() ? std::string(to_string(record->status.kind))
+                                                   : record->status.reason;
+      return true;
+    }
+    start_ = look(first, *record, store_);
+    known_ = symptoms(*start_, nullptr);
+    found_.at_start = joined(known_);
+    tell_theory();
+    const CaseFrontier result =
+        find_frontier(question, store_, session, options,
+                      [&](const Case& one, const Record& r) { return judge(one, r); });
+    found_.cases = result.frontier.probes.size(), found_.ran = result.ran;
+    tell(result.frontier);
+    return !result.interrupted;
+  }
+
+  KnobFrontier take() { return std::move(found_); }
+
+ private:
+  std::string judge(const Case& one, const Record& record) const {
+    std::vector<std::string> wrong = symptoms(look(one, record, store_), &*start_);
+    std::erase_if(wrong, [&](const std::string& name) { return std::ranges::count(known_, name); });
+    return joined(wrong);
+  }
+
+  void tell_theory() {
+    if (!knob_.theory) return;
+    found_.law = knob_.theory->law;
+    const double end = knob_.theory->value;
+    if (knob_.theory->kind == Frontier::Kind::bracketed && end < knob_.question.range.to)
+      found_.theory = knob_.question.setting(end);
+  }
+
+  void tell(const Frontier& frontier) {
+    using Kind = Frontier::Kind;
+    const FrontierQuestion& question = knob_.question;
+    if (frontier.kind == Kind::not_answered) {
+      found_.lacks = "not answered: no time or memory, or interrupted";
+      return;
+    }
+    if (frontier.kind != Kind::none_stable) found_.good = question.setting(frontier.stable);
+    if (frontier.kind == Kind::all_stable) return;
+    found_.bad = question.setting(frontier.unstable);
+    found_.symptom = frontier.at(frontier.unstable)->symptom;
+    found_.beyond = question.at(frontier.unstable);
+  }
+
+  Knob knob_;
+  const Store& store_;
+  std::optional<Seen> start_;
+  std::vector<std::string> known_;  ///< symptoms at the start of the range
+  KnobFrontier found_;
+};
+
+}  // namespace
+
+Extremes find_extremes(const std::string& solver, const Store& store, const Session& session,
+                       const CampaignOptions& options,
+                       const std::function<void(std::size_t done, std::size_t all)>& progress) {
+  Extremes all;
+  const std::vector<Knob> knobs = knobs_of(solver);
+  const std::string name = parse_solver(solver).brief();
+  for (const Knob& knob : knobs) {
+    KnobSearch search(knob, name, store);
+    all.interrupted = !search.run(session, options);
+    if (all.interrupted) return all;
+    all.knobs.push_back(search.take());
+    progress(all.knobs.size(), knobs.size());
+  }
+  return all;
+}
+
+std::vector<FrontierChange> compare_frontiers(const std::vector<KnobFrontier>& before,
+                                              const std::vector<KnobFrontier>& now) {
+  using Kind = FrontierChange::Kind;
+  std::vector<FrontierChange> changes;
+  const auto same = [](const KnobFrontier& a, const KnobFrontier& b) {
+    return a.solver == b.solver && a.knob == b.knob;
+  };
+  const auto add = [&](Kind kind, const KnobFrontier& of, std::string text) {
+    changes.push_back({kind, of.solver, of.knob, std::move(text)});
+  };
+  const auto find = [&](const std::vector<KnobFrontier>& in, const KnobFrontier& one) {
+    const auto at = std::ranges::find_if(in, [&](const KnobFrontier& f) { return same(f, one); });
+    return at == in.end() ? nullptr : &*at;
+  };
+  for (const KnobFrontier& was : before)
+    if (std::ranges::any_of(now, [&](const auto& f) { return f.solver == was.solver; }) &&
+        !find(now, was))
+      add(Kind::narrowed, was, "is no longer asked");
+  for (const KnobFrontier& is : now) {
+    const KnobFrontier* was = find(before, is);
+    if (!was) {
+      add(Kind::otherwise, is, "is new");
+      continue;
+    }
+    if (was->lacks != is.lacks) {
+      add(is.lacks.empty() ? Kind::widened : Kind::narrowed, is,
+          is.lacks.empty() ? "has an answer now" : "has none now: " + is.lacks);
+      continue;
+    }
+    if (!is.lacks.empty()) continue;
+    if (was->from != is.from || was->to != is.to) {
+      add(Kind::narrowed, is, "is asked of another range");
+      continue;
+    }
+    // Harder is larger; without an end nothing is bad, without a beginning nothing is good.
+    const auto hard = [&](double setting) { return is.downwards ? 1 / setting : setting; };
+    const std::string ends = shortest(was->bad) + " -> " + shortest(is.bad);
+    if (std::isnan(is.good) != std::isnan(was->good))
+      add(std::isnan(is.good) ? Kind::narrowed : Kind::widened, is, "fails from " + ends);
+    else if (!std::isnan(is.bad) && hard(is.bad) <= hard(was->good))
+      add(Kind::narrowed, is, "fails from " + ends + " (" + is.symptom + ")");
+    else if (!std::isnan(was->bad) && hard(is.good) >= hard(was->bad))
+      add(Kind::widened, is, "fails from " + ends);
+    else if (was->symptom != is.symptom || was->at_start != is.at_start)
+      add(Kind::otherwise, is,
+          "shows '" + is.symptom + "', at its start '" + is.at_start + "'; it was '" +
+              was->symptom + "' and '" + was->at_start + "'");
+  }
+  return changes;
+}
+
+}  // namespace taut

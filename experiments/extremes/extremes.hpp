@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/extremes/knob.hpp"
+
+namespace taut {
+
+/// How far one knob goes under one solver.
+struct KnobFrontier {
+  std::string solver;  ///< "bullet:iterations=4"
+  std::string knob, unit;
+  std::string lacks;             ///< why there is nothing below; "": there is
+  bool downwards = false;        ///< smaller is harder
+  double from = 0, to = 0;       ///< the easiest and the hardest setting asked for
+  double good = std::nan("");    ///< hardest setting up to which nothing was wrong; NaN: none
+  double bad = std::nan("");     ///< easiest setting found at which something is; NaN: none
+  std::string symptom;           ///< what is wrong at `bad`, the gravest first
+  std::string at_start;          ///< what is wrong at `from` already, and therefore not counted
+  double theory = std::nan("");  ///< where it ends in theory; NaN: not within the range
+  std::string law;               ///< of the theory; "": there is none
+  CaseSpec beyond;               ///< the case at `bad`
+  std::size_t cases = 0, ran = 0;
+
+  /// How many times harder than its start it may be made; NaN: not at all.
+  double headroom() const { return downwards ? from / good : good / from; }
+};
+
+/// All frontiers of a solver on the standard scene.
+struct Extremes {
+  std::vector<KnobFrontier> knobs;
+  bool interrupted = false;
+};
+
+/// Every probe is a case of the store, judged by symptoms(). `progress` is told after each knob.
+Extremes find_extremes(const std::string& solver, const Store&, const Session&,
+                       const CampaignOptions&,
+                       const std::function<void(std::size_t done, std::size_t all)>& progress);
+
+/// One line of JSON each: a baseline. It is read back by read_knobs(), which throws InputError with
+/// file and line.
+std::string to_json_lines(const std::vector<KnobFrontier>&);
+std::vector<KnobFrontier> read_knobs(const std::filesystem::path&);
+
+/// One JSON text with what this program found: what `taut frontier --all` prints and leaves below
+/// kFrontiersFolder for the report.
+std::string to_json(const std::vector<KnobFrontier>&, std::string_view program);
+/// Nothing if another program wrote the file. Throws InputError if it is damaged.
+std::optional<std::vector<KnobFrontier>> read_frontiers(const std::filesystem::path& file,
+                                                        std::string_view program);
+
+/// What differs between frontiers that were kept and those found now.
+struct FrontierChange {
+  enum class Kind {
+    narrowed,  ///< a setting that was good is bad now
+    widened,   ///< a setting that was bad is good now
+    otherwise  ///< the symptom, or what is asked, is another
+  };
+  Kind kind = Kind::otherwise;
+  std::string solver, knob, text;
+};
+/// Of the solvers in `now`. What one of the two lacks is `narrowed`.
+std::vector<FrontierChange> compare_frontiers(const std::vector<KnobFrontier>& before,
+                                              const std::vector<KnobFrontier>& now);
+
+/// Where `taut frontier --all` leaves what it found in a results folder, for the report.
+inline constexpr std::string_view kFrontiersFolder = "frontiers";
+
+}  // namespace taut

@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""`taut frontier --all` and `taut verify --claims`: what they print and keep, and that a narrower frontier and another
+verdict are red. Performance profiles, counted from the raw samples of a session by other code."""
+
+import csv
+import json
+import math
+import pathlib
+import shlex
+import statistics
+
+from command_line import CommandLine, main
+
+KNOBS = ["time step", "sweeps", "stiffness", "mass ratio", "resolution", "speed of a collider", "size, up", "size, down",
+         "distance from the origin", "wind"]
+SYMPTOMS = {"NaN", "explodes", "crashes", "refuses", "tunnels", "overstretches", "freezes", "gains energy", "jitters",
+            "asymmetric", "loses energy"}
+
+
+class AllFrontiers(CommandLine):
+    SOLVER = "xpbd:substeps=2"  # cheap
+
+    def all(self, *words, expect=0):
+        return self.taut("frontier", "--all", self.SOLVER, "--baselines", "kept", *words, expect=expect)
+
+    def edit(self, change):
+        file = self.folder / "kept/frontiers.jsonl"
+        rows = [json.loads(line) for line in file.read_text().splitlines()]
+        change({row["knob"]: row for row in rows})
+        file.write_text("".join(json.dumps(row) + "\n" for row in rows))
+
+    def test_every_knob_has_its_frontier_and_a_narrower_one_is_red(self):
+        self.assertIn("nothing to compare with", self.all("--check", expect=4).err)
+        found = json.loads(self.all("--json", "--update").out)["knobs"]
+        self.assertEqual([knob["knob"] for knob in found], KNOBS)
+        answered = [knob for knob in found if not knob["lacks"]]
+        self.assertGreaterEqual(len(answered), 8)
+        for knob in answered:
+            if knob["bad"] is None:
+                self.assertEqual((knob["good"], knob["symptom"]), (knob["to"], ""))
+                continue
+            self.assertTrue(set(knob["symptom"].split(", ")) <= SYMPTOMS, knob)
+            gap = max(knob["good"], knob["bad"]) / min(knob["good"], knob["bad"]) - 1
+            whole = knob["knob"] in ("sweeps", "resolution") and abs(knob["good"] - knob["bad"]) == 1
+            self.assertTrue(gap < 0.021 or whole, knob)
+        # The case beyond a frontier shows what is said of it.
+        beyond = next(knob for knob in answered if "overstretches" in knob["symptom"])["beyond"]
+        sets = [word for one in beyond["overrides"] for word in ("--set", one)]
+        values = json.loads(self.taut("case", beyond["scene"], beyond["solver"], *sets, "--json").out)["values"]
+        self.assertGreater(values["stretch.max"], 1)
+
+        text = self.all("--check")
+        self.assertIn("none is narrower", text.err)
+        commands = [line for line in text.out.splitlines() if line.startswith("    taut case")]
+        self.assertEqual(len(commands), sum(knob["bad"] is not None for knob in answered))
+        self.assertEqual(shlex.split(commands[0])[:3], ["taut", "case", "swing"])
+        picture = pathlib.Path(text.out.splitlines()[-1])
+        self.assertIn("<svg", (self.folder / picture).read_text())
+
+        # The report has it, and what `require` found.
+        required = json.loads(self.taut("require", "./small.toml", "--json").out)
+        study = self.study()
+        self.taut("run", study)
+        model = json.loads(self.taut("report", study, "--json").out)
+        tables = {table["id"]: table["rows"] for table in model["tables"]}
+        self.assertEqual(model["limits"]["tables"], ["required", "frontiers"])
+        self.assertEqual([row[0] for row in tables["frontiers"]], KNOBS)
+        for knob, row in zip(found, tables["frontiers"]):
+            self.assertIn(knob["lacks"] or knob["symptom"] or "as far as was asked", row[1])
+        (row,) = tables["required"]
+        self.assertEqual(row[0], "small")
+        for effect in required["effects"]:
+            self.assertIn(effect["name"], row[4] if effect["verdict"] == "drop" else row[5])
+
+        def times(factor):
+            def change(rows):
+                rows["time step"]["good"] *= factor
+                rows["time step"]["bad"] *= factor
+            return change
+        self.edit(times(1.2))
+        self.assertRegex(self.all("--check", expect=1).err, r"NARROWED .*time step: fails from")
+        self.edit(times(1 / 1.44))
+        self.assertRegex(self.all("--check").err, r"widened .*time step")
+        self.edit(times(1.2))
+        self.edit(lambda rows: rows["wind"].update(knob="breeze"))
+        self.assertRegex(self.all("--check", expect=1).err, "NARROWED .*breeze: is no longer asked")
+        (self.folder / "kept/frontiers.jsonl").write_text("{\n")
+        self.assertIn("frontiers.jsonl:1", self.all("--check", expect=2).err)
+
+    def test_bad_input_runs_nothing(self):
+        for words in (["nobody"], ["jakobsen", "jakobsen"], ["jakobsen", "bullet", "xpbd"]):
+            self.taut("frontier", "--all", *words, expect=2)
+        self.taut("frontier", "hang", "jakobsen", "--check", expect=2)
+        self.taut("frontier", "hang", expect=2)
+        self.assertFalse(list(self.folder.glob("results/runs/store/*")))
+
+
+class Claims(CommandLine):
+    def test_a_verdict_that_changes_is_red(self):
+        kept = pathlib.Path(__file__).parents[2] / "results/baselines/claims.jsonl"
+        rows = [json.loads(line) for line in kept.read_text().splitlines()]
+        listed = json.loads(self.taut("list", "claims", "--json").out)
+        self.assertEqual([(c["name"], c["summary"], c["verdict"]) for c in listed],
+                         [(c["section"], c["claim"], c["verdict"]) for c in rows])
+        rows[4]["verdict"] = "does not hold"
+        (self.folder / "kept").mkdir()
+        (self.folder / "kept/claims.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+        said = self.taut("verify", "--claims", "--baselines", "kept", expect=1)
+        self.assertIn(f'"{rows[4]["claim"]}": \'does not hold\' -> ', said.err)
+        self.assertIn("1 changed", said.err)
+        self.taut("verify", "--update", expect=2)
+        self.taut("verify", "--claims", "--section", "8", "--update", expect=2)
+
+
+class Profiles(CommandLine):
+    LEVELS = [0.1, 0.01, 0.001, 0.0001]
+
+    def shares(self, session):
+        """Dolan and More, by hand: {solver: [ratio of every problem that anybody solves]}."""
+        ratios = {case["record"]["solver"]: [] for scene in session["scenes"] for case in scene["cases"]}
+        for scene in session["scenes"]:
+            tried = {}
+            for case in scene["cases"]:
+                record, samples = case["record"], case["cpu_seconds_per_step"]
+                error = record["values"].get("stretch.rms")
+                fine = record["status"]["kind"] in ("ok", "unsettled") and samples and error is not None
+                tried.setdefault(record["solver"], []).append(
+                    (statistics.median(samples) / record["dt"] if samples else math.inf, error if fine else math.inf))
+            fewest = min(map(len, tried.values()))
+            for solver, all_of in tried.items():
+                places = [k * (len(all_of) - 1) // (fewest - 1) for k in range(fewest)] if fewest > 1 else [0]
+                tried[solver] = [all_of[k] for k in places]
+            for level in self.LEVELS:
+                price = {solver: min((cost for cost, error in tried.get(solver, []) if error <= level), default=math.inf)
+                         for solver in ratios}
+                if min(price.values()) < math.inf:
+                    for solver in ratios:
+                        ratios[solver].append(price[solver] / min(price.values()))
+        return ratios
+
+    def test_plot_and_page_show_what_the_raw_samples_give(self):
+        study = self.study(solvers=["jakobsen", "bullet"], rest="[axes]\niterations = [1, 4, 16, 64]\n")
+        self.taut("bench", study)
+        file = next((self.folder / "results/runs/bench").glob("*/*.json"))
+        session = json.loads(file.read_text())
+        # Errors and costs at will: Bullet reaches less, and one of its settings explodes.
+        for scene in session["scenes"]:
+            for i, case in enumerate(scene["cases"]):
+                bullet = case["record"]["solver"] == "bullet"
+                case["record"]["values"]["stretch.rms"] = [0.05, 0.02, 0.005, 0.0009][i % 4] * (1.9 if bullet else 1)
+                times = case["cpu_seconds_per_step"]
+                times[:] = [(1 + i % 4) * (3e-6 if bullet and i % 4 else 4e-6)] * len(times)
+            scene["cases"][-1]["record"]["status"]["kind"] = "exploded"
+        file.write_text(json.dumps(session))
+        ratios = self.shares(session)
+        self.assertGreaterEqual(len(next(iter(ratios.values()))), 2)
+        self.assertTrue(any(math.isinf(r) for of in ratios.values() for r in of), "a failure")
+        self.taut("plot", study, "--kind", "profile", "--out", "figures")
+        rows = list(csv.DictReader(next((self.folder / "figures").glob("*.csv")).read_text().splitlines()))
+        self.assertEqual({row["solver"] for row in rows}, set(ratios))
+        for row in rows:
+            of = ratios[row["solver"]]
+            within = sum(r <= float(row["factor"]) * (1 + 1e-9) for r in of) / len(of)
+            self.assertAlmostEqual(float(row["share"]), within, 12, row)
+        self.taut("run", study)
+        model = json.loads(self.taut("report", study, "--json").out)
+        table = next(table for table in model["tables"] if table["id"] == "cost-profiles")
+        titles = [column["title"] for column in table["columns"][1:-1]]
+        factors = [1.0 if title == "the cheapest" else float(title.split()[1]) for title in titles]
+        titles = {"jakobsen": "Jakobsen", "bullet": "Bullet"}
+        for solver, of in ratios.items():
+            row = next(row for row in table["rows"] if row[0].startswith(titles[solver]))
+            for factor, cell in zip(factors + [1e300], row[1:]):
+                share = 100 * sum(r <= factor * (1 + 1e-9) for r in of) / len(of)
+                self.assertAlmostEqual(float(cell.split("\u00a0")[0]), share, delta=0.06 * share + 1e-9, msg=(table, of))
+
+
+if __name__ == "__main__":
+    main()

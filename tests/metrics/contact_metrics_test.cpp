@@ -1,0 +1,178 @@
+// Penetration, faces, slip and tunnelling on states whose answers are known in closed form.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "tests/metrics/measured.hpp"
+
+namespace taut {
+namespace {
+
+TEST(Penetration, OfOneVertexAMillimetreInsideTheBall) {
+  Scene scene = sheet();
+  scene.colliders = {{.shape = Ball{.center = {0.5, -0.3, 0.5}, .radius = 0.3}}};
+  State state = scene.start;
+  state.x[middle(scene)].y() = -0.001;
+  const Values v = measure_at_rest(scene, state);
+  for (const char* name : {"penetration.max", "penetration.peak", "penetration.mean",
+                           "penetration.ball.max", "penetration.ball.mean"})
+    EXPECT_NEAR(v.at(name), 0.001, 1e-12) << name;
+  EXPECT_NEAR(v.at("penetration.share"), 1.0 / 121, 1e-12);
+  EXPECT_NEAR(v.at("penetration.gap"), -0.001, 1e-12);
+  EXPECT_TRUE(std::isnan(v.at("penetration.plane.max")));
+}
+
+TEST(Penetration, OfTwoVerticesHasAMeanAShareAndAPeak) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Plane{}}};
+  const auto v = measure(scene, [&](int step) {
+    State state = scene.start;
+    const double scale = step == 20 ? 2 : step % 2 ? 1 : 0.5;
+    for (Vec3& x : state.x) x.y() = 0.1;
+    state.x[3].y() = -0.002 * scale, state.x[5].y() = -0.006 * scale;
+    return state;
+  });
+  for (const std::string of : {"penetration.", "penetration.plane."}) {
+    EXPECT_NEAR(v.at(of + "max"), 0.006, 1e-12) << of;
+    EXPECT_NEAR(v.at(of + "peak"), 0.012, 1e-12) << of;
+    EXPECT_NEAR(v.at(of + "mean"), 0.004 * 0.75, 1e-12) << of;
+  }
+  EXPECT_NEAR(v.at("penetration.share"), 2.0 / 9, 1e-12);
+  EXPECT_NEAR(v.at("penetration.gap"), -0.006 * 0.75, 1e-12);
+}
+
+TEST(Penetration, IsBelowTheSurfaceWhileTheGapCountsTheThickness) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Plane{}}};
+  scene.thickness = 0.01;
+  State state = scene.start;
+  for (Vec3& x : state.x) x.y() = 0.012;
+  Values v = measure_at_rest(scene, state);
+  EXPECT_EQ(v.at("penetration.max"), 0);
+  EXPECT_NEAR(v.at("penetration.gap"), 0.002, 1e-12);
+  for (Vec3& x : state.x) x.y() = 0.004;
+  v = measure_at_rest(scene, state);
+  EXPECT_EQ(v.at("penetration.max"), 0);
+  EXPECT_NEAR(v.at("penetration.gap"), -0.006, 1e-12);
+}
+
+TEST(Penetration, FollowsTheColliderAndForgivesPins) {
+  Scene scene = sheet(3);
+  scene.pins = {0};
+  scene.colliders = {
+      {.shape = Plane{.offset = -0.5}, .motion = {.velocity = {0, 0.2, 0}}}};  // at y = 0.1 at 3 s
+  State state = scene.start;
+  state.x[0].y() = -7;
+  EXPECT_NEAR(measure_at_rest(scene, state).at("penetration.max"), 0.1, 1e-12);
+}
+
+TEST(Faces, ThatRestOnABallSagByGeometryAlone) {
+  Scene scene = sheet(21);  // l = 0.05 m
+  const double radius = 0.5, l = 0.05;
+  const Vec3 center(0.5, -1, 0.5);
+  scene.colliders = {{.shape = Ball{.center = center, .radius = radius}}};
+  State state = scene.start;  // one cell with corners on the ball, the rest above it
+  const Grid g = *scene.mesh.grid;
+  for (const auto& [i, j] : {std::pair{10, 10}, {11, 10}, {10, 11}, {11, 11}}) {
+    Vec3& x = state.x[static_cast<std::size_t>(g.index(i, j))];
+    const double u = (i - 10.5) * l, w = (j - 10.5) * l;
+    x = center + Vec3(u, std::sqrt(radius * radius - u * u - w * w), w);
+  }
+  const Values v = measure_at_rest(scene, state);
+  EXPECT_NEAR(v.at("face.max"), 1.2516e-3, 1e-7);  // design value for l = 0.05, R = 0.5
+  EXPECT_NEAR(v.at("face.geometry"), v.at("face.max"), 1e-12);
+  EXPECT_NEAR(v.at("face.excess"), 0, 1e-12);
+  EXPECT_NEAR(v.at("face.max"), l * l / (4 * radius), 2e-6);
+  EXPECT_NEAR(v.at("penetration.max"), 0, 1e-12);
+}
+
+/// A block that slides down a slope of 30 degrees with friction mu, as steps of dt see it.
+State sliding(const Scene& scene, double mu, int step) {
+  const Vec3 down = Vec3(1, -std::sqrt(1.0 / 3), 0).normalized();
+  const double a = 9.81 * std::max(0.0, 0.5 - mu * std::sqrt(0.75));
+  State state = scene.start;
+  for (Vec3& x : state.x) x += a * scene.dt * scene.dt * step * (step + 1) / 2 * down;
+  for (Vec3& v : state.v) v = a * scene.dt * step * down;
+  return state;
+}
+
+TEST(Slip, IsZeroForCoulombsLawAndElseTheAccelerationThatIsWrong) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Plane{.normal = {0.5, std::sqrt(0.75), 0}}, .friction = 0.3}};
+  const auto at = [&](double mu) {
+    return measure(scene, [&](int step) { return sliding(scene, mu, step); });
+  };
+  Values v = at(0.3);
+  EXPECT_NEAR(v.at("slip.error.peak"), 0, 1e-9);
+  EXPECT_NEAR(v.at("slip.distance"), 0, 1e-9);
+  v = at(0.2);  // a solver whose friction is too small by 0.1
+  const double wrong = 9.81 * 0.1 * std::sqrt(0.75);
+  EXPECT_NEAR(v.at("slip.error"), wrong, 1e-9);
+  EXPECT_NEAR(v.at("slip.distance"), wrong / 2 * 3 * (3 + scene.dt), 1e-9);
+  scene.colliders[0].friction = 0.6;  // more than tan(30 degrees): it has to stick, and creeps
+  v = at(0.57);
+  EXPECT_NEAR(v.at("slip.error"), 9.81 * 0.03 * std::sqrt(0.75), 1e-9);
+  v = at(1);
+  EXPECT_NEAR(v.at("slip.error.peak"), 0, 1e-9);
+}
+
+TEST(Slip, SeesThePlaneMoveAndDampingAndNeedsAPlaneAlone) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Plane{}, .motion = {.velocity = {0.3, 0, 0}}, .friction = 0.5}};
+  const auto carried = [&](int step) {
+    State state = scene.start;
+    for (Vec3& x : state.x) x.x() += 0.3 * scene.dt * step;
+    return state;
+  };
+  for (Vec3& v : scene.start.v) v = {0.3, 0, 0};
+  EXPECT_NEAR(measure(scene, carried).at("slip.error.peak"), 0, 1e-9);
+  scene.colliders[0].motion = {};
+  EXPECT_NEAR(measure(scene, carried).at("slip.error"), 0.5 * 9.81, 1e-9);  // nothing brakes it
+  scene.colliders.clear();
+  scene.damping = 2;
+  scene.gravity = {0, -1e-9, 0};
+  scene.colliders = {{.shape = Plane{.offset = -5}, .friction = 0.5}};
+  const double keep = std::exp(-2 * scene.dt);
+  const auto damped = [&](int step) {
+    State state = scene.start;
+    for (Vec3& x : state.x)
+      x.x() += 0.3 * scene.dt * keep * (1 - std::pow(keep, step)) / (1 - keep);
+    return state;
+  };
+  EXPECT_NEAR(measure(scene, damped).at("slip.error.peak"), 0, 1e-6);
+  scene.pins = {0};
+  EXPECT_FALSE(measure(scene, damped).contains("slip.error"));
+}
+
+TEST(Tunnelling, CountsPassagesWithinOneStepAndForgetsReturns) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Box{.center = {0.5, -1, 0.5}, .half_extents = {2, 0.01, 2}}}};
+  const auto v = measure(scene, [&](int step) {
+    State state = scene.start;
+    if (step >= 10) state.x[0].y() = -2;                        // through in one step
+    if (step >= 10) state.x[1].y() = -1 + 0.001 * (15 - step);  // slowly through
+    if (step >= 10 && step < 50) state.x[2].y() = -2;           // and back
+    if (step >= 10) state.x[3].y() = -0.995;                    // stays inside
+    if (step >= 10) state.x[4] = {9, -2, 9};                    // past the edge
+    if (step >= 12) state.x[4] = {0.5, -2, 0.5};
+    return state;
+  });
+  EXPECT_EQ(v.at("tunnelling.count"), 2);
+  EXPECT_EQ(v.at("tunnelling.events"), 4);
+  EXPECT_NEAR(v.at("tunnelling.share"), 2.0 / 9, 1e-12);
+}
+
+TEST(Tunnelling, SeesTheColliderMoveAndGrazesPardoned) {
+  Scene scene = sheet(3);
+  scene.colliders = {{.shape = Ball{.center = {0.5, -1, 0.5}, .radius = 0.1},
+                      .motion = {.velocity = {0, 64, 0}}}};  // 1 m a step, straight through
+  EXPECT_EQ(measure_at_rest(scene, scene.start).at("tunnelling.count"), 1);
+  std::get<Ball>(scene.colliders[0].shape).center.x() += 0.08;  // beyond R/sqrt(2) off the axis
+  EXPECT_EQ(measure_at_rest(scene, scene.start).at("tunnelling.count"), 0);
+}
+
+}  // namespace
+}  // namespace taut
