@@ -225,8 +225,9 @@ std::vector<MapResult> stored_maps(const std::vector<Study>& studies, const Stor
 std::vector<TimeSeries> stored_series(std::span<const Record> records, const std::string& value,
                                       const Store& store) {
   std::vector<TimeSeries> all;
+  const SettingLabels labels(records);
   for (const Record& record : records) {
-    const std::string knobs = knob_label(record, records);
+    const std::string knobs = labels.of(record);
     const std::string label = solver_title(record.solver) + (knobs.empty() ? "" : " " + knobs);
     TimeSeries series = column(
         store.series(record.key),

@@ -19,16 +19,21 @@ constexpr const char* kKnobs[] = {"substeps", "iterations", "newton", "stiffness
 
 }  // namespace
 
-std::string knob_label(const Record& record, std::span<const Record> records) {
+SettingLabels::SettingLabels(std::span<const Record> all) {
+  for (const Record& r : all)
+    for (const char* knob : kKnobs)
+      if (const auto at = r.params.find(knob); at != r.params.end())
+        seen_[{r.solver, knob}].insert(at->second);
+}
+
+std::string SettingLabels::of(const Record& record) const {
   std::string text;
   bool work = false;
   for (const char* knob : kKnobs) {
     const auto at = record.params.find(knob);
     if (at == record.params.end()) continue;
-    const bool varies = std::ranges::any_of(records, [&](const Record& r) {
-      return r.solver == record.solver && r.params.contains(knob) &&
-             r.params.at(knob) != at->second;
-    });
+    const auto seen = seen_.find({record.solver, knob});
+    const bool varies = seen != seen_.end() && seen->second.size() > seen->second.count(at->second);
     if (!varies || at->second == "off") continue;
     if (knob == std::string_view("substeps") || knob == std::string_view("iterations"))
       work = true;
@@ -84,6 +89,7 @@ std::vector<Curve> make_curves(std::span<const Record> records, const std::strin
   std::vector<Curve> curves;
   std::map<std::pair<std::string, Settings>, std::size_t> index;
   std::map<std::string, int> variants;
+  const SettingLabels labels(records);
   for (const Record& record : records) {
     const Settings all = settings(record, along);
     const auto [where, fresh] = index.try_emplace({record.solver, all}, curves.size());
@@ -95,7 +101,7 @@ std::vector<Curve> make_curves(std::span<const Record> records, const std::strin
       curves.push_back(std::move(curve));
     }
     Point point{value_of(record, x), value_of(record, y), value_of(record, along), &record};
-    if (along == "setting") point.along = point.x, point.name = knob_label(record, records);
+    if (along == "setting") point.along = point.x, point.name = labels.of(record);
     curves[where->second].points.push_back(std::move(point));
   }
   for (Curve& curve : curves)

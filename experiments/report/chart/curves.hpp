@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,8 +29,16 @@ struct Curve {
   std::vector<Point> points;
 };
 
-/// The knobs of this record that take several values among its solver's: their values, as a label.
-std::string knob_label(const Record&, std::span<const Record> all);
+/// Labels of records by those accuracy parameters that take several values among their solver's.
+class SettingLabels {
+ public:
+  explicit SettingLabels(std::span<const Record> all);
+  /// "2 × 8, coloured"; "" if nothing varies.
+  std::string of(const Record&) const;
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> seen_;  ///< solver, name
+};
 
 /// Groups records into curves of y over x: those that differ in nothing but `along` ("iterations",
 /// "dt", ...) share a curve. Labels name only the settings that vary among the records. `along` =

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
-#include <tuple>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
@@ -21,12 +21,13 @@ std::map<std::string, std::string> choice_of(const Record& r) {
 }
 
 Rival choose(const std::string& solver, const std::vector<const Record*>& cases) {
-  std::vector<std::pair<std::map<std::string, std::string>, std::vector<const Record*>>> groups;
+  using Choice = std::map<std::string, std::string>;
+  std::vector<std::pair<Choice, std::vector<const Record*>>> groups;
+  std::map<Choice, std::size_t> index;
   for (const Record* r : cases) {
-    const auto choice = choice_of(*r);
-    auto group = std::ranges::find(groups, choice, [](const auto& g) { return g.first; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {choice, {}});
-    group->second.push_back(r);
+    const auto [at, fresh] = index.try_emplace(choice_of(*r), groups.size());
+    if (fresh) groups.push_back({at->first, {}});
+    groups[at->second].second.push_back(r);
   }
   const auto most =
       std::ranges::max_element(groups, {}, [](const auto& g) { return g.second.size(); });

@@ -24,7 +24,7 @@ struct CostScene {
   References& refs;
 
   std::string setting(std::size_t at) const {
-    const std::string label = knob_label(bench.cases[at].record, records);
+    const std::string label = SettingLabels(records).of(bench.cases[at].record);
     return label.empty() ? work_of(bench.cases[at].record).text() : label;
   }
   Json cell(std::size_t at, const std::string& text) const {
