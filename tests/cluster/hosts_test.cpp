@@ -66,7 +66,7 @@ TEST(Hosts, TheModelHasTheCostOfOneHostAndNamesTheOthers) {
   EXPECT_EQ(input.bench->machine, BenchSession::here("").machine);
   ASSERT_EQ(input.cost_hosts.size(), 3u);
   EXPECT_NE(input.cost_hosts[0].find("; shown"), std::string::npos);
-  for (const std::size_t i : {1, 2}) {
+  for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
     EXPECT_TRUE(input.cost_hosts[i].starts_with(i == 1 ? "ares" : "zeus"));
     EXPECT_NE(input.cost_hosts[i].find("not shown and not pooled"), std::string::npos);
   }
