@@ -47,7 +47,7 @@ std::string name(const JudgedClaim& claim) { return claim.section + " \"" + clai
 
 std::vector<JudgedClaim> judge_claims(const FindingsOf& findings_of) {
   std::vector<JudgedClaim> all;
-  for (const SeedClaim& claim : seed_claims()) {
+  for (const VasiloviciClaim& claim : vasilovici_claims()) {
     JudgedClaim judged{std::string(claim.section), std::string(claim.claim),
                        std::string(to_string(claim.verdict)), ""};
     if (!claim.truth.empty()) {

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 
+#include "core/reference/fit.hpp"
 #include "experiments/bench/contact.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -65,7 +66,7 @@ void print_exponents(const std::vector<Rows>& sizes) {
     const PowerLaw law = fit_power_law(n, cost);
     const ContactRow& row = sizes.front()[i];
     std::printf("%-16s %-30s %5d   %.2f +- %.2f\n", row.scene.c_str(), row.setting.c_str(),
-                row.steps, law.slope, 2 * law.slope_error);
+                row.steps, law.exponent, 2 * law.error);
   }
 }
 

@@ -27,7 +27,7 @@ struct Options {
 };
 
 std::string exponent(const std::optional<PowerLaw>& law) {
-  return law ? number_text(law->slope) + " +- " + number_text(2 * law->slope_error, 2)
+  return law ? number_text(law->exponent) + " +- " + number_text(2 * law->error, 2)
              : "too few sizes";
 }
 
@@ -82,7 +82,7 @@ void print(const ScalingLine& line) {
 
 Json json_of(const std::optional<PowerLaw>& law) {
   if (!law) return nullptr;
-  return {{"factor", law->factor}, {"exponent", law->slope}, {"standard_error", law->slope_error}};
+  return {{"factor", law->factor}, {"exponent", law->exponent}, {"standard_error", law->error}};
 }
 
 Json json_of(const ScalingLine& line) {

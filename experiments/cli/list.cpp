@@ -10,7 +10,7 @@
 #include "experiments/study/study.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/truths/seed_claims.hpp"
+#include "experiments/truths/vasilovici/claims.hpp"
 
 namespace taut::verb::list {
 
@@ -92,7 +92,7 @@ Json list_studies() {
 /// What Vasilovici's report claims.
 Json list_claims() {
   Json all = Json::array();
-  for (const SeedClaim& claim : seed_claims())
+  for (const VasiloviciClaim& claim : vasilovici_claims())
     all.push_back({{"name", claim.section},
                    {"summary", claim.claim},
                    {"verdict", to_string(claim.verdict)},

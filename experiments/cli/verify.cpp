@@ -21,8 +21,8 @@
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/truths/seed_claims.hpp"
 #include "experiments/truths/truth.hpp"
+#include "experiments/truths/vasilovici/claims.hpp"
 
 namespace taut::verb::verify {
 
@@ -55,7 +55,8 @@ std::vector<const TruthEntry*> choose(const Options& options) {
     if (solver != "reference") parse_solver(solver);
   std::vector<const TruthEntry*> chosen;
   for (const TruthEntry* truth : truths()) {
-    if (options.claims && std::ranges::none_of(seed_claims(), [&](const SeedClaim& claim) {
+    if (options.claims &&
+        std::ranges::none_of(vasilovici_claims(), [&](const VasiloviciClaim& claim) {
           return claim.truth == truth->name;
         }))
       continue;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/reference/fit.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/timing/bench.hpp"
 

@@ -81,20 +81,4 @@ Difference compare_costs(const Interval& ratio, const Interval& control, double 
   return ratio.mid < 1 ? Difference::faster : Difference::slower;
 }
 
-PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
-  assert(x.size() == y.size() && x.size() >= 2);
-  const auto n = static_cast<double>(x.size());
-  double mx = 0, my = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) mx += std::log(x[i]) / n, my += std::log(y[i]) / n;
-  double sxx = 0, sxy = 0, syy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double dx = std::log(x[i]) - mx, dy = std::log(y[i]) - my;
-    sxx += dx * dx, sxy += dx * dy, syy += dy * dy;
-  }
-  const double slope = sxy / sxx;
-  const double residual = std::max(0.0, syy - slope * sxy);
-  const double error = n > 2 ? std::sqrt(residual / (n - 2) / sxx) : 0;
-  return {std::exp(my - slope * mx), slope, error};
-}
-
 }  // namespace taut

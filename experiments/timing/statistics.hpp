@@ -52,13 +52,4 @@ enum class Difference {
 };
 Difference compare_costs(const Interval& ratio, const Interval& control, double tolerance);
 
-/// y = a x^slope through positive points by least squares in logarithms, with the slope's standard
-/// error.
-struct PowerLaw {
-  double factor = 0;
-  double slope = 0;
-  double slope_error = 0;
-};
-PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
-
 }  // namespace taut

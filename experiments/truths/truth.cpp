@@ -61,13 +61,13 @@ void Findings::equal(std::string_view subject, std::string_view quantity, std::s
 
 void Findings::below(std::string_view subject, std::string_view quantity, std::string_view unit,
                      double measured, double limit) {
-  add(finding(subject, quantity, unit, measured, 0, limit));
+  equal(subject, quantity, unit, measured, 0, limit);
 }
 
-void Findings::slope(std::string_view subject, std::string_view quantity, double measured,
-                     double uncertainty, double expected, double tolerance) {
-  Finding f = finding(subject, quantity, "1", measured, expected, tolerance);
-  f.uncertainty = uncertainty;
+void Findings::slope(std::string_view subject, std::string_view quantity, const PowerLaw& fitted,
+                     double expected, double tolerance) {
+  Finding f = finding(subject, quantity, "1", fitted.exponent, expected, tolerance);
+  f.uncertainty = fitted.error;
   add(std::move(f));
 }
 

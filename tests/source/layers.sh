@@ -22,7 +22,7 @@ experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(system|case|external))/|taut_solver.hpp)
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
 experiments/cluster      | (core/(model|io)|experiments/(system|case|study|cluster))/
-experiments/timing       | (core/model|experiments/(system|case|timing))/
+experiments/timing       | (core/(model|reference)|experiments/(system|case|timing))/
 experiments/extremes     | (core/(model|io)|experiments/(system|case|study|extremes))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|truths|baseline))/
 experiments/require      | (core/(model|io)|experiments/(system|metrics|case|study|timing|require))/

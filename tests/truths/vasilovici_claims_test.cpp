@@ -1,22 +1,21 @@
 // What Vasilovici's report claims: every verdict that can be held is held by a truth.
-#include "experiments/truths/seed_claims.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 
 #include "experiments/truths/truth.hpp"
+#include "experiments/truths/vasilovici/claims.hpp"
 
 namespace taut {
 namespace {
 
-TEST(SeedClaims, EachIsHeldByATruthUnlessItCannotBeTested) {
-  std::map<SeedVerdict, int> verdicts;
-  for (const SeedClaim& claim : seed_claims()) {
+TEST(VasiloviciClaims, EachIsHeldByATruthUnlessItCannotBeTested) {
+  std::map<ClaimVerdict, int> verdicts;
+  for (const VasiloviciClaim& claim : vasilovici_claims()) {
     ++verdicts[claim.verdict];
     EXPECT_FALSE(claim.because.empty()) << claim.claim;
-    EXPECT_EQ(claim.truth.empty(), claim.verdict == SeedVerdict::cannot_be_tested) << claim.claim;
+    EXPECT_EQ(claim.truth.empty(), claim.verdict == ClaimVerdict::cannot_be_tested) << claim.claim;
     const bool known =
         std::ranges::any_of(truths(), [&](const TruthEntry* t) { return t->name == claim.truth; });
     EXPECT_EQ(known, !claim.truth.empty()) << claim.truth;
@@ -24,7 +23,7 @@ TEST(SeedClaims, EachIsHeldByATruthUnlessItCannotBeTested) {
   EXPECT_EQ(verdicts.size(), 4u) << "a report that is right, or wrong, in everything";
 }
 
-TEST(SeedClaims, TheTruthsBehindBoxesAndOctreesHold) {
+TEST(VasiloviciClaims, TheTruthsBehindBoxesAndOctreesHold) {
   for (const TruthEntry* truth : truths()) {
     if (truth->section != 8 || truth->row < 6 || truth->name == "octree-crossings") continue;
     Findings findings({"jakobsen", "closed form"});

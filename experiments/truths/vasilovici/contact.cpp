@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/case/case.hpp"
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 
@@ -20,7 +20,7 @@ std::string answering(const std::string& contact) {
 std::map<std::string, double> values_of(Findings& findings, const CaseSpec& spec) {
   if (!findings.wants(spec.solver)) return {};
   const Case one = make_case(spec);
-  if (!claims(findings, spec.solver, *one.scene)) return {};
+  if (!can_run(findings, spec.solver, *one.scene)) return {};
   return run_case(one).record.values;
 }
 
@@ -29,7 +29,11 @@ std::map<std::string, double> values(Findings& findings, const std::string& scen
   return values_of(findings, {scene, {"time.dt=\"" + dt + "\""}, solver});
 }
 
-void box_before_relaxation(Findings& findings) {
+}  // namespace
+
+TAUT_TRUTH(box_before_relaxation, 8, 6,
+           "out of the box first and relaxed afterwards, cloth sinks in but not through",
+           "Vasilovici, Cloth Simulation Report, section 4.2.3") {
   const std::string solver = answering("before");
   auto v = values(findings, "box", solver);
   if (v.empty()) return;
@@ -38,7 +42,9 @@ void box_before_relaxation(Findings& findings) {
                  0);
 }
 
-void box_freeze(Findings& findings) {
+TAUT_TRUTH(box_freeze, 8, 7,
+           "frozen where it touches the box, cloth stays out, and stretches instead",
+           "Vasilovici, Cloth Simulation Report, section 4.2.3") {
   const std::string solver = answering("freeze");
   auto v = values(findings, "box", solver);
   if (v.empty()) return;
@@ -49,7 +55,9 @@ void box_freeze(Findings& findings) {
                  v["stretch.max"], 2, 0.7);
 }
 
-void box_halt(Findings& findings) {
+TAUT_TRUTH(box_halt, 8, 8,
+           "halted for a step where it touches the box, cloth pops and sinks in with the step",
+           "Vasilovici, Cloth Simulation Report, section 4.2.3") {
   const std::string solver = answering("halt");
   auto coarse = values(findings, "box", solver), fine = values(findings, "box", solver, "1/256");
   if (coarse.empty()) return;
@@ -59,7 +67,8 @@ void box_halt(Findings& findings) {
                  fine["popping.max"], 320, 200);
 }
 
-void octree_split(Findings& findings) {
+TAUT_TRUTH(octree_split, 8, 9, "an octree of boxes misses what collides across a split",
+           "Vasilovici, Cloth Simulation Report, section 4.2.4") {
   // Two slow particles meet at the middle of a box whose corners hold the others.
   std::vector<Vec3> x{{-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}};
   for (const double sx : {-1, 1})
@@ -69,18 +78,19 @@ void octree_split(Findings& findings) {
   s.start.v[0] = {0.1, 0.1, 0.1}, s.start.v[1] = -s.start.v[0];
   s.self_collision = SelfCollision{.radius = 0.05};
   const auto gap = [&](const std::string& method) {
-    Probe probe(s, "jakobsen:precision=double,substeps=1,self=" + method);
-    probe.step(40);
-    return (probe.x(1) - probe.x(0)).norm();
+    Simulation sim(s, "jakobsen:precision=double,substeps=1,self=" + method);
+    sim.step(40);
+    return (sim.x(1) - sim.x(0)).norm();
   };
   const std::string octree = "jakobsen:self=octree", grid = "jakobsen:self=grid";
-  if (!claims(findings, octree, s)) return;
+  if (!can_run(findings, octree, s)) return;
   findings.equal(octree, "distance of two that met across the octree's split: as without a test",
                  "m", gap("octree"), gap("off"), 0);
   findings.below(grid, "their overlap", "m", std::max(0.0, 0.1 - gap("grid")), 1e-12);
 }
 
-void octree_jam(Findings& findings) {
+TAUT_TRUTH(octree_jam, 8, 10, "particles larger than the spacing jam the cloth under the octree",
+           "Vasilovici, Cloth Simulation Report, section 4.2.4") {
   const std::string octree = "jakobsen:self=octree", grid = "jakobsen:self=grid";
   if (auto v = values(findings, "jam", octree, "1/256"); !v.empty())
     findings.below(octree, "way of a falling sheet whose particles overlap", "m", v["drift.max"],
@@ -90,7 +100,9 @@ void octree_jam(Findings& findings) {
                    0.06);
 }
 
-void octree_crossings(Findings& findings) {
+TAUT_TRUTH(octree_crossings, 8, 16,
+           "an octree keeps a folding sheet from crossing itself, though particles overlap",
+           "Vasilovici, Cloth Simulation Report, section 4.2.4") {
   const auto seen = [&](const std::string& method) {
     return values_of(findings, {"crumple", {"time.duration=1.5"}, "jakobsen:self=" + method});
   };
@@ -107,53 +119,4 @@ void octree_crossings(Findings& findings) {
                  1e-3);
 }
 
-}  // namespace
 }  // namespace taut
-
-TAUT_TRUTH(box_before_relaxation) = {
-    .name = "box-before-relaxation",
-    .section = 8,
-    .row = 6,
-    .statement = "out of the box first and relaxed afterwards, cloth sinks in but not through",
-    .source = "Vasilovici, Cloth Simulation Report, section 4.2.3",
-    .check = taut::box_before_relaxation};
-
-TAUT_TRUTH(box_freeze) = {
-    .name = "box-freeze",
-    .section = 8,
-    .row = 7,
-    .statement = "frozen where it touches the box, cloth stays out, and stretches instead",
-    .source = "Vasilovici, Cloth Simulation Report, section 4.2.3",
-    .check = taut::box_freeze};
-
-TAUT_TRUTH(box_halt) = {
-    .name = "box-halt",
-    .section = 8,
-    .row = 8,
-    .statement =
-        "halted for a step where it touches the box, cloth pops and sinks in with the step",
-    .source = "Vasilovici, Cloth Simulation Report, section 4.2.3",
-    .check = taut::box_halt};
-
-TAUT_TRUTH(octree_split) = {.name = "octree-split",
-                            .section = 8,
-                            .row = 9,
-                            .statement = "an octree of boxes misses what collides across a split",
-                            .source = "Vasilovici, Cloth Simulation Report, section 4.2.4",
-                            .check = taut::octree_split};
-
-TAUT_TRUTH(octree_jam) = {
-    .name = "octree-jam",
-    .section = 8,
-    .row = 10,
-    .statement = "particles larger than the spacing jam the cloth under the octree",
-    .source = "Vasilovici, Cloth Simulation Report, section 4.2.4",
-    .check = taut::octree_jam};
-
-TAUT_TRUTH(octree_crossings) = {
-    .name = "octree-crossings",
-    .section = 8,
-    .row = 16,
-    .statement = "an octree keeps a folding sheet from crossing itself, though particles overlap",
-    .source = "Vasilovici, Cloth Simulation Report, section 4.2.4",
-    .check = taut::octree_crossings};

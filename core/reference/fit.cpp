@@ -1,11 +1,11 @@
-#include "experiments/truths/fit.hpp"
+#include "core/reference/fit.hpp"
 
 #include <cmath>
 #include <cstddef>
 
 namespace taut {
 
-Slope log_slope(const std::vector<double>& x, const std::vector<double>& y) {
+PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
   const auto n = static_cast<double>(x.size());
   double mx = 0, my = 0, sxx = 0, sxy = 0, rest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) mx += std::log(x[i]) / n, my += std::log(y[i]) / n;
@@ -14,13 +14,10 @@ Slope log_slope(const std::vector<double>& x, const std::vector<double>& y) {
     sxx += dx * dx;
     sxy += dx * (std::log(y[i]) - my);
   }
-  Slope s;
-  s.value = sxy / sxx;
-  s.intercept = my - s.value * mx;
+  const double exponent = sxy / sxx, intercept = my - exponent * mx;
   for (std::size_t i = 0; i < x.size(); ++i)
-    rest += std::pow(std::log(y[i]) - s.intercept - s.value * std::log(x[i]), 2);
-  if (n > 2) s.error = std::sqrt(rest / (n - 2) / sxx);
-  return s;
+    rest += std::pow(std::log(y[i]) - intercept - exponent * std::log(x[i]), 2);
+  return {std::exp(intercept), exponent, n > 2 ? std::sqrt(rest / (n - 2) / sxx) : 0};
 }
 
 std::array<double, 2> two_term_recurrence(const std::vector<double>& y) {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/model/index.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/truths/truth.hpp"
 
@@ -12,14 +13,14 @@ namespace taut {
 
 /// A solver on a scene, stepped by hand. Solvers that offer a link order get the mesh order, which
 /// the recurrences of the truths assume, unless the text chooses one.
-class Probe {
+class Simulation {
  public:
-  Probe(const Scene&, std::string_view solver);
+  Simulation(const Scene&, std::string_view solver);
   void step(int n = 1);
   void load(const State&);  ///< restart here; time goes on
   const State& state() const { return state_; }
-  const Vec3& x(int i) const { return state_.x[static_cast<std::size_t>(i)]; }
-  const Vec3& v(int i) const { return state_.v[static_cast<std::size_t>(i)]; }
+  const Vec3& x(int i) const { return state_.x[to_index(i)]; }
+  const Vec3& v(int i) const { return state_.v[to_index(i)]; }
   const Scene& scene() const { return scene_; }
 
  private:
@@ -31,7 +32,7 @@ class Probe {
 
 /// Whether the solver was asked for, exists in this program and can do the scene; if it was asked
 /// for but cannot, the findings get "not claimed" with the reasons.
-bool claims(Findings&, std::string_view solver, const Scene&);
+bool can_run(Findings&, std::string_view solver, const Scene&);
 
 constexpr const char* kStatic = "reference:static";  ///< core/reference/static_equilibrium
 constexpr const char* kShake = "reference:shake";    ///< core/reference/shake
@@ -73,7 +74,7 @@ double max_distance(const std::vector<Vec3>&, const std::vector<Vec3>&);
 
 /// Runs until the fastest vertex is slower than `speed` [m/s] in 10 successive looks, `every` steps
 /// apart, or for at most `limit` steps; true if it came to rest.
-bool settle(Probe&, double speed, int every, int limit);
+bool settle(Simulation&, double speed, int every, int limit);
 
 inline constexpr double kG = 9.81;  ///< m/s^2
 

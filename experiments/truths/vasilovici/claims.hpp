@@ -5,20 +5,20 @@
 
 namespace taut {
 
-enum class SeedVerdict { holds, holds_if, does_not_hold, cannot_be_tested };
-std::string_view to_string(SeedVerdict);
+enum class ClaimVerdict { holds, holds_if, does_not_hold, cannot_be_tested };
+std::string_view to_string(ClaimVerdict);
 
 /// A claim of Vasilovici's Cloth Simulation Report that can be tested, and what became of it.
-struct SeedClaim {
+struct VasiloviciClaim {
   std::string_view section;  ///< of the report
   std::string_view claim;
-  SeedVerdict verdict;
+  ClaimVerdict verdict;
   std::string_view because;      ///< the condition, the figure, or why it cannot be tested
   std::string_view truth;        ///< by name: `taut verify` holds the verdict to it; "": none can
   std::string_view figure = "";  ///< how the truth's number that is quoted begins; "": the first
 };
 
 /// All of them, in the report's order.
-std::span<const SeedClaim> seed_claims();
+std::span<const VasiloviciClaim> vasilovici_claims();
 
 }  // namespace taut

@@ -1,12 +1,12 @@
-#include "experiments/truths/seed_claims.hpp"
+#include "experiments/truths/vasilovici/claims.hpp"
 
 namespace taut {
 
 namespace {
 
-using enum SeedVerdict;
+using enum ClaimVerdict;
 
-constexpr SeedClaim kClaims[] = {
+constexpr VasiloviciClaim kClaims[] = {
     {"3", "stretch, shear and bend springs together give cloth its behaviour", holds_if,
      "of shear links: without them a square hung by two corners sags; bend links do little to a "
      "flat sheet",
@@ -109,12 +109,12 @@ constexpr SeedClaim kClaims[] = {
 
 }  // namespace
 
-std::string_view to_string(SeedVerdict verdict) {
+std::string_view to_string(ClaimVerdict verdict) {
   constexpr std::string_view kNames[] = {"holds", "holds under conditions", "does not hold",
                                          "cannot be tested"};
   return kNames[static_cast<int>(verdict)];
 }
 
-std::span<const SeedClaim> seed_claims() { return kClaims; }
+std::span<const VasiloviciClaim> vasilovici_claims() { return kClaims; }
 
 }  // namespace taut

@@ -1,18 +1,20 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace taut {
 
-/// Least-squares line through (log x, log y): y ~ x^value.
-struct Slope {
-  double value = 0;
-  double error = 0;      ///< one standard error; 0 with two points
-  double intercept = 0;  ///< log y at x = 1
+/// y = factor x^exponent.
+struct PowerLaw {
+  double factor = 0;
+  double exponent = 0;
+  double error = 0;  ///< one standard error of the exponent; 0 with two points
 };
-/// Preconditions: equal sizes >= 2, all values > 0, not all x equal.
-Slope log_slope(const std::vector<double>& x, const std::vector<double>& y);
+/// Least-squares line through (log x, log y). Preconditions: equal sizes >= 2, all values > 0, not
+/// all x equal.
+PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
 
 /// Least-squares p, q in y_{n+1} = p y_n + q y_{n-1}: exact for one oscillating mode, whose roots
 /// are those of z^2 - p z - q = 0. Precondition: at least four values.

@@ -1,10 +1,9 @@
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 
 namespace taut {
@@ -16,23 +15,24 @@ std::string with(std::string_view solver, std::string_view more) {
   return text + std::string(more);
 }
 
-Probe::Probe(const Scene& scene, std::string_view solver) : scene_(scene), state_(scene.start) {
+Simulation::Simulation(const Scene& scene, std::string_view solver)
+    : scene_(scene), state_(scene.start) {
   const SolverChoice choice = parse_solver(solver);
   solver_ = choice.entry->make(scene_, choice.params);
   solver_->load(state_);
 }
 
-void Probe::step(int n) {
+void Simulation::step(int n) {
   for (int i = 0; i < n; ++i, ++n_) solver_->step(n_ * scene_.dt, scene_.dt);
   solver_->store(state_);
 }
 
-void Probe::load(const State& state) {
+void Simulation::load(const State& state) {
   state_ = state;
   solver_->load(state_);
 }
 
-bool claims(Findings& findings, std::string_view solver, const Scene& scene) {
+bool can_run(Findings& findings, std::string_view solver, const Scene& scene) {
   if (!findings.wants(solver)) return false;
   std::vector<std::string> reasons;
   try {
@@ -144,12 +144,12 @@ double max_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return worst;
 }
 
-bool settle(Probe& probe, double speed, int every, int limit) {
+bool settle(Simulation& sim, double speed, int every, int limit) {
   int calm = 0;
   for (int n = 0; n < limit && calm < 10; n += every) {
-    probe.step(every);
+    sim.step(every);
     double fastest = 0;
-    for (const Vec3& v : probe.state().v) fastest = std::max(fastest, v.norm());
+    for (const Vec3& v : sim.state().v) fastest = std::max(fastest, v.norm());
     calm = fastest < speed ? calm + 1 : 0;
   }
   return calm == 10;
