@@ -1,4 +1,4 @@
-# The one place that joins the branches: every TAUT_SOLVER(name) and TAUT_METRIC(name) line in the sources becomes
+# The one place that joins the branches: every line TAUT_SOLVER(name) or TAUT_METRIC(name, in the sources becomes
 # an entry of solvers() or metrics(). Adding a file is enough; CMake re-runs when the lists of files change.
 # FUNCTION may be qualified (report::figures): the entries then live in that namespace of taut.
 #   taut_write_registry(OUT KIND TYPE FUNCTION HEADER SOURCES...)

@@ -2,10 +2,10 @@
 // twelve independent chains of alternating multiplications and additions; projections of particles
 // that stay in registers; and particles that are moved for projections that are left out.
 #include <algorithm>
-#include <ctime>
 
 #include "core/solver/layout/colour_batches.hpp"
 #include "experiments/bench/kernels.hpp"
+#include "experiments/system/clock.hpp"
 
 namespace taut {
 
@@ -54,12 +54,9 @@ double fastest(const F& run, Real value) {
   double best = 1;
   volatile Real keep = value;
   for (int attempt = 0; attempt < 20; ++attempt) {
-    timespec from, to;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &from);
+    const double begin = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     keep = keep + 0 * run(keep);
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &to);
-    best = std::min(best, static_cast<double>(to.tv_sec - from.tv_sec) +
-                              1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec));
+    best = std::min(best, seconds_of(CLOCK_THREAD_CPUTIME_ID) - begin);
   }
   return best;
 }

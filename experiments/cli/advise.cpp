@@ -124,11 +124,10 @@ class Advisor {
     const double end =
         std::min(deadline, options_.patience - seconds_of_final(kMostFinalists, options_.rounds));
     if (elapsed() >= end) return {};
-    const auto record = run_stored_until(make(setting), store_, at(end));
+    const auto record = run_stored(make(setting), store_, {}, at(end));
     if (!record) return {};
-    const auto value = record->values.find(options_.metric);
-    Candidate found{record->solver, record->spec.solver, {}, std::nan(""), {}};
-    if (value != record->values.end()) found.error = std::abs(value->second);
+    Candidate found{
+        record->solver, record->spec.solver, {}, std::abs(record->value(options_.metric)), {}};
     if (!completed(record->status)) found.failure = describe(record->status);
     try {
       TimingWorker worker(program_of(record->spec), record->spec);
@@ -180,21 +179,9 @@ class Advisor {
   }
 
   SceneBench time(const std::vector<Record>& records, int rounds) const {
-    std::vector<CaseSpec> specs;
-    for (const Record& record : records) specs.push_back(record.spec);
-    const auto steps = [&](const CaseSpec& spec) {
-      return steps_done(
-          *std::ranges::find(records, spec.solver, [](const Record& r) { return r.spec.solver; }));
-    };
-    Bench bench = run_bench(specs, {.rounds = rounds,
-                                    .seconds = options_.seconds,
-                                    .program = program_of,
-                                    .steps = steps,
-                                    .progress = Countdown("timing round")});
-    SceneBench result{options_.scene, bench.control, {}};
-    for (std::size_t i = 0; i < specs.size(); ++i)
-      result.cases.push_back({records[i], std::move(bench.timings[i])});
-    return result;
+    return bench_scene(
+        options_.scene, records,
+        {.rounds = rounds, .seconds = options_.seconds, .progress = Countdown("timing round")});
   }
 
   void decide() {
@@ -207,7 +194,7 @@ class Advisor {
     while (rounds > 2 && too_long()) --rounds;
     std::vector<Record> records;
     for (const std::size_t i : finalists(result_.tried, result_.target, most))
-      records.push_back(run_stored(make(result_.tried[i].setting), store_));
+      records.push_back(*run_stored(make(result_.tried[i].setting), store_));
     if (records.empty()) return;
     result_.bench = time(records, rounds);
     Answer& answer = result_.answer =
@@ -297,7 +284,7 @@ Json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
 Json json_of(const BenchedCase& c, const std::string& metric) {
   return {{"setting", parse_solver(c.record.spec.solver).brief()},
           {"solver", c.record.solver},
-          {"error", c.record.values.at(metric)},
+          {"error", c.record.value(metric)},
           {"cpu_seconds_per_second", json_of(c.cost())},
           {"peak_bytes", c.timing.peak_bytes},
           {"case", c.record.id}};
@@ -374,22 +361,14 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--budget", o->budget,
                  "Reach the least error within this CPU time per frame of 1/60 s [ms]")
       ->check(above_zero());
-  app.add_option("--metric", o->metric, "What the error is (default: stretch.rms)")
-      ->check(metric_value());
   app.add_option("--solver", o->solvers,
                  "Only this solver; what its text fixes is not searched; repeat it (default: all)");
-  app.add_option("--set", o->settings,
-                 "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
+  add_settings(app, o->settings);
+  add_judgement(app, o->metric, o->tolerance);
   app.add_option("--patience", o->patience,
                  "Search, time and verify within this time [s] (default: 120)")
       ->check(above_zero());
-  app.add_option("--rounds", o->rounds, "Rounds of the final timing at most (default: 8)")
-      ->check(CLI::Range(2, 1000));
-  app.add_option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)")
-      ->check(above_zero());
-  app.add_option("--tolerance", o->tolerance,
-                 "Smaller relative differences are none (default: 0.05)")
-      ->check(above_zero());
+  add_samples(app, o->rounds, o->seconds, 2);
   add_results(app, o->out);
   add_json(app, o->json, "The answer and all that was tried");
   return [o] { return run(*o); };

@@ -102,6 +102,6 @@ TAUT_VERB(baseline) = {.name = "baseline",
                        .group = VerbGroup::trust,
                        .summary = "Updates a committed baseline, or shows how it differs",
                        .example =
-                           "taut baseline update regression --why \"contacts are swept\"\n"
+                           "taut baseline update regression --why \"contacts are continuous\"\n"
                            "  taut baseline diff regression",
                        .bind = taut::verb::baseline::bind};

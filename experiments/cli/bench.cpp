@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <thread>
 
@@ -13,7 +11,6 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/files.hpp"
 #include "experiments/timing/answer.hpp"
 
 namespace taut::verb::bench {
@@ -34,44 +31,12 @@ struct Options {
 std::vector<Record> physics(const std::vector<Case>& cases, const Options& options) {
   const Store store(options.out);
   store.prepare();
-  const Session session(store, "taut bench", cases, {});
-  Progress progress;
-  const CampaignProgress campaign = run_cases(
-      cases, store, session,
-      {.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency())),
-       .progress = [&](const CampaignProgress& t, const Record* r) { progress.show(t, r); }});
-  progress.finish(campaign);
-  if (campaign.interrupted) throw Interrupted();
+  const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  if (run_missing(cases, store, "taut bench", {.jobs = jobs}).interrupted) throw Interrupted();
   std::vector<Record> records;
   for (const Case& one : cases)
     if (auto record = store.find(one)) records.push_back(std::move(*record));
   return records;
-}
-
-SceneBench bench_scene(const std::string& scene, const std::vector<Record>& records,
-                       const Options& options) {
-  std::vector<CaseSpec> specs;
-  std::map<std::string, const Record*> by_spec;
-  const auto name = [](const CaseSpec& spec) {
-    std::string text = spec.scene + " " + spec.solver;
-    for (const std::string& value : spec.overrides) text += " " + value;
-    return text;
-  };
-  for (const Record& record : records) {
-    specs.push_back(record.spec);
-    by_spec[name(record.spec)] = &record;
-  }
-  progress() << scene << ": timing " << specs.size() << " cases\n";
-  Bench bench = run_bench(
-      specs, {.rounds = options.rounds,
-              .seconds = options.seconds,
-              .program = program_of,
-              .steps = [&](const CaseSpec& s) { return steps_done(*by_spec.at(name(s))); },
-              .progress = Countdown("timing round")});
-  SceneBench result{scene, bench.control, {}};
-  for (std::size_t i = 0; i < specs.size(); ++i)
-    result.cases.push_back({records[i], std::move(bench.timings[i])});
-  return result;
 }
 
 void print_control(const SceneBench& bench, double tolerance) {
@@ -117,12 +82,9 @@ std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
   std::vector<std::pair<std::string, std::vector<Record>>> groups;
   for (const Record& record : records) {
     if (record.status.kind == Status::Kind::unsupported) continue;
-    const auto group = std::find_if(groups.begin(), groups.end(),
-                                    [&](const auto& g) { return g.first == record.scene; });
-    if (group == groups.end())
-      groups.push_back({record.scene, {record}});
-    else
-      group->second.push_back(record);
+    auto group = std::ranges::find(groups, record.scene, [](const auto& g) { return g.first; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {record.scene, {}});
+    group->second.push_back(record);
   }
   return groups;
 }
@@ -130,17 +92,20 @@ std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
 BenchSession bench(const std::string& name, const std::vector<Case>& cases,
                    const Options& options) {
   BenchSession session = BenchSession::here(name);
-  for (const auto& [scene, records] : by_scene(physics(cases, options)))
-    session.scenes.push_back(bench_scene(scene, records, options));
+  for (const auto& [scene, records] : by_scene(physics(cases, options))) {
+    progress() << scene << ": timing " << records.size() << " cases\n";
+    session.scenes.push_back(bench_scene(scene, records,
+                                         {.rounds = options.rounds,
+                                          .seconds = options.seconds,
+                                          .progress = Countdown("timing round")}));
+  }
   return session;
 }
 
 void bench_study(const std::string& name, const Options& options) {
   const Study study = load_study(name, options.preset);
   const BenchSession session = bench(study.name, cases_of(study), options);
-  const auto file = bench_file(options.out, session);
-  make_folder(file.parent_path());
-  write_durably(file, to_json(session));
+  const std::filesystem::path file = keep(options.out, session);
   if (options.json) {
     std::cout << to_json(session);
     return;
@@ -171,10 +136,8 @@ void compare(const std::string& scene, const Options& options) {
     for (const BenchedCase& c : one.cases)
       std::cout << "  " << c.record.id << ": " << interval_text(c.cost(), 1e-3)
                 << " ms per simulated s, " << options.metric << " "
-                << number_text(c.record.values.count(options.metric)
-                                   ? c.record.values.at(options.metric)
-                                   : std::nan(""))
-                << ", " << to_string(c.record.status.kind) << '\n';
+                << number_text(c.record.value(options.metric)) << ", "
+                << to_string(c.record.status.kind) << '\n';
     print_pairs(one, options.tolerance);
     print_failures(one);
   }
@@ -205,23 +168,14 @@ std::function<int()> bind(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   app.add_option("WHAT", o->what, "Studies; or scenes, with --solver");
   app.add_option("--solver", o->solvers, "A solver to time on the scene; repeat it for each");
-  app.add_option("--set", o->settings,
-                 "Scene setting as a TOML assignment, such as cloth.grid=[64,64]");
+  add_settings(app, o->settings);
   add_preset(app, o->preset);
-  app.add_option("--metric", o->metric, "What the error is (default: stretch.rms)")
-      ->check(metric_value());
+  add_judgement(app, o->metric, o->tolerance);
   app.add_option("--at", o->levels,
                  "Errors to ask for (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
       ->delimiter(',')
       ->check(above_zero());
-  app.add_option("--rounds", o->rounds,
-                 "Rounds, each in alternating order (ABBA): two samples a case (default: 5)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--seconds", o->seconds, "CPU time of one sample (default: 0.05)")
-      ->check(above_zero());
-  app.add_option("--tolerance", o->tolerance,
-                 "Smaller relative differences are none (default: 0.05)")
-      ->check(above_zero());
+  add_samples(app, o->rounds, o->seconds);
   add_results(app, o->out);
   app.add_flag("--json", o->json, "Everything measured, every sample, as JSON");
   app.add_flag("--worker", o->worker, "Serve samples of one case over stdin and stdout (internal)")

@@ -1,9 +1,9 @@
-#include <cstdio>
 #include <iostream>
 #include <memory>
 
 #include "core/reference/fit.hpp"
 #include "experiments/bench/contact.hpp"
+#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot/plot.hpp"
@@ -31,32 +31,27 @@ double seconds_per_step(const ContactRow& row) {
   return seconds(row, median(row.each_step) + median(row.each_sweep));
 }
 
-std::string in_sweeps(const Interval& ratio) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.2f [%.2f %.2f]", ratio.mid, ratio.low, ratio.high);
-  return text;
-}
-
 void print(const std::vector<ContactRow>& rows, int side) {
-  std::printf(
-      "\n%d x %d, %zu particles; CPU ns per particle; contact of a step in structural sweeps "
-      "[95 %%]\n",
-      side, side, rows.front().particles);
-  std::printf("%-16s %-30s %5s %8s %8s %11s %10s  %-20s %-20s\n", "", "", "steps", "touching",
-              "a sweep", "contact in", "and in", "step of 1 sweep", "step of 10 sweeps");
-  std::printf("%-16s %-30s %5s %8s %8s %11s %10s\n", "", "", "", "", "of links", "each sweep",
-              "each step");
+  std::cout
+      << '\n'
+      << side << " x " << side << ", " << rows.front().particles
+      << " particles; CPU ns per particle of a sweep of links, of contact in each sweep and of "
+         "contact in each step besides; contact of a step in structural sweeps, 95 %\n";
+  std::vector<Row> table{{"scene", "setting", "steps", "touching", "a sweep", "in each sweep",
+                          "in each step", "step of 1 sweep", "step of 10 sweeps"}};
   for (const ContactRow& row : rows)
-    std::printf("%-16s %-30s %5d %7.0f%% %8.2f %11.2f %10.2f  %-20s %-20s\n", row.scene.c_str(),
-                row.setting.c_str(), row.steps, 100 * row.touching, median(row.sweep),
-                median(row.each_sweep), median(row.each_step), in_sweeps(row.ratio(1)).c_str(),
-                in_sweeps(row.ratio(10)).c_str());
-  std::fflush(stdout);
+    table.push_back({row.scene, row.setting, std::to_string(row.steps),
+                     number_text(100 * row.touching) + " %", number_text(median(row.sweep)),
+                     number_text(median(row.each_sweep)), number_text(median(row.each_step)),
+                     interval_text(row.ratio(1)), interval_text(row.ratio(10))});
+  print_columns(table, 2);
+  std::cout << std::flush;
 }
 
 /// Contact's cost of a step over the number of particles, as a power law, setting by setting.
 void print_exponents(const std::vector<Rows>& sizes) {
-  std::printf("\nexponent of contact's cost over particles, 95 %%\n");
+  std::cout << "\nexponent of contact's cost over particles, 95 %\n";
+  std::vector<Row> table;
   for (std::size_t i = 0; i < sizes.front().size(); ++i) {
     std::vector<double> n, cost;
     for (const Rows& rows : sizes)
@@ -65,9 +60,10 @@ void print_exponents(const std::vector<Rows>& sizes) {
     if (n.size() < 3) continue;
     const PowerLaw law = fit_power_law(n, cost);
     const ContactRow& row = sizes.front()[i];
-    std::printf("%-16s %-30s %5d   %.2f +- %.2f\n", row.scene.c_str(), row.setting.c_str(),
-                row.steps, law.exponent, 2 * law.error);
+    table.push_back({row.scene, row.setting, std::to_string(row.steps),
+                     number_text(law.exponent) + " +- " + number_text(2 * law.error)});
   }
+  if (!table.empty()) print_columns(table, 2);
 }
 
 Record plotted(const ContactRow& row, const std::string& self, double seconds_per_step) {
@@ -98,7 +94,7 @@ void plot(const std::vector<Rows>& sizes, const std::string& folder) {
                          .file = "self-collision-scaling",
                          .slope = 1},
                         records, {}, folder);
-  std::printf("%s\n%s\n", files.svg.c_str(), files.pdf.c_str());
+  std::cout << files.svg.string() << '\n' << files.pdf.string() << '\n';
 }
 
 Json json_of(const std::vector<Rows>& sizes) {
@@ -121,9 +117,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--sizes", o->sizes, "Vertices along a side (default: 128)")
       ->delimiter(',')
       ->check(CLI::Range(8, 1024));
-  app.add_option("--rounds", o->rounds, "Rounds in alternating order (ABBA) (default: 11)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--seconds", o->seconds, "Of one sample (default: 0.01)")->check(above_zero());
+  add_samples(app, o->rounds, o->seconds);
   app.add_option("--plot", o->plot,
                  "Folder for a figure of a step over particles: off, octree and grid");
   add_json(app, o->json, "Every row with its samples");

@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 
 #include "core/solver/simd/kernels.hpp"
 #include "experiments/bench/kernels.hpp"
+#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/json.hpp"
@@ -21,60 +21,52 @@ struct Options {
   bool json = false;
 };
 
+/// How many times as fast, from a ratio of costs.
 std::string times(const Interval& ratio) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%6.2f [%.2f %.2f]", 1 / ratio.mid, 1 / ratio.high,
-                1 / ratio.low);
-  return text;
+  return interval_text({1 / ratio.high, 1 / ratio.mid, 1 / ratio.low});
 }
 
 void print(const KernelBench& bench) {
-  std::printf(
-      "\n%d x %d, %s: structural, shear and bend links; ns per projection; fixed: what a step "
-      "costs without a sweep, in structural sweeps; rows of two threads in wall time; fastest: "
-      "of all parts of all samples, while "
-      "nothing else used the core\n",
-      bench.side, bench.side, std::string(to_string(widest())).c_str());
-  std::printf("%-78s %7s %-15s %-21s %-21s %7s %8s %8s %6s %5s %5s %6s\n", "", "median", "[95 %]",
-              "x textbook [95 %]", "x Bullet [95 %]", "fastest", "x textb.", "x Bullet", "floor",
-              "flops", "bytes", "fixed");
-  const auto bullet = std::find_if(bench.rows.begin(), bench.rows.end(), [](const KernelRow& row) {
-    return row.name.starts_with("bullet");
-  });
+  std::cout
+      << '\n'
+      << bench.side << " x " << bench.side << ", " << to_string(widest())
+      << ": structural, shear and bend links; ns per projection; fixed: what a step costs "
+         "without a sweep, in structural sweeps; rows of two threads in wall time; fastest: of "
+         "all parts of all samples, while nothing else used the core\n";
+  std::vector<Row> table{{"", "median, 95 %", "x textbook, 95 %", "x Bullet, 95 %", "fastest",
+                          "x textbook", "x Bullet", "floor", "flops", "bytes", "fixed"}};
+  const auto bullet = std::ranges::find_if(
+      bench.rows, [](const KernelRow& row) { return row.name.starts_with("bullet"); });
   const bool rival = bullet != bench.rows.end();
   for (std::size_t i = 0; i < bench.rows.size(); ++i) {
     const KernelRow& row = bench.rows[i];
-    const Interval cost = row.cost();
     const auto other = static_cast<std::size_t>(bullet - bench.rows.begin());
-    std::printf("%-78s %7.3f [%.3f %.3f]  %-21s %-21s %7.3f %8.2f %8.2f %6.3f %5d %5d %6.2f\n",
-                row.name.c_str(), cost.mid, cost.low, cost.high, times(bench.ratio(i, 0)).c_str(),
-                rival ? times(bench.ratio(i, other)).c_str() : "-", row.fastest,
-                bench.rows[0].fastest / row.fastest, rival ? bullet->fastest / row.fastest : 0,
-                row.floor, row.flops, row.bytes, bootstrap_median(row.fixed).mid);
+    table.push_back({row.name, interval_text(row.cost()), times(bench.ratio(i, 0)),
+                     rival ? times(bench.ratio(i, other)) : "-", number_text(row.fastest),
+                     number_text(bench.rows[0].fastest / row.fastest),
+                     rival ? number_text(bullet->fastest / row.fastest) : "-",
+                     number_text(row.floor), std::to_string(row.flops), std::to_string(row.bytes),
+                     number_text(bootstrap_median(row.fixed).mid)});
   }
-  std::printf(
-      "a square-root-free projection in registers, without loads and stores: %.3f ns in float, "
-      "%.3f ns in double\n"
-      "a link of a colour batch, loaded and stored with an addition instead of a projection: %.3f "
-      "ns in float, "
-      "%.3f ns in double\n",
-      bench.arithmetic_float, bench.arithmetic_double, bench.traffic_float, bench.traffic_double);
-  const TwoCores& cores = bench.two_cores;
-  const auto text = [](const Interval& i) {
-    char number[64];
-    std::snprintf(number, sizeof number, "%.2f [%.2f %.2f]", i.mid, i.low, i.high);
-    return std::string(number);
+  print_columns(table, 1);
+  const auto in_both = [](double single, double twice) {
+    return number_text(single) + " ns in float, " + number_text(twice) + " ns in double\n";
   };
-  std::printf(
-      "two threads: %s times one, wall time; two unrelated sheets at once: %s; so two threads get "
-      "%s of what two cores give\n",
-      text(cores.threads).c_str(), text(cores.unrelated).c_str(), text(cores.share).c_str());
+  std::cout << "a square-root-free projection in registers, without loads and stores: "
+            << in_both(bench.arithmetic_float, bench.arithmetic_double)
+            << "a link of a colour batch, loaded and stored with an addition instead of a "
+               "projection: "
+            << in_both(bench.traffic_float, bench.traffic_double);
+  const TwoCores& cores = bench.two_cores;
+  std::cout << "two threads: " << interval_text(cores.threads)
+            << " times one, wall time; two unrelated sheets at once: "
+            << interval_text(cores.unrelated) << "; so two threads get "
+            << interval_text(cores.share) << " of what two cores give\n";
   if (cores.free > 0)
-    std::printf(
-        "two threads while both cores were free (%.0f %% of the rounds: unrelated sheets at %.1f "
-        "and more): %s times one\n",
-        100 * cores.free, TwoCores::kFree, text(cores.threads_while_free).c_str());
-  std::fflush(stdout);
+    std::cout << "two threads while both cores were free (" << number_text(100 * cores.free)
+              << " % of the rounds: unrelated sheets at " << TwoCores::kFree
+              << " and more): " << interval_text(cores.threads_while_free) << " times one\n";
+  std::cout << std::flush;
 }
 
 Json json_of(const KernelBench& bench) {
@@ -101,9 +93,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--sizes", o->sizes, "Vertices along a side (default: 32,128,512)")
       ->delimiter(',')
       ->check(CLI::Range(2, 4096));
-  app.add_option("--rounds", o->rounds, "Rounds in alternating order (ABBA) (default: 11)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--seconds", o->seconds, "Of one sample (default: 0.005)")->check(above_zero());
+  add_samples(app, o->rounds, o->seconds);
   app.add_option("--largest-bullet", o->largest_bullet,
                  "Largest side for Bullet, whose steps take seconds beyond (default: 256)")
       ->check(CLI::Range(0, 4096));

@@ -1,15 +1,13 @@
-#include <algorithm>
 #include <chrono>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/scaling.hpp"
 
@@ -34,16 +32,13 @@ std::string exponent(const std::optional<PowerLaw>& law) {
 Measured measure(const Case& one, const Store& store, const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   progress() << one.id << '\n';
-  BenchedCase benched{run_stored(one, store, {options.limit * 4, kMemory}), {}};
+  BenchedCase benched{*run_stored(one, store, {options.limit * 4, kMemory}), {}};
   Timing& timing = benched.timing;
-  timing.spec = one.spec;
   const Record& record = benched.record;
   if (record.status.kind != Status::Kind::unsupported && record.status.is_result()) try {
       TimingWorker worker(program_of(one.spec), one.spec);
       const int all = steps_done(record);
-      const double pilot = worker.pilot_run(all).cpu;
-      const int steps =
-          std::clamp(static_cast<int>(std::min(0.05 / std::max(pilot, 1e-9), 1e6)), 1, all);
+      const int steps = times_within(0.05, worker.pilot_run(all).cpu, all);
       for (int i = 0; i < options.samples; ++i) {
         const StepTime time = worker.sample(steps);
         timing.samples.push_back(time.cpu);
@@ -58,23 +53,20 @@ Measured measure(const Case& one, const Store& store, const Options& options) {
 }
 
 void print(const ScalingLine& line) {
-  std::cout << line.setting << '\n'
-            << "    vertices   CPU ms per step (95 %)          wall ms   ns per vertex   "
-               "stretch.rms   bytes per vertex   process MB\n";
+  std::cout << line.setting << '\n';
+  std::vector<Row> rows{{"vertices", "CPU ms per step (95 %)", "wall ms", "ns per vertex",
+                         "stretch.rms", "bytes per vertex", "process MB"}};
   for (const BenchedCase& c : line.cases) {
     if (c.timing.samples.empty()) continue;
     const Interval cpu = bootstrap_median(c.timing.samples);
     const auto n = static_cast<double>(c.record.vertices);
-    const auto error = c.record.values.find("stretch.rms");
-    const std::string cost = interval_text(cpu, 1e-3);
-    std::cout << std::right << std::setw(12) << c.record.vertices << "   " << std::left
-              << std::setw(30) << cost << "  " << std::setw(8)
-              << number_text(1e3 * median(c.timing.wall)) << "  " << std::setw(14)
-              << number_text(1e9 * cpu.mid / n) << "  " << std::setw(12)
-              << (error == c.record.values.end() ? "-" : number_text(error->second)) << "  "
-              << std::setw(17) << number_text(plan_bytes(c.record) / n)
-              << number_text(1e-6 * static_cast<double>(c.timing.peak_bytes)) << '\n';
+    rows.push_back({std::to_string(c.record.vertices), interval_text(cpu, 1e-3),
+                    number_text(1e3 * median(c.timing.wall)), number_text(1e9 * cpu.mid / n),
+                    number_text(c.record.value("stretch.rms")),
+                    number_text(plan_bytes(c.record) / n),
+                    number_text(1e-6 * static_cast<double>(c.timing.peak_bytes))});
   }
+  print_columns(rows, 1);
   for (const std::string& skipped : line.skipped) std::cout << "    skipped " << skipped << '\n';
   std::cout << "    exponents over vertices, 95 %: CPU " << exponent(line.cpu) << ", wall "
             << exponent(line.wall) << ", memory " << exponent(line.memory) << '\n';
@@ -98,9 +90,7 @@ Json json_of(const ScalingLine& line) {
                             {"wall_seconds_per_step", c.timing.wall},
                             {"plan_bytes", plan_bytes(c.record)},
                             {"peak_bytes", c.timing.peak_bytes},
-                            {"stretch.rms", c.record.values.count("stretch.rms")
-                                                ? Json(c.record.values.at("stretch.rms"))
-                                                : Json()}});
+                            {"stretch.rms", c.record.value("stretch.rms")}});
   return all;
 }
 
@@ -112,18 +102,13 @@ std::filesystem::path keep(const Study& study, const std::vector<ScalingLine>& l
     for (const BenchedCase& c : line.cases) scene.cases.push_back(c);
   BenchSession session = BenchSession::here(study.name);
   session.scenes = {scene};
-  const auto file = bench_file(options.out, session);
-  make_folder(file.parent_path());
-  write_durably(file, to_json(session));
-  return file;
+  return taut::keep(options.out, session);
 }
 
 int run(const Options& options) {
   require_one_quiet_host();
   const Study study = load_study(options.study, options.preset);
-  if (!options.preset.empty() && study.preset.empty())
-    throw InputError("study '" + study.name + "' has no preset '" + options.preset + "'" +
-                     suggestion(options.preset, study.presets));
+  require_preset(study, options.preset);
   const std::vector<Case> cases = cases_of(study);
   const Store store(options.out);
   store.prepare();
@@ -143,7 +128,7 @@ int run(const Options& options) {
 
 std::function<int()> bind(CLI::App& app) {
   const auto o = std::make_shared<Options>();
-  app.add_option("STUDY", o->study, "A study that sweeps the cloth's grid (default: scaling)");
+  app.add_option("STUDY", o->study, "A study that varies the cloth's grid (default: scaling)");
   add_preset(app, o->preset);
   app.add_option("--limit", o->limit,
                  "Skip a case that would take longer than this, physics and timing [s] "

@@ -1,14 +1,13 @@
 #include <algorithm>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 
 #include "core/model/input_error.hpp"
-#include "experiments/baseline/roll_up.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
-#include "experiments/case/key.hpp"
 #include "experiments/command_line/baseline_study.hpp"
 #include "experiments/command_line/colour.hpp"
+#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -52,7 +51,7 @@ bool same_toolchain(const BaselineStudy& study, bool strict) {
   return false;
 }
 
-int verdict(const BaselineStudy& study, const Comparison& comparison) {
+int exit_code(const BaselineStudy& study, const Comparison& comparison) {
   int code = kPass;
   if (study.interrupted) code = worse(code, kInterrupted);
   if (study.conflict) code = worse(code, kConflict);
@@ -63,11 +62,8 @@ int verdict(const BaselineStudy& study, const Comparison& comparison) {
 }
 
 void summarise(const BaselineStudy& study, const Comparison& comparison) {
-  const auto count = [&](auto test) {
-    return std::count_if(comparison.findings.begin(), comparison.findings.end(), test);
-  };
-  const auto moved = count([](const Change& f) { return f.is_regression(); });
-  const auto mismatched = count([](const Change& f) { return f.is_mismatch(); });
+  const auto moved = std::ranges::count_if(comparison.findings, &Change::is_regression);
+  const auto mismatched = std::ranges::count_if(comparison.findings, &Change::is_mismatch);
   std::cout << study.name << ": " << comparison.cases << " cases and " << comparison.values
             << " values compared, "
             << coloured(std::to_string(moved) + " moved", moved ? Colour::red : Colour::green);
@@ -98,15 +94,12 @@ std::string judged(const MovedValue& moved) {
 
 /// By scene and value: in how many cases it moved, and how far in the one that moved most.
 void print_roll_up(const Comparison& comparison) {
-  const std::vector<MovedValue> all = roll_up(comparison);
-  std::size_t scene = 0, value = 0;
-  for (const MovedValue& moved : all)
-    scene = std::max(scene, moved.scene.size()), value = std::max(value, moved.value.size());
-  for (const MovedValue& moved : all)
-    std::cout << "  " << std::left << std::setw(static_cast<int>(scene) + 2) << moved.scene
-              << std::setw(static_cast<int>(value) + 2) << moved.value << std::right << std::setw(4)
-              << moved.cases << (moved.cases == 1 ? " case,  " : " cases, ") << "largest change "
-              << text(moved, unit_of(moved.value).si) << judged(moved) << '\n';
+  std::vector<Row> rows;
+  for (const MovedValue& moved : roll_up(comparison))
+    rows.push_back({moved.scene, moved.value,
+                    std::to_string(moved.cases) + (moved.cases == 1 ? " case," : " cases,"),
+                    "largest change " + text(moved, unit_of(moved.value).si) + judged(moved)});
+  if (!rows.empty()) print_columns(rows, 2);
 }
 
 /// What the report reads: how much was compared, and what differs.
@@ -115,7 +108,11 @@ struct Notes {
   Json findings = Json::array(), studies = Json::array();
 
   void add(const BaselineStudy& study, const Comparison& comparison) {
-    add(study.name, comparison);
+    cases += comparison.cases, values += comparison.values;
+    for (const Change& f : comparison.findings)
+      if (f.is_regression() || f.is_mismatch())
+        findings.push_back(
+            {{"study", study.name}, {"case", f.id.empty() ? f.solver : f.id}, {"change", f.text}});
     Json moved = Json::array();
     for (const MovedValue& m : roll_up(comparison))
       moved.push_back({{"scene", m.scene},
@@ -131,13 +128,6 @@ struct Notes {
                        {"values", comparison.values},
                        {"moved", moved},
                        {"not_run", study.not_run}});
-  }
-  void add(const std::string& study, const Comparison& comparison) {
-    cases += comparison.cases, values += comparison.values;
-    for (const Change& f : comparison.findings)
-      if (f.is_regression() || f.is_mismatch())
-        findings.push_back(
-            {{"study", study}, {"case", f.id.empty() ? f.solver : f.id}, {"change", f.text}});
   }
   void write(const std::string& results) const {
     write_file(std::filesystem::path(results) / "check.json",
@@ -176,7 +166,7 @@ int check_study(const std::string& name, const Options& options, std::string& xm
       std::cout << study.name << ": " << id << ": was not run\n";
   }
   xml += junit(study.name, study.now, comparison);
-  return verdict(study, comparison);
+  return exit_code(study, comparison);
 }
 
 int check(Options options) {
@@ -191,10 +181,9 @@ int check(Options options) {
   Notes notes;
   for (const std::string& study : options.studies)
     code = worse(code, check_study(study, options, suites, notes));
-  if (!options.junit.empty()) {
+  if (!options.junit.empty())
     write_file(options.junit, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n" +
                                   suites + "</testsuites>\n");
-  }
   if (options.record && notes.cases > 0) notes.write(options.out);
   if (options.json)
     std::cout << to_text(Json{{"studies", notes.studies}, {"findings", notes.findings}}, 1) << '\n';

@@ -16,7 +16,7 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/missing.hpp"
+#include "experiments/study/session.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -83,9 +83,7 @@ void start(const fs::path& folder, Scheduler on) {
 
 int submit(const Submit& o) {
   const Study study = load_study(o.study, o.preset);
-  if (!o.preset.empty() && study.preset.empty())
-    throw InputError("study '" + study.name + "' has no preset '" + o.preset + "'" +
-                     suggestion(o.preset, study.presets));
+  require_preset(study, o.preset);
   const std::string nodes = nodes_of(o);
   const Scheduler on = o.on == "slurm" ? Scheduler::slurm : Scheduler::parallel;
   const fs::path folder =

@@ -12,7 +12,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/baseline/baseline.hpp"
-#include "experiments/case/key.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/case_options.hpp"
 #include "experiments/command_line/columns.hpp"
@@ -270,13 +270,7 @@ int run_all(const Options& options) {
   for (const std::string& solver : solvers) {
     const Countdown countdown("knob of " + solver);
     const Extremes extremes =
-        find_extremes(solver, store, session,
-                      {.jobs = options.jobs,
-                       .limits = {},
-                       .shard = {},
-                       .only_failed = false,
-                       .frames = true,
-                       .progress = {}},
+        find_extremes(solver, store, session, {.jobs = options.jobs, .frames = true},
                       [&](std::size_t done, std::size_t all) { countdown(done, all); });
     if (extremes.interrupted) return kInterrupted;
     const std::filesystem::path folder = std::filesystem::path(options.out) / kFrontiersFolder;
@@ -314,15 +308,11 @@ int run(const Options& options) {
   store.prepare();
   const Session session(store, "taut frontier " + first.id, {}, {});
   Progress progress;
-  const CaseFrontier result =
-      find_frontier(question, store, session,
-                    {.jobs = options.jobs,
-                     .limits = {},
-                     .shard = {},
-                     .only_failed = false,
-                     .progress = [&](const CampaignProgress& t, const Record* record) {
-                       if (record) progress.show(t, record);
-                     }});
+  const CaseFrontier result = find_frontier(
+      question, store, session,
+      {.jobs = options.jobs, .progress = [&](const CampaignProgress& t, const Record* record) {
+         if (record) progress.show(t, record);
+       }});
   if (result.frontier.kind == Frontier::Kind::not_answered) return not_answered(result);
   const std::optional<Prediction> theory = predicted_frontier(question);
   if (options.json) {
@@ -346,9 +336,7 @@ std::function<int()> bind(CLI::App& app) {
           ->expected(1, 2)
           ->excludes("SCENE")
           ->excludes("SOLVER");
-  options->baselines = results_folder() / "baselines";
-  app.add_option("--baselines", options->baselines,
-                 "Folder of the baselines (default: " + options->baselines + ")");
+  add_baselines(app, options->baselines);
   app.add_flag("--check", options->check,
                "Exit 1 if a frontier of --all is narrower than in the baseline")
       ->needs(all);

@@ -1,8 +1,8 @@
-#include <iomanip>
 #include <iostream>
 #include <memory>
 
 #include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/json.hpp"
 
@@ -22,20 +22,17 @@ Json to_json(const Case& one, const std::vector<PassCost>& step_cost) {
 }
 
 void print_text(const Case& one, const std::vector<PassCost>& step_cost) {
-  std::cout << one.id << "\nkey " << one.key << "\n\n"
-            << std::left << std::setw(24) << "pass" << std::right << std::setw(10) << "items"
-            << std::setw(10) << "repeats" << std::setw(12) << "bytes" << std::setw(16)
-            << "projections" << '\n';
+  std::vector<Row> rows{{"pass", "items", "repeats", "bytes", "projections"}};
   std::size_t bytes = 0, projections = 0;
   for (const PassCost& cost : step_cost) {
     const std::size_t work = cost.projections ? cost.items * cost.repeats : 0;
     bytes += cost.bytes, projections += work;
-    std::cout << std::left << std::setw(24) << cost.pass << std::right << std::setw(10)
-              << cost.items << std::setw(10) << cost.repeats << std::setw(12) << cost.bytes
-              << std::setw(16) << work << '\n';
+    rows.push_back({cost.pass, std::to_string(cost.items), std::to_string(cost.repeats),
+                    std::to_string(cost.bytes), std::to_string(work)});
   }
-  std::cout << std::left << std::setw(44) << "in one step" << std::right << std::setw(12) << bytes
-            << std::setw(16) << projections << '\n';
+  rows.push_back({"in one step", "", "", std::to_string(bytes), std::to_string(projections)});
+  std::cout << one.id << "\nkey " << one.key << "\n\n";
+  print_columns(rows, 1);
 }
 
 int run(const Case& one, bool json) {

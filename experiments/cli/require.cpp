@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
-#include "experiments/case/key.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"

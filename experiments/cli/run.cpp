@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <memory>
-#include <sstream>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -11,9 +13,9 @@
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/main_job.hpp"
-#include "experiments/study/table.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
+#include "experiments/timing/statistics.hpp"
 
 namespace taut::verb::run {
 
@@ -66,11 +68,8 @@ std::vector<Study> load_studies(const Options& options) {
   std::vector<Diagnostic> wrong;
   for (const std::string& name : options.studies) try {
       Study study = load_study(name, options.preset);
-      if (!options.preset.empty() && study.preset.empty())
-        wrong.push_back({study.file, 0, 0,
-                         "study '" + study.name + "' has no preset '" + options.preset + "'" +
-                             suggestion(options.preset, study.presets)});
       judge_plots(study, wrong);
+      require_preset(study, options.preset);
       studies.push_back(std::move(study));
     } catch (const InputError& error) {
       for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);
@@ -125,20 +124,62 @@ Json to_json(const CampaignProgress& campaign, const Options& options, const Sto
   return all;
 }
 
+/// What tells the cases of one scene apart: "jakobsen:iterations=4 dt=1/120".
+std::string setting_of(const Case& one, const Study& study) {
+  std::string text = one.choice.brief();
+  for (const std::string& change : one.spec.overrides)
+    if (std::ranges::find(study.settings, change) == study.settings.end()) text += " " + change;
+  return text;
+}
+
+std::string cell(const Record& record, const std::string& value) {
+  if (!completed(record.status)) return std::string(to_string(record.status.kind));
+  return number_text(record.value(value)) +
+         (record.status.kind == Status::Kind::unsettled ? " ~" : "");
+}
+
+/// The cases of a study by setting and scene.
+using ByCell = std::map<std::pair<std::string, std::string>, Record>;
+
+/// A metric's value with three digits: a line per setting, a column per scene, both in the order of
+/// the study. A failure, and an extreme, prints its status, a value without a meaning "-", one of
+/// an unsettled case a "~".
+void print_table(const Study& study, const std::vector<Case>& cases, const ByCell& records,
+                 const std::string& value) {
+  std::vector<Row> rows{{value}};
+  for (const Case& one : cases)
+    if (std::ranges::find(rows[0], one.scene->name) == rows[0].end())
+      rows[0].push_back(one.scene->name);
+  for (const Case& one : cases) {
+    Row row{setting_of(one, study)};
+    if (std::ranges::any_of(rows, [&](const Row& r) { return r[0] == row[0]; })) continue;
+    for (std::size_t i = 1; i < rows[0].size(); ++i) {
+      const auto at = records.find({row[0], rows[0][i]});
+      row.push_back(at == records.end() ? "" : cell(at->second, value));
+    }
+    rows.push_back(std::move(row));
+  }
+  print_columns(rows, 1);
+  std::cout << '\n';
+}
+
 /// The values that were asked for, of every study.
 void print_tables(const std::vector<Study>& studies, const Options& options, const Store& store) {
   Json all = Json::array();
   for (const Study& study : studies) {
-    const StudyTable table(collect(study, store));
+    ByCell records;
+    const std::vector<Case> cases = cases_of(study);
+    for (const Case& one : cases)
+      if (auto record = store.find(one)) records[{setting_of(one, study), record->scene}] = *record;
     if (!options.json)
-      for (const std::string& value : options.values) std::cout << table.text(value) << '\n';
-    for (const auto& [where, record] : table.records()) {
+      for (const std::string& value : options.values) print_table(study, cases, records, value);
+    for (const auto& [where, record] : records) {
       all.push_back({{"setting", where.first},
                      {"scene", where.second},
                      {"status", to_string(record.status.kind)}});
       for (const std::string& value : options.values)
-        if (const auto at = record.values.find(value); at != record.values.end())
-          all.back()["values"][value] = at->second;  // NaN becomes null
+        if (record.values.contains(value))
+          all.back()["values"][value] = record.value(value);  // NaN becomes null
     }
   }
   if (options.json) std::cout << to_text(all, 1) << '\n';
@@ -183,18 +224,12 @@ int run(Options options) {
   }
   const Store store(options.out);
   store.prepare();
-  const Session session(store, command_line(options), cases, shard);
-  Progress display;
   const CampaignProgress campaign =
-      run_cases(cases, store, session,
-                {.jobs = options.jobs,
-                 .limits = {options.seconds, static_cast<std::size_t>(options.megabytes) << 20},
-                 .shard = shard,
-                 .only_failed = options.only == "failed",
-                 .progress = [&](const CampaignProgress& t, const Record* record) {
-                   display.show(t, record);
-                 }});
-  display.finish(campaign);
+      run_missing(cases, store, command_line(options),
+                  {.jobs = options.jobs,
+                   .limits = {options.seconds, static_cast<std::size_t>(options.megabytes) << 20},
+                   .shard = shard,
+                   .only_failed = options.only == "failed"});
   if (campaign.conflicts > 0)
     std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
               << (store.root() / "conflicts").string() << '\n';

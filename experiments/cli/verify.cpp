@@ -13,7 +13,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/baseline/claims_baseline.hpp"
-#include "experiments/case/key.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/command_line/colour.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
@@ -45,12 +45,6 @@ struct Outcome {
 };
 
 std::vector<const TruthEntry*> choose(const Options& options) {
-  std::vector<std::string> known;
-  for (const TruthEntry* truth : truths()) known.emplace_back(truth->name);
-  for (const std::string& name : options.names)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw InputError("unknown truth '" + name + "'" + suggestion(name, known) +
-                       " (`taut verify --list` names all)");
   for (const std::string& solver : options.solvers)
     if (solver != "reference") parse_solver(solver);
   std::vector<const TruthEntry*> chosen;
@@ -60,15 +54,11 @@ std::vector<const TruthEntry*> choose(const Options& options) {
           return claim.truth == truth->name;
         }))
       continue;
-    const bool named =
-        options.names.empty() ||
-        std::find(options.names.begin(), options.names.end(), truth->name) != options.names.end();
+    const bool named = options.names.empty() || std::ranges::count(options.names, truth->name) > 0;
     if (named && (options.section == 0 || truth->section == options.section))
       chosen.push_back(truth);
   }
-  std::sort(chosen.begin(), chosen.end(), [](const TruthEntry* a, const TruthEntry* b) {
-    return std::pair(a->section, a->row) < std::pair(b->section, b->row);
-  });
+  std::ranges::sort(chosen, {}, [](const TruthEntry* t) { return std::pair(t->section, t->row); });
   return chosen;
 }
 
@@ -98,8 +88,6 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
   return outcomes;
 }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 std::vector<JudgedClaim> judged(const std::vector<Outcome>& outcomes) {
   return judge_claims([&](std::string_view truth) -> const std::vector<Finding>* {
     for (const Outcome& outcome : outcomes)
@@ -116,10 +104,10 @@ Json to_json(const std::vector<Outcome>& outcomes) {
       rows.push_back({{"subject", f.subject},
                       {"quantity", f.quantity},
                       {"unit", f.unit},
-                      {"measured", number(f.measured)},
-                      {"expected", number(f.expected)},
-                      {"tolerance", number(f.tolerance)},
-                      {"uncertainty", number(f.uncertainty)},
+                      {"measured", f.measured},
+                      {"expected", f.expected},
+                      {"tolerance", f.tolerance},
+                      {"uncertainty", f.uncertainty},
                       {"verdict", to_string(f.verdict)},
                       {"why", f.why}});
     list.push_back({{"name", truth->name},
@@ -250,9 +238,7 @@ int run(const Options& options) {
     throw InputError("--update keeps the verdicts of all claims: taut verify --claims --update");
   const std::vector<Outcome> outcomes = check(choose(options), options);
   const std::string json = to_text(to_json(outcomes), 1);
-  if (!options.out.empty()) {
-    write_file(options.out, json + "\n");
-  }
+  if (!options.out.empty()) write_file(options.out, json + "\n");
   if (options.json)
     std::cout << json << '\n';
   else if (options.claims)
@@ -275,7 +261,10 @@ int list() {
 std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   const auto only_list = std::make_shared<bool>(false);
-  app.add_option("TRUTH", options->names, "Truths to check by name; all if none is given");
+  std::vector<std::string> names;
+  for (const TruthEntry* truth : truths()) names.emplace_back(truth->name);
+  app.add_option("TRUTH", options->names, "Truths to check by name; all if none is given")
+      ->check(known("truth", std::move(names)));
   app.add_option("--solver", options->solvers,
                  "Only what binds these solvers (\"reference\": the references)");
   app.add_option("--section", options->section, "Only one section of the truths")
@@ -287,9 +276,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_flag("--json", options->json, "Findings as JSON instead of a table");
   app.add_flag("--claims", options->claims,
                "Only what holds the claims of Vasilovici's report, and their verdicts");
-  options->baselines = results_folder() / "baselines";
-  app.add_option("--baselines", options->baselines,
-                 "Folder of the baselines (default: " + options->baselines + ")");
+  add_baselines(app, options->baselines);
   app.add_flag("--update", options->update, "With --claims: keep their verdicts as the baseline");
   app.add_flag("--verbose", options->verbose, "Every number, with sources and times");
   app.add_flag("--list", *only_list, "Only name the truths");

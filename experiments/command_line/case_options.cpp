@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -14,8 +15,7 @@ void CaseOptions::bind(CLI::App& app) {
   app.add_option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)")->required();
   app.add_option("--dt", dt_, "Time step [s], a number or a fraction such as 1/120");
   app.add_option("--duration", duration_, "Simulated time [s]");
-  app.add_option("--set", settings_, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
-      ->allow_extra_args(false);
+  add_settings(app, settings_);
 }
 
 CaseSpec CaseOptions::spec() const {

@@ -6,8 +6,10 @@
 #include <thread>
 
 #include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/study/store.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {
@@ -55,6 +57,35 @@ CLI::Option* add_results(CLI::App& app, std::string& folder) {
 
 CLI::Option* add_preset(CLI::App& app, std::string& preset) {
   return app.add_option("--preset", preset, "A smaller or larger version that the study defines");
+}
+
+CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
+  return app
+      .add_option("--set", settings, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
+      ->allow_extra_args(false);
+}
+
+void add_samples(CLI::App& app, int& rounds, double& seconds, int fewest_rounds) {
+  app.add_option("--rounds", rounds,
+                 "Rounds in alternating order (ABBA), two samples each (default: " +
+                     std::to_string(rounds) + ")")
+      ->check(CLI::Range(fewest_rounds, 1000));
+  app.add_option("--seconds", seconds,
+                 "CPU time of one sample (default: " + shortest(seconds) + ")")
+      ->check(above_zero());
+}
+
+void add_judgement(CLI::App& app, std::string& metric, double& tolerance) {
+  app.add_option("--metric", metric, "What the error is (default: " + metric + ")")
+      ->check(metric_value());
+  app.add_option("--tolerance", tolerance,
+                 "Smaller relative differences are none (default: " + shortest(tolerance) + ")")
+      ->check(above_zero());
+}
+
+void add_baselines(CLI::App& app, std::string& folder) {
+  folder = results_folder() / "baselines";
+  app.add_option("--baselines", folder, "Folder of the baselines (default: " + folder + ")");
 }
 
 void print_files(const std::vector<std::string>& files, bool json) {

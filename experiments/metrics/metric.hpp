@@ -61,9 +61,13 @@ struct ValueSpec {
 class Metric {
  public:
   virtual ~Metric() = default;
+  /// Whether the scene has what is measured; a metric that asks for something hides it.
+  static bool measures(const Scene&) { return true; }
+  /// Whether it needs the path between step boundaries, too: see observe_within.
+  static constexpr bool kFollowsPath = false;
   virtual void observe(const Snapshot&) = 0;
   /// The ends of the substeps between two boundaries, in order: the moment's step is the one that
-  /// they lead to. Only called if `follows_path`.
+  /// they lead to. Only called if `kFollowsPath`.
   virtual void observe_within(const Snapshot&) {}
   virtual std::vector<double> finish() = 0;
   /// The values of this very moment, for series; same order, NaN where `in_series` is false.
@@ -78,16 +82,24 @@ struct MetricEntry {
   std::span<const ValueSpec> values;
   /// nullptr if the scene lacks what is measured (penetration without colliders).
   std::unique_ptr<Metric> (*make)(const Scene&);
-  bool follows_path = false;  ///< needs the path between step boundaries: see observe_within
+  bool follows_path = false;  ///< Metric::kFollowsPath
 };
 
 /// All metrics of this program, sorted by name (generated; see cmake/registry.cmake).
 std::span<const MetricEntry* const> metrics();
 
+/// For MetricEntry::make.
+template <class M>
+std::unique_ptr<Metric> make_metric(const Scene& scene) {
+  return M::measures(scene) ? std::make_unique<M>(scene) : nullptr;
+}
+
 }  // namespace taut
 
-#define TAUT_METRIC(id)                 \
-  namespace taut {                      \
-  extern const MetricEntry metric_##id; \
-  }                                     \
-  const taut::MetricEntry taut::metric_##id
+/// A metric within namespace taut, from its class, which has a constructor from a Scene and `static
+/// constexpr ValueSpec kValues[]`; then the entry's summary and source.
+#define TAUT_METRIC(id, Class, summary, source)                                     \
+  extern const MetricEntry metric_##id;                                             \
+  const MetricEntry metric_##id {                                                   \
+#id, summary, source, Class::kValues, make_metric < Class>, Class::kFollowsPath \
+  }

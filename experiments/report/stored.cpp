@@ -10,7 +10,7 @@
 #include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/claims/rivals.hpp"
-#include "experiments/study/missing.hpp"
+#include "experiments/study/session.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {

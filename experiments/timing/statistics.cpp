@@ -23,6 +23,7 @@ double median_of(std::vector<double>& values) {
 }  // namespace
 
 std::string number_text(double value, int digits) {
+  if (std::isnan(value)) return "-";
   std::ostringstream text;
   text << std::setprecision(digits) << value;
   return text.str();
@@ -70,14 +71,10 @@ double spread(const Interval& control) {
   return std::expm1(std::max(std::abs(std::log(control.low)), std::abs(std::log(control.high))));
 }
 
-bool is_significant(const Interval& ratio, const Interval& control, double tolerance) {
-  return !ratio.contains(1) &&
-         std::abs(std::log(ratio.mid)) > std::log1p(std::max(tolerance, spread(control)));
-}
-
 Difference compare_costs(const Interval& ratio, const Interval& control, double tolerance) {
   if (!(spread(control) <= tolerance)) return Difference::too_noisy;
-  if (!is_significant(ratio, control, tolerance)) return Difference::none;
+  if (ratio.contains(1) || !(std::abs(std::log(ratio.mid)) > std::log1p(tolerance)))
+    return Difference::none;
   return ratio.mid < 1 ? Difference::faster : Difference::slower;
 }
 

@@ -27,9 +27,8 @@ Scene hanging(int n, double mass, double dt, double g = kG) {
 
 Scene catenary_scene(double mass) {
   const int n = 16;
-  Scene s = bare::chain(n, 1, mass, Vec3::UnitX());
+  Scene s = under_gravity(bare::chain(n, 1, mass, Vec3::UnitX()));
   s.pins = {0, n};
-  s.gravity = {0, -kG, 0};
   s.dt = 1.0 / 256;
   s.damping = 4;
   // start: a shallow zigzag of the right lengths between pins 0.8 apart
@@ -253,8 +252,7 @@ TAUT_TRUTH(hanging_chain_sweeps, 4, 10,
   const std::string substeps = jakobsen(1, "exact", "substeps=16");
   if (!can_run(findings, substeps, hanging(4, 1, 1.0 / 64))) return;
   Scene s = hanging(16, 0.1, 1.0 / 64);
-  Simulation sim(s, substeps);
-  sim.step(1200);
+  Simulation sim(s, substeps, 1200);
   findings.equal(substeps, "top strain of one sweep each, over (N-1) g (dt/16)^2", "1",
                  largest(strains(s, sim.state())) / (15 * kG / 4096 / 256), 1, 1e-6);
 }
@@ -347,8 +345,7 @@ TAUT_TRUTH(chain_tension, 4, 13,
     const std::string solver = jakobsen(k);
     const Scene s = hanging(n, mass, 1.0 / 64);
     if (!can_run(findings, solver, s)) continue;
-    Simulation sim(s, solver);
-    sim.step(20000 / k);
+    Simulation sim(s, solver, 20000 / k);
     Textbook<double> textbook(s, k);
     textbook.load(sim.state());
     textbook.step();

@@ -1,6 +1,5 @@
 // Section 3, particles without springs: falling, damping, wind on a face, the tilted strip.
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "experiments/truths/simulation.hpp"
@@ -87,8 +86,7 @@ TAUT_TRUTH(free_fall, 3, 1, "x_n = x0 + v0 t + g t^2/2 + g t dt/2; explicit Eule
   const std::string in_float = "jakobsen:substeps=1,order=mesh,precision=float";
   Scene s = thrown();
   if (!can_run(findings, in_float, s)) return;
-  Simulation sim(s, in_float);
-  sim.step(64);
+  Simulation sim(s, in_float, 64);
   findings.below(in_float, "distance from v0 t + g t^2/2 + g t dt/2 at 1 s", "m",
                  (sim.x(0) - (kThrow + kGravity * (0.5 + 1.0 / 128))).norm(), 1e-4);
 }
@@ -143,8 +141,7 @@ TAUT_TRUTH(wind_face, 3, 6, "v_n = (m g/cA)(1 - (1 - cA dt/m)^n); stable iff cA 
       Scene edge = face((above ? 2.001 : 1.999) * kMass / (kArea * s.dt), Wind::Law::relative);
       edge.gravity.setZero();
       edge.start.v.assign(3, Vec3(0, -1, 0));
-      Simulation fast(edge, solver);
-      fast.step(101);
+      Simulation fast(edge, solver, 101);
       const double first = fast.v(0).y();
       fast.step();
       factors[above] = std::abs(fast.v(0).y() / first);
@@ -160,8 +157,7 @@ TAUT_TRUTH(wind_literal, 3, 7, "with d the wind itself, as printed, a face accel
     Scene s = face(0.4, Wind::Law::literal);
     s.wind->velocity = Vec3(0, 2, 1);
     if (!can_run(findings, solver, s)) continue;
-    Simulation sim(s, solver);
-    sim.step(640);
+    Simulation sim(s, solver, 640);
     // c (n . d) n A/m upwards, whatever the speed
     const double a = 0.4 * 2 * kArea / kMass - kG;
     findings.equal(solver, "speed after 10 s: no terminal speed", "m/s", sim.v(0).y(), 10 * a,
@@ -213,8 +209,7 @@ TAUT_TRUTH(float_gravity, 3, 9,
   s.dt = 1.0 / 1024;
   if (!can_run(findings, solver, s)) return;
   const int n = 800;
-  Simulation sim(s, solver);
-  sim.step(n);
+  Simulation sim(s, solver, n);
   const double unit = 0x1p-21;  // of coordinates from 4 m to 8 m
   const double step = kG * s.dt * s.dt, fallen = n * (n + 1) / 2.0;
   findings.deviates(solver, "way fallen in 800 steps of 1/1024 s from 4.5 m off the origin", "m",

@@ -35,8 +35,7 @@ double value(const std::map<std::string, double>& values, const std::string& nam
 }
 
 Scene sheet() {
-  Scene s = bare::sheet(5, 5, {.shear = true, .bend = true});
-  s.gravity = {0, -kG, 0};
+  Scene s = under_gravity(bare::sheet(5, 5, {.shear = true, .bend = true}));
   return s;
 }
 
@@ -114,8 +113,7 @@ TAUT_TRUTH(metric_motion, 10, 3, "jitter, popping, drift and settling of prescri
 
 TAUT_TRUTH(metric_penetration, 10, 4, "penetration is max(0, -signed distance)",
            "a vertex placed 3 cm deep") {
-  Scene s = bare::scene({Vec3(0, 0.47, 0), Vec3(0, 2, 0)}, {1, 1}, {});
-  s.gravity = {0, -kG, 0};
+  Scene s = under_gravity(bare::scene({Vec3(0, 0.47, 0), Vec3(0, 2, 0)}, {1, 1}, {}));
   const auto depth = [&](const Shape& shape) {
     Scene with_shape = s;
     with_shape.colliders.push_back({shape, {}, 0});
@@ -136,10 +134,9 @@ TAUT_TRUTH(metric_faces, 10, 5,
   // A right triangle with legs l and its corners on a ball of radius R.
   const double radius = 0.5, l = 0.05, half = l / std::sqrt(2.0);
   const double height = std::sqrt(radius * radius - half * half);
-  Scene s = bare::scene({Vec3(half, height, 0), Vec3(-half, height, 0), Vec3(0, height, half)},
-                        {1, 1, 1}, {});
+  Scene s = under_gravity(bare::scene(
+      {Vec3(half, height, 0), Vec3(-half, height, 0), Vec3(0, height, half)}, {1, 1, 1}, {}));
   s.mesh.triangles = {{0, 1, 2}};
-  s.gravity = {0, -kG, 0};
   s.colliders.push_back({Ball{Vec3::Zero(), radius}, {}, 0});
   const auto values = measure("faces", s, {s.start, s.start});
   findings.equal("metric:faces", "face.max of a face with its corners on a ball", "m",
@@ -153,8 +150,7 @@ TAUT_TRUTH(metric_faces, 10, 5,
 TAUT_TRUTH(metric_tunnelling, 10, 6,
            "vertices that end on the other side are counted, even within one step",
            "a vertex through a ball's centre") {
-  Scene s = bare::scene({Vec3(0, 1, 0), Vec3(3, 1, 0)}, {1, 1}, {});
-  s.gravity = {0, -kG, 0};
+  Scene s = under_gravity(bare::scene({Vec3(0, 1, 0), Vec3(3, 1, 0)}, {1, 1}, {}));
   s.colliders.push_back({Ball{Vec3::Zero(), 0.3}, {}, 0});
   std::vector<State> states(2, s.start);
   for (Vec3& x : states[1].x) x.y() = -1;  // one through the middle, one past it

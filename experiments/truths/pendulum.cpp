@@ -17,8 +17,7 @@ namespace taut {
 namespace {
 
 Scene pendulum(double amplitude, double dt) {
-  Scene s = bare::chain(1, 1, 1, {std::sin(amplitude), -std::cos(amplitude), 0});
-  s.gravity = {0, -kG, 0};
+  Scene s = under_gravity(bare::chain(1, 1, 1, {std::sin(amplitude), -std::cos(amplitude), 0}));
   s.dt = dt;
   return s;
 }
@@ -81,10 +80,9 @@ std::vector<std::string> converged() {
 
 Scene double_pendulum(double dt) {
   const double a = 120 * kDegree, b = -10 * kDegree;
-  Scene s = bare::chain(2, 2, 1);
+  Scene s = under_gravity(bare::chain(2, 2, 1));
   s.start.x[1] = Vec3(std::sin(a), -std::cos(a), 0);
   s.start.x[2] = s.start.x[1] + Vec3(std::sin(b), -std::cos(b), 0);
-  s.gravity = {0, -kG, 0};
   s.dt = dt;
   return s;
 }
@@ -166,8 +164,7 @@ TAUT_TRUTH(chain_swings, 4, 3,
     (modes.eigenvalues.array() - implicit).abs().minCoeff(&nearest);
     const double mu = modes.eigenvalues[nearest].real();
     const Eigen::VectorXd shape = modes.eigenvectors.col(nearest).real();
-    Scene s = bare::chain(n, 1, 0.1);
-    s.gravity = {0, -kG, 0};
+    Scene s = under_gravity(bare::chain(n, 1, 0.1));
     for (int i = 1; i <= n; ++i)
       s.start.x[to_index(i)].x() = 1e-7 * shape[i - 1] / shape.cwiseAbs().maxCoeff();
     const std::string name = "mode " + std::to_string(mode + 1) + " of 8 links";
@@ -237,8 +234,7 @@ TAUT_TRUTH(double_pendulum, 4, 5,
       std::vector<Vec3> ends;
       for (int r = 10; r <= 13; ++r) {
         const double dt = std::ldexp(1, -r);
-        Simulation sim(double_pendulum(dt), solver);
-        sim.step(t << r);
+        Simulation sim(double_pendulum(dt), solver, t << r);
         dts.push_back(dt), ends.push_back(sim.x(2));
         errors.push_back((sim.x(2) - exact[1]).norm());
       }

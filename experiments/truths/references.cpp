@@ -13,10 +13,9 @@ namespace {
 
 /// A draped sheet at its equilibrium, turned about its pin line and let go.
 Scene swung(int n, double degrees) {
-  Scene s = bare::sheet(n, n);
+  Scene s = under_gravity(bare::sheet(n, n));
   s.pins = {0, n - 1};
   s.start.x[to_index(n - 1)].x() = 0.8;
-  s.gravity = {0, -kG, 0};
   const auto e = reference::static_equilibrium(s);
   const Eigen::AngleAxisd turn(degrees * 3.14159265358979 / 180, Vec3::UnitX());
   for (std::size_t i = 0; i < e.x.size(); ++i) s.start.x[i] = turn * e.x[i];
@@ -28,12 +27,11 @@ Scene swung(int n, double degrees) {
 TAUT_TRUTH(static_floor, 9, 1, "the static reference is at rounding, by self-convergence",
            "augmented Lagrangian, then KKT Newton") {
   if (!findings.wants(kStatic)) return;
-  Scene s = bare::sheet(12, 12);
+  Scene s = under_gravity(bare::sheet(12, 12));
   s.pins = {0, 11};
   s.start.x[11].x() = 0.7;
-  s.gravity = {0, -kG, 0};
   const auto e = reference::static_equilibrium(s);
-  findings.equal(kStatic, "has one answer", "1", e.unique, 1, 0);
+  findings.holds(kStatic, "has one answer", e.unique);
   findings.below(kStatic, "distance between two starts and penalties: the floor", "m", e.floor,
                  1e-13);
   findings.below(kStatic, "largest violation of a length", "m", e.violation, 1e-15);
@@ -45,7 +43,7 @@ TAUT_TRUTH(shake_order, 9, 2, "the dynamic reference has order 2.00 and knows it
   if (!findings.wants(kShake)) return;
   const Scene s = swung(6, 60);
   const auto converged = reference::converged_motion(s, {0.25}, 1.0 / 1024);
-  findings.equal(kShake, "has one answer", "1", converged.unique, 1, 0);
+  findings.holds(kShake, "has one answer", converged.unique);
   if (!converged.unique) return;
   std::vector<double> dt, error;
   for (const int rate : {256, 512, 1024}) {
@@ -71,8 +69,7 @@ TAUT_TRUTH(projection_tends_to_shake, 9, 3,
     for (const int rate : {256, 512, 1024}) {
       Scene finer = s;
       finer.dt = 1.0 / rate;
-      Simulation sim(finer, solver);
-      sim.step(rate / 4);
+      Simulation sim(finer, solver, rate / 4);
       dt.push_back(finer.dt);
       error.push_back(converged.unique ? max_distance(sim.state().x, converged.states[0].x)
                                        : std::nan(""));

@@ -15,21 +15,17 @@ std::string with(std::string_view solver, std::string_view more) {
   return text + std::string(more);
 }
 
-Simulation::Simulation(const Scene& scene, std::string_view solver)
+Simulation::Simulation(const Scene& scene, std::string_view solver, int steps)
     : scene_(scene), state_(scene.start) {
   const SolverChoice choice = parse_solver(solver);
   solver_ = choice.entry->make(scene_, choice.params);
   solver_->load(state_);
+  if (steps > 0) step(steps);
 }
 
 void Simulation::step(int n) {
   for (int i = 0; i < n; ++i, ++n_) solver_->step(n_ * scene_.dt, scene_.dt);
   solver_->store(state_);
-}
-
-void Simulation::load(const State& state) {
-  state_ = state;
-  solver_->load(state_);
 }
 
 bool can_run(Findings& findings, std::string_view solver, const Scene& scene) {
@@ -110,6 +106,11 @@ Scene sheet(int nu, int nv, const LinkChoice& choice, Lumping lumping, double wi
 }
 
 }  // namespace bare
+
+Scene under_gravity(Scene scene) {
+  scene.gravity = {0, -kG, 0};
+  return scene;
+}
 
 std::vector<double> strains(const Scene& scene, const State& state) {
   std::vector<double> e;

@@ -15,9 +15,9 @@ namespace taut {
 /// the recurrences of the truths assume, unless the text chooses one.
 class Simulation {
  public:
-  Simulation(const Scene&, std::string_view solver);
+  /// After so many steps.
+  Simulation(const Scene&, std::string_view solver, int steps = 0);
   void step(int n = 1);
-  void load(const State&);  ///< restart here; time goes on
   const State& state() const { return state_; }
   const Vec3& x(int i) const { return state_.x[to_index(i)]; }
   const Vec3& v(int i) const { return state_.v[to_index(i)]; }
@@ -63,6 +63,8 @@ Scene sheet(int nu, int nv, const LinkChoice& = {}, Lumping = Lumping::area, dou
             double height = 1, double mass = 0.2);
 
 }  // namespace bare
+
+Scene under_gravity(Scene);  ///< the same with gravity, downwards in y
 
 /// (length - rest) [m] of every link.
 std::vector<double> strains(const Scene&, const State&);

@@ -118,8 +118,7 @@ TAUT_TRUTH(plain_jacobi, 5, 3,
   findings.equal("closed form", "growth per step of the fastest mode for many links", "1",
                  std::abs(reference::verlet_root(-1)), bound, 1e-12);
   if (!can_run(findings, solver, s)) return;
-  Simulation sim(s, solver);
-  sim.step(20);
+  Simulation sim(s, solver, 20);
   const double before = max_strain(s, sim.state());
   sim.step();
   findings.equal(solver, "growth per step of a chain of 32 links, k = 1", "1",
@@ -127,8 +126,7 @@ TAUT_TRUTH(plain_jacobi, 5, 3,
   for (const char* cure : {"method=jacobi-averaged", "method=jacobi-underrelaxed"}) {
     const std::string stable = jakobsen(1, "exact", cure);
     if (!can_run(findings, stable, s)) continue;
-    Simulation calm(s, stable);
-    calm.step(5000);
+    Simulation calm(s, stable, 5000);
     findings.below(stable, "strain after 5000 steps from 1e-12", "1", max_strain(s, calm.state()),
                    1e-12);
   }
@@ -138,8 +136,7 @@ TAUT_TRUTH(over_relaxation, 5, 4, "one sweep with omega > 4/3 is unstable",
            "mu = 1 - omega of a single link against -1/3") {
   const auto growth = [](const std::string& solver) {
     const Scene s = strained_chain(Eigen::VectorXd::Constant(1, 1e-9));
-    Simulation sim(s, solver);
-    sim.step(200);
+    Simulation sim(s, solver, 200);
     const double before = std::abs(strains(s, sim.state())[0]);
     sim.step(100);
     return std::pow(std::abs(strains(s, sim.state())[0]) / before, 0.01);
@@ -156,8 +153,8 @@ TAUT_TRUTH(over_relaxation, 5, 4, "one sweep with omega > 4/3 is unstable",
       const double expected = std::abs(reference::verlet_root(1 - std::stod(omega)));
       findings.equal(solver(omega), "growth per step", "1", growth(solver(omega)), expected, 2e-3);
     }
-    findings.equal(solver("1.33"), "stable", "1", growth(solver("1.33")) < 1, 1, 0);
-    findings.equal(solver("1.34"), "unstable", "1", growth(solver("1.34")) > 1, 1, 0);
+    findings.holds(solver("1.33"), "stable", growth(solver("1.33")) < 1);
+    findings.holds(solver("1.34"), "unstable", growth(solver("1.34")) > 1);
   }
 }
 
@@ -166,8 +163,7 @@ TAUT_TRUTH(legitimate_strain, 5, 5,
            "the hanging chain under k sweeps") {
   const int n = 32;
   const double dt = static_cast<double>(1.0F / 60), l = 1.0 / n;
-  Scene s = bare::chain(n, 1, 0.1);
-  s.gravity = {0, -kG, 0};
+  Scene s = under_gravity(bare::chain(n, 1, 0.1));
   s.dt = dt;
   struct Strain {
     double peak = 0, rest = 0;

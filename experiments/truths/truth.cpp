@@ -59,6 +59,10 @@ void Findings::equal(std::string_view subject, std::string_view quantity, std::s
   add(finding(subject, quantity, unit, measured, expected, tolerance));
 }
 
+void Findings::holds(std::string_view subject, std::string_view quantity, bool measured) {
+  equal(subject, quantity, "1", measured, 1, 0);
+}
+
 void Findings::below(std::string_view subject, std::string_view quantity, std::string_view unit,
                      double measured, double limit) {
   equal(subject, quantity, unit, measured, 0, limit);

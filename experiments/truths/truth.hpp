@@ -45,6 +45,8 @@ class Findings {
   /// |measured - expected| <= tolerance (absolute, in the quantity's unit).
   void equal(std::string_view subject, std::string_view quantity, std::string_view unit,
              double measured, double expected, double tolerance);
+  /// What is so or not.
+  void holds(std::string_view subject, std::string_view quantity, bool measured);
   /// 0 <= measured <= limit: an error that has to be small.
   void below(std::string_view subject, std::string_view quantity, std::string_view unit,
              double measured, double limit);

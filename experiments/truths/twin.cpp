@@ -8,9 +8,8 @@ namespace {
 constexpr int kSweeps = 8;
 
 Scene hanging_sheet(double dt) {
-  Scene s = bare::sheet(20, 20, {.shear = true, .bend = true});
+  Scene s = under_gravity(bare::sheet(20, 20, {.shear = true, .bend = true}));
   s.pins = {0, 19};
-  s.gravity = {0, -kG, 0};
   s.dt = dt;
   return s;
 }
