@@ -87,14 +87,14 @@ double projection() {
 
 template <class Real>
 double traffic(const Scene& scene) {
-  const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.links, scene.mesh));
+  const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.mesh));
   const ColourBatches<Real> batches(colour(scene.links, scene.mesh), inverse_masses(scene), 1,
                                     layout);
   std::vector<Real> x(layout.length());
   const auto load_and_store = kernels<Real>(widest()).load_and_store;
   const auto sweep = [&](Real) {
     for (std::size_t phase = 0; phase < batches.phases(); ++phase)
-      for (std::size_t tile = 0; tile < batches.tiles(phase); ++tile)
+      for (std::size_t tile = 0; tile < batches.parts(phase); ++tile)
         for (const BatchRun<Real>& run : batches.runs(phase, tile)) load_and_store(run, x.data());
     return x[0];
   };

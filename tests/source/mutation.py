@@ -48,7 +48,7 @@ MUTATIONS = {
 }
 
 
-SIMD = [f"core/solver/simd/{isa}.cpp" for isa in ("scalar", "sse2", "avx2", "avx512")]
+SIMD = ["core/solver/simd/instruction_set.cpp"]  # four times
 RESPONSES = ["core/solver/contact/responses.cpp"]
 CLAIMS = [f"experiments/report/claims/{name}.cpp" for name in ("claim", "cost_claims", "physics_claims", "difference_claims")]
 SEARCH = ["tests/solver/self_collision_test.cpp"]  # which instantiates the templates itself
