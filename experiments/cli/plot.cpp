@@ -69,7 +69,7 @@ std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
 
 /// Throws InputError with every kind and value that there is not; of a study's own with its place.
 void check(const std::vector<PlotSpec>& specs, const Options& options, const Study& study,
-           std::span<const Record> records) {
+           const report::Chosen& records) {
   const bool own = options.kind.empty() && options.x.empty() && options.y.empty();
   std::vector<Diagnostic> wrong;
   for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -96,8 +96,7 @@ void check(const std::vector<PlotSpec>& specs, const Options& options, const Stu
 
 /// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
 /// and on standard error.
-std::string hold_other(const PlotSpec& spec, std::vector<Record>& records,
-                       const std::string& scene) {
+std::string hold_other(const PlotSpec& spec, report::Chosen& records, const std::string& scene) {
   const std::string held = spec.x == "dt" ? "iterations" : "dt";
   report::Slice slice = report::hold(records, held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
@@ -116,8 +115,8 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
   const report::PlotKind& kind = report::find_plot_kind(spec.kind);
   if (spec.x.empty()) spec.x = kind.x;
   if (spec.y.empty()) spec.y = kind.y;
-  std::vector<Record> records = study.records;
-  std::erase_if(records, [&](const Record& r) { return r.scene != scene; });
+  report::Chosen records = study.records;
+  std::erase_if(records, [&](const Record* r) { return r->scene != scene; });
   if (spec.kind == "scaling") spec.slope = 1;
   const std::string held = spec.kind == "stability" ? "" : hold_other(spec, records, scene);
   std::vector<report::TimeSeries> series;

@@ -133,7 +133,7 @@ int run(Options options) {
   report::ReportInput input = report::stored_results(studies, store);
   std::vector<Study> map_studies;
   for (const std::string& name : maps) map_studies.push_back(load_study(name, options.preset));
-  input.maps = report::stored_maps(map_studies, store);
+  report::add_stored_maps(input, map_studies, store);
   input.command = command;
   input.solvers = introductions();
   const std::string program = program_digest();

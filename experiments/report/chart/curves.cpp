@@ -19,11 +19,11 @@ constexpr const char* kKnobs[] = {"substeps", "iterations", "newton", "stiffness
 
 }  // namespace
 
-SettingLabels::SettingLabels(std::span<const Record> all) {
-  for (const Record& r : all)
+SettingLabels::SettingLabels(const Chosen& all) {
+  for (const Record* r : all)
     for (const char* knob : kKnobs)
-      if (const auto at = r.params.find(knob); at != r.params.end())
-        seen_[{r.solver, knob}].insert(at->second);
+      if (const auto at = r->params.find(knob); at != r->params.end())
+        seen_[{r->solver, knob}].insert(at->second);
 }
 
 std::string SettingLabels::of(const Record& record) const {
@@ -47,7 +47,8 @@ std::string SettingLabels::of(const Record& record) const {
 namespace {
 
 /// Everything that tells two cases of one solver apart, by name.
-std::map<std::string, std::string> settings(const Record& record, const std::string& along) {
+std::map<std::string, std::string> settings(const Record& record, const std::string& along,
+                                            const std::string& also) {
   std::map<std::string, std::string> all = record.params;
   all["dt"] = quantity("dt").text(record.dt, 3);
   all["scene"] = record.scene;
@@ -55,8 +56,8 @@ std::map<std::string, std::string> settings(const Record& record, const std::str
     if (!text.starts_with("time.dt"))
       if (const auto equals = text.find('='); equals != std::string::npos)
         all[text.substr(0, equals)] = text.substr(equals + 1);
-  all.erase(along);
-  if (along == "vertices") all.erase("cloth.grid");
+  for (const std::string& swept : {along, also})
+    all.erase(swept == "vertices" ? "cloth.grid" : swept);
   if (along == "setting")
     for (const char* knob : kKnobs) all.erase(knob);
   return all;
@@ -76,23 +77,25 @@ bool Point::measured() const {
          std::isfinite(y);
 }
 
-std::vector<Curve> make_curves(std::span<const Record> records, const std::string& x,
-                               const std::string& y, const std::string& along) {
-  using Settings = std::map<std::string, std::string>;
+std::vector<Curve> make_curves(const Chosen& records, const std::string& x, const std::string& y,
+                               const std::string& along, const std::string& also) {
   std::map<std::pair<std::string, std::string>, std::set<std::string>> seen;
-  for (const Record& record : records)
-    for (const auto& [key, value] : settings(record, along))
-      seen[{key == "dt" || key == "scene" ? "" : record.solver, key}].insert(value);
+  for (const Record* record : records)
+    for (const auto& [key, value] : settings(*record, along, also))
+      seen[{key == "dt" || key == "scene" ? "" : record->solver, key}].insert(value);
   const auto varies = [&](const Record& record, const std::string& key) {
     return seen[{key == "dt" || key == "scene" ? "" : record.solver, key}].size() > 1;
   };
   std::vector<Curve> curves;
-  std::map<std::pair<std::string, Settings>, std::size_t> index;
+  std::map<std::string, std::size_t> index;  // by solver and settings
   std::map<std::string, int> variants;
   const SettingLabels labels(records);
-  for (const Record& record : records) {
-    const Settings all = settings(record, along);
-    const auto [where, fresh] = index.try_emplace({record.solver, all}, curves.size());
+  for (const Record* r : records) {
+    const Record& record = *r;
+    const auto all = settings(record, along, also);
+    std::string name = record.solver;
+    for (const auto& [key, value] : all) name += "\n" + key + "=" + value;
+    const auto [where, fresh] = index.try_emplace(name, curves.size());
     if (fresh) {
       Curve curve{solver_title(record.solver), record.solver, variants[record.solver]++, {}};
       for (const auto& [key, value] : all)
@@ -115,21 +118,21 @@ std::vector<Curve> make_curves(std::span<const Record> records, const std::strin
   return curves;
 }
 
-Slice hold(std::span<const Record> records, const std::string& setting, double preferred) {
+Slice hold(const Chosen& records, const std::string& setting, double preferred) {
   constexpr std::size_t kMostSets = 3;
   std::map<double, int> counts;
-  for (const Record& record : records)
-    if (const double value = value_of(record, setting); std::isfinite(value)) ++counts[value];
+  for (const Record* r : records)
+    if (const double value = value_of(*r, setting); std::isfinite(value)) ++counts[value];
   if (counts.empty() || (counts.size() > 1 && counts.size() <= kMostSets))
-    return {{records.begin(), records.end()}, std::numeric_limits<double>::quiet_NaN()};
+    return {records, std::numeric_limits<double>::quiet_NaN()};
   const auto badness = [&](double value) { return std::abs(std::log(value / preferred)); };
   const auto best = std::ranges::max_element(counts, [&](const auto& a, const auto& b) {
     return std::pair(a.second, -badness(a.first)) < std::pair(b.second, -badness(b.first));
   });
   Slice slice{{}, best->first};
-  for (const Record& record : records) {
-    const double value = value_of(record, setting);
-    if (value == slice.value || std::isnan(value)) slice.records.push_back(record);
+  for (const Record* r : records) {
+    const double value = value_of(*r, setting);
+    if (value == slice.value || std::isnan(value)) slice.records.push_back(r);
   }
   return slice;
 }

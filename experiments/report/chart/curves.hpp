@@ -10,6 +10,15 @@
 
 namespace taut::report {
 
+/// Records that live elsewhere, in the order of the study.
+struct Chosen : std::vector<const Record*> {
+  Chosen() = default;
+  Chosen(std::span<const Record> all) {
+    for (const Record& r : all) push_back(&r);
+  }
+  Chosen(const std::vector<Record>& all) : Chosen(std::span(all)) {}
+};
+
 /// One case on a curve, in SI units.
 struct Point {
   double x = 0, y = 0;
@@ -32,7 +41,7 @@ struct Curve {
 /// Labels of records by those accuracy parameters that take several values among their solver's.
 class SettingLabels {
  public:
-  explicit SettingLabels(std::span<const Record> all);
+  explicit SettingLabels(const Chosen&);
   /// "2 × 8, coloured"; "" if nothing varies.
   std::string of(const Record&) const;
 
@@ -43,18 +52,19 @@ class SettingLabels {
 /// Groups records into curves of y over x: those that differ in nothing but `along` ("iterations",
 /// "dt", ...) share a curve. Labels name only the settings that vary among the records. `along` =
 /// "setting" frees every accuracy knob at once (sweeps, substeps, stiffness, Newton steps,
-/// over-relaxation, levels, precision): one curve per solver, ordered by x.
-std::vector<Curve> make_curves(std::span<const Record>, const std::string& x, const std::string& y,
-                               const std::string& along);
+/// over-relaxation, levels, precision): one curve per solver, ordered by x. `also`: a second
+/// setting in which cases of one curve may differ.
+std::vector<Curve> make_curves(const Chosen&, const std::string& x, const std::string& y,
+                               const std::string& along, const std::string& also = "");
 
 /// The records at the value of `setting` which most of them share (ties: nearest to `preferred`),
 /// with that value in SI units. All records and NaN if two or three values were tried, which are
 /// that many sets of curves, or if none has the setting.
 struct Slice {
-  std::vector<Record> records;
+  Chosen records;
   double value = 0;
 };
-Slice hold(std::span<const Record>, const std::string& setting, double preferred);
+Slice hold(const Chosen&, const std::string& setting, double preferred);
 
 /// Fitted exponent p of y ~ x^p over the measured, positive points with x >= from; NaN with fewer
 /// than three.

@@ -21,23 +21,23 @@ std::map<std::string, std::string> choice_of(const Record& r) {
 }
 
 Rival choose(const std::string& solver, const std::vector<const Record*>& cases) {
-  using Choice = std::map<std::string, std::string>;
-  std::vector<std::pair<Choice, std::vector<const Record*>>> groups;
-  std::map<Choice, std::size_t> index;
+  std::vector<std::vector<const Record*>> groups;
+  std::map<std::string, std::size_t> index;
+  std::map<std::pair<std::string, std::string>, std::size_t> having;  // groups with that setting
   for (const Record* r : cases) {
-    const auto [at, fresh] = index.try_emplace(choice_of(*r), groups.size());
-    if (fresh) groups.push_back({at->first, {}});
-    groups[at->second].second.push_back(r);
+    const auto choice = choice_of(*r);
+    std::string text;
+    for (const auto& [name, value] : choice) text += name + "=" + value + "\n";
+    const auto [at, fresh] = index.try_emplace(text, groups.size());
+    if (fresh) groups.emplace_back();
+    if (fresh)
+      for (const auto& setting : choice) ++having[setting];
+    groups[at->second].push_back(r);
   }
-  const auto most =
-      std::ranges::max_element(groups, {}, [](const auto& g) { return g.second.size(); });
-  Rival rival{solver, solver_title(solver), most->second};
-  for (const auto& [name, value] : most->first)
-    if (std::ranges::any_of(groups, [&, name = name, value = value](const auto& g) {
-          const auto other = g.first.find(name);
-          return other == g.first.end() || other->second != value;
-        }))
-      rival.label += " " + value;
+  const auto most = std::ranges::max_element(groups, {}, [](const auto& g) { return g.size(); });
+  Rival rival{solver, solver_title(solver), *most};
+  for (const auto& setting : choice_of(*most->front()))
+    if (having.at(setting) < groups.size()) rival.label += " " + setting.second;
   return rival;
 }
 
@@ -151,13 +151,13 @@ std::string brief_settings(const std::string& solver) try {
   return colon == std::string::npos ? "" : solver.substr(colon + 1);
 }
 
-std::string unequal_work(std::span<const Record> records) {
+std::string unequal_work(const Chosen& records) {
   std::map<std::string, std::set<Work>> works;
   std::vector<std::string> solvers;
-  for (const Record& r : records)
-    if (const Work work = work_of(r); work.sweeps > 0) {
-      if (!works.contains(r.solver)) solvers.push_back(r.solver);
-      works[r.solver].insert(work);
+  for (const Record* r : records)
+    if (const Work work = work_of(*r); work.sweeps > 0) {
+      if (!works.contains(r->solver)) solvers.push_back(r->solver);
+      works[r->solver].insert(work);
     }
   if (works.size() < 2) return "";
   std::set<Work> common = works.begin()->second;
@@ -202,7 +202,7 @@ std::string Rivals::work_text() const {
 Rivals rivals_of(const ReportInput& input) {
   Rivals rivals;
   std::vector<std::string> solvers, scenes;
-  std::set<std::string> keys;
+  std::set<std::string_view> keys;
   const auto add = [](std::vector<std::string>& names, const std::string& name) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };

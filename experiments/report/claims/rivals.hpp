@@ -2,10 +2,10 @@
 
 #include <compare>
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "experiments/report/chart/curves.hpp"
 #include "experiments/report/input.hpp"
 
 namespace taut::report {
@@ -27,7 +27,7 @@ std::string brief_settings(const std::string& solver);
 
 /// "Jakobsen 5 × 1 to 64, Bullet 1 × 1 to 64" (substeps × sweeps), if no such work is common to all
 /// solvers that have sweeps; "": some is.
-std::string unequal_work(std::span<const Record>);
+std::string unequal_work(const Chosen&);
 
 /// What a case is asked, apart from the solver: scene, its settings and the time step.
 struct Question {

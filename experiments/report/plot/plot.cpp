@@ -314,20 +314,20 @@ const PlotKind& find_plot_kind(std::string_view name) {
                    suggestion(std::string(name), names));
 }
 
-void check_value_name(const std::string& name, std::span<const Record> records) {
+void check_value_name(const std::string& name, const Chosen& records) {
   std::vector<std::string> known = quantity_names();
   known.emplace_back("setting");
-  for (const Record& r : records) {
-    if (std::isfinite(value_of(r, name))) return;
-    for (const auto& [param, value] : r.params) known.push_back(param);
+  for (const Record* r : records) {
+    if (std::isfinite(value_of(*r, name))) return;
+    for (const auto& [param, value] : r->params) known.push_back(param);
   }
   if (std::ranges::find(known, name) == known.end())
     throw InputError("unknown value '" + name + "'" + suggestion(name, known) +
                      " (`taut list metrics`)");
 }
 
-PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
-                    std::span<const TimeSeries> series, const std::filesystem::path& folder) {
+PlotFiles make_plot(PlotSpec spec, const Chosen& records, std::span<const TimeSeries> series,
+                    const std::filesystem::path& folder) {
   const PlotKind& kind = find_plot_kind(spec.kind);
   if (spec.x.empty()) spec.x = kind.x;
   if (spec.y.empty()) spec.y = kind.y;
@@ -341,7 +341,7 @@ PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
     sheet = series_sheet(series, spec.y, spec.title);
   } else if (spec.kind == "stability") {
     if (records.empty()) throw InputError("there is no case to draw");
-    sheet = map_sheet(make_maps(records, records.front().scene, spec.x, spec.y), spec.title);
+    sheet = map_sheet(make_maps(records, records.front()->scene, spec.x, spec.y), spec.title);
   } else {
     Chart chart = make_chart(spec.kind, records, spec.x, spec.y, spec.along);
     add_strain_floor(chart);

@@ -34,7 +34,7 @@ struct PlotFiles {
 /// bars, failures on the upper edge. The CSV has one header and a row for each point. Throws
 /// InputError if x or y is not known (with a suggestion) or there is nothing to draw, and PlotError
 /// without gnuplot (script and CSV are there then).
-PlotFiles make_plot(PlotSpec, std::span<const Record>, std::span<const TimeSeries>,
+PlotFiles make_plot(PlotSpec, const Chosen&, std::span<const TimeSeries>,
                     const std::filesystem::path& folder);
 
 /// The share of problems, an error `spec.y` to be reached on a scene, in which each solver costs at
@@ -42,6 +42,6 @@ PlotFiles make_plot(PlotSpec, std::span<const Record>, std::span<const TimeSerie
 PlotFiles make_profile_plot(PlotSpec, const BenchSession&, const std::filesystem::path& folder);
 
 /// Throws InputError with a suggestion if no case and no metric has a value of this name.
-void check_value_name(const std::string& name, std::span<const Record>);
+void check_value_name(const std::string& name, const Chosen&);
 
 }  // namespace taut::report
