@@ -64,7 +64,7 @@ set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "testbed for cloth solvers
  costs, how far it is off and when it breaks.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libosmesa6, gnuplot-nox, fonts-dejavu-core, ffmpeg")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libegl1, libgl1, libgl1-mesa-dri, gnuplot-nox, fonts-dejavu-core, ffmpeg")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtaut-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "testbed for cloth solvers, library
  Scenes, solvers, metrics and the run of one case, to be called from a

@@ -1,5 +1,6 @@
 #include <iostream>
 
+#include "core/io/positions/positions.hpp"
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
@@ -9,7 +10,7 @@
 #include "experiments/film/recorded_runs.hpp"
 #include "experiments/render/image/video.hpp"
 #include "experiments/render/picture/figure.hpp"
-#include "experiments/render/picture/obj_export.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut::verb::render {
 
@@ -48,10 +49,8 @@ SceneRendererOptions look_of(const Options& options, const std::string& quality,
   look.theme = options.dark ? Theme::dark() : Theme::paper();
   look.quality = parse_quality(options.quality.empty() ? quality : options.quality);
   look.view = parse_view(options.view);
-  look.quantity = parse_quantity(options.colour);
-  look.range = options.range / (look.quantity == Quantity::strain        ? 100
-                                : look.quantity == Quantity::penetration ? 1000
-                                                                         : 1);
+  look.colour_by = parse_colour_by(options.colour);
+  look.range = options.range / ColourScale{look.colour_by}.shown();
   return look;
 }
 
@@ -63,7 +62,7 @@ Files draw_stills(const Options& options, const RunSet& set, const std::vector<d
   const auto [width, height] = parse_size(options.size.empty() ? "1920x1080" : options.size);
   const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
   SceneRendererOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
-  look.frame = Frame::beside_inset();
+  look.frame = FitRegion::beside_inset();
   look.from = times.front(), look.to = times.back();
   const SceneRenderer renderer(set.scene, set.runs, look);
   const Countdown countdown("still");
@@ -96,7 +95,7 @@ Files draw_video(const Options& options, const RunSet& set, const fs::path& out)
   const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
   const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
   SceneRendererOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
-  look.frame = Frame::beside_inset();
+  look.frame = FitRegion::beside_inset();
   const SceneRenderer renderer(set.scene, set.runs, look);
   const double dt = set.scene.dt;
   const int stride = std::max(1, static_cast<int>(1 / (30 * dt) + 0.5));
@@ -120,12 +119,19 @@ Files draw_video(const Options& options, const RunSet& set, const fs::path& out)
 }
 
 Files export_frames(const RunSet& set, const fs::path& folder) {
-  const int stride = std::max(1, static_cast<int>(1 / (30 * set.scene.dt) + 0.5));
+  const std::size_t stride = std::max(1, static_cast<int>(1 / (30 * set.scene.dt) + 0.5));
+  make_folder(folder);
   for (std::size_t k = 0; k < set.runs.size(); ++k) {
     const std::string& solver = set.runs[k].trajectory.header.solver;
     const std::string prefix =
         set.scene.name + "_" + std::to_string(k + 1) + "_" + solver.substr(0, solver.find(':'));
-    export_obj(set.scene, set.runs[k], folder, prefix, stride, Countdown("file"));
+    const auto writer = create_positions(folder / (prefix + ".obj"), set.scene.mesh);
+    const auto& frames = set.runs[k].trajectory.frames;
+    const Countdown countdown("file");
+    for (std::size_t at = 0; at < frames.size(); at += stride) {
+      writer->append(frames[at].t, frames[at].state.x);
+      countdown(at / stride + 1, (frames.size() + stride - 1) / stride);
+    }
   }
   return {folder.string()};
 }
@@ -166,7 +172,7 @@ int run(Options options) {
   const bool moving = options.video || !options.exported.empty();
   if (!times.empty() && !moving && options.duration.empty())  // nothing later will be seen
     options.what.overrides.push_back("time.duration=" + std::to_string(times.back() + 1e-4));
-  parse_view(options.view), parse_quantity(options.colour);
+  parse_view(options.view), parse_colour_by(options.colour);
   if (!options.size.empty()) parse_size(options.size);
   const RunSet set =
       record_runs(options.what, [](const std::string& text) { std::cerr << text << '\n'; });

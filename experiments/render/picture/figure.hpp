@@ -26,7 +26,7 @@ std::string strain_text(double value, bool sign);
 
 /// What is written below a picture of this quantity: the strains, the depth or the speed of this
 /// moment, "max depth = 1.5 mm".
-std::vector<std::string> quantity_text(Quantity, const LiveFigures&);
+std::vector<std::string> caption_of(ColourBy, const LiveFigures&);
 
 /// A picture of all runs at one moment: captions with live figures, panels, material space, the
 /// colour bar. Sizes come from the layout that the renderer was made for.

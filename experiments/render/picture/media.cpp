@@ -141,11 +141,8 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
                    const MediaOptions& options, const std::function<void(int, int)>& progress) {
   assert(!runs.empty() && runs.size() <= 4);
   Media media;
-  media.width = options.width, media.height = options.height;
   media.t = frame_times(scene, runs, options);
-  media.rate = frame_rate((media.t[1] - media.t[0]) / options.speed);
   for (const RecordedRun& run : runs) {
-    media.stops.push_back(run.stop);
     auto& series = media.rms_strain.emplace_back();
     for (const double t : media.t)
       series.push_back(live_figures(scene, run.at(t).state, run.at(t).t).rms_strain);
@@ -156,7 +153,7 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   look.theme = Theme::dark();
   look.quality = options.quality;
   look.view = options.view;
-  look.quantity = options.quantity;
+  look.colour_by = options.colour_by;
   look.frame = {-0.94, 0.84, -0.64, 0.74};
   look.to = media.t.back();
   const SceneRenderer renderer(scene, runs, look);
@@ -174,7 +171,8 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   }
   const Scratch scratch;
   const std::filesystem::path file = scratch.path() / "film.mp4";
-  VideoWriter video(file, {options.width, options.height, media.rate, options.crf});
+  VideoWriter video(file, {options.width, options.height,
+                           frame_rate((media.t[1] - media.t[0]) / options.speed), options.crf});
   for (std::size_t k = 0; k < media.t.size(); ++k) {
     if (!video.write(k == poster ? poster_image : side_by_side(renderer, options, media.t[k])))
       break;

@@ -9,7 +9,7 @@ namespace taut {
 
 /// The quantity at each vertex [n], SI. Strain is the mean of the structural and shear links at the
 /// vertex (bend links shorten when cloth folds, which is no strain); speed needs State::v.
-std::vector<double> vertex_values(const Scene&, Quantity, const State&, double t);
+std::vector<double> vertex_values(const Scene&, ColourBy, const State&, double t);
 
 /// What a caption says about one moment. Strains are those of the metric `stretch`: structural and
 /// shear links, links between two pins left out.
@@ -21,7 +21,5 @@ struct LiveFigures {
   double max_speed = 0;  ///< m/s
 };
 LiveFigures live_figures(const Scene&, const State&, double t);
-
-Quantity parse_quantity(const std::string&);  ///< throws InputError
 
 }  // namespace taut

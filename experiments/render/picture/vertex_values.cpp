@@ -1,9 +1,7 @@
-#include "experiments/render/picture/quantity.hpp"
+#include "experiments/render/picture/vertex_values.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/model/input_error.hpp"
 
 namespace taut {
 
@@ -39,10 +37,10 @@ std::vector<double> vertex_depths(const Scene& scene, const State& state, double
 
 }  // namespace
 
-std::vector<double> vertex_values(const Scene& scene, Quantity quantity, const State& state,
+std::vector<double> vertex_values(const Scene& scene, ColourBy colour_by, const State& state,
                                   double t) {
-  if (quantity == Quantity::strain) return vertex_strains(scene, state);
-  if (quantity == Quantity::penetration) return vertex_depths(scene, state, t);
+  if (colour_by == ColourBy::strain) return vertex_strains(scene, state);
+  if (colour_by == ColourBy::penetration) return vertex_depths(scene, state, t);
   std::vector<double> speed(state.x.size(), 0.0);
   for (std::size_t i = 0; i < state.v.size(); ++i) speed[i] = state.v[i].norm();
   return speed;
@@ -65,14 +63,6 @@ LiveFigures live_figures(const Scene& scene, const State& state, double t) {
     figures.max_depth = std::max(figures.max_depth, depth);
   for (const Vec3& v : state.v) figures.max_speed = std::max(figures.max_speed, v.norm());
   return figures;
-}
-
-Quantity parse_quantity(const std::string& name) {
-  if (name == "strain") return Quantity::strain;
-  if (name == "penetration") return Quantity::penetration;
-  if (name == "speed") return Quantity::speed;
-  throw InputError("unknown colour '" + name + "': strain, penetration or speed" +
-                   suggestion(name, {"strain", "penetration", "speed"}));
 }
 
 }  // namespace taut
