@@ -10,7 +10,6 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
-#include "experiments/command_line/solver_texts.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"

@@ -9,7 +9,6 @@
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
-#include "experiments/command_line/solver_texts.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"

@@ -12,7 +12,6 @@
 #include "experiments/case/trajectory.hpp"
 #include "experiments/command_line/case_options.hpp"
 #include "experiments/command_line/progress.hpp"
-#include "experiments/command_line/record_text.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/isolate.hpp"
 #include "experiments/system/files.hpp"

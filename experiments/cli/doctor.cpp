@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Finding {
+struct Check {
   std::string name, value;
   bool good = true;
 };
@@ -72,14 +72,14 @@ std::string cpu_model() {
   return "unknown";
 }
 
-Finding writable(const fs::path& results) {
+Check writable(const fs::path& results) {
   fs::path there = fs::absolute(results);
   while (!fs::exists(there)) there = there.parent_path();
   const bool good = access(there.c_str(), W_OK) == 0;
   return {"results folder", results.string() + (good ? ", writable" : ", not writable"), good};
 }
 
-Finding arithmetic() {
+Check arithmetic() {
   // Extended precision or contraction would give another remainder.
   volatile double a = 1 + DBL_EPSILON, b = 1 - DBL_EPSILON;
   const double product = a * b - 1;
@@ -88,7 +88,7 @@ Finding arithmetic() {
           exact};
 }
 
-std::vector<Finding> examine() {
+std::vector<Check> examine() {
   utsname system{};
   uname(&system);
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
@@ -96,7 +96,7 @@ std::vector<Finding> examine() {
   getloadavg(&load, 1);
   const double spread = noise();
   const std::string governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
-  std::vector<Finding> all{
+  std::vector<Check> all{
       {"toolchain", std::string(toolchain())},
       {"system", std::string(system.sysname) + " " + system.release + " " + system.machine},
       {"processor", cpu_model() + ", " + std::to_string(cores) + " cores"},
@@ -119,21 +119,21 @@ std::vector<Finding> examine() {
 }
 
 int run(bool as_json) {
-  const std::vector<Finding> findings = examine();
+  const std::vector<Check> checks = examine();
   bool trusted = true;
-  for (const Finding& f : findings)
+  for (const Check& f : checks)
     if (f.name == "load" || f.name == "clock" || f.name == "same code, twice")
       trusted = trusted && f.good;
   const char* verdict = trusted ? "timing can be trusted here"
                                 : "timing is for display only here: the machine is not quiet";
   if (as_json) {
     Json all = Json::array();
-    for (const Finding& f : findings)
+    for (const Check& f : checks)
       all.push_back({{"name", f.name}, {"value", f.value}, {"good", f.good}});
     std::cout << to_text(Json{{"findings", all}, {"timing_trusted", trusted}}, 2) << '\n';
     return kPass;
   }
-  for (const Finding& f : findings)
+  for (const Check& f : checks)
     std::cout << (f.good ? "  " : coloured("! ", Colour::yellow)) << std::left << std::setw(20)
               << f.name << f.value << '\n';
   std::cout << verdict << '\n';

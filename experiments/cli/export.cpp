@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <charconv>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <set>
 
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
@@ -25,10 +25,7 @@ struct Options {
 
 /// Numbers as they are, text safe for a spreadsheet.
 std::string cell(const std::string& text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_number = error == std::errc() && end == text.data() + text.size();
-  return is_number ? text : report::csv_field(text);
+  return whole<double>(text) ? text : report::csv_field(text);
 }
 
 /// The value that a case has of a scene key, as typed in the study: the last assignment holds.
@@ -70,71 +67,69 @@ class TidyTable {
     params_.assign(params.begin(), params.end());
     for (const StudyAxis& axis : known.study.axes)
       if (axis.of_scene()) axes_.push_back(axis.name);
-    for (const MetricEntry* metric : metrics())
-      for (const ValueSpec& value : metric->values) values_.emplace_back(value.name);
+    values_ = value_names();
     for (const Record& record : known.records) records_[record.key] = &record;
   }
 
   std::string text(const std::vector<Case>& cases) {
-    begin({"scene", "solver"}), add(params_), add(axes_);
-    add({"dt", "steps", "vertices", "links", "status", "reason", "step"}), add(values_);
+    Cells head{"scene", "solver"};
+    append(head, params_), append(head, axes_);
+    append(head, {"dt", "steps", "vertices", "links", "status", "reason", "step"});
+    append(head, values_);
     if (!costs_.of.empty())
-      add({"cpu.host", "cpu.per_second", "cpu.per_second.low", "cpu.per_second.high",
-           "memory.peak"});
-    add({"case", "key"});
-    for (const Case& one : cases) add_case(one);
-    return out_ + "\n";
+      append(head, {"cpu.host", "cpu.per_second", "cpu.per_second.low", "cpu.per_second.high",
+                    "memory.peak"});
+    append(head, {"case", "key"});
+    std::string out = line(head);
+    for (const Case& one : cases) out += line(row(one));
+    return out;
   }
 
  private:
-  void begin(const std::vector<std::string>& cells) {
-    out_ += out_.empty() ? "" : "\n";
-    first_ = true;
-    add(cells);
+  using Cells = std::vector<std::string>;
+  static void append(Cells& row, const Cells& more) {
+    row.insert(row.end(), more.begin(), more.end());
   }
-  void add(const std::vector<std::string>& cells) {
-    for (const std::string& text : cells) {
-      out_ += (first_ ? "" : ",") + cell(text);
-      first_ = false;
-    }
+  static std::string line(const Cells& cells) {
+    std::string text;
+    for (const std::string& one : cells) text += (text.empty() ? "" : ",") + cell(one);
+    return text + "\n";
   }
 
-  void add_case(const Case& one) {
+  Cells row(const Case& one) const {
     const auto at = records_.find(one.key);
     const Record* record = at == records_.end() ? nullptr : at->second;
-    begin({one.scene->name, std::string(one.choice.entry->name)});
+    const auto specs = one.choice.params.specs();
+    Cells cells{one.scene->name, std::string(one.choice.entry->name)};
     for (const std::string& name : params_) {
-      const auto specs = one.choice.params.specs();
       const bool has = std::ranges::find(specs, name, &ParamSpec::name) != specs.end();
-      add({has ? std::string(one.choice.params.value(name)) : ""});
+      cells.push_back(has ? std::string(one.choice.params.value(name)) : "");
     }
-    for (const std::string& name : axes_) add({axis_value(one.spec, name)});
+    for (const std::string& name : axes_) cells.push_back(axis_value(one.spec, name));
     const Status status = record ? record->status : Status{};
-    add({report::exact(one.scene->dt), std::to_string(one.scene->steps),
-         std::to_string(one.scene->mesh.size()), std::to_string(one.scene->links.size()),
-         record ? std::string(to_string(status.kind)) : "not run", status.reason,
-         status.step < 0 ? "" : std::to_string(status.step)});
+    append(cells, {report::exact(one.scene->dt), std::to_string(one.scene->steps),
+                   std::to_string(one.scene->mesh.size()), std::to_string(one.scene->links.size()),
+                   record ? std::string(to_string(status.kind)) : "not run", status.reason,
+                   status.step < 0 ? "" : std::to_string(status.step)});
     for (const std::string& name : values_) {
       const bool has = record && record->values.contains(name);
-      add({has ? report::exact(record->values.at(name)) : ""});
+      cells.push_back(has ? report::exact(record->values.at(name)) : "");
     }
-    if (!costs_.of.empty()) add_cost(one);
-    add({one.id, one.key});
-  }
-
-  void add_cost(const Case& one) {
-    const auto at = costs_.of.find(one.key);
-    if (at == costs_.of.end()) return add({"", "", "", "", ""});
-    const Interval cost = at->second.cost();
-    add({costs_.host, report::exact(cost.mid), report::exact(cost.low), report::exact(cost.high),
-         std::to_string(at->second.timing.peak_bytes)});
+    const auto cost = costs_.of.find(one.key);
+    if (cost != costs_.of.end()) {
+      const Interval cpu = cost->second.cost();
+      append(cells, {costs_.host, report::exact(cpu.mid), report::exact(cpu.low),
+                     report::exact(cpu.high), std::to_string(cost->second.timing.peak_bytes)});
+    } else if (!costs_.of.empty()) {
+      cells.resize(cells.size() + 5);
+    }
+    append(cells, {one.id, one.key});
+    return cells;
   }
 
   Costs costs_;
   std::map<std::string, const Record*> records_;
   std::vector<std::string> params_, axes_, values_;
-  std::string out_;
-  bool first_ = true;
 };
 
 int run(const Options& options) {

@@ -6,9 +6,7 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <thread>
 
-#include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/baseline/baseline.hpp"
@@ -21,8 +19,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/extremes/extremes.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/plot/frontier_plot.hpp"
-#include "experiments/report/plot/gnuplot.hpp"
+#include "experiments/report/plot/plot.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -52,12 +49,6 @@ std::string unit_of(const Options& options, const SolverChoice& choice) {
   return "";
 }
 
-std::string five_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.5g", value);
-  return text;
-}
-
 std::string percent(double ratio) {
   char text[32];
   std::snprintf(text, sizeof text, "%+.2g %%", 100 * ratio);
@@ -79,11 +70,11 @@ void print_line(std::string_view label, const std::string& text) {
 }
 
 void print_theory(const Prediction& theory, const Frontier& found, const std::string& unit) {
-  std::string text = theory.kind == Frontier::Kind::bracketed ? five_digits(theory.value) + unit
+  std::string text = theory.kind == Frontier::Kind::bracketed ? number_text(theory.value, 5) + unit
                                                               : std::string(to_string(theory.kind));
   print_line("theory", text + ", " + agreement(theory, found) + ": " + theory.law);
   if (theory.growth > 1 + 1e-6 && theory.kind == Frontier::Kind::none_stable)
-    print_line("", "growth per step " + five_digits(theory.growth));
+    print_line("", "growth per step " + number_text(theory.growth, 5));
 }
 
 void print_text(const CaseFrontier& result, const std::optional<Prediction>& theory,
@@ -270,13 +261,7 @@ int run_all(const Options& options) {
   for (const std::string& solver : solvers) {
     const Countdown countdown("knob of " + solver);
     const Extremes extremes =
-        find_extremes(solver, store, session,
-                      {.jobs = options.jobs,
-                       .limits = {},
-                       .shard = {},
-                       .only_failed = false,
-                       .frames = true,
-                       .progress = {}},
+        find_extremes(solver, store, session, {.jobs = options.jobs, .frames = true},
                       [&](std::size_t done, std::size_t all) { countdown(done, all); });
     if (extremes.interrupted) return kInterrupted;
     const std::filesystem::path folder = std::filesystem::path(options.out) / kFrontiersFolder;
@@ -314,15 +299,11 @@ int run(const Options& options) {
   store.prepare();
   const Session session(store, "taut frontier " + first.id, {}, {});
   Progress progress;
-  const CaseFrontier result =
-      find_frontier(question, store, session,
-                    {.jobs = options.jobs,
-                     .limits = {},
-                     .shard = {},
-                     .only_failed = false,
-                     .progress = [&](const CampaignProgress& t, const Record* record) {
-                       if (record) progress.show(t, record);
-                     }});
+  const CaseFrontier result = find_frontier(
+      question, store, session,
+      {.jobs = options.jobs, .progress = [&](const CampaignProgress& t, const Record* record) {
+         if (record) progress.show(t, record);
+       }});
   if (result.frontier.kind == Frontier::Kind::not_answered) return not_answered(result);
   const std::optional<Prediction> theory = predicted_frontier(question);
   if (options.json) {

@@ -2,7 +2,6 @@
 #include <memory>
 
 #include "core/io/scene_io.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -15,8 +14,6 @@
 namespace taut::verb::list {
 
 namespace {
-
-constexpr std::string_view kKinds[] = {"scenes", "solvers", "metrics", "studies", "claims"};
 
 std::string allowed(const ParamSpec& spec) {
   if (spec.kind == ParamSpec::Kind::choice) return std::string(spec.choices);
@@ -101,12 +98,11 @@ Json list_claims() {
   return all;
 }
 
-Json list(std::string_view kind) {
-  if (kind == "scenes") return list_scenes();
-  if (kind == "solvers") return list_solvers();
-  if (kind == "claims") return list_claims();
-  return kind == "metrics" ? list_metrics() : list_studies();
-}
+constexpr std::pair<const char*, Json (*)()> kKinds[] = {{"scenes", list_scenes},
+                                                         {"solvers", list_solvers},
+                                                         {"metrics", list_metrics},
+                                                         {"studies", list_studies},
+                                                         {"claims", list_claims}};
 
 std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
 
@@ -135,19 +131,16 @@ void print_text(std::string_view kind, const Json& all) {
 
 int run(const std::string& what, bool as_json) {
   Json all;
-  for (const std::string_view kind : kKinds)
-    if (what.empty() || what == kind) all[std::string(kind)] = list(kind);
+  for (const auto& [kind, list] : kKinds)
+    if (what.empty() || what == kind) all[kind] = list();
   if (as_json) {
     std::cout << to_text(what.empty() ? all : all[what], 2) << '\n';
     return kPass;
   }
-  bool first = true;
-  for (const std::string_view kind : kKinds)
-    if (all.contains(kind)) {
-      if (!first) std::cout << '\n';
-      first = false;
-      print_text(kind, all[std::string(kind)]);
-    }
+  for (const auto& [kind, items] : all.items()) {
+    if (kind != all.begin().key()) std::cout << '\n';
+    print_text(kind, items);
+  }
   return kPass;
 }
 

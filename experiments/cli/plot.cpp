@@ -1,7 +1,6 @@
 #include "experiments/report/plot/plot.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -10,13 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/claims/rivals.hpp"
-#include "experiments/report/plot/gnuplot.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/system/files.hpp"
 
@@ -34,9 +33,8 @@ struct Options {
 /// A plot's `slope`, the exponent of a theory; nothing if it names none.
 std::optional<double> exponent(const std::string& text) {
   if (text.empty()) return {};
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || !std::isfinite(value))
+  const std::optional<double> value = whole<double>(text);
+  if (!value || !std::isfinite(*value))
     throw InputError("slope = " + text + " in [[plot]]: expected a number");
   return value;
 }
@@ -99,9 +97,12 @@ void check(const std::vector<PlotSpec>& specs, const Options& options, const Stu
 std::string hold_other(const PlotSpec& spec, std::vector<Record>& records,
                        const std::string& scene) {
   const std::string held = spec.x == "dt" ? "iterations" : "dt";
-  report::Slice slice = report::hold(records, held, held == "dt" ? 1.0 / 64 : 8);
+  const report::Slice slice =
+      report::hold(report::pointers_to(records), held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
-  records = std::move(slice.records);
+  std::vector<Record> kept;
+  for (const Record* r : slice.records) kept.push_back(*r);
+  records = std::move(kept);
   if (left_out == 0) return "";
   const std::string at = report::quantity(held).text(slice.value, 3);
   const std::string setting = held == "dt" ? "dt = " + at : at + " sweeps";

@@ -5,7 +5,6 @@
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
-#include "experiments/command_line/solver_texts.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/film/recorded_runs.hpp"
 #include "experiments/render/image/video.hpp"
@@ -90,7 +89,7 @@ Files draw_sheet(const Options& options, const RunSet& set, const std::vector<do
   return {out.string()};
 }
 
-/// Without ffmpeg: the last frame as a poster and five moments as a strip.
+/// Without ffmpeg: a picture of the last frame.
 Files draw_video(const Options& options, const RunSet& set, const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
   const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
@@ -106,16 +105,10 @@ Files draw_video(const Options& options, const RunSet& set, const fs::path& out)
     countdown(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(frames));
   const std::string why = video.finish();
   if (why.empty()) return {out.string()};
-  std::cerr << out.string() << ": " << why << "; a poster and a strip of five frames instead\n";
-  fs::path poster = out, strip = out;
-  poster.replace_extension(".png");
-  strip.replace_filename(out.stem().string() + "-strip.png");
-  write_png(poster, compose(renderer, layout, set.scene.duration()));
-  Image five(width, 5 * height);
-  for (int k = 0; k < 5; ++k)
-    five.paste(compose(renderer, layout, set.scene.duration() * k / 4), 0, k * height);
-  write_png(strip, five);
-  return {poster.string(), strip.string()};
+  std::cerr << out.string() << ": " << why << "; a picture of its end instead\n";
+  fs::path poster = out;
+  write_png(poster.replace_extension(".png"), compose(renderer, layout, set.scene.duration()));
+  return {poster.string()};
 }
 
 Files export_frames(const RunSet& set, const fs::path& folder) {

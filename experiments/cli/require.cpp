@@ -13,7 +13,7 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/picture/figure.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -57,7 +57,7 @@ std::string verdict(const EffectTrial& effect) {
   if (!effect.done()) return "not done";
   if (effect.chosen) return "drop";
   if (effect.may_go()) return "keep: may go, but not with the others";
-  return effect.told().why.empty() ? "keep" : "keep: " + effect.told().why;
+  return effect.representative().why.empty() ? "keep" : "keep: " + effect.representative().why;
 }
 
 /// What is printed, as a table: head, the full model, its tolerances and noise, effects, the
@@ -86,7 +86,7 @@ std::vector<Row> table(const Requirement& found, std::size_t bytes) {
     rows.push_back(row);
   };
   for (const EffectTrial& effect : found.effects)
-    add(effect.name, effect.told(), effect.time, verdict(effect));
+    add(effect.name, effect.representative(), effect.time, verdict(effect));
   if (found.smallest)
     add("(smallest model)", *found.smallest, found.time_ratio,
         found.verified ? "verified: the same bits from its file" : "NOT VERIFIED");
@@ -236,7 +236,8 @@ Row summary(const Requirement& found) {
   for (const EffectTrial& effect : found.effects) {
     std::string& list = effect.chosen ? drop : keep;
     list += (list.empty() ? "" : ", ") + effect.name;
-    const ModelTrial& told = effect.chosen ? effect.trials[*effect.chosen] : effect.told();
+    const ModelTrial& told =
+        effect.chosen ? effect.trials[*effect.chosen] : effect.representative();
     if (effect.chosen && told.change != "gone") list += " " + told.change;
   }
   std::string answers;

@@ -22,15 +22,11 @@ void run_missing(const std::vector<Case>& cases, const Store& store, const Basel
   store.prepare();
   const Session session(store, "taut check " + result.name, cases, {});
   Progress progress;
-  const CampaignProgress campaign =
-      run_cases(cases, store, session,
-                {.jobs = options.jobs,
-                 .limits = {},
-                 .shard = {},
-                 .only_failed = false,
-                 .progress = [&](const CampaignProgress& t, const Record* record) {
-                   progress.show(t, record);
-                 }});
+  const CampaignProgress campaign = run_cases(
+      cases, store, session,
+      {.jobs = options.jobs, .progress = [&](const CampaignProgress& t, const Record* record) {
+         progress.show(t, record);
+       }});
   progress.finish(campaign);
   result.conflict = campaign.conflicts > 0;
   result.interrupted = campaign.interrupted;
@@ -57,9 +53,7 @@ void add_frontiers(const Store& store, const BaselineOptions& options, BaselineS
   if (questions.empty()) return;
   const Session session(store, "taut check " + result.name, {}, {});
   for (const FrontierQuestion& question : questions) {
-    const CaseFrontier found = find_frontier(
-        question, store, session,
-        {.jobs = options.jobs, .limits = {}, .shard = {}, .only_failed = false, .progress = {}});
+    const CaseFrontier found = find_frontier(question, store, session, {.jobs = options.jobs});
     result.interrupted = result.interrupted || found.interrupted;
     if (found.frontier.kind == Frontier::Kind::not_answered)
       result.not_run.push_back(frontier_id(question));

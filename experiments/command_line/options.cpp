@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/json.hpp"
@@ -35,12 +36,7 @@ CLI::Validator known(const std::string& what, std::vector<std::string> names) {
       "");
 }
 
-CLI::Validator metric_value() {
-  std::vector<std::string> names;
-  for (const MetricEntry* metric : metrics())
-    for (const ValueSpec& value : metric->values) names.emplace_back(value.name);
-  return known("metric value", std::move(names));
-}
+CLI::Validator metric_value() { return known("metric value", value_names()); }
 
 CLI::Option* add_jobs(CLI::App& app, int& jobs) {
   jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -66,6 +62,16 @@ void print_files(const std::vector<std::string>& files, bool json) {
 
 CLI::Option* add_json(CLI::App& app, bool& json, const std::string& what) {
   return app.add_flag("--json", json, what + " as JSON");
+}
+
+void check_solvers(const std::vector<std::string>& texts) {
+  std::vector<Diagnostic> wrong;
+  for (const std::string& text : texts) try {
+      parse_solver(text);
+    } catch (const InputError& error) {
+      wrong.insert(wrong.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  if (!wrong.empty()) throw InputError(wrong);
 }
 
 }  // namespace taut

@@ -30,4 +30,7 @@ void print_files(const std::vector<std::string>& files, bool json);
 /// --json, which says `what` is printed instead.
 CLI::Option* add_json(CLI::App&, bool& json, const std::string& what);
 
+/// Throws InputError with everything that is wrong with any of these solvers' texts.
+void check_solvers(const std::vector<std::string>& texts);
+
 }  // namespace taut

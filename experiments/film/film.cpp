@@ -155,8 +155,8 @@ report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
              " from the left, coloured by " + media.scale.title() + ", full red at " +
              media.scale.text(media.scale.high) +
              "; cloth inside a collider is hatched, a run that ended early is framed in red";
-  clip.type = media.mp4.empty() ? "image/png" : "video/mp4";
-  clip.bytes = media.mp4.empty() ? media.strip_png : media.mp4;
+  clip.type = media.mp4.empty() ? media.poster_type : "video/mp4";
+  clip.bytes = media.mp4.empty() ? media.poster : media.mp4;
   clip.poster = media.poster, clip.poster_type = media.poster_type;
   return clip;
 }

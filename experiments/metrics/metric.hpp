@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/model/scene.hpp"
@@ -83,6 +84,22 @@ struct MetricEntry {
 
 /// All metrics of this program, sorted by name (generated; see cmake/registry.cmake).
 std::span<const MetricEntry* const> metrics();
+
+/// What yields the value of this name: its metric and itself; nulls: nothing does.
+inline std::pair<const MetricEntry*, const ValueSpec*> find_value(std::string_view name) {
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& value : metric->values)
+      if (value.name == name) return {metric, &value};
+  return {};
+}
+
+/// The names of all values of all metrics.
+inline std::vector<std::string> value_names() {
+  std::vector<std::string> names;
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& value : metric->values) names.emplace_back(value.name);
+  return names;
+}
 
 }  // namespace taut
 

@@ -6,8 +6,8 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/curves.hpp"
-#include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/study/missing.hpp"
@@ -225,7 +225,7 @@ std::vector<MapResult> stored_maps(const std::vector<Study>& studies, const Stor
 std::vector<TimeSeries> stored_series(std::span<const Record> records, const std::string& value,
                                       const Store& store) {
   std::vector<TimeSeries> all;
-  const SettingLabels labels(records);
+  const SettingLabels labels(pointers_to(records));
   for (const Record& record : records) {
     const std::string knobs = labels.of(record);
     const std::string label = solver_title(record.solver) + (knobs.empty() ? "" : " " + knobs);

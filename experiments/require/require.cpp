@@ -11,7 +11,6 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/require/perturbation.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/timing.hpp"
 
@@ -62,9 +61,6 @@ class Search {
     for (const CaseSpec& spec : specs) cases.push_back(maker_.make(spec));
     const CampaignProgress campaign = run_cases(cases, store_, session_,
                                                 {.jobs = options_.jobs,
-                                                 .limits = {},
-                                                 .shard = {},
-                                                 .only_failed = false,
                                                  .frames = true,
                                                  .deadline = at(share),
                                                  .progress = options_.progress});
@@ -308,13 +304,7 @@ class Search {
     apart.prepare();
     const Case again = make_case(found_.smallest->spec);
     run_cases({again}, apart, Session(apart, "taut require", {}, {}),
-              {.jobs = 1,
-               .limits = {},
-               .shard = {},
-               .only_failed = false,
-               .frames = false,
-               .deadline = at(kVerifiedBy),
-               .progress = {}});
+              {.jobs = 1, .deadline = at(kVerifiedBy)});
     const std::optional<Record> first = store_.find(again), second = apart.find(again);
     if (!second) return found_.not_done.push_back("the verification");
     found_.verified = first && first->digest == second->digest;
@@ -332,7 +322,7 @@ class Search {
     };
     if (found_.smallest) ask(*found_.smallest, found_.time_ratio);
     for (EffectTrial& effect : found_.effects)
-      if (effect.done()) ask(effect.told(), effect.time);
+      if (effect.done()) ask(effect.representative(), effect.time);
     const auto steps_of = [&](const CaseSpec& spec) {
       for (std::size_t i = 0; i < specs.size(); ++i)
         if (specs[i].scene == spec.scene && specs[i].solver == spec.solver) return steps[i];
@@ -342,7 +332,6 @@ class Search {
                                           .seconds = 0.02,
                                           .program = program_of,
                                           .steps = steps_of,
-                                          .progress = {},
                                           .deadline = at(kTimedBy)});
     found_.control = bench.control;
     for (std::size_t i = 1; i < specs.size(); ++i) {

@@ -3,7 +3,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/reference/catenary.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/relaxation.hpp"
 #include "core/reference/shake.hpp"

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "core/model/index.hpp"
-#include "core/reference/catenary.hpp"
+#include "core/reference/closed_forms.hpp"
 #include "core/reference/relaxation.hpp"
 #include "core/reference/static_equilibrium.hpp"
 #include "experiments/truths/fit.hpp"

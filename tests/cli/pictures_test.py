@@ -75,7 +75,7 @@ class Pictures(CommandLine):
         self.assertIn("/nowhere", done.err)
         self.assertEqual(self.files(), [])
 
-    def test_without_ffmpeg_there_is_a_poster_and_a_strip(self):
+    def test_without_ffmpeg_there_is_a_picture(self):
         tools = self.folder / "tools"
         tools.mkdir()
         for tool in ["sh", "timeout"]:
@@ -83,7 +83,6 @@ class Pictures(CommandLine):
         done = self.render(*SIDE_BY_SIDE, *SMALL, "--video", "-o", "film.mp4", PATH=str(tools))
         self.assertIn("ffmpeg", done.err)
         self.assertEqual(png_size(self.folder / "film.png"), (640, 360))
-        self.assertEqual(png_size(self.folder / "film-strip.png"), (640, 5 * 360))
         self.assertFalse((self.folder / "film.mp4").exists())
 
     def test_a_run_that_explodes_is_drawn_up_to_its_last_sound_state(self):

@@ -1,7 +1,9 @@
 // Pictures: colours that can be trusted, the same bytes again, golden images.
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <thread>
 
@@ -13,6 +15,19 @@ namespace {
 
 using test::difference;
 namespace fs = std::filesystem;
+
+Image read_png(const std::filesystem::path& path) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  const auto fail = [&] { throw InputError({{path.string(), 0, 0, png.message}}); };
+  if (!png_image_begin_read_from_file(&png, path.c_str())) fail();
+  png.format = PNG_FORMAT_RGB;
+  std::vector<Rgb8> pixels(std::size_t{png.width} * png.height);
+  if (!png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr)) fail();
+  Image image(static_cast<int>(png.width), static_cast<int>(png.height));
+  std::memcpy(&image.at(0, 0), pixels.data(), pixels.size() * sizeof(Rgb8));
+  return image;
+}
 
 TEST(ColourMap, IsNeutralAtZeroAndEquallyDarkAtBothEnds) {
   const ColourMap& map = ColourMap::diverging();
@@ -133,7 +148,7 @@ TEST(SceneRenderer, ClothThatLeavesThePictureIsMissedAndSaidSo) {
   EXPECT_FALSE(renderer.in_sight(1, 1));
   // Without the sheet both halves show the same ball; the plate with the text stands in one.
   Image empty = renderer.panel(1, 1), marked = empty;
-  mark_gone(marked, layout.unit);
+  mark_absence(marked, renderer, 1, 1, layout.unit);
   EXPECT_GT(difference(empty, marked).largest, 100);
   const Image page = compose(renderer, layout, 1);
   const int x = layout.panel_width + static_cast<int>(24 * layout.unit),

@@ -10,7 +10,6 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/plot/gnuplot.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
 
@@ -149,7 +148,7 @@ TEST(Curves, LabelsNameOnlyWhatVariesAndCurvesKeepTheirSolver) {
     if (r.solver == "jakobsen") r.params["projection"] = "sqrt-free";
   std::erase_if(other, [](const Record& r) { return r.solver == "bullet"; });
   records.insert(records.end(), other.begin(), other.end());
-  const auto curves = make_curves(records, "iterations", "stretch.rms", "iterations");
+  const auto curves = make_curves(pointers_to(records), "iterations", "stretch.rms", "iterations");
   ASSERT_EQ(curves.size(), 3U);
   EXPECT_EQ(curves[0].label, "Jakobsen exact");
   EXPECT_EQ(curves[1].label, "Jakobsen sqrt-free");
@@ -160,7 +159,8 @@ TEST(Curves, TwoTimeStepsAreTwoSetsOfCurvesManyAreHeldAtOne) {
   const auto all = synthetic::time_steps("hang");
   auto few = all;
   std::erase_if(few, [](const Record& r) { return r.dt != 0.001 && r.dt != 0.002; });
-  const Slice both = hold(few, "dt", 1.0 / 64), one = hold(all, "dt", 1.0 / 64);
+  const Slice both = hold(pointers_to(few), "dt", 1.0 / 64),
+              one = hold(pointers_to(all), "dt", 1.0 / 64);
   EXPECT_TRUE(std::isnan(both.value));
   EXPECT_EQ(one.value, 1.0 / 64);
   std::set<std::string> labels;
@@ -173,16 +173,19 @@ TEST(Curves, TwoTimeStepsAreTwoSetsOfCurvesManyAreHeldAtOne) {
 
 TEST(Curves, SolversStandAsTheRecordsHaveThem) {
   auto records = synthetic::iterations("hang");
-  EXPECT_EQ(make_curves(records, "iterations", "stretch.rms", "iterations")[0].solver, "jakobsen");
+  EXPECT_EQ(make_curves(pointers_to(records), "iterations", "stretch.rms", "iterations")[0].solver,
+            "jakobsen");
   std::ranges::reverse(records);
-  EXPECT_EQ(make_curves(records, "iterations", "stretch.rms", "iterations")[0].solver, "bullet");
+  EXPECT_EQ(make_curves(pointers_to(records), "iterations", "stretch.rms", "iterations")[0].solver,
+            "bullet");
 }
 
 TEST(Curves, AnExplodedCaseNeverEntersTheParetoFront) {
   auto records = synthetic::iterations("hang");
   for (Record& r : records)
     if (r.status.kind == Status::Kind::exploded) r.values["stretch.rms"] = 1e-9;
-  const Chart chart = make_chart("work", records, "projections", "stretch.rms", "setting");
+  const Chart chart =
+      make_chart("work", pointers_to(records), "projections", "stretch.rms", "setting");
   const auto front = pareto_front(chart);
   ASSERT_GT(front.size(), 3U);
   for (const Point& p : front) EXPECT_EQ(p.record->status.kind, Status::Kind::ok);

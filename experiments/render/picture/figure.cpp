@@ -140,10 +140,7 @@ Image compose(const SceneRenderer& renderer, const PageLayout& layout, double t)
     const int y = row * (layout.header + layout.panel_height);
     const RecordedRun& run = renderer.runs()[k];
     Image panel = renderer.panel(k, t);
-    if (run.stop && t > run.stop->t)
-      mark_stop(panel, *run.stop, layout.unit);
-    else if (!renderer.in_sight(k, t))
-      mark_gone(panel, layout.unit);
+    mark_absence(panel, renderer, k, t, layout.unit);
     picture.paste(panel, x, y + layout.header);
     draw_header(canvas, renderer, run, t, {1.0 * x, 1.0 * y}, layout);
     draw_inset(picture, renderer, k, t, {1.0 * x, 1.0 * y + layout.header}, layout);
@@ -200,8 +197,13 @@ void mark_stop(Image& panel, const RecordedRun::Stop& stop, double unit) {
   plate(panel, stop.why + formatted(" after t = %.2f s: last good state", stop.t), kAlarm, unit);
 }
 
-void mark_gone(Image& panel, double unit) {
-  plate(panel, "has left the picture", rgb(0x4A5361), unit);
+void mark_absence(Image& panel, const SceneRenderer& renderer, std::size_t run, double t,
+                  double unit) {
+  const auto& stop = renderer.runs()[run].stop;
+  if (stop && t > stop->t)
+    mark_stop(panel, *stop, unit);
+  else if (!renderer.in_sight(run, t))
+    plate(panel, "has left the picture", rgb(0x4A5361), unit);
 }
 
 Image compose_sheet(const SceneRenderer& renderer, const std::vector<double>& times) {

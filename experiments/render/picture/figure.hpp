@@ -45,7 +45,7 @@ void draw_colour_bar(Canvas&, const ColourScale&, const BarPlace&, double unit);
 /// Says on a panel that the run ended before this moment.
 void mark_stop(Image& panel, const RecordedRun::Stop&, double unit);
 
-/// Says on a panel that its cloth is out of sight.
-void mark_gone(Image& panel, double unit);
+/// Says on a panel that the run ended before this moment, or that its cloth is out of sight.
+void mark_absence(Image& panel, const SceneRenderer&, std::size_t run, double t, double unit);
 
 }  // namespace taut

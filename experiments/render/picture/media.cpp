@@ -64,12 +64,7 @@ Image side_by_side(const SceneRenderer& renderer, const MediaOptions& options, d
     const auto index = static_cast<std::size_t>(k);
     Image panel = renderer.panel(index, t);
     if (!hides) add_flat(panel, renderer, index, t);
-    const auto& stop = renderer.runs()[index].stop;
-    const double unit = options.height / 836.0;
-    if (stop && t > stop->t)
-      mark_stop(panel, *stop, unit);
-    else if (!renderer.in_sight(index, t))
-      mark_gone(panel, unit);
+    mark_absence(panel, renderer, index, t, options.height / 836.0);
     picture.paste(panel, k * width, 0);
   }
   return picture;
@@ -107,16 +102,6 @@ std::size_t most_telling(const Media& media, const Scene& scene,
   }
   if (const auto k = peak(strain, kStrain)) return *k;
   return peak(place, kPlace * extent(scene)).value_or(media.t.size() * 2 / 3);
-}
-
-std::string strip(const SceneRenderer& renderer, const MediaOptions& options, const Media& media) {
-  constexpr std::size_t kMoments = 5;
-  Image picture(options.width, options.height * static_cast<int>(kMoments));
-  for (std::size_t k = 0; k < kMoments; ++k)
-    picture.paste(
-        side_by_side(renderer, options, media.t[k * (media.t.size() - 1) / (kMoments - 1)]), 0,
-        static_cast<int>(k) * options.height);
-  return png_bytes(picture);
 }
 
 /// Four moments: the first motion, two on the way, the end.
@@ -166,7 +151,6 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   media.poster_type = "image/jpeg";
   if (media.poster.empty()) {
     media.poster = png_bytes(poster_image), media.poster_type = "image/png";
-    media.strip_png = strip(renderer, options, media);
     return media;
   }
   const Scratch scratch;
@@ -179,7 +163,6 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
     if (progress) progress(static_cast<int>(k) + 1, static_cast<int>(media.t.size()));
   }
   if (video.finish().empty()) media.mp4 = read_text(file);
-  if (media.mp4.empty()) media.strip_png = strip(renderer, options, media);
   return media;
 }
 

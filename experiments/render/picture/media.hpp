@@ -26,7 +26,6 @@ struct Media {
   std::string mp4;          ///< H.264; "" without ffmpeg
   std::string poster;       ///< the moment of the greatest difference
   std::string poster_type;  ///< "image/jpeg", or "image/png" without ffmpeg
-  std::string strip_png;    ///< five moments one above the other, only without ffmpeg
   /// A run's cloth laid flat, without light.
   struct Flat {
     double t = 0;    ///< s

@@ -34,10 +34,10 @@ struct Chart {
   std::map<std::string, Interval> cost = {};  ///< by case key: the interval of x
 };
 
-/// The curves of y over x for these records. "setting" as `along` frees every accuracy knob.
+/// The curves of y over x for these records. "setting" as `along` frees every accuracy parameter.
 /// Throws InputError if no record has both, or only failures have x.
-Chart make_chart(std::string kind, std::span<const Record>, const std::string& x,
-                 const std::string& y, const std::string& along);
+Chart make_chart(std::string kind, const Records&, const std::string& x, const std::string& y,
+                 const std::string& along);
 
 /// Draws the rounding of files of positions into a chart of strain.
 void add_strain_floor(Chart&);

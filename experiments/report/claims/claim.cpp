@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/format.hpp"
 
 namespace taut::report {
@@ -14,10 +15,6 @@ namespace {
 
 constexpr double kTolerance = kAlike - 1;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-
-/// What not every solver has, with the value that leaves it off.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kExtras{
-    {{"tethers", "off"}, {"levels", "1"}, {"omega", "1"}, {"threads", "1"}}};
 
 Evidence::Seen seen_of(const Record& r, const std::string& label) {
   return {.scene = r.scene,
@@ -60,10 +57,10 @@ std::string_view to_string(ClaimKind kind) {
 std::optional<double> Evidence::look(const std::string& label, const Record& r) {
   Seen seen = seen_of(r, label);
   const double value = value_of(r, quantity_.name);
-  if (completed(r) && std::isfinite(value)) seen.value = value;
+  if (completed(r.status) && std::isfinite(value)) seen.value = value;
   const bool has = std::isfinite(seen.value);
   seen.text = has ? quantity_.text(value)
-                  : std::string(completed(r) ? "no value" : to_string(r.status.kind));
+                  : std::string(completed(r.status) ? "no value" : to_string(r.status.kind));
   seen_.push_back(std::move(seen));
   return has ? std::optional(value) : std::nullopt;
 }
@@ -146,18 +143,12 @@ double geometric_mean(const std::vector<double>& values) {
   return std::exp(sum / static_cast<double>(values.size()));
 }
 
-std::string share_text(double ratio) {
-  return ratio <= 0.55 ? "1/" + significant(1 / ratio, 2) : fixed(100 * ratio, 0) + "\u00A0%";
+std::string sentence_if(const std::string& opening, const std::vector<std::string>& names) {
+  return names.empty() ? "" : opening + joined(names) + ".";
 }
 
-std::vector<std::string> extras(const Record& r, const std::map<std::string, std::string>& others) {
-  std::vector<std::string> used;
-  for (const auto& [knob, off] : kExtras) {
-    const auto at = r.params.find(std::string(knob));
-    if (at != r.params.end() && at->second != off && !others.contains(at->first))
-      used.emplace_back(knob);
-  }
-  return used;
+std::string share_text(double ratio) {
+  return ratio <= 0.55 ? "1/" + significant(1 / ratio, 2) : fixed(100 * ratio, 0) + "\u00A0%";
 }
 
 }  // namespace taut::report

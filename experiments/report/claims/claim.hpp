@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -127,9 +126,8 @@ double strayed(const Interval& control);
 /// Geometric mean of independent ratios: their errors add as squares of logarithms.
 Interval geometric_mean(const std::vector<Interval>&);
 double geometric_mean(const std::vector<double>&);
+/// The opening and these names as a sentence; "" without names.
+std::string sentence_if(const std::string& opening, const std::vector<std::string>& names);
 /// "1/11" or "71 %" of what is compared with; below 1.
 std::string share_text(double ratio);
-/// Knobs that this case uses and that a solver with these parameters does not have ("tethers").
-std::vector<std::string> extras(const Record&, const std::map<std::string, std::string>& others);
-
 }  // namespace taut::report

@@ -5,10 +5,7 @@
 #include <map>
 #include <set>
 
-#include "core/model/input_error.hpp"
-#include "core/model/solver.hpp"
-#include "experiments/report/chart/palette.hpp"
-#include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/chart/settings.hpp"
 
 namespace taut::report {
 
@@ -110,67 +107,6 @@ QuotedScene quote(const std::string& scene, const std::vector<Rival>& rivals) {
 }
 
 }  // namespace
-
-bool completed(const Record& r) {
-  return r.status.kind == Status::Kind::ok || r.status.kind == Status::Kind::unsettled;
-}
-
-std::string Work::text() const {
-  if (sweeps < 0) return substeps < 0 ? "defaults" : std::to_string(substeps) + " substeps";
-  if (substeps < 0) return std::to_string(sweeps) + " sweeps";
-  return std::to_string(substeps) + " × " + std::to_string(sweeps);
-}
-
-Work work_of(const Record& r) {
-  const auto number = [&](const char* name) {
-    const double value = value_of(r, name);
-    return std::isfinite(value) ? static_cast<int>(value) : -1;
-  };
-  const int substeps = number("substeps"), sweeps = number("iterations");
-  return {sweeps >= 0 ? std::max(1, substeps) : substeps, sweeps};  // whole steps are one substep
-}
-
-std::string brief_settings(const std::string& solver) try {
-  const SolverChoice choice = parse_solver(solver);
-  Work work;
-  std::string text;
-  for (const ParamSpec& spec : choice.params.specs()) {
-    const std::string value(choice.params.value(spec.name));
-    if (spec.name == "iterations")
-      work.sweeps = std::stoi(value);
-    else if (spec.name == "substeps")
-      work.substeps = std::stoi(value);
-    else if (value != spec.default_value)
-      text += ", " + std::string(spec.name) + "=" + value;
-  }
-  if (work.sweeps >= 0) work.substeps = std::max(1, work.substeps);
-  if (work == Work{} && !text.empty()) return text.substr(2);
-  return work.text() + text;
-} catch (const InputError&) {
-  const auto colon = solver.find(':');
-  return colon == std::string::npos ? "" : solver.substr(colon + 1);
-}
-
-std::string unequal_work(std::span<const Record> records) {
-  std::map<std::string, std::set<Work>> works;
-  std::vector<std::string> solvers;
-  for (const Record& r : records)
-    if (const Work work = work_of(r); work.sweeps > 0) {
-      if (!works.contains(r.solver)) solvers.push_back(r.solver);
-      works[r.solver].insert(work);
-    }
-  if (works.size() < 2) return "";
-  std::set<Work> common = works.begin()->second;
-  std::string text;
-  for (const std::string& solver : solvers) {
-    const std::set<Work>& own = works[solver];
-    std::erase_if(common, [&](const Work& work) { return !own.contains(work); });
-    const Work &first = *own.begin(), &last = *own.rbegin();
-    text += (text.empty() ? "" : ", ") + solver_title(solver) + " " + first.text() +
-            (own.size() > 1 ? " to " + last.text() : "");
-  }
-  return common.empty() ? text + " (substeps × sweeps)" : "";
-}
 
 Question question_of(const Record& r) {
   Question question{r.scene, r.spec.overrides, r.dt};

@@ -2,7 +2,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/timing/answer.hpp"
 #include "experiments/timing/profile.hpp"
@@ -24,7 +24,7 @@ struct CostScene {
   References& refs;
 
   std::string setting(std::size_t at) const {
-    const std::string label = SettingLabels(records).of(bench.cases[at].record);
+    const std::string label = SettingLabels(pointers_to(records)).of(bench.cases[at].record);
     return label.empty() ? work_of(bench.cases[at].record).text() : label;
   }
   Json cell(std::size_t at, const std::string& text) const {

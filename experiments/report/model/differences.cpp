@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/model/parts.hpp"
 
 namespace taut::report {
@@ -26,7 +27,7 @@ std::vector<Changed> all_changed(const Differences& differences, References& ref
                      std::string(to_string(b.status.kind)), "–", "", 2});
       continue;
     }
-    if (!completed(b)) continue;
+    if (!completed(b.status)) continue;
     for (const auto& [name, now] : b.values) {
       const auto at = a.values.find(name);
       if (at == a.values.end() || !std::isfinite(now) || !std::isfinite(at->second)) continue;

@@ -8,6 +8,7 @@
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/model/parts.hpp"
 
 namespace taut::report {

@@ -1,3 +1,4 @@
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/model/parts.hpp"
 

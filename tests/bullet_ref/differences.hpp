@@ -1,16 +1,20 @@
-#include "bullet_ref/read_back.hpp"
+#pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "core/model/scene.hpp"
+
+/// What was asked for against what an engine holds.
 namespace taut {
 
-namespace {
-
 /// Collects what differs, each under the name of the member it was found in.
-class Comparison {
+class SceneComparison {
  public:
-  explicit Comparison(double tolerance) : tolerance_(tolerance) {}
+  explicit SceneComparison(double tolerance) : tolerance_(tolerance) {}
 
   void number(const std::string& what, double a, double b) {
     if (!(std::abs(a - b) <= tolerance_ * std::max(1.0, std::abs(a))))
@@ -82,8 +86,8 @@ class Comparison {
   std::vector<std::string> found_;
 };
 
-void compare_mesh(Comparison& c, const Mesh& asked, const Mesh& held,
-                  const std::vector<int>& pins) {
+inline void compare_mesh(SceneComparison& c, const Mesh& asked, const Mesh& held,
+                         const std::vector<int>& pins) {
   const auto& [rest, triangles, mass, grid] = asked;
   c.vectors("mesh.rest", rest, held.rest);
   c.same("mesh.triangles", triangles == held.triangles);
@@ -93,8 +97,8 @@ void compare_mesh(Comparison& c, const Mesh& asked, const Mesh& held,
       c.number("mesh.mass[" + std::to_string(i) + "] relative", 1, held.mass[i] / mass[i]);
 }
 
-void compare_wind(Comparison& c, const std::optional<Wind>& asked,
-                  const std::optional<Wind>& held) {
+inline void compare_wind(SceneComparison& c, const std::optional<Wind>& asked,
+                         const std::optional<Wind>& held) {
   c.same("wind", asked.has_value() == held.has_value());
   if (!asked || !held) return;
   const auto& [velocity, strength, law] = *asked;
@@ -103,21 +107,20 @@ void compare_wind(Comparison& c, const std::optional<Wind>& asked,
   c.same("wind.law", law == held->law);
 }
 
-}  // namespace
-
-Scene read_back(const Solver& solver) {
-  return dynamic_cast<const HoldsScene&>(solver).read_back();
-}
-
-std::vector<std::string> differences(const Scene& asked, const Scene& held, double tolerance) {
+/// Where `held` is not the simulation that `asked` describes, a sentence each; empty: the same.
+/// Numbers agree if they differ by no more than `tolerance` relative to the larger of 1 and their
+/// size. Not compared, for Bullet has no place for them: the labels, the mesh's grid, and the
+/// masses of pinned vertices.
+inline std::vector<std::string> differences(const Scene& asked, const Scene& held,
+                                            double tolerance) {
   // Every member is named here: a new one does not compile until it has an answer.
   const auto& [name, summary, mesh, start, pins, pin_motions, links, colliders, wind,
                self_collision, gravity, damping, thickness, dt, steps] = asked;
-  Comparison c(tolerance);
+  SceneComparison c(tolerance);
   compare_mesh(c, mesh, held.mesh, pins);
   c.vectors("start.x", start.x, held.start.x);
   // A velocity is a difference of two rounded positions over one step.
-  Comparison speeds(tolerance * std::max(1.0, extent(asked)) / dt);
+  SceneComparison speeds(tolerance * std::max(1.0, extent(asked)) / dt);
   speeds.vectors("start.v", start.v, held.start.v);
   c.same("pins", pins == held.pins);
   c.each("pin_motions", pin_motions, held.pin_motions,

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/io/section.hpp"
 #include "core/model/scene.hpp"
+
+// What scene_io.cpp reads a scene with, part by part.
 
 namespace taut {
 
@@ -21,5 +22,15 @@ bool read_cloth(Section&, const std::filesystem::path& folder, const LinkChoice&
 /// of a grid ("top", "bottom-left"), a box {min, max} around rest positions, or an array of these.
 /// Sorted, unique. Reports what names none; `key` is for the messages.
 std::vector<int> read_vertices(Section&, const std::string& key, const Mesh&);
+
+/// Reads 'rotation': { axis = [0, 0, 1], angle = 45 } with the angle in degrees, or a quaternion
+/// [w, x, y, z] of any length but zero. Absent: the identity.
+Eigen::Quaterniond read_rotation(Section&);
+
+/// Reads every [[collider]].
+void read_colliders(Section& root, Scene&);
+
+/// Reads every [[pin_motion]]. Without a mesh (`built` false) only the motions are judged.
+void read_pin_motions(Section& root, bool built, Scene&);
 
 }  // namespace taut

@@ -1,20 +1,61 @@
-#include "core/io/polygons.hpp"
+// Surfaces of polygons: reading their OBJ files, what is wrong with them, meshes and links of them.
+#include "core/io/mesh_io.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
+#include "core/io/text_file.hpp"
 #include "core/model/index.hpp"
+#include "core/model/input_error.hpp"
 
 namespace taut {
 
 namespace {
 
+/// Collects what is wrong with a surface; a hopeless file does not flood the terminal.
+class SurfaceErrors {
+ public:
+  explicit SurfaceErrors(std::string file) : file_(std::move(file)) {}
+  void report(int line, const std::string& message, int column = 1);
+  /// Throws InputError with the first hundred in the order of the file; returns if there are none.
+  void throw_if_any();
+
+ private:
+  std::string file_;
+  std::vector<Diagnostic> found_;
+};
+
+void SurfaceErrors::report(int line, const std::string& message, int column) {
+  found_.push_back({file_, line, column, message});
+}
+
+void SurfaceErrors::throw_if_any() {
+  if (found_.empty()) return;
+  std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  });
+  constexpr std::size_t kMost = 100;
+  if (found_.size() > kMost) {
+    const std::string more = std::to_string(found_.size() - kMost) + " more errors";
+    found_.resize(kMost);
+    found_.push_back({file_, 0, 0, more});
+  }
+  throw InputError(found_);
+}
+
+/// An edge with the faces that have it; a < b.
+struct Edge {
+  int a = 0, b = 0;
+  std::vector<int> faces;
+};
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).norm() / 2;
 }
@@ -77,26 +118,7 @@ void judge_vertices(const Polygons& p, SurfaceErrors& errors) {
   }
 }
 
-}  // namespace
-
-void SurfaceErrors::report(int line, const std::string& message, int column) {
-  found_.push_back({file_, line, column, message});
-}
-
-void SurfaceErrors::throw_if_any() {
-  if (found_.empty()) return;
-  std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
-  });
-  constexpr std::size_t kMost = 100;
-  if (found_.size() > kMost) {
-    const std::string more = std::to_string(found_.size() - kMost) + " more errors";
-    found_.resize(kMost);
-    found_.push_back({file_, 0, 0, more});
-  }
-  throw InputError(found_);
-}
-
+/// Sorted by a, then b; faces in their order.
 std::vector<Edge> edges_of(const Polygons& p) {
   std::vector<std::array<int, 3>> sides;  // a, b, face
   for (std::size_t f = 0; f < p.faces.size(); ++f)
@@ -113,6 +135,8 @@ std::vector<Edge> edges_of(const Polygons& p) {
   return edges;
 }
 
+/// Reports faces without area, edges of more than two faces, vertices without a face and vertices
+/// that coincide. Precondition: every face names vertices that exist.
 void judge_surface(const Polygons& p, SurfaceErrors& errors) {
   if (p.faces.empty()) return errors.report(1, "no face: a cloth needs one at least");
   judge_vertices(p, errors);
@@ -123,6 +147,8 @@ void judge_surface(const Polygons& p, SurfaceErrors& errors) {
                     "the edge from vertex " + number(edge.a) + " to " + number(edge.b) + " has " +
                         std::to_string(edge.faces.size()) + " faces; a cloth has two at most");
 }
+
+}  // namespace
 
 double area(const Polygons& p) {
   double sum = 0;
@@ -198,6 +224,114 @@ std::vector<Link> mesh_links(const Polygons& p, const LinkChoice& choice) {
   if (choice.shear) emit(diagonals, Family::shear);
   if (choice.bend) emit(across, Family::bend);
   return links;
+}
+
+namespace {
+
+/// Keywords that say nothing about the shape.
+constexpr std::string_view kSkipped[] = {"vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib"};
+
+class ObjReader {
+ public:
+  ObjReader(const std::string& file, SurfaceErrors& errors) : errors_(errors) {
+    polygons_.file = file;
+  }
+
+  void line(std::string_view text) {
+    ++line_;
+    words_ = words_of(text);
+    if (words_.empty()) return;
+    if (words_[0] == "v")
+      vertex();
+    else if (words_[0] == "f")
+      face();
+    else if (std::find(std::begin(kSkipped), std::end(kSkipped), words_[0]) == std::end(kSkipped))
+      report(0, "'" + std::string(words_[0].substr(0, 40)) +
+                    "' is not read: a cloth is made of 'v' and 'f' lines");
+  }
+
+  /// Faces may name vertices that come later in the file, so the count is known only now.
+  Polygons take() {
+    const auto count = static_cast<long>(polygons_.vertices.size());
+    for (std::size_t f = 0; f < polygons_.faces.size(); ++f)
+      for (const int v : polygons_.faces[f])
+        if (v >= count) {
+          errors_.report(polygons_.face_lines[f], "the face names vertex " +
+                                                      std::to_string(v + 1L) + ", but there are " +
+                                                      std::to_string(count));
+          break;
+        }
+    return std::move(polygons_);
+  }
+
+ private:
+  void report(std::size_t word, const std::string& message) {
+    const auto column = words_[word].data() - words_[0].data() + 1;
+    errors_.report(line_, message, static_cast<int>(column));
+  }
+
+  void vertex() {
+    Vec3 x = Vec3::Zero();
+    if (words_.size() < 4) return report(0, "a vertex needs three coordinates");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto value = whole<double>(words_[axis + 1]);
+      if (!value || !std::isfinite(*value) || std::abs(*value) > 1e9) {
+        report(axis + 1, "'" + std::string(words_[axis + 1].substr(0, 40)) +
+                             "' is not a coordinate: a finite number within 1e9");
+        break;  // the vertex stays, so that faces keep their numbers
+      }
+      x[static_cast<Eigen::Index>(axis)] = *value;
+    }
+    polygons_.vertices.push_back(x);
+    polygons_.vertex_lines.push_back(line_);
+  }
+
+  /// "7", "7/1", "7//3" or "7/1/3"; -1 is the latest vertex. Only the first number matters.
+  void face() {
+    std::vector<int> corners;
+    for (std::size_t w = 1; w < words_.size(); ++w) {
+      const auto index = whole<long>(words_[w].substr(0, words_[w].find('/')));
+      const auto so_far = static_cast<long>(polygons_.vertices.size());
+      if (!index || *index > (1L << 30))
+        return report(w, "'" + std::string(words_[w].substr(0, 40)) + "' is not a vertex number");
+      if (*index == 0) return report(w, "vertices are numbered from 1; 0 names none");
+      if (*index < -so_far)
+        return report(w, "the face names vertex " + std::to_string(*index) + ", but there are " +
+                             std::to_string(so_far) + " before it");
+      corners.push_back(static_cast<int>(*index > 0 ? *index - 1 : so_far + *index));
+    }
+    if (corners.size() < 3) return report(0, "a face needs three vertices at least");
+    std::vector<int> sorted = corners;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end())
+      return report(0, "the face names vertex " + std::to_string(*twice + 1) + " twice");
+    polygons_.faces.push_back(std::move(corners));
+    polygons_.face_lines.push_back(line_);
+  }
+
+  SurfaceErrors& errors_;
+  Polygons polygons_;
+  int line_ = 0;
+  std::vector<std::string_view> words_;
+};
+
+}  // namespace
+
+Polygons parse_obj(const std::string& file, const std::string& text) {
+  SurfaceErrors errors(file);
+  ObjReader reader(file, errors);
+  std::string_view rest = text;
+  while (!rest.empty()) reader.line(take_line(rest));
+  Polygons polygons = reader.take();
+  errors.throw_if_any();  // what follows presumes that every face names vertices that exist
+  judge_surface(polygons, errors);
+  errors.throw_if_any();
+  return polygons;
+}
+
+Polygons read_obj(const std::filesystem::path& path) {
+  return parse_obj(path.string(), read_text(path, kMostMeshBytes));
 }
 
 }  // namespace taut
