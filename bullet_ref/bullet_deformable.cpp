@@ -251,4 +251,5 @@ TAUT_SOLVER(bullet_deformable) = {
     .program = taut::bullet_ref::program,
     .knobs = {.substeps = "substeps",
               .stiffness = {"stiffness", "1000|4000|16000|64000|256000|1024000"},
-              .alternatives = taut::solver::bullet_deformable::kAlternatives}};
+              .alternatives = taut::solver::bullet_deformable::kAlternatives,
+              .labelled = "substeps|newton|stiffness|precision"}};

@@ -258,6 +258,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
 constexpr AccuracyKnobs::Ladder kAlternatives[] = {
     {"precision", "float|double"}, {"reorder", "off|on"}, {"faces", "on|off"}};
 
+constexpr OptionalEffect kOptionalEffects[] = {{"normals", "faces", "on", "off", true}};
+
 LinearModel linear_model(const Scene& scene, const Params& params) {
   if (scene.damping != 0 || params.is("reorder", "on"))
     return {};  // theory is of the scene's order
@@ -279,5 +281,7 @@ TAUT_SOLVER(bullet) = {.name = "bullet",
                        .program = taut::bullet_ref::program,
                        .knobs = {.substeps = "substeps",
                                  .sweeps = "iterations",
-                                 .alternatives = taut::solver::bullet_soft_body::kAlternatives},
+                                 .alternatives = taut::solver::bullet_soft_body::kAlternatives,
+                                 .labelled = "substeps|iterations|stiffness|order|precision"},
+                       .optional_effects = taut::solver::bullet_soft_body::kOptionalEffects,
                        .linear_model = taut::solver::bullet_soft_body::linear_model};

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "core/model/solver.hpp"
 
 namespace taut {
@@ -18,12 +15,8 @@ class HoldsScene {
 };
 
 /// The scene inside one of Bullet's solvers. Throws std::bad_cast for a solver that is not one.
-Scene read_back(const Solver&);
-
-/// Where `held` is not the simulation that `asked` describes, a sentence each; empty: the same.
-/// Numbers agree if they differ by no more than `tolerance` relative to the larger of 1 and their
-/// size. Not compared, for Bullet has no place for them: the labels, the mesh's grid, and the
-/// masses of pinned vertices.
-std::vector<std::string> differences(const Scene& asked, const Scene& held, double tolerance);
+inline Scene read_back(const Solver& solver) {
+  return dynamic_cast<const HoldsScene&>(solver).read_back();
+}
 
 }  // namespace taut

@@ -1,14 +1,18 @@
-# The one place that joins the branches: every TAUT_SOLVER(name) and TAUT_METRIC(name) line in the sources becomes
+# The one place that joins the branches: every line TAUT_SOLVER(name) or TAUT_METRIC(name, in the sources becomes
 # an entry of solvers() or metrics(). Adding a file is enough; CMake re-runs when the lists of files change.
 # FUNCTION may be qualified (report::figures): the entries then live in that namespace of taut.
 #   taut_write_registry(OUT KIND TYPE FUNCTION HEADER SOURCES...)
 function(taut_write_registry out kind type function header)
   set(names)
   foreach(source IN LISTS ARGN)
-    file(STRINGS ${source} lines REGEX "^TAUT_${kind}\\(([a-z0-9_]+)\\)")
+    file(STRINGS ${source} lines REGEX "^TAUT_${kind}\\(([a-z0-9_]+)[,)]")
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+    file(STRINGS ${source} broken REGEX "^TAUT_${kind}\\($")
+    if(broken)
+      message(FATAL_ERROR "${source}: the name of a TAUT_${kind} must follow its parenthesis on the same line")
+    endif()
     foreach(line IN LISTS lines)
-      string(REGEX REPLACE "^TAUT_${kind}\\(([a-z0-9_]+)\\).*" "\\1" name "${line}")
+      string(REGEX REPLACE "^TAUT_${kind}\\(([a-z0-9_]+)[,)].*" "\\1" name "${line}")
       list(APPEND names ${name})
     endforeach()
   endforeach()

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdint>
+#include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "core/io/text_file.hpp"
 
@@ -206,6 +209,61 @@ Document parse_document(const std::string& file, const std::string& text,
 Document read_document(const std::filesystem::path& path,
                        const std::vector<std::string>& overrides) {
   return parse_document(path.string(), read_text(path, kMostSceneBytes), overrides);
+}
+
+namespace {
+
+/// Where a value of the library's goes: into an array, or into a table under a key.
+struct Place {
+  toml::array* array = nullptr;
+  toml::table* table = nullptr;
+  std::string key = {};
+  template <class T>
+  void put(T value) const {
+    if (array)
+      array->push_back(std::move(value));
+    else
+      table->insert(key, std::move(value));
+  }
+};
+
+toml::table table_of(const Value& table);
+
+void hand_over(const Value& value, const Place& to) {
+  switch (value.kind) {
+    case Value::Kind::boolean:
+      return to.put(value.boolean);
+    case Value::Kind::integer:
+      return to.put(static_cast<std::int64_t>(value.number));
+    case Value::Kind::real:
+      return to.put(value.number);
+    case Value::Kind::string:
+      return to.put(value.string);
+    case Value::Kind::table:
+      return to.put(table_of(value));
+    case Value::Kind::date:
+      throw InputError("a date or time cannot be written");
+    case Value::Kind::array:
+      break;
+  }
+  toml::array array;
+  for (const Value& item : value.items) hand_over(item, {.array = &array});
+  to.put(std::move(array));
+}
+
+toml::table table_of(const Value& value) {
+  toml::table table;
+  for (std::size_t i = 0; i < value.items.size(); ++i)
+    hand_over(value.items[i], {.table = &table, .key = value.keys[i].text});
+  return table;
+}
+
+}  // namespace
+
+std::string to_toml(const Value& root) {
+  std::ostringstream out;
+  out << table_of(root) << '\n';
+  return out.str();
 }
 
 }  // namespace taut

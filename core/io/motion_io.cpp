@@ -1,10 +1,8 @@
-#include "core/io/motion_io.hpp"
-
 #include <algorithm>
 #include <numbers>
 #include <set>
 
-#include "core/io/cloth_io.hpp"
+#include "core/io/scene_parts.hpp"
 #include "core/model/angle.hpp"
 #include "core/model/shortest.hpp"
 

@@ -67,6 +67,10 @@ class Bytes {
 
 }  // namespace
 
+bool is_pinned(const Scene& scene, int vertex) {
+  return std::ranges::binary_search(scene.pins, vertex);
+}
+
 std::vector<double> inverse_masses(const Scene& scene) {
   std::vector<double> w;
   w.reserve(scene.mesh.mass.size());

@@ -62,6 +62,9 @@ struct Scene {
   double duration() const { return dt * steps; }  ///< s
 };
 
+/// Whether the scene says where the vertex is, and no solver.
+bool is_pinned(const Scene&, int vertex);
+
 /// Inverse masses [n] in 1/kg; 0 for pinned vertices.
 std::vector<double> inverse_masses(const Scene&);
 

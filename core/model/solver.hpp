@@ -81,6 +81,18 @@ struct AccuracyKnobs {
   std::string_view sweeps;    ///< more of them need fewer substeps; "": the solver has none
   Ladder stiffness;           ///< of a solver without sweeps: each value needs its own substeps
   std::span<const Ladder> alternatives;  ///< tried one at a time, at the best of the others
+  /// All that may vary along a curve of error over cost, in the order in which labels name it.
+  std::string_view labelled = "substeps|iterations";
+  /// Accelerators, off at their defaults, that others may lack: costs are compared without them.
+  std::string_view accelerators;
+};
+
+/// A choice that a scene may not need (experiments/require): the value that costs more, and the one
+/// that may do; of a whole number none, for it is halved until it is 1.
+struct OptionalEffect {
+  std::string_view name;  ///< "contact of faces"
+  std::string_view parameter, from, to;
+  bool of_contact = false;  ///< means something with colliders only
 };
 
 /// What a solver does to small displacements of links at their rest length, without gravity, wind
@@ -106,6 +118,7 @@ using LinearModel = std::variant<std::monostate, LinearSprings, LinearSweeps>;
 /// throw SolverFailure.
 struct SolverEntry {
   std::string_view name;
+  std::string_view title = "";        ///< what people call it; "": the name in words
   std::string_view summary;           ///< one sentence
   std::string_view source;            ///< paper or library, with version
   std::span<const ParamSpec> params;  ///< drives the command line, the documentation and the errors
@@ -118,6 +131,7 @@ struct SolverEntry {
   /// other one, make() throws InputError.
   std::string_view (*program)(const Params&) = nullptr;
   AccuracyKnobs knobs = {};
+  std::span<const OptionalEffect> optional_effects = {};
   LinearModel (*linear_model)(const Scene&, const Params&) = nullptr;  ///< null: none is known
   /// Digest of what a solver outside this program is made of; "": it is part of this program.
   std::string_view implementation = "";

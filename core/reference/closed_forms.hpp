@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "core/model/vec3.hpp"
@@ -51,5 +52,22 @@ double spring_grid_eigenvalue(int nu, bool shear, bool bend);
 /// of `link` [rad] over a rough cylinder, on the verge of slipping: each node balances
 /// (T2 - T1) cos(link/2) = mu (T1 + T2) sin(link/2). Tends to exp(mu wrap) in second order.
 double capstan_ratio(double mu, double wrap, double link);
+
+/// A chain of equal links between two supports of equal height, an equal load at every joint.
+struct Catenary {
+  std::vector<double> x, y;     ///< [links + 1] m, from (0, 0) to (span, 0)
+  std::vector<double> tension;  ///< [links] N
+  double horizontal = 0;        ///< N, the same in every link
+  double sag() const;           ///< m, depth of the lowest joint
+};
+
+/// tan(theta_i) = (P/H)(i - (N+1)/2) and sum of l_i cos(theta_i) = span: one monotone root H, by
+/// bisection to the last bit. Links lengthen by T/stiffness; infinite stiffness [N/m] = rods.
+/// Preconditions: links >= 2, load [N] > 0, 0 < span, and span < links * link for rods.
+Catenary discrete_catenary(int links, double span, double link, double load,
+                           double stiffness = std::numeric_limits<double>::infinity());
+
+/// Sag [m] of an inextensible rope of `length` over `span`: 2a sinh(span/2a) = length.
+double continuum_sag(double length, double span);
 
 }  // namespace taut::reference

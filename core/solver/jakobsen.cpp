@@ -206,6 +206,12 @@ constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"}
                                                    {"levels", "2|3"},
                                                    {"tethers", "on"}};
 
+constexpr OptionalEffect kOptionalEffects[] = {
+    {"contact of faces", "faces", "on", "off", true},
+    {"continuous detection", "contact", "continuous", "discrete", true},
+    {"tethers", "tethers", "on", "off"},
+    {"levels", "levels"}};
+
 LinearModel linear_model(const Scene&, const Params& params) {
   const bool jacobi = params.is("method", "jacobi");
   if ((!jacobi && !params.is("method", "gauss-seidel")) || !params.is("order", "mesh")) return {};
@@ -226,5 +232,8 @@ TAUT_SOLVER(jakobsen) = {
     .resolved_settings = taut::jakobsen_settings,
     .knobs = {.substeps = "substeps",
               .sweeps = "iterations",
-              .alternatives = taut::solver::jakobsen::kAlternatives},
+              .alternatives = taut::solver::jakobsen::kAlternatives,
+              .labelled = "substeps|iterations|omega|order|tethers|levels|precision",
+              .accelerators = "tethers|levels|omega|threads"},
+    .optional_effects = taut::solver::jakobsen::kOptionalEffects,
     .linear_model = taut::solver::jakobsen::linear_model};

@@ -219,5 +219,6 @@ TAUT_SOLVER(mass_spring) = {
     .resolved_settings = taut::solver::mass_spring::resolved_settings,
     .knobs = {.substeps = "substeps",
               .stiffness = {"structural|shear", "50|200|800|3200|12800|51200"},
-              .alternatives = taut::solver::mass_spring::kAlternatives},
+              .alternatives = taut::solver::mass_spring::kAlternatives,
+              .labelled = "substeps|precision"},
     .linear_model = taut::solver::mass_spring::linear_model};

@@ -96,7 +96,7 @@ class FaceWindPass final : public WindPass<Real> {
       if (f % kLanes == 0) add_idle_batch(layout);
       for (std::size_t c = 0; c < 3; ++c) {
         const std::size_t i = to_index(scene.mesh.triangles[f][c]);
-        batches_.back().corner[c][f % kLanes] = static_cast<std::uint32_t>(layout.slot(i));
+        batches_.back().corner[c][f % kLanes] = static_cast<std::uint32_t>(layout.slot(i) / 4);
         batches_.back().w[c][f % kLanes] = static_cast<Real>(w[i]);
       }
     }
@@ -113,7 +113,7 @@ class FaceWindPass final : public WindPass<Real> {
   void add_idle_batch(const Layout& layout) {
     FaceBatch<Real>& batch = batches_.emplace_back();
     for (auto& corners : batch.corner)
-      std::ranges::fill(corners, static_cast<std::uint32_t>(4 * layout.size()));
+      std::ranges::fill(corners, static_cast<std::uint32_t>(layout.size()));
   }
 
   std::size_t items_;

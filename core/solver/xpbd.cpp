@@ -194,6 +194,7 @@ LinearModel linear_model(const Scene&, const Params& params) {
 }  // namespace taut::solver::xpbd
 
 TAUT_SOLVER(xpbd) = {.name = "xpbd",
+                     .title = "XPBD",
                      .summary = "Compliant position-based dynamics with substeps",
                      .source = "Macklin, Mueller, Chentanez 2016; Macklin et al. 2019",
                      .params = taut::solver::xpbd::kParams,
@@ -202,5 +203,6 @@ TAUT_SOLVER(xpbd) = {.name = "xpbd",
                      .resolved_settings = taut::solver::xpbd::resolved_settings,
                      .knobs = {.substeps = "substeps",
                                .sweeps = "iterations",
-                               .alternatives = taut::solver::xpbd::kAlternatives},
+                               .alternatives = taut::solver::xpbd::kAlternatives,
+                               .labelled = "substeps|iterations|precision"},
                      .linear_model = taut::solver::xpbd::linear_model};

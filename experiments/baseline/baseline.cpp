@@ -173,14 +173,8 @@ const Tolerance& Tolerances::of(const std::string& value) const {
   return other != by_name_.end() ? other->second : kBuiltIn;
 }
 
-bool Comparison::regressed() const {
-  return std::any_of(findings.begin(), findings.end(),
-                     [](const Change& f) { return f.is_regression(); });
-}
-bool Comparison::mismatched() const {
-  return std::any_of(findings.begin(), findings.end(),
-                     [](const Change& f) { return f.is_mismatch(); });
-}
+bool Comparison::regressed() const { return std::ranges::any_of(findings, &Change::is_regression); }
+bool Comparison::mismatched() const { return std::ranges::any_of(findings, &Change::is_mismatch); }
 
 Comparison compare(const Baseline& before, const Baseline& now, const Tolerances& tolerances) {
   Comparison result;
@@ -223,8 +217,7 @@ Baseline updated(const Baseline& before, const Baseline& now, const Tolerances& 
     }
     rows.push_back(std::move(row));
   }
-  std::sort(rows.begin(), rows.end(),
-            [](const BaselineRow& a, const BaselineRow& b) { return a.id < b.id; });
+  std::ranges::sort(rows, {}, &BaselineRow::id);
   return rows;
 }
 

@@ -1,6 +1,5 @@
 // Baselines on disk: JSON lines and tolerances.toml.
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -27,8 +26,7 @@ std::string line_of(const BaselineRow& row) {
   if (!row.frontier.empty()) json["frontier"] = row.frontier;
   if (row.flaky) json["flaky"] = true;
   Json values = Json::object();
-  for (const auto& [name, value] : row.values)
-    values[name] = std::isnan(value) ? Json() : Json(value);  // null: no meaning
+  for (const auto& [name, value] : row.values) values[name] = value;  // null: no meaning
   json["values"] = std::move(values);
   return to_text(json) + "\n";
 }
@@ -56,11 +54,6 @@ std::vector<fs::path> solver_files(const fs::path& folder) {
   return files;
 }
 
-void sort_by_id(Baseline& rows) {
-  std::sort(rows.begin(), rows.end(),
-            [](const BaselineRow& a, const BaselineRow& b) { return a.id < b.id; });
-}
-
 }  // namespace
 
 Baseline read_baseline(const fs::path& folder) {
@@ -82,9 +75,8 @@ Baseline read_baseline(const fs::path& folder) {
       }
     }
   }
-  sort_by_id(rows);
-  const auto twice = std::adjacent_find(rows.begin(), rows.end(),
-                                        [](const auto& a, const auto& b) { return a.id == b.id; });
+  std::ranges::sort(rows, {}, &BaselineRow::id);
+  const auto twice = std::ranges::adjacent_find(rows, {}, &BaselineRow::id);
   if (twice != rows.end())
     found.push_back({folder.string(), 0, 0, "two rows are called '" + twice->id + "'"});
   if (!found.empty()) throw InputError(found);
@@ -93,7 +85,7 @@ Baseline read_baseline(const fs::path& folder) {
 
 void write_baseline(const fs::path& folder, const Baseline& baseline) {
   Baseline rows = baseline;
-  sort_by_id(rows);
+  std::ranges::sort(rows, {}, &BaselineRow::id);
   std::map<std::string, std::string> texts;
   for (const BaselineRow& row : rows) texts[row.solver()] += line_of(row);
   make_folder(folder);

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 
-#include "core/io/text_file.hpp"
 #include "core/model/printable.hpp"
 #include "experiments/system/json.hpp"
 
@@ -47,7 +45,7 @@ std::string name(const JudgedClaim& claim) { return claim.section + " \"" + clai
 
 std::vector<JudgedClaim> judge_claims(const FindingsOf& findings_of) {
   std::vector<JudgedClaim> all;
-  for (const SeedClaim& claim : seed_claims()) {
+  for (const VasiloviciClaim& claim : vasilovici_claims()) {
     JudgedClaim judged{std::string(claim.section), std::string(claim.claim),
                        std::string(to_string(claim.verdict)), ""};
     if (!claim.truth.empty()) {
@@ -72,18 +70,10 @@ std::string to_json_lines(const std::vector<JudgedClaim>& claims) {
 }
 
 std::vector<JudgedClaim> read_claims(const std::filesystem::path& file) {
-  std::vector<JudgedClaim> claims;
-  std::istringstream in(read_text(file));
-  int number = 0;
-  for (std::string line; std::getline(in, line);)
-    claims.push_back(read_json(
-        line, file.string(),
-        [](const JsonReader& json) {
-          const auto text = [&](const char* key) { return printable(json.at(key).text()); };
-          return JudgedClaim{text("section"), text("claim"), text("verdict"), text("figure")};
-        },
-        ++number));
-  return claims;
+  return read_json_lines(file, [](const JsonReader& json) {
+    const auto text = [&](const char* key) { return printable(json.at(key).text()); };
+    return JudgedClaim{text("section"), text("claim"), text("verdict"), text("figure")};
+  });
 }
 
 std::vector<std::string> compare_claims(const std::vector<JudgedClaim>& before,

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "experiments/truths/seed_claims.hpp"
 #include "experiments/truths/truth.hpp"
+#include "experiments/truths/vasilovici/claims.hpp"
 
 namespace taut {
 
 /// A claim of Vasilovici's report with the verdict that its truth gives now.
 struct JudgedClaim {
   std::string section, claim;
-  std::string verdict;  ///< to_string(SeedVerdict), or "overturned": its truth is broken
+  std::string verdict;  ///< to_string(ClaimVerdict), or "overturned": its truth is broken
   std::string figure;  ///< of the truth: "jakobsen: RMS stretch 0.061 (0.06 +- 0.01)"; may be empty
   bool operator==(const JudgedClaim&) const = default;
 };

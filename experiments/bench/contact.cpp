@@ -2,24 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <memory>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/timing/timing.hpp"
 
 namespace taut {
 
 namespace {
 
 constexpr int kSweeps[] = {2, 18};
-
-double cpu_now() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 std::unique_ptr<Solver> make(const Scene& scene, const std::string& setting, int sweeps) {
   const SolverChoice choice =
@@ -84,8 +79,7 @@ class Subject {
   }
 
   void calibrate(double seconds) {
-    const double once = time(1, 1);
-    repeats_ = std::clamp(static_cast<int>(seconds / std::max(once * row_.steps, 1e-9)), 1, 10000);
+    repeats_ = times_within(seconds, time(1, 1) * row_.steps, 10000);
   }
 
   /// Adds one sample: every solver in alternating order (ABBA).
@@ -111,9 +105,9 @@ class Subject {
     double sum = 0;
     for (int r = 0; r < repeats_; ++r) {
       solver.load(*start_);
-      const double begin = cpu_now();
+      const double begin = seconds_of(CLOCK_THREAD_CPUTIME_ID);
       for (int n = 0; n < row_.steps; ++n) solver.step(n * dt_, dt_);
-      sum += cpu_now() - begin;
+      sum += seconds_of(CLOCK_THREAD_CPUTIME_ID) - begin;
     }
     return sum / (repeats_ * row_.steps);
   }

@@ -1,12 +1,16 @@
 #include "experiments/bench/kernels.hpp"
 
 #include <algorithm>
-#include <ctime>
+#include <atomic>
+#include <functional>
 #include <memory>
+#include <thread>
 
 #include "core/model/solver.hpp"
 #include "core/reference/textbook.hpp"
 #include "core/solver/simd/kernels.hpp"
+#include "experiments/system/clock.hpp"
+#include "experiments/timing/timing.hpp"
 
 namespace taut {
 
@@ -16,12 +20,6 @@ constexpr int kNoSweeps = 0, kFewSweeps = 2, kManySweeps = 18;
 constexpr int kParts = 5;  ///< of a sample
 constexpr int kRoundsOfCores =
     10;  ///< in the place of each round: they differ more than kernels do
-
-double now(bool cpu) {
-  timespec t;
-  clock_gettime(cpu ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// A step of so many sweeps: none, few or many.
 using Work = std::function<void(int sweeps)>;
@@ -135,12 +133,12 @@ std::vector<Kernel> kernels_of(const Scene& scene, bool bullet) {
 }
 
 double time_part(Kernel& kernel, int sweeps) {
-  const bool cpu = kernel.row.threads == 1;
+  const clockid_t clock = kernel.row.threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
   const int repeats = kernel.repeats * (sweeps == kNoSweeps ? kManySweeps : 1);
   if (sweeps == kNoSweeps) kernel.reload();  // no link holds it: it would fall ever farther
-  const double begin = now(cpu);
+  const double begin = seconds_of(clock);
   for (int r = 0; r < repeats; ++r) kernel.work(sweeps);
-  return (now(cpu) - begin) / repeats;
+  return (seconds_of(clock) - begin) / repeats;
 }
 
 double time_once(Kernel& kernel, int sweeps) {
@@ -166,6 +164,66 @@ Sample sample(Kernel& kernel, bool back) {
   return {1e9 * projection, time_once(kernel, kNoSweeps) / (projection * kernel.structural)};
 }
 
+constexpr int kSweepsOfStep = 16;
+
+std::unique_ptr<Solver> sweeping(const Scene& scene, int threads) {
+  const SolverChoice choice =
+      parse_solver("jakobsen:substeps=1,iterations=" + std::to_string(kSweepsOfStep) +
+                   ",threads=" + std::to_string(threads));
+  auto solver = choice.entry->make(scene, choice.params);
+  solver->load(scene.start);
+  return solver;
+}
+
+double time_of(Solver& solver, int steps, double dt) {
+  const double begin = seconds_of(CLOCK_MONOTONIC);
+  for (int n = 0; n < steps; ++n) solver.step(0, dt);
+  return seconds_of(CLOCK_MONOTONIC) - begin;
+}
+
+/// From when both are at the start to when both are done.
+double time_of_both(Solver& a, Solver& b, int steps, double dt) {
+  std::atomic<int> ready{0};
+  const auto start = [&] {
+    for (++ready; ready < 2;) std::this_thread::yield();
+  };
+  std::thread other([&] {
+    start();
+    time_of(b, steps, dt);
+  });
+  start();
+  const double begin = seconds_of(CLOCK_MONOTONIC);
+  time_of(a, steps, dt);
+  other.join();
+  return seconds_of(CLOCK_MONOTONIC) - begin;
+}
+
+/// Interleaved: each round times one thread, two threads, one thread again and two unrelated
+/// sheets, `seconds` each. The first single thread is what the threads are compared with and the
+/// second one what the unrelated sheets are: no slow sample is in both ratios.
+TwoCores bench_two_cores(const Scene& scene, int rounds, double seconds) {
+  const auto one = sweeping(scene, 1), another = sweeping(scene, 1), two = sweeping(scene, 2);
+  const double dt = scene.dt;
+  for (Solver* solver : {another.get(), two.get()}) time_of(*solver, 1, dt);
+  const double step = std::min(time_of(*one, 1, dt), time_of(*one, 1, dt));
+  const int steps = times_within(seconds, step, 100000);
+  std::vector<double> threads, unrelated, share, while_free;
+  for (int round = 0; round < rounds; ++round) {
+    const double before = time_of(*one, steps, dt), shared = time_of(*two, steps, dt);
+    const double after = time_of(*one, steps, dt);  // meanwhile the second thread falls asleep
+    const double both = time_of_both(*one, *another, steps, dt);
+    threads.push_back(before / shared);
+    unrelated.push_back(2 * after / both);
+    share.push_back(both / 2 / shared);
+    if (unrelated.back() >= TwoCores::kFree) while_free.push_back(threads.back());
+  }
+  return {.threads = bootstrap_median(threads),
+          .unrelated = bootstrap_median(unrelated),
+          .share = bootstrap_median(share),
+          .threads_while_free = bootstrap_median(while_free),
+          .free = static_cast<double>(while_free.size()) / static_cast<double>(rounds)};
+}
+
 }  // namespace
 
 Interval KernelBench::ratio(std::size_t i, std::size_t j) const {
@@ -187,9 +245,7 @@ KernelBench bench_kernels(const KernelBenchOptions& options) {
     kernel.row.floor = 1e9 * flop[single ? 0 : 1] * kernel.row.flops / kernel.row.threads;
     kernel.structural = structural;
     kernel.work(kManySweeps);
-    const double once = time_part(kernel, kManySweeps);
-    kernel.repeats =
-        std::clamp(static_cast<int>(options.seconds / kParts / std::max(once, 1e-9)), 1, 100000);
+    kernel.repeats = times_within(options.seconds / kParts, time_part(kernel, kManySweeps), 100000);
   }
   for (int round = 0; round < options.rounds; ++round) {
     std::vector<Sample> forth, back(kernels.size());

@@ -2,10 +2,10 @@
 // twelve independent chains of alternating multiplications and additions; projections of particles
 // that stay in registers; and particles that are moved for projections that are left out.
 #include <algorithm>
-#include <ctime>
 
 #include "core/solver/layout/colour_batches.hpp"
 #include "experiments/bench/kernels.hpp"
+#include "experiments/system/clock.hpp"
 
 namespace taut {
 
@@ -54,12 +54,9 @@ double fastest(const F& run, Real value) {
   double best = 1;
   volatile Real keep = value;
   for (int attempt = 0; attempt < 20; ++attempt) {
-    timespec from, to;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &from);
+    const double begin = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     keep = keep + 0 * run(keep);
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &to);
-    best = std::min(best, static_cast<double>(to.tv_sec - from.tv_sec) +
-                              1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec));
+    best = std::min(best, seconds_of(CLOCK_THREAD_CPUTIME_ID) - begin);
   }
   return best;
 }
@@ -87,14 +84,14 @@ double projection() {
 
 template <class Real>
 double traffic(const Scene& scene) {
-  const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.links, scene.mesh));
+  const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.mesh));
   const ColourBatches<Real> batches(colour(scene.links, scene.mesh), inverse_masses(scene), 1,
                                     layout);
   std::vector<Real> x(layout.length());
   const auto load_and_store = kernels<Real>(widest()).load_and_store;
   const auto sweep = [&](Real) {
     for (std::size_t phase = 0; phase < batches.phases(); ++phase)
-      for (std::size_t tile = 0; tile < batches.tiles(phase); ++tile)
+      for (std::size_t tile = 0; tile < batches.parts(phase); ++tile)
         for (const BatchRun<Real>& run : batches.runs(phase, tile)) load_and_store(run, x.data());
     return x[0];
   };

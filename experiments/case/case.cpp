@@ -1,11 +1,8 @@
 #include "experiments/case/case.hpp"
 
-#include <algorithm>
-
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/case/key.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/model/scene.hpp"
+#include "core/model/solver.hpp"
 
 namespace taut {
 
@@ -15,5 +16,15 @@ std::string digest(const Scene&);
 
 /// SHA-256 of the bits of x and v, -0 and 0 apart: equal exactly when the states are bit-identical.
 std::string digest(const State&);
+
+/// The address of a case's result: SHA-256 of canonical JSON (keys in a fixed order, no spaces,
+/// doubles in shortest exact form) over schema, scene content, solver with all parameters,
+/// implementation, measurement, dt and steps. Not the scene's name, the host, the time or the
+/// commit. `scene_digest` is digest(scene).
+std::string case_key(const Scene& scene, const std::string& scene_digest, const SolverChoice&);
+
+/// Digest of everything in this program that makes numbers: measurement() and every solver. What
+/// one build found says nothing about another one.
+std::string program_digest();
 
 }  // namespace taut

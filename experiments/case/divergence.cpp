@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "core/model/index.hpp"
 
@@ -80,8 +79,8 @@ Softest softest(const Scene& scene, const Hanging& hanging) {
 
 /// Of a link that is not between two pins and that the cloth is to keep in its plane; 0 of others.
 double strain_in_plane(const Scene& scene, const Link& link, const std::vector<Vec3>& x) {
-  const auto pinned = [&](int i) { return std::ranges::binary_search(scene.pins, i); };
-  if (link.family == Family::bend || (pinned(link.a) && pinned(link.b))) return 0;
+  if (link.family == Family::bend || (is_pinned(scene, link.a) && is_pinned(scene, link.b)))
+    return 0;
   return (x[to_index(link.b)] - x[to_index(link.a)]).norm() / link.rest - 1;
 }
 

@@ -9,7 +9,7 @@ namespace taut {
 /// TAUT_SOLVER line with hyphens for underscores. Generated at build time
 /// (cmake/fingerprint.cmake).
 std::string_view implementation(std::string_view solver);
-/// Digest of what turns states into numbers: metrics, verdict, run_case. Generated likewise.
+/// Digest of what turns states into numbers: metrics, divergence, run_case. Generated likewise.
 std::string_view measurement();
 /// Compiler, flags and library versions, for people. Generated likewise.
 std::string_view toolchain();

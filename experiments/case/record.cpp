@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/model/input_error.hpp"
 
@@ -23,6 +24,11 @@ Status::Kind status_kind(std::string_view name) {
   for (std::size_t i = 0; i < kNames.size(); ++i)
     if (kNames[i] == name) return static_cast<Status::Kind>(i);
   throw InputError("unknown status '" + std::string(name) + "'");
+}
+
+double Record::value(const std::string& name) const {
+  const auto at = values.find(name);
+  return at == values.end() ? std::nan("") : at->second;
 }
 
 }  // namespace taut

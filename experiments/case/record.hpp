@@ -67,6 +67,9 @@ struct Record {
   ResolvedSettings resolved_settings;
   std::string digest;  ///< SHA-256 of the final state's bits
   std::string log;  ///< the end of what a solver's own program wrote to standard error; no result
+
+  /// One of the values; NaN: it is not there, or has no meaning here.
+  double value(const std::string& name) const;
 };
 
 }  // namespace taut

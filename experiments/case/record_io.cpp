@@ -29,8 +29,7 @@ Json result_json(const Record& r) {
                          {"bytes", p.bytes},
                          {"projections", p.projections}});
   for (const auto& [name, text] : r.resolved_settings) resolved_settings.push_back({name, text});
-  for (const auto& [name, value] : r.values)
-    values[name] = std::isfinite(value) ? Json(value) : Json(nullptr);
+  for (const auto& [name, value] : r.values) values[name] = value;  // null where it is not finite
   return {{"status", status_json(r.status)},        {"values", values},
           {"projections", r.projections},           {"step_cost", step_cost},
           {"resolved_settings", resolved_settings}, {"digest", r.digest}};

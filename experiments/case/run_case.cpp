@@ -103,7 +103,7 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
   record.projections = projections_per_step(*solver);
   record.resolved_settings = choice.entry->resolved_settings(scene, choice.params);
 
-  DivergenceDetector verdict(scene, record.step_cost);
+  DivergenceDetector detector(scene, record.step_cost);
   Instruments instruments(scene, options.measure);
   if (options.series_rows > 0) run.series.columns = instruments.series_columns();
   const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));
@@ -118,7 +118,7 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
     if (step > 0) solver->step((step - 1) * scene.dt, scene.dt);
     solver->store(state);
     const Snapshot moment{step, step * scene.dt, state};
-    stable = verdict.observe(step, moment.t, state);
+    stable = detector.observe(step, moment.t, state);
     if (!stable) break;
     instruments.observe(moment);
     if (options.series_rows > 0 && (step % stride == 0 || step == scene.steps))
@@ -126,8 +126,8 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
     if (options.watch) options.watch(moment);
     run.last = state;
   }
-  if (stable) verdict.finish();
-  record.status = verdict.status();
+  if (stable) detector.finish();
+  record.status = detector.status();
   record.values = instruments.values(stable);
   record.digest = digest(run.last);
 }

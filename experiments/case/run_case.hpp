@@ -33,10 +33,10 @@ struct CaseRun {
 };
 
 /// Runs one case in this process, step by step: load, then for every step `step` and `store`, with
-/// the verdict and every metric at every boundary. A run that explodes ends there with values NaN.
-/// A scene that the solver cannot represent gives `unsupported` and no run; a SolverFailure the
-/// status that it names and the last sound step. Numerical failure never throws; what make() throws
-/// (InputError, bad_alloc) passes through.
+/// the detector of divergence and every metric at every boundary. A run that explodes ends there
+/// with values NaN. A scene that the solver cannot represent gives `unsupported` and no run; a
+/// SolverFailure the status that it names and the last sound step. Numerical failure never throws;
+/// what make() throws (InputError, bad_alloc) passes through.
 CaseRun run_case(const Scene&, const SolverChoice&, const RunOptions& = {});
 
 /// What is known of a case before it runs.

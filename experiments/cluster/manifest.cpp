@@ -12,7 +12,6 @@
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/case/key.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"

@@ -16,22 +16,11 @@ namespace taut {
 
 namespace {
 
-/// Runs what the store lacks; true if all went its way.
-void run_missing(const std::vector<Case>& cases, const Store& store, const BaselineOptions& options,
-                 BaselineStudy& result) {
+void run_all(const std::vector<Case>& cases, const Store& store, const BaselineOptions& options,
+             BaselineStudy& result) {
   store.prepare();
-  const Session session(store, "taut check " + result.name, cases, {});
-  Progress progress;
   const CampaignProgress campaign =
-      run_cases(cases, store, session,
-                {.jobs = options.jobs,
-                 .limits = {},
-                 .shard = {},
-                 .only_failed = false,
-                 .progress = [&](const CampaignProgress& t, const Record* record) {
-                   progress.show(t, record);
-                 }});
-  progress.finish(campaign);
+      run_missing(cases, store, "taut check " + result.name, {.jobs = options.jobs});
   result.conflict = campaign.conflicts > 0;
   result.interrupted = campaign.interrupted;
 }
@@ -42,7 +31,7 @@ void mark_flaky(const std::vector<Case>& cases, const Store& store, const Baseli
   const std::filesystem::path folder = std::filesystem::path(options.out) / "again";
   std::filesystem::remove_all(folder);
   const Store second(folder.string());
-  run_missing(cases, second, options, result);
+  run_all(cases, second, options, result);
   for (const Case& one : cases) {
     const auto a = store.find(one), b = second.find(one);
     if (!a || !b || (a->digest == b->digest && a->status.step == b->status.step)) continue;
@@ -57,9 +46,7 @@ void add_frontiers(const Store& store, const BaselineOptions& options, BaselineS
   if (questions.empty()) return;
   const Session session(store, "taut check " + result.name, {}, {});
   for (const FrontierQuestion& question : questions) {
-    const CaseFrontier found = find_frontier(
-        question, store, session,
-        {.jobs = options.jobs, .limits = {}, .shard = {}, .only_failed = false, .progress = {}});
+    const CaseFrontier found = find_frontier(question, store, session, {.jobs = options.jobs});
     result.interrupted = result.interrupted || found.interrupted;
     if (found.frontier.kind == Frontier::Kind::not_answered)
       result.not_run.push_back(frontier_id(question));
@@ -77,8 +64,7 @@ const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
 }  // namespace
 
 void BaselineOptions::bind(CLI::App& app) {
-  baselines = results_folder() / "baselines";
-  app.add_option("--baselines", baselines, "Folder of the baselines (default: " + baselines + ")");
+  add_baselines(app, baselines);
   add_results(app, out);
   add_jobs(app, jobs);
 }
@@ -105,7 +91,7 @@ BaselineStudy baseline_study(const std::string& name, const BaselineOptions& opt
 
   const Store store(options.out);
   const std::vector<Case> cases = cases_of(study);
-  run_missing(cases, store, options, result);
+  run_all(cases, store, options, result);
   std::map<const Scene*, std::string> digests;
   for (const Case& one : cases) {
     const auto record = store.find(one);

@@ -2,9 +2,14 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
+#include <iomanip>
+#include <iostream>
 
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -14,8 +19,7 @@ void CaseOptions::bind(CLI::App& app) {
   app.add_option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)")->required();
   app.add_option("--dt", dt_, "Time step [s], a number or a fraction such as 1/120");
   app.add_option("--duration", duration_, "Simulated time [s]");
-  app.add_option("--set", settings_, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
-      ->allow_extra_args(false);
+  add_settings(app, settings_);
 }
 
 CaseSpec CaseOptions::spec() const {
@@ -39,6 +43,23 @@ void continue_in_right_program(const SolverChoice& choice) {
   const std::string program = sibling_program(needed);
   execv(program.c_str(), argv.data());
   throw InputError(choice.brief() + " needs the program " + program + ", which cannot be run");
+}
+
+void print_record(const Record& record) {
+  std::cout << record.id << "\n  status       " << to_string(record.status.kind);
+  if (!record.status.reason.empty()) std::cout << " (" << record.status.reason << ")";
+  if (record.status.step >= 0) std::cout << ", step " << record.status.step;
+  if (record.status.vertex >= 0) std::cout << ", vertex " << record.status.vertex;
+  std::cout << "\n  steps        " << record.steps << " of " << record.dt << " s\n  cloth        "
+            << record.vertices << " vertices, " << record.links << " links\n  work         "
+            << record.projections << " projections per step\n  state        " << record.digest
+            << '\n';
+  for (const auto& [name, value] : record.values)
+    if (!std::isnan(value)) {
+      const ValueSpec* spec = find_value(name).second;
+      std::cout << "  " << std::left << std::setw(26) << name << std::setprecision(6) << value
+                << ' ' << (!spec || spec->unit.si == "1" ? "" : spec->unit.si) << '\n';
+    }
 }
 
 }  // namespace taut

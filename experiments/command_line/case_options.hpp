@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/case/case.hpp"
+#include "experiments/case/record.hpp"
 
 namespace taut {
 
@@ -24,5 +25,8 @@ class CaseOptions {
 /// Replaces this process by the program that can run the choice (same arguments), if it is another
 /// one; returns if it is this. Throws InputError if the other is not installed.
 void continue_in_right_program(const SolverChoice&);
+
+/// A record for people, on standard output: what ran, how it ended, every value that has a meaning.
+void print_record(const Record&);
 
 }  // namespace taut

@@ -6,8 +6,11 @@
 #include <thread>
 
 #include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/study/store.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {
@@ -35,12 +38,7 @@ CLI::Validator known(const std::string& what, std::vector<std::string> names) {
       "");
 }
 
-CLI::Validator metric_value() {
-  std::vector<std::string> names;
-  for (const MetricEntry* metric : metrics())
-    for (const ValueSpec& value : metric->values) names.emplace_back(value.name);
-  return known("metric value", std::move(names));
-}
+CLI::Validator metric_value() { return known("metric value", value_names()); }
 
 CLI::Option* add_jobs(CLI::App& app, int& jobs) {
   jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -57,6 +55,35 @@ CLI::Option* add_preset(CLI::App& app, std::string& preset) {
   return app.add_option("--preset", preset, "A smaller or larger version that the study defines");
 }
 
+CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
+  return app
+      .add_option("--set", settings, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
+      ->allow_extra_args(false);
+}
+
+void add_samples(CLI::App& app, int& rounds, double& seconds, int fewest_rounds) {
+  app.add_option("--rounds", rounds,
+                 "Rounds in alternating order (ABBA), two samples each (default: " +
+                     std::to_string(rounds) + ")")
+      ->check(CLI::Range(fewest_rounds, 1000));
+  app.add_option("--seconds", seconds,
+                 "CPU time of one sample (default: " + shortest(seconds) + ")")
+      ->check(above_zero());
+}
+
+void add_judgement(CLI::App& app, std::string& metric, double& tolerance) {
+  app.add_option("--metric", metric, "What the error is (default: " + metric + ")")
+      ->check(metric_value());
+  app.add_option("--tolerance", tolerance,
+                 "Smaller relative differences are none (default: " + shortest(tolerance) + ")")
+      ->check(above_zero());
+}
+
+void add_baselines(CLI::App& app, std::string& folder) {
+  folder = results_folder() / "baselines";
+  app.add_option("--baselines", folder, "Folder of the baselines (default: " + folder + ")");
+}
+
 void print_files(const std::vector<std::string>& files, bool json) {
   if (json)
     std::cout << to_text(Json{{"files", files}}, 1) << '\n';
@@ -66,6 +93,16 @@ void print_files(const std::vector<std::string>& files, bool json) {
 
 CLI::Option* add_json(CLI::App& app, bool& json, const std::string& what) {
   return app.add_flag("--json", json, what + " as JSON");
+}
+
+void check_solvers(const std::vector<std::string>& texts) {
+  std::vector<Diagnostic> wrong;
+  for (const std::string& text : texts) try {
+      parse_solver(text);
+    } catch (const InputError& error) {
+      wrong.insert(wrong.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  if (!wrong.empty()) throw InputError(wrong);
 }
 
 }  // namespace taut

@@ -24,10 +24,25 @@ CLI::Option* add_results(CLI::App&, std::string& folder);
 /// The preset of a study.
 CLI::Option* add_preset(CLI::App&, std::string& preset);
 
+/// Settings of a scene, as --set, once for each.
+CLI::Option* add_settings(CLI::App&, std::vector<std::string>& settings);
+
+/// --rounds and --seconds of a timing; they stand for the defaults.
+void add_samples(CLI::App&, int& rounds, double& seconds, int fewest_rounds = 1);
+
+/// --metric, whose value is the error, and --tolerance of costs.
+void add_judgement(CLI::App&, std::string& metric, double& tolerance);
+
+/// The folder of the baselines, as --baselines.
+void add_baselines(CLI::App&, std::string& folder);
+
 /// The files that a verb wrote: a line each, or {"files": [...]}.
 void print_files(const std::vector<std::string>& files, bool json);
 
 /// --json, which says `what` is printed instead.
 CLI::Option* add_json(CLI::App&, bool& json, const std::string& what);
+
+/// Throws InputError with everything that is wrong with any of these solvers' texts.
+void check_solvers(const std::vector<std::string>& texts);
 
 }  // namespace taut

@@ -82,4 +82,14 @@ void Progress::finish(const CampaignProgress& campaign) {
             << campaign.reused << " were stored already)\n";
 }
 
+CampaignProgress run_missing(const std::vector<Case>& cases, const Store& store,
+                             const std::string& command, CampaignOptions options) {
+  const Session session(store, command, cases, options.shard);
+  Progress display;
+  options.progress = [&](const CampaignProgress& t, const Record* r) { display.show(t, r); };
+  const CampaignProgress campaign = run_cases(cases, store, session, options);
+  display.finish(campaign);
+  return campaign;
+}
+
 }  // namespace taut

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <iosfwd>
 #include <string>
+#include <vector>
 
 #include "experiments/study/campaign.hpp"
 
@@ -20,6 +21,10 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
   bool terminal_;
 };
+
+/// Runs what the store lacks in a session that `command` names, with progress on stderr.
+CampaignProgress run_missing(const std::vector<Case>&, const Store&, const std::string& command,
+                             CampaignOptions);
 
 /// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere. The end
 /// says what one took: "frame 80/80  0.15 s each".

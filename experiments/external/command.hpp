@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace taut::external {
@@ -17,5 +18,12 @@ struct Command {
 /// Splits a command as a shell would (quotes, ~, $NAME, file name patterns), but no shell runs it.
 /// Throws InputError if it holds operators of a shell or names no program.
 Command split_command(const std::string& text, const std::filesystem::path& folder);
+
+/// Letters, digits, _ and -, at most 40, a letter first.
+bool is_solver_name(std::string_view);
+
+/// A name for a program or a file that the user gave none: what it is called, as far as a name may
+/// hold it, and four digits of what it is told by, so that no two share theirs.
+std::string name_for(std::string_view called, std::string_view told_by);
 
 }  // namespace taut::external

@@ -7,7 +7,7 @@
 
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
-#include "experiments/external/names.hpp"
+#include "experiments/external/command.hpp"
 #include "experiments/external/program.hpp"
 #include "experiments/external/recorded.hpp"
 

@@ -9,7 +9,7 @@
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
-#include "experiments/external/names.hpp"
+#include "experiments/external/command.hpp"
 #include "experiments/external/scene_file.hpp"
 
 namespace taut::external {

@@ -7,7 +7,7 @@
 
 #include "core/io/text_file.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/external/names.hpp"
+#include "experiments/external/command.hpp"
 #include "experiments/external/probe.hpp"
 
 namespace taut::external {

@@ -18,7 +18,7 @@ class Program {
  public:
   /// Says hello. A program that answers it badly has an entry all the same, whose cases end as the
   /// hello did: it costs its own cases, not the study. `name`: "" names it after itself
-  /// (names.hpp). `leading` are the parameters that come before its own, `given` the text of all,
+  /// (command.hpp). `leading` are the parameters that come before its own, `given` the text of all,
   /// `files` what it is made of beside the files that the command names. Throws InputError if it
   /// cannot be started.
   Program(std::string name, Command, std::vector<ParamSpec> leading, std::string_view given,

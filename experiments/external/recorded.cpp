@@ -9,7 +9,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/external/names.hpp"
+#include "experiments/external/command.hpp"
 
 namespace taut::external {
 

@@ -1,7 +1,6 @@
 #include "experiments/extremes/symptom.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/model/index.hpp"
@@ -13,11 +12,6 @@ namespace {
 constexpr double kStretched = 1, kFrozen = 0.1, kGained = 0.05, kLost = 0.5, kMirrored = 0.1;
 constexpr double kJitter = 981;     ///< m/s^2, 100 g
 constexpr double kMoreJitter = 10;  ///< times that of the start
-
-double value(const Record& record, const char* name) {
-  const auto found = record.values.find(name);
-  return found == record.values.end() ? std::nan("") : found->second;
-}
 
 bool passive(const Scene& scene) {
   return !scene.wind && scene.colliders.empty() && scene.pin_motions.empty() &&
@@ -85,16 +79,16 @@ std::vector<std::string> symptoms(const Seen& seen, const Seen* start) {
   const auto add = [&](bool is, const char* name) {
     if (is) found.emplace_back(name);
   };
-  const auto now = [&](const char* name) { return value(seen.record, name); };
+  const auto now = [&](const char* name) { return seen.record.value(name); };
   const double swing = swing_energy(scene) / std::max(energy_unit(scene), 1e-300);
   add(now("tunnelling.count") > 0, "tunnels");
   add(now("stretch.max") > kStretched || status.kind == Status::Kind::extreme, "overstretches");
   if (start) {
     const double smaller = std::min(1.0, extent(scene) / extent(*start->one.scene));
-    add(now("drift.max") < kFrozen * smaller * value(start->record, "drift.max"), "freezes");
+    add(now("drift.max") < kFrozen * smaller * start->record.value("drift.max"), "freezes");
   }
   add(swing > 0 && now("energy.peak") > kGained * swing, "gains energy");
-  const double calm = start ? kMoreJitter * value(start->record, "popping.max") : 0;
+  const double calm = start ? kMoreJitter * start->record.value("popping.max") : 0;
   add((now("popping.max") > kJitter && now("popping.max") > calm) ||
           status.kind == Status::Kind::unsettled,
       "jitters");

@@ -28,12 +28,20 @@ constexpr std::size_t kMostPanels = 4;
 struct Film {
   std::string scene, summary;
   RunRequest request;
-  std::vector<std::string> labels;    ///< of the solvers, in the order of the request's
-  std::vector<std::string> settings;  ///< "1 × 16, order=mesh"
-  std::vector<std::string> keys;      ///< of their cases; empty if no study ran them
+  struct Panel {
+    std::string label;     ///< "Bullet float"
+    std::string settings;  ///< "1 × 16, order=mesh"
+    std::string key;       ///< of its case; "": no study ran it
+  };
+  std::vector<Panel> panels;  ///< of the solvers, in the order of the request's
   std::vector<std::pair<std::string, std::string>> refused;  ///< solver, why
   double speed = 1;
   bool studied = true;
+
+  void add(const std::string& solver, const std::string& label, const std::string& key) {
+    request.solvers.push_back(solver);
+    panels.push_back({label, report::brief_settings(solver), key});
+  }
 };
 
 /// The cases that are quoted: pictures show what sentences speak of.
@@ -47,10 +55,7 @@ Film studied_film(const report::Rivals& rivals, const report::QuotedScene& quote
       continue;
     }
     film.request.scene = one->spec.scene, film.request.overrides = one->spec.overrides;
-    film.request.solvers.push_back(one->spec.solver);
-    film.labels.push_back(rivals.all[i].label);
-    film.settings.push_back(report::brief_settings(one->spec.solver));
-    film.keys.push_back(one->key);
+    film.add(one->spec.solver, rivals.all[i].label, one->key);
   }
   return film;
 }
@@ -80,13 +85,10 @@ Film other_film(const report::Rivals& rivals, const std::string& name) {
     std::string why;
     for (const std::string& reason : choice.entry->unsupported(scene, choice.params))
       why += (why.empty() ? "" : "; ") + reason;
-    if (!why.empty()) {
+    if (why.empty())
+      film.add((*quoted)->spec.solver, rival.label, "");
+    else
       film.refused.emplace_back(rival.solver, why);
-      continue;
-    }
-    film.request.solvers.push_back((*quoted)->spec.solver);
-    film.settings.push_back(report::brief_settings((*quoted)->spec.solver));
-    film.labels.push_back(rival.label);
   }
   return film;
 }
@@ -146,16 +148,15 @@ report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
   std::string who;
   for (std::size_t k = 0; k < set.runs.size(); ++k) {
     const RecordedRun& run = set.runs[k];
-    clip.panels.push_back(
-        {solver_name(run), film.settings[k], film.keys.empty() ? "" : film.keys[k]});
+    clip.panels.push_back({solver_name(run), film.panels[k].settings, film.panels[k].key});
     who += (k > 0 ? " and " : "") + run.title + " (" + run.settings + ")";
   }
   clip.alt = set.scene.name + ": " + who + (set.runs.size() > 1 ? " side by side" : "") +
              " from the left, coloured by " + media.scale.title() + ", full red at " +
              media.scale.text(media.scale.high) +
              "; cloth inside a collider is hatched, a run that ended early is framed in red";
-  clip.type = media.mp4.empty() ? "image/png" : "video/mp4";
-  clip.bytes = media.mp4.empty() ? media.strip_png : media.mp4;
+  clip.type = media.mp4.empty() ? media.poster_type : "video/mp4";
+  clip.bytes = media.mp4.empty() ? media.poster : media.mp4;
   clip.poster = media.poster, clip.poster_type = media.poster_type;
   return clip;
 }
@@ -187,10 +188,10 @@ FilmResult make_film(const Film& film) {
       row.stills.push_back({flat.t, flat.rms, flat.png});
   }
   for (std::size_t k = 0; !film.studied && k < set.runs.size(); ++k)
-    std::ranges::move(
-        report::shown_series(set.series[k],
-                             {film.scene, solver_name(set.runs[k]), film.labels[k], "", {}, {}}),
-        std::back_inserter(result.series));
+    std::ranges::move(report::shown_series(
+                          set.series[k],
+                          {film.scene, solver_name(set.runs[k]), film.panels[k].label, "", {}, {}}),
+                      std::back_inserter(result.series));
   return result;
 }
 

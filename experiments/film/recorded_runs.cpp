@@ -7,7 +7,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/palette.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"

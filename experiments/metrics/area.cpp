@@ -1,27 +1,29 @@
+#include "core/model/index.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::area {
+namespace taut {
 
 namespace {
 
-constexpr ValueSpec kValues[] = {
-    {"area.rms", kErrorShare,
-     "area strain A/A0 - 1 of the faces, RMS over faces and the last second", true},
-    {"area.max", kErrorShare, "largest growth of a face in the last second", true},
-    {"area.loss", kErrorShare, "largest loss of area of a face in the last second (1: collapsed)",
-     true},
-    {"area.total", kSignedShare, "area strain of the whole cloth, mean over the last second", true},
-};
-
 double area(const Triangle& t, const std::vector<Vec3>& x) {
-  const Vec3& a = x[static_cast<std::size_t>(t[0])];
-  const Vec3& b = x[static_cast<std::size_t>(t[1])];
-  const Vec3& c = x[static_cast<std::size_t>(t[2])];
+  const Vec3& a = x[to_index(t[0])];
+  const Vec3& b = x[to_index(t[1])];
+  const Vec3& c = x[to_index(t[2])];
   return (b - a).cross(c - a).norm() / 2;
 }
 
 class Area final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"area.rms", kErrorShare,
+       "area strain A/A0 - 1 of the faces, RMS over faces and the last second", true},
+      {"area.max", kErrorShare, "largest growth of a face in the last second", true},
+      {"area.loss", kErrorShare, "largest loss of area of a face in the last second (1: collapsed)",
+       true},
+      {"area.total", kSignedShare, "area strain of the whole cloth, mean over the last second",
+       true},
+  };
+  static bool measures(const Scene& scene) { return !scene.mesh.triangles.empty(); }
   explicit Area(const Scene& scene) : faces_(scene.mesh.triangles), end_(scene) {
     for (const Triangle& face : faces_) rest_.push_back(area(face, scene.mesh.rest));
   }
@@ -65,13 +67,8 @@ class Area final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut::metric::area
 
-TAUT_METRIC(area) = {.name = "area",
-                     .summary = "Area strain: shear collapse shows here though no link is strained",
-                     .source = "A/A0 - 1 of each face",
-                     .values = taut::metric::area::kValues,
-                     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-                       if (scene.mesh.triangles.empty()) return nullptr;
-                       return std::make_unique<taut::metric::area::Area>(scene);
-                     }};
+TAUT_METRIC(area, Area, "Area strain: shear collapse shows here though no link is strained",
+            "A/A0 - 1 of each face");
+
+}  // namespace taut

@@ -1,21 +1,21 @@
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::energy {
+namespace taut {
 
 namespace {
 
-constexpr ValueSpec kValues[] = {
-    {"energy.mean", kNumber,
-     "(kinetic + potential energy)/(m g L), potential energy 0 at the start, mean over the last "
-     "second; L is the diagonal of the rest shape's bounding box",
-     true},
-    {"energy.kinetic", kNumber, "its kinetic part, mean over the last second", true},
-    {"energy.peak", kNumber, "largest (kinetic + potential energy)/(m g L) over the run", false,
-     Window::run},
-};
-
 class Energy final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"energy.mean", kNumber,
+       "(kinetic + potential energy)/(m g L), potential energy 0 at the start, mean over the last "
+       "second; L is the diagonal of the rest shape's bounding box",
+       true},
+      {"energy.kinetic", kNumber, "its kinetic part, mean over the last second", true},
+      {"energy.peak", kNumber, "largest (kinetic + potential energy)/(m g L) over the run", false,
+       Window::run},
+  };
+  static bool measures(const Scene& scene) { return !scene.gravity.isZero(0); }
   explicit Energy(const Scene& scene)
       : mass_(scene.mesh.mass), start_(scene.start.x), gravity_(scene.gravity), end_(scene) {
     double total = 0;
@@ -56,13 +56,8 @@ class Energy final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut::metric::energy
 
-TAUT_METRIC(energy) = {.name = "energy",
-                       .summary = "Mechanical energy; relaxation dissipates it legitimately",
-                       .source = "sum of m v^2/2 - m g . (x - x_start) over vertices",
-                       .values = taut::metric::energy::kValues,
-                       .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-                         if (scene.gravity.isZero(0)) return nullptr;
-                         return std::make_unique<taut::metric::energy::Energy>(scene);
-                       }};
+TAUT_METRIC(energy, Energy, "Mechanical energy; relaxation dissipates it legitimately",
+            "sum of m v^2/2 - m g . (x - x_start) over vertices");
+
+}  // namespace taut

@@ -1,35 +1,37 @@
+#include "core/model/index.hpp"
 #include "core/model/triangle.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::faces {
+namespace taut {
 
 namespace {
 
-constexpr ValueSpec kValues[] = {
-    {"face.max", kErrorLength,
-     "largest depth of a point of a face below the surface of a ball or box, thickness not "
-     "counted, in the last second",
-     true},
-    {"face.peak", kErrorLength, "the same over the run", false, Window::run,
-     "peak penetration of faces"},
-    {"face.geometry", kLength,
-     "the part of a face's depth in a ball that is geometry: how deep it would be if its corners "
-     "lay exactly at the scene's thickness, l^2/(4R) for a right triangle with legs l; largest in "
-     "the last second",
-     true},
-    {"face.excess", kErrorLength,
-     "largest depth of a face below a ball's surface beyond its geometric part, in the last second",
-     true},
-    {"face.ball", kErrorLength, "face.max of the balls alone"},
-    {"face.box", kErrorLength, "face.max of the boxes alone"},
-};
-
 class Faces final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"face.max", kErrorLength,
+       "largest depth of a point of a face below the surface of a ball or box, thickness not "
+       "counted, in the last second",
+       true},
+      {"face.peak", kErrorLength, "the same over the run", false, Window::run,
+       "peak penetration of faces"},
+      {"face.geometry", kLength,
+       "the part of a face's depth in a ball that is geometry: how deep it would be if its corners "
+       "lay exactly at the scene's thickness, l^2/(4R) for a right triangle with legs l; largest "
+       "in the last second",
+       true},
+      {"face.excess", kErrorLength,
+       "largest depth of a face below a ball's surface beyond its geometric part, in the last "
+       "second",
+       true},
+      {"face.ball", kErrorLength, "face.max of the balls alone"},
+      {"face.box", kErrorLength, "face.max of the boxes alone"},
+  };
+  static bool measures(const Scene& scene) {
+    return !scene.mesh.triangles.empty() && has_solid(scene);
+  }
   explicit Faces(const Scene& scene) : thickness_(scene.thickness), end_(scene) {
-    const auto pinned = [&](int i) {
-      return std::binary_search(scene.pins.begin(), scene.pins.end(), i);
-    };
+    const auto pinned = [&](int i) { return is_pinned(scene, i); };
     for (const Triangle& face : scene.mesh.triangles)
       if (!std::all_of(face.begin(), face.end(), pinned)) faces_.push_back(face);
     for (const Collider& c : scene.colliders)
@@ -98,8 +100,7 @@ class Faces final : public Metric {
   }
 
   static Corners corners(const Triangle& t, const State& s) {
-    return {s.x[static_cast<std::size_t>(t[0])], s.x[static_cast<std::size_t>(t[1])],
-            s.x[static_cast<std::size_t>(t[2])]};
+    return {s.x[to_index(t[0])], s.x[to_index(t[1])], s.x[to_index(t[2])]};
   }
 
   std::vector<Collider> colliders_;  ///< balls and boxes; faces add nothing to vertices on a plane
@@ -110,19 +111,8 @@ class Faces final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut::metric::faces
 
-TAUT_METRIC(faces) = {
-    .name = "faces",
-    .summary = "How deep the faces, not just the vertices, are in balls and boxes",
-    .source = "exact depth of a triangle in a ball and in a box",
-    .values = taut::metric::faces::kValues,
-    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-      const auto solid = [](const taut::Collider& c) {
-        return !std::holds_alternative<taut::Plane>(c.shape);
-      };
-      if (scene.mesh.triangles.empty() ||
-          std::none_of(scene.colliders.begin(), scene.colliders.end(), solid))
-        return nullptr;
-      return std::make_unique<taut::metric::faces::Faces>(scene);
-    }};
+TAUT_METRIC(faces, Faces, "How deep the faces, not just the vertices, are in balls and boxes",
+            "exact depth of a triangle in a ball and in a box");
+
+}  // namespace taut

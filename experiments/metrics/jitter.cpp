@@ -1,18 +1,17 @@
-#include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::jitter {
+namespace taut {
 
 namespace {
 
-constexpr ValueSpec kValues[] = {
-    {"jitter.rms", kSpeed, "speed of the free vertices, RMS over vertices and the last second",
-     true},
-    {"jitter.max", kSpeed, "largest speed of a free vertex in the last second", true},
-};
-
 class Jitter final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"jitter.rms", kSpeed, "speed of the free vertices, RMS over vertices and the last second",
+       true},
+      {"jitter.max", kSpeed, "largest speed of a free vertex in the last second", true},
+  };
+  static bool measures(const Scene& scene) { return !free_vertices(scene).empty(); }
   explicit Jitter(const Scene& scene) : free_(free_vertices(scene)), end_(scene) {}
 
   void observe(const Snapshot& m) override {
@@ -37,14 +36,8 @@ class Jitter final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut::metric::jitter
 
-TAUT_METRIC(jitter) = {
-    .name = "jitter",
-    .summary = "Motion that is left in the last second: noise, if it should rest",
-    .source = "RMS speed",
-    .values = taut::metric::jitter::kValues,
-    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-      if (taut::free_vertices(scene).empty()) return nullptr;
-      return std::make_unique<taut::metric::jitter::Jitter>(scene);
-    }};
+TAUT_METRIC(jitter, Jitter, "Motion that is left in the last second: noise, if it should rest",
+            "RMS speed");
+
+}  // namespace taut

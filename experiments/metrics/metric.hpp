@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/model/scene.hpp"
@@ -61,9 +62,13 @@ struct ValueSpec {
 class Metric {
  public:
   virtual ~Metric() = default;
+  /// Whether the scene has what is measured; a metric that asks for something hides it.
+  static bool measures(const Scene&) { return true; }
+  /// Whether it needs the path between step boundaries, too: see observe_within.
+  static constexpr bool kFollowsPath = false;
   virtual void observe(const Snapshot&) = 0;
   /// The ends of the substeps between two boundaries, in order: the moment's step is the one that
-  /// they lead to. Only called if `follows_path`.
+  /// they lead to. Only called if `kFollowsPath`.
   virtual void observe_within(const Snapshot&) {}
   virtual std::vector<double> finish() = 0;
   /// The values of this very moment, for series; same order, NaN where `in_series` is false.
@@ -78,16 +83,40 @@ struct MetricEntry {
   std::span<const ValueSpec> values;
   /// nullptr if the scene lacks what is measured (penetration without colliders).
   std::unique_ptr<Metric> (*make)(const Scene&);
-  bool follows_path = false;  ///< needs the path between step boundaries: see observe_within
+  bool follows_path = false;  ///< Metric::kFollowsPath
 };
 
 /// All metrics of this program, sorted by name (generated; see cmake/registry.cmake).
 std::span<const MetricEntry* const> metrics();
 
+/// What yields the value of this name: its metric and itself; nulls: nothing does.
+inline std::pair<const MetricEntry*, const ValueSpec*> find_value(std::string_view name) {
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& value : metric->values)
+      if (value.name == name) return {metric, &value};
+  return {};
+}
+
+/// The names of all values of all metrics.
+inline std::vector<std::string> value_names() {
+  std::vector<std::string> names;
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& value : metric->values) names.emplace_back(value.name);
+  return names;
+}
+
+/// For MetricEntry::make.
+template <class M>
+std::unique_ptr<Metric> make_metric(const Scene& scene) {
+  return M::measures(scene) ? std::make_unique<M>(scene) : nullptr;
+}
+
 }  // namespace taut
 
-#define TAUT_METRIC(id)                 \
-  namespace taut {                      \
-  extern const MetricEntry metric_##id; \
-  }                                     \
-  const taut::MetricEntry taut::metric_##id
+/// A metric within namespace taut, from its class, which has a constructor from a Scene and `static
+/// constexpr ValueSpec kValues[]`; then the entry's summary and source.
+#define TAUT_METRIC(id, Class, summary, source)                                     \
+  extern const MetricEntry metric_##id;                                             \
+  const MetricEntry metric_##id {                                                   \
+#id, summary, source, Class::kValues, make_metric < Class>, Class::kFollowsPath \
+  }

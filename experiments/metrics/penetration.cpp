@@ -1,38 +1,10 @@
 #include <array>
 
-#include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::penetration {
+namespace taut {
 
 namespace {
-
-constexpr ValueSpec kValues[] = {
-    {"penetration.max", kErrorLength,
-     "largest depth of a free vertex below a collider's surface, thickness not counted, in the "
-     "last second",
-     true},
-    {"penetration.peak", kErrorLength, "the same over the run", false, Window::run,
-     "peak penetration of vertices"},
-    {"penetration.mean", kErrorLength,
-     "mean depth of the vertices that are below a surface, mean over the last second"},
-    {"penetration.plane.max", kErrorLength, "penetration.max of planes alone", true},
-    {"penetration.plane.peak", kErrorLength, "penetration.peak of planes alone", false,
-     Window::run},
-    {"penetration.plane.mean", kErrorLength, "penetration.mean of planes alone"},
-    {"penetration.ball.max", kErrorLength, "penetration.max of balls alone", true},
-    {"penetration.ball.peak", kErrorLength, "penetration.peak of balls alone", false, Window::run},
-    {"penetration.ball.mean", kErrorLength, "penetration.mean of balls alone"},
-    {"penetration.box.max", kErrorLength, "penetration.max of boxes alone", true},
-    {"penetration.box.peak", kErrorLength, "penetration.peak of boxes alone", false, Window::run},
-    {"penetration.box.mean", kErrorLength, "penetration.mean of boxes alone"},
-    {"penetration.share", kErrorShare,
-     "share of the free vertices that are below a surface, mean over the last second", true},
-    {"penetration.gap", kSignedLength,
-     "least distance of a free vertex to a collider minus the scene's thickness, mean over the "
-     "last second: positive where the cloth hovers, negative where it eats into the thickness",
-     true},
-};
 
 constexpr std::size_t kKinds = std::variant_size_v<Shape>;  // order of Shape's alternatives
 
@@ -49,6 +21,36 @@ struct Depths {
 
 class Penetration final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"penetration.max", kErrorLength,
+       "largest depth of a free vertex below a collider's surface, thickness not counted, in the "
+       "last second",
+       true},
+      {"penetration.peak", kErrorLength, "the same over the run", false, Window::run,
+       "peak penetration of vertices"},
+      {"penetration.mean", kErrorLength,
+       "mean depth of the vertices that are below a surface, mean over the last second"},
+      {"penetration.plane.max", kErrorLength, "penetration.max of planes alone", true},
+      {"penetration.plane.peak", kErrorLength, "penetration.peak of planes alone", false,
+       Window::run},
+      {"penetration.plane.mean", kErrorLength, "penetration.mean of planes alone"},
+      {"penetration.ball.max", kErrorLength, "penetration.max of balls alone", true},
+      {"penetration.ball.peak", kErrorLength, "penetration.peak of balls alone", false,
+       Window::run},
+      {"penetration.ball.mean", kErrorLength, "penetration.mean of balls alone"},
+      {"penetration.box.max", kErrorLength, "penetration.max of boxes alone", true},
+      {"penetration.box.peak", kErrorLength, "penetration.peak of boxes alone", false, Window::run},
+      {"penetration.box.mean", kErrorLength, "penetration.mean of boxes alone"},
+      {"penetration.share", kErrorShare,
+       "share of the free vertices that are below a surface, mean over the last second", true},
+      {"penetration.gap", kSignedLength,
+       "least distance of a free vertex to a collider minus the scene's thickness, mean over the "
+       "last second: positive where the cloth hovers, negative where it eats into the thickness",
+       true},
+  };
+  static bool measures(const Scene& scene) {
+    return !scene.colliders.empty() && !free_vertices(scene).empty();
+  }
   explicit Penetration(const Scene& scene)
       : colliders_(scene.colliders),
         thickness_(scene.thickness),
@@ -128,14 +130,9 @@ class Penetration final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut::metric::penetration
 
-TAUT_METRIC(penetration) = {
-    .name = "penetration",
-    .summary = "How deep vertices are in colliders after the last pass of the step",
-    .source = "max(0, -signed distance), exact for plane, ball and box",
-    .values = taut::metric::penetration::kValues,
-    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-      if (scene.colliders.empty() || taut::free_vertices(scene).empty()) return nullptr;
-      return std::make_unique<taut::metric::penetration::Penetration>(scene);
-    }};
+TAUT_METRIC(penetration, Penetration,
+            "How deep vertices are in colliders after the last pass of the step",
+            "max(0, -signed distance), exact for plane, ball and box");
+
+}  // namespace taut

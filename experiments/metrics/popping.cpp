@@ -1,20 +1,19 @@
-#include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::popping {
+namespace taut {
 
 namespace {
 
-constexpr ValueSpec kValues[] = {
-    {"popping.max", kAcceleration,
-     "max(0, |x_n - 2 x_(n-1) + x_(n-2)|/dt^2 - g) of the free vertices, largest in the last "
-     "second"},
-    {"popping.peak", kAcceleration, "the same, largest over the run; an impact counts, as 1/dt",
-     false, Window::run},
-};
-
 class Popping final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"popping.max", kAcceleration,
+       "max(0, |x_n - 2 x_(n-1) + x_(n-2)|/dt^2 - g) of the free vertices, largest in the last "
+       "second"},
+      {"popping.peak", kAcceleration, "the same, largest over the run; an impact counts, as 1/dt",
+       false, Window::run},
+  };
+  static bool measures(const Scene& scene) { return !free_vertices(scene).empty(); }
   explicit Popping(const Scene& scene)
       : free_(free_vertices(scene)), dt_(scene.dt), g_(scene.gravity.norm()), end_(scene) {}
 
@@ -43,13 +42,8 @@ class Popping final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut::metric::popping
 
-TAUT_METRIC(popping) = {.name = "popping",
-                        .summary = "Sudden jumps of single vertices, as contact=halt makes them",
-                        .source = "second difference of the positions, beyond gravity's own",
-                        .values = taut::metric::popping::kValues,
-                        .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-                          if (taut::free_vertices(scene).empty()) return nullptr;
-                          return std::make_unique<taut::metric::popping::Popping>(scene);
-                        }};
+TAUT_METRIC(popping, Popping, "Sudden jumps of single vertices, as contact=halt makes them",
+            "second difference of the positions, beyond gravity's own");
+
+}  // namespace taut

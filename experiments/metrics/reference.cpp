@@ -3,36 +3,34 @@
 #include <cmath>
 
 #include "core/model/index.hpp"
-#include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::reference {
+namespace taut {
 
 namespace {
 
-constexpr ValueSpec kValues[] = {
-    {"reference.rms", kErrorLength,
-     "distance of the free vertices from the static reference, RMS over vertices and the last "
-     "second",
-     true, Window::last_second, "distance from the reference (RMS)"},
-    {"reference.max", kErrorLength,
-     "largest distance of a free vertex from the static reference, in the last second", true,
-     Window::last_second, "largest distance from the reference"},
-    {"reference.motion", kErrorLength,
-     "distance of the free vertices from the dynamic reference, RMS over vertices, at its moment "
-     "(0.5 s)",
-     false, Window::end, "distance from the reference in motion (RMS)"},
-    {"reference.floor", kLength, "the static reference's own error, by self-convergence", false,
-     Window::none},
-    {"reference.strain", kShare,
-     "largest strain |d - r|/r of a structural or shear link in the static reference itself", false,
-     Window::none},
-    {"reference.motion_floor", kLength, "the dynamic reference's own error, by self-convergence",
-     false, Window::none},
-};
-
 class Distance final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"reference.rms", kErrorLength,
+       "distance of the free vertices from the static reference, RMS over vertices and the last "
+       "second",
+       true, Window::last_second, "distance from the reference (RMS)"},
+      {"reference.max", kErrorLength,
+       "largest distance of a free vertex from the static reference, in the last second", true,
+       Window::last_second, "largest distance from the reference"},
+      {"reference.motion", kErrorLength,
+       "distance of the free vertices from the dynamic reference, RMS over vertices, at its moment "
+       "(0.5 s)",
+       false, Window::end, "distance from the reference in motion (RMS)"},
+      {"reference.floor", kLength, "the static reference's own error, by self-convergence", false,
+       Window::none},
+      {"reference.strain", kShare,
+       "largest strain |d - r|/r of a structural or shear link in the static reference itself",
+       false, Window::none},
+      {"reference.motion_floor", kLength, "the dynamic reference's own error, by self-convergence",
+       false, Window::none},
+  };
   Distance(const Scene& scene, References known)
       : free_(free_vertices(scene)), known_(std::move(known)), end_(scene) {
     if (!known_.rest) return;
@@ -89,17 +87,17 @@ class Distance final : public Metric {
   double at_moment_ = Summary::kNone;
 };
 
-std::unique_ptr<Metric> make(const Scene& scene) {
+}  // namespace
+
+/// The references are read once.
+template <>
+std::unique_ptr<Metric> make_metric<Distance>(const Scene& scene) {
   References known = known_references(scene);
   if (!known.rest && !known.motion) return nullptr;
   return std::make_unique<Distance>(scene, std::move(known));
 }
 
-}  // namespace
-}  // namespace taut::metric::reference
+TAUT_METRIC(reference, Distance, "How far the cloth is from where it should be",
+            "core/reference: static equilibrium; SHAKE");
 
-TAUT_METRIC(reference) = {.name = "reference",
-                          .summary = "How far the cloth is from where it should be",
-                          .source = "core/reference: static equilibrium; SHAKE",
-                          .values = taut::metric::reference::kValues,
-                          .make = taut::metric::reference::make};
+}  // namespace taut

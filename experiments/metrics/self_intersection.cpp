@@ -1,26 +1,26 @@
 #include "core/model/crossings.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::self_intersection {
+namespace taut {
 
 namespace {
 
-constexpr ValueSpec kValues[] = {
-    {"self.crossings", kErrorCount,
-     "pairs of faces that share no vertex and cross or coincide (nearer than 1 % of the radius: "
-     "layers that lie in one plane cross nowhere), at the end",
-     true, Window::end, "crossing faces"},
-    {"self.crossings.max", kErrorCount, "the same, largest of ten moments of the last second"},
-    {"self.crossings.peak", kErrorCount, "the same, largest of those and twenty moments of the run",
-     false, Window::run},
-    {"self.gap", kSignedLength,
-     "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
-     "overlap of the particles' balls, worst of ten moments of the last second",
-     true},
-};
-
 class SelfIntersection final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"self.crossings", kErrorCount,
+       "pairs of faces that share no vertex and cross or coincide (nearer than 1 % of the radius: "
+       "layers that lie in one plane cross nowhere), at the end",
+       true, Window::end, "crossing faces"},
+      {"self.crossings.max", kErrorCount, "the same, largest of ten moments of the last second"},
+      {"self.crossings.peak", kErrorCount,
+       "the same, largest of those and twenty moments of the run", false, Window::run},
+      {"self.gap", kSignedLength,
+       "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
+       "overlap of the particles' balls, worst of ten moments of the last second",
+       true},
+  };
+  static bool measures(const Scene& scene) { return scene.self_collision.has_value(); }
   explicit SelfIntersection(const Scene& scene)
       : faces_(scene.mesh.triangles),
         rest_(scene.mesh.rest),
@@ -58,14 +58,8 @@ class SelfIntersection final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut::metric::self_intersection
 
-TAUT_METRIC(self_intersection) = {
-    .name = "self_intersection",
-    .summary = "Whether the cloth passes through itself",
-    .source = "triangle pairs by orientation tests and by distance",
-    .values = taut::metric::self_intersection::kValues,
-    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-      if (!scene.self_collision) return nullptr;
-      return std::make_unique<taut::metric::self_intersection::SelfIntersection>(scene);
-    }};
+TAUT_METRIC(self_intersection, SelfIntersection, "Whether the cloth passes through itself",
+            "triangle pairs by orientation tests and by distance");
+
+}  // namespace taut

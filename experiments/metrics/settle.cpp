@@ -1,19 +1,20 @@
-#include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::settle {
+namespace taut {
 
 namespace {
 
-constexpr ValueSpec kValues[] = {
-    {"settle.time", kTime,
-     "last time at which the RMS speed of the free vertices exceeds 1e-3 sqrt(g L); the duration "
-     "if it still does at the end; L is the diagonal of the rest shape's bounding box",
-     false, Window::run},
-};
-
 class Settle final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"settle.time", kTime,
+       "last time at which the RMS speed of the free vertices exceeds 1e-3 sqrt(g L); the duration "
+       "if it still does at the end; L is the diagonal of the rest shape's bounding box",
+       false, Window::run},
+  };
+  static bool measures(const Scene& scene) {
+    return !scene.gravity.isZero(0) && !free_vertices(scene).empty();
+  }
   explicit Settle(const Scene& scene)
       : free_(free_vertices(scene)),
         threshold_square_(1e-6 * scene.gravity.norm() * extent(scene)) {}
@@ -32,14 +33,8 @@ class Settle final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut::metric::settle
 
-TAUT_METRIC(settle) = {.name = "settle",
-                       .summary = "When the cloth comes to rest",
-                       .source = "compare 8 N^2 dt/(pi^2 k) of k Gauss-Seidel sweeps on N links",
-                       .values = taut::metric::settle::kValues,
-                       .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-                         if (scene.gravity.isZero(0) || taut::free_vertices(scene).empty())
-                           return nullptr;
-                         return std::make_unique<taut::metric::settle::Settle>(scene);
-                       }};
+TAUT_METRIC(settle, Settle, "When the cloth comes to rest",
+            "compare 8 N^2 dt/(pi^2 k) of k Gauss-Seidel sweeps on N links");
+
+}  // namespace taut

@@ -1,19 +1,8 @@
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::slip {
+namespace taut {
 
 namespace {
-
-constexpr ValueSpec kValues[] = {
-    {"slip.error", kErrorAcceleration,
-     "distance of the centre of mass's acceleration along the plane from what Coulomb's law makes "
-     "of the normal force that acted, mean over the last second"},
-    {"slip.error.peak", kErrorAcceleration, "the same, largest over the run", false, Window::run},
-    {"slip.distance", kErrorLength,
-     "how far the centre of mass is along the plane from where a block would be that felt the same "
-     "normal forces, at the end",
-     true, Window::end, "distance from Coulomb's law"},
-};
 
 /// The cloth against one plane, as a whole: what its threads do to each other cancels, so that
 /// gravity, damping and the plane alone move its centre of mass c. A step's contact impulse per
@@ -27,6 +16,23 @@ constexpr ValueSpec kValues[] = {
 /// to, and a cloth that deforms while it lies still shows some error.
 class Slip final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"slip.error", kErrorAcceleration,
+       "distance of the centre of mass's acceleration along the plane from what Coulomb's law "
+       "makes of the normal force that acted, mean over the last second"},
+      {"slip.error.peak", kErrorAcceleration, "the same, largest over the run", false, Window::run},
+      {"slip.distance", kErrorLength,
+       "how far the centre of mass is along the plane from where a block would be that felt the "
+       "same normal forces, at the end",
+       true, Window::end, "distance from Coulomb's law"},
+  };
+  /// Nothing but gravity and one plane that does not turn may act on the cloth.
+  static bool measures(const Scene& scene) {
+    if (scene.colliders.size() != 1 || !scene.pins.empty() || scene.wind) return false;
+    const Collider& collider = scene.colliders[0];
+    return std::holds_alternative<Plane>(collider.shape) && collider.motion.spin.isZero(0) &&
+           collider.motion.path.empty();
+  }
   explicit Slip(const Scene& scene)
       : mass_(scene.mesh.mass),
         normal_(std::get<Plane>(scene.colliders[0].shape).normal),
@@ -38,9 +44,9 @@ class Slip final : public Metric {
         end_(scene) {}
 
   void observe(const Snapshot& m) override {
-    const Vec3 center = mean(m.state.x);
+    const Vec3 center = mean(mass_, m.state.x);
     if (m.step == 0) {
-      velocity_ = block_ = mean(m.state.v);
+      velocity_ = block_ = mean(mass_, m.state.v);
     } else {
       const Vec3 next = (center - center_) / dt_;
       const double press = std::max(0.0, normal_.dot(next - drift(velocity_)));
@@ -70,13 +76,6 @@ class Slip final : public Metric {
 
   Vec3 along(const Vec3& v) const { return v - normal_.dot(v) * normal_; }
 
-  Vec3 mean(const std::vector<Vec3>& vectors) const {
-    Vec3 sum = Vec3::Zero();
-    double total = 0;
-    for (std::size_t i = 0; i < mass_.size(); ++i) sum += mass_[i] * vectors[i], total += mass_[i];
-    return sum / total;
-  }
-
   std::vector<double> mass_;
   Vec3 normal_, plane_velocity_, g_dt_;
   double keep_, friction_, dt_;
@@ -87,22 +86,9 @@ class Slip final : public Metric {
   Summary error_;
 };
 
-/// Nothing but gravity and one plane that does not turn may act on the cloth.
-bool is_a_slope(const Scene& scene) {
-  if (scene.colliders.size() != 1 || !scene.pins.empty() || scene.wind) return false;
-  const Collider& collider = scene.colliders[0];
-  return std::holds_alternative<Plane>(collider.shape) && collider.motion.spin.isZero(0) &&
-         collider.motion.path.empty();
-}
-
 }  // namespace
-}  // namespace taut::metric::slip
 
-TAUT_METRIC(slip) = {.name = "slip",
-                     .summary = "Whether friction on a plane is Coulomb's",
-                     .source = "momentum of the whole cloth against Coulomb's law, step by step",
-                     .values = taut::metric::slip::kValues,
-                     .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-                       if (!taut::metric::slip::is_a_slope(scene)) return nullptr;
-                       return std::make_unique<taut::metric::slip::Slip>(scene);
-                     }};
+TAUT_METRIC(slip, Slip, "Whether friction on a plane is Coulomb's",
+            "momentum of the whole cloth against Coulomb's law, step by step");
+
+}  // namespace taut

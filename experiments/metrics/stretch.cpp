@@ -1,38 +1,11 @@
 #include <array>
 
+#include "core/model/index.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::stretch {
+namespace taut {
 
 namespace {
-
-constexpr ValueSpec kValues[] = {
-    {"stretch.rms", kErrorShare,
-     "strain (d - r)/r of the structural and shear links, RMS over links and the last second",
-     true},
-    {"stretch.max", kErrorShare, "largest stretch of a structural or shear link in the last second",
-     true},
-    {"stretch.p95", kErrorShare,
-     "95th percentile of |strain| of those links, mean of ten moments of the last second"},
-    {"stretch.peak", kErrorShare, "largest stretch of a structural or shear link over the run",
-     false, Window::run},
-    {"compression.max", kErrorShare, "largest shortening of those links in the last second", true},
-    {"compression.peak", kErrorShare, "largest shortening of those links over the run", false,
-     Window::run},
-    {"structural.rms", kErrorShare, "strain of the structural links, RMS over the last second",
-     true},
-    {"structural.max", kErrorShare, "their largest stretch in the last second", true},
-    {"structural.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
-    {"structural.compression", kErrorShare, "their largest shortening in the last second"},
-    {"shear.rms", kErrorShare, "strain of the shear links, RMS over the last second", true},
-    {"shear.max", kErrorShare, "their largest stretch in the last second", true},
-    {"shear.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
-    {"shear.compression", kErrorShare, "their largest shortening in the last second"},
-    {"bend.rms", kShare, "strain of the bend links, RMS over the last second", true},
-    {"bend.max", kShare, "their largest stretch in the last second", true},
-    {"bend.p95", kShare, "95th percentile of their |strain|, mean of ten moments"},
-    {"bend.compression", kShare, "their largest shortening in the last second"},
-};
 
 /// A group of links at one moment.
 struct Strain {
@@ -77,9 +50,46 @@ struct Group {
   double rms() const { return std::sqrt(square.mean()); }
 };
 
+/// The links that a solver can change: not those between two pins.
+std::vector<Link> movable_links(const Scene& scene) {
+  std::vector<Link> links;
+  for (const Link& link : scene.links)
+    if (!is_pinned(scene, link.a) || !is_pinned(scene, link.b)) links.push_back(link);
+  return links;
+}
+
 class Stretch final : public Metric {
  public:
-  Stretch(const Scene& scene, std::vector<Link> links) : links_(std::move(links)), end_(scene) {
+  static constexpr ValueSpec kValues[] = {
+      {"stretch.rms", kErrorShare,
+       "strain (d - r)/r of the structural and shear links, RMS over links and the last second",
+       true},
+      {"stretch.max", kErrorShare,
+       "largest stretch of a structural or shear link in the last second", true},
+      {"stretch.p95", kErrorShare,
+       "95th percentile of |strain| of those links, mean of ten moments of the last second"},
+      {"stretch.peak", kErrorShare, "largest stretch of a structural or shear link over the run",
+       false, Window::run},
+      {"compression.max", kErrorShare, "largest shortening of those links in the last second",
+       true},
+      {"compression.peak", kErrorShare, "largest shortening of those links over the run", false,
+       Window::run},
+      {"structural.rms", kErrorShare, "strain of the structural links, RMS over the last second",
+       true},
+      {"structural.max", kErrorShare, "their largest stretch in the last second", true},
+      {"structural.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
+      {"structural.compression", kErrorShare, "their largest shortening in the last second"},
+      {"shear.rms", kErrorShare, "strain of the shear links, RMS over the last second", true},
+      {"shear.max", kErrorShare, "their largest stretch in the last second", true},
+      {"shear.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
+      {"shear.compression", kErrorShare, "their largest shortening in the last second"},
+      {"bend.rms", kShare, "strain of the bend links, RMS over the last second", true},
+      {"bend.max", kShare, "their largest stretch in the last second", true},
+      {"bend.p95", kShare, "95th percentile of their |strain|, mean of ten moments"},
+      {"bend.compression", kShare, "their largest shortening in the last second"},
+  };
+  static bool measures(const Scene& scene) { return !movable_links(scene).empty(); }
+  explicit Stretch(const Scene& scene) : links_(movable_links(scene)), end_(scene) {
     for (const Link& link : links_) family(link).exists = true;
     in_plane_.exists = families_[0].exists || families_[1].exists;
   }
@@ -126,8 +136,8 @@ class Stretch final : public Metric {
  private:
   static std::size_t index(const Link& link) { return static_cast<std::size_t>(link.family); }
   static double strain(const Link& l, const State& state) {
-    const Vec3& a = state.x[static_cast<std::size_t>(l.a)];
-    const Vec3& b = state.x[static_cast<std::size_t>(l.b)];
+    const Vec3& a = state.x[to_index(l.a)];
+    const Vec3& b = state.x[to_index(l.b)];
     return ((b - a).norm() - l.rest) / l.rest;
   }
   /// A bend link shortens when the cloth folds, which is no strain of the cloth: left out.
@@ -144,27 +154,9 @@ class Stretch final : public Metric {
   Group in_plane_;
 };
 
-/// The links that a solver can change: not those between two pins.
-std::vector<Link> movable_links(const Scene& scene) {
-  const auto pinned = [&](int i) {
-    return std::binary_search(scene.pins.begin(), scene.pins.end(), i);
-  };
-  std::vector<Link> links;
-  for (const Link& link : scene.links)
-    if (!pinned(link.a) || !pinned(link.b)) links.push_back(link);
-  return links;
-}
-
 }  // namespace
-}  // namespace taut::metric::stretch
 
-TAUT_METRIC(stretch) = {.name = "stretch",
-                        .summary = "How far the links are from their rest lengths, by family",
-                        .source = "engineering strain (d - r)/r; links between two pins left out",
-                        .values = taut::metric::stretch::kValues,
-                        .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-                          auto links = taut::metric::stretch::movable_links(scene);
-                          if (links.empty()) return nullptr;
-                          return std::make_unique<taut::metric::stretch::Stretch>(scene,
-                                                                                  std::move(links));
-                        }};
+TAUT_METRIC(stretch, Stretch, "How far the links are from their rest lengths, by family",
+            "engineering strain (d - r)/r; links between two pins left out");
+
+}  // namespace taut

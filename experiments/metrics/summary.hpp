@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/model/index.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -57,5 +58,34 @@ class Summary {
   int count_ = 0;
   double max_ = kNone, peak_ = kNone;
 };
+
+/// The vertices that a solver moves, ascending.
+inline std::vector<std::size_t> free_vertices(const Scene& scene) {
+  std::vector<std::size_t> free;
+  for (int i = 0; i < scene.mesh.size(); ++i)
+    if (!is_pinned(scene, i)) free.push_back(to_index(i));
+  return free;
+}
+
+/// Mean of |v|^2 over the given vertices [m^2/s^2].
+inline double mean_square_speed(const State& state, const std::vector<std::size_t>& vertices) {
+  double sum = 0;
+  for (const std::size_t i : vertices) sum += state.v[i].squaredNorm();
+  return sum / static_cast<double>(vertices.size());
+}
+
+/// Mean of a quantity of the vertices, weighted by their masses.
+inline Vec3 mean(const std::vector<double>& mass, const std::vector<Vec3>& vectors) {
+  Vec3 sum = Vec3::Zero();
+  double total = 0;
+  for (std::size_t i = 0; i < mass.size(); ++i) sum += mass[i] * vectors[i], total += mass[i];
+  return sum / total;
+}
+
+/// Whether there is a ball or a box: a plane has no other side.
+inline bool has_solid(const Scene& scene) {
+  return std::ranges::any_of(
+      scene.colliders, [](const Collider& c) { return !std::holds_alternative<Plane>(c.shape); });
+}
 
 }  // namespace taut

@@ -1,24 +1,9 @@
-#include <array>
 
-#include "experiments/metrics/free_vertices.hpp"
 #include "experiments/metrics/summary.hpp"
 
-namespace taut::metric::tunnelling {
+namespace taut {
 
 namespace {
-
-constexpr ValueSpec kValues[] = {
-    {"tunnelling.count", kErrorCount,
-     "free vertices that end on the other side of a ball or box: in through one side and out "
-     "through the opposite one, even within one substep; their path is straight from substep to "
-     "substep",
-     true, Window::end, "vertices on the other side"},
-    {"tunnelling.share", kErrorShare, "the same as a share of the free vertices", false,
-     Window::end},
-    {"tunnelling.events", kErrorCount,
-     "passages through a ball or box over the run, returns included", false, Window::run,
-     "passages through a collider"},
-};
 
 /// Where a straight path enters and leaves a solid, as outward unit normals.
 struct Passage {
@@ -131,6 +116,22 @@ class Watch {
 
 class Tunnelling final : public Metric {
  public:
+  static constexpr ValueSpec kValues[] = {
+      {"tunnelling.count", kErrorCount,
+       "free vertices that end on the other side of a ball or box: in through one side and out "
+       "through the opposite one, even within one substep; their path is straight from substep to "
+       "substep",
+       true, Window::end, "vertices on the other side"},
+      {"tunnelling.share", kErrorShare, "the same as a share of the free vertices", false,
+       Window::end},
+      {"tunnelling.events", kErrorCount,
+       "passages through a ball or box over the run, returns included", false, Window::run,
+       "passages through a collider"},
+  };
+  static bool measures(const Scene& scene) {
+    return has_solid(scene) && !free_vertices(scene).empty();
+  }
+  static constexpr bool kFollowsPath = true;
   explicit Tunnelling(const Scene& scene) : free_(free_vertices(scene)) {
     for (const Collider& c : scene.colliders)
       if (!std::holds_alternative<Plane>(c.shape)) watches_.emplace_back(c, free_.size());
@@ -170,20 +171,8 @@ class Tunnelling final : public Metric {
 };
 
 }  // namespace
-}  // namespace taut::metric::tunnelling
 
-TAUT_METRIC(tunnelling) = {
-    .name = "tunnelling",
-    .summary = "Vertices that pass through a ball or box",
-    .source = "swept side labels in the collider's frame; a plane's solid has no other side",
-    .values = taut::metric::tunnelling::kValues,
-    .make = [](const taut::Scene& scene) -> std::unique_ptr<taut::Metric> {
-      const auto solid = [](const taut::Collider& c) {
-        return !std::holds_alternative<taut::Plane>(c.shape);
-      };
-      if (std::none_of(scene.colliders.begin(), scene.colliders.end(), solid) ||
-          taut::free_vertices(scene).empty())
-        return nullptr;
-      return std::make_unique<taut::metric::tunnelling::Tunnelling>(scene);
-    },
-    .follows_path = true};
+TAUT_METRIC(tunnelling, Tunnelling, "Vertices that pass through a ball or box",
+            "swept side labels in the collider's frame; a plane's solid has no other side");
+
+}  // namespace taut

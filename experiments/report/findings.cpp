@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
-#include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -12,32 +12,32 @@ namespace taut::report {
 
 namespace {
 
-double number(const Json& json) { return json.is_number() ? json.get<double>() : std::nan(""); }
-
 std::string with_unit(double value, const std::string& unit, int digits) {
   return significant(value, digits) + (unit == "1" ? "" : " " + unit);
 }
 
 /// How far a finding is on the way to its tolerance; 1: at it.
-double strain_of(const Json& finding) {
-  const double off = std::abs(number(finding.at("measured")) - number(finding.at("expected")));
-  const double tolerance = number(finding.at("tolerance"));
+double share_of_tolerance(const JsonReader& finding) {
+  const double off =
+      std::abs(finding.at("measured").number_or_null() - finding.at("expected").number_or_null());
+  const double tolerance = finding.at("tolerance").number_or_null();
   return tolerance > 0 ? off / tolerance : off;
 }
 
-TruthRow row_of(const Json& truth, const Json& finding) {
-  const std::string unit = finding.at("unit"), verdict = finding.at("verdict");
-  const double expected = number(finding.at("expected")), slack = number(finding.at("tolerance"));
-  TruthRow row{truth.at("section_title"),
-               truth.at("statement"),
-               truth.at("source"),
-               finding.at("subject"),
+TruthRow row_of(const JsonReader& truth, const JsonReader& finding) {
+  const std::string unit = finding.at("unit").text(), verdict = finding.at("verdict").text();
+  const double expected = finding.at("expected").number_or_null(),
+               slack = finding.at("tolerance").number_or_null();
+  TruthRow row{truth.at("section_title").text(),
+               truth.at("statement").text(),
+               truth.at("source").text(),
+               finding.at("subject").text(),
                "",
                "",
                verdict,
-               finding.at("why")};
+               finding.at("why").text()};
   if (verdict == "not claimed") return row;
-  const double measured = number(finding.at("measured"));
+  const double measured = finding.at("measured").number_or_null();
   if (expected == 0) {
     row.expected = "at most " + with_unit(slack, unit, 2),
     row.measured = with_unit(measured, unit, 2);
@@ -55,16 +55,17 @@ TruthRow row_of(const Json& truth, const Json& finding) {
   return row;
 }
 
-/// Nothing if there is no such file or another program wrote it. Throws InputError if it is
-/// damaged.
-std::optional<Json> document(const std::filesystem::path& file, const std::string& schema,
-                             std::string_view program) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  Json json = parse_json_of(read_text(file), file.string());
-  const JsonReader root(json, file.string());
-  root.require_schema(schema);
-  if (root.at("program").text() != program) return std::nullopt;
-  return json;
+/// What `read` makes of a file; nothing if there is none or another program wrote it. Throws
+/// InputError if it is damaged.
+template <class Read>
+auto read_found(const std::filesystem::path& file, const char* schema, std::string_view program,
+                Read read) {
+  using Found = std::optional<std::invoke_result_t<Read, JsonReader>>;
+  if (!std::filesystem::exists(file)) return Found();
+  return read_json(read_text(file), file.string(), [&](const JsonReader& root) {
+    root.require_schema(schema);
+    return root.at("program").text() == program ? Found(read(root)) : Found();
+  });
 }
 
 /// Files below `results`/`folder` that end so, sorted.
@@ -90,8 +91,10 @@ std::vector<RequiredModel> stored_requirements(const std::filesystem::path& resu
                                                std::string_view program) {
   std::vector<RequiredModel> all;
   for (const auto& file : files_below(results / "require", "found.json"))
-    if (const auto json = document(file, "taut-require-1", program))
-      all.push_back(required_of(JsonReader(*json, file.string()).at("summary")));
+    if (auto found = read_found(file, "taut-require-1", program, [](const JsonReader& root) {
+          return required_of(root.at("summary"));
+        }))
+      all.push_back(std::move(*found));
   return all;
 }
 
@@ -106,47 +109,39 @@ std::vector<KnobFrontier> stored_frontiers(const std::filesystem::path& results,
 
 std::optional<Truths> stored_truths(const std::filesystem::path& results,
                                     std::string_view program) {
-  const std::filesystem::path file = results / "verify.json";
-  const auto json = document(file, "taut-truths-1", program);
-  if (!json) return std::nullopt;
-  Truths truths;
-  try {
-    for (const Json& truth : json->at("truths")) {
-      const Json* nearest = nullptr;
+  return read_found(results / "verify.json", "taut-truths-1", program, [](const JsonReader& root) {
+    Truths truths;
+    for (const JsonReader& truth : root.at("truths").items()) {
+      std::optional<JsonReader> nearest;
       std::vector<TruthRow> apart;
-      for (const Json& finding : truth.at("findings")) {
-        ++truths.findings, ++truths.verdicts[finding.at("verdict").get<std::string>()];
-        if (finding.at("verdict") != "passed")
+      for (const JsonReader& finding : truth.at("findings").items()) {
+        const std::string verdict = finding.at("verdict").text();
+        ++truths.findings, ++truths.verdicts[verdict];
+        if (verdict != "passed")
           apart.push_back(row_of(truth, finding));
-        else if (!nearest || strain_of(finding) > strain_of(*nearest))
-          nearest = &finding;
+        else if (!nearest || share_of_tolerance(finding) > share_of_tolerance(*nearest))
+          nearest = finding;
       }
       ++truths.truths;
       if (nearest) truths.rows.push_back(row_of(truth, *nearest));
       for (TruthRow& row : apart) truths.rows.push_back(std::move(row));
     }
-    for (const Json& claim : json->at("claims"))
-      truths.claims[claim.at("claim")] = {claim.at("verdict"), claim.at("figure")};
-  } catch (const Json::exception& error) {
-    throw InputError(file.string() + ": " + error.what());
-  }
-  return truths;
+    for (const JsonReader& claim : root.at("claims").items())
+      truths.claims[claim.at("claim").text()] = {claim.at("verdict").text(),
+                                                 claim.at("figure").text()};
+    return truths;
+  });
 }
 
 std::optional<Regressions> stored_regressions(const std::filesystem::path& results,
                                               std::string_view program) {
-  const std::filesystem::path file = results / "check.json";
-  const auto json = document(file, "taut-check-1", program);
-  if (!json) return std::nullopt;
-  Regressions regressions;
-  try {
-    regressions.cases = json->at("cases"), regressions.values = json->at("values");
-    for (const Json& f : json->at("findings"))
-      regressions.rows.push_back({f.at("study"), f.at("case"), f.at("change")});
-  } catch (const Json::exception& error) {
-    throw InputError(file.string() + ": " + error.what());
-  }
-  return regressions;
+  return read_found(results / "check.json", "taut-check-1", program, [](const JsonReader& root) {
+    Regressions regressions{root.at("cases").integer(), root.at("values").integer(), {}};
+    for (const JsonReader& f : root.at("findings").items())
+      regressions.rows.push_back(
+          {f.at("study").text(), f.at("case").text(), f.at("change").text()});
+    return regressions;
+  });
 }
 
 }  // namespace taut::report

@@ -36,8 +36,8 @@ struct StudyResult {
 /// A study over two settings: how its cases end.
 struct MapResult {
   std::string study, question;
-  std::string x, y;  ///< names that value_of() knows
-  std::vector<Record> records;
+  std::string x, y;             ///< names that value_of() knows
+  std::vector<Record> records;  ///< empty: those of the study of that name
 };
 
 struct SolverInfo {

@@ -15,7 +15,11 @@ namespace {
 std::string for_script(const std::string& json) {
   std::string out;
   out.reserve(json.size());
-  for (const char c : json) out += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  for (const char c : json)
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
   return out;
 }
 

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/curves.hpp"
-#include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/claims/rivals.hpp"
-#include "experiments/study/missing.hpp"
+#include "experiments/study/session.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {
@@ -54,13 +55,27 @@ std::vector<TimeSeries> series_of(const QuotedScene& quoted, const Rivals& rival
   return all;
 }
 
-/// The cost of those cases that were also timed, as further values of their records.
-void add_costs(const BenchSession& bench, std::vector<Record>& records) {
-  std::map<std::string, Record> timed;
-  for (const Record& r : bench.records()) timed[r.key] = r;
-  for (Record& r : records)
-    if (const auto at = timed.find(r.key); at != timed.end())
-      for (const auto& [name, value] : at->second.values) r.values.try_emplace(name, value);
+/// Without what few cases need (complete_quoted), or none.
+Record slim(Record r) {
+  r.digest = std::string(), r.log = std::string();
+  r.step_cost = std::vector<PassCost>();  // `= {}` would keep its memory
+  std::erase_if(r.resolved_settings,
+                [](const auto& line) { return line.first != "floor of strain"; });
+  r.resolved_settings.shrink_to_fit();
+  std::erase_if(r.values, [](const auto& value) { return !std::isfinite(value.second); });
+  return r;
+}
+
+/// Gives those cases back their passes and settings whose settings the page shows side by side.
+void complete_quoted(ReportInput& input, const Store& store) {
+  std::set<const Record*> quoted;
+  for (const QuotedScene& scene : rivals_of(input).scenes)
+    quoted.insert(scene.cases.begin(), scene.cases.end());
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records)
+      if (quoted.contains(&r))
+        if (const std::optional<Record> whole = store.find(r.key))
+          r.step_cost = whole->step_cost, r.resolved_settings = whole->resolved_settings;
 }
 
 }  // namespace
@@ -97,7 +112,7 @@ namespace {
 std::vector<Record> all_records(const Store& store) {
   std::vector<Record> records;
   for (const std::string& key : store.keys())
-    if (auto record = store.find(key)) records.push_back(std::move(*record));
+    if (auto record = store.find(key)) records.push_back(slim(std::move(*record)));
   return records;
 }
 
@@ -112,10 +127,9 @@ Names parameters_of(const std::vector<Record>& records) {
 
 /// A case without the parameters that only one of the folders knows; "" where two share a name.
 template <class T, class RecordOf>
-std::map<std::string, const T*> by_question(const std::vector<T>& all, const Names& known,
-                                            RecordOf record_of) {
-  std::map<std::string, const T*> index;
-  for (const T& one : all) {
+std::map<std::string, T*> by_question(std::vector<T>& all, const Names& known, RecordOf record_of) {
+  std::map<std::string, T*> index;
+  for (T& one : all) {
     const Record& r = record_of(one);
     std::string name = r.scene + "\n" + r.solver;
     for (const std::string& text : r.spec.overrides) name += "\n" + text;
@@ -149,7 +163,7 @@ std::map<std::string, std::vector<BenchedCase>> all_timed(const Store& store, do
 
 Differences stored_differences(const Store& a, const Store& b) {
   Differences found{a.root().string(), b.root().string(), {}, {}, 0, 0, 0};
-  const std::vector<Record> in_a = all_records(a), in_b = all_records(b);
+  std::vector<Record> in_a = all_records(a), in_b = all_records(b);
   Names names = parameters_of(in_a);
   const Names other = parameters_of(in_b);
   for (auto& [solver, own] : names)
@@ -160,11 +174,11 @@ Differences stored_differences(const Store& a, const Store& b) {
   const auto of_a = by_question(in_a, names, itself), of_b = by_question(in_b, names, itself);
   for (const auto& [name, record] : of_a)
     if (const auto at = of_b.find(name); record && at != of_b.end() && at->second)
-      found.pairs.emplace_back(*record, *at->second);
+      found.pairs.emplace_back(std::move(*record), std::move(*at->second));
   found.only_a = in_a.size() - found.pairs.size(), found.only_b = in_b.size() - found.pairs.size();
-  const auto timed_a = all_timed(a, found.noise), timed_b = all_timed(b, found.noise);
+  auto timed_a = all_timed(a, found.noise), timed_b = all_timed(b, found.noise);
   const auto its_record = [](const BenchedCase& c) -> const Record& { return c.record; };
-  for (const auto& [host, in_b_here] : timed_b) {
+  for (auto& [host, in_b_here] : timed_b) {
     const auto same = timed_a.find(host);
     if (same == timed_a.end()) continue;  // times of two hosts are not compared
     const auto costs = by_question(in_b_here, names, its_record);
@@ -194,6 +208,7 @@ ReportInput stored_anywhere(const std::vector<Study>& studies, const Store& stor
   }
   if (input.studies.empty() && !all.empty())
     input.studies.push_back({"stored", "All cases of " + store.root().string(), all, 0, {}});
+  complete_quoted(input, store);
   return input;
 }
 
@@ -206,8 +221,21 @@ std::optional<double> theory_slope(const Scene& scene) {
   return -1;
 }
 
-std::vector<MapResult> stored_maps(const std::vector<Study>& studies, const Store& store) {
-  std::vector<MapResult> maps;
+namespace {
+
+/// Calls `visit` for each case of the plan with its record, if the store has one.
+void each_record(const Study& study, const Store& store,
+                 const std::function<void(const Case&, std::optional<Record>)>& visit) {
+  each_case(study, [&](Case&& one) {
+    std::optional<Record> record = store.find(one);
+    if (record) record = slim(std::move(*record));
+    visit(one, std::move(record));
+  });
+}
+
+}  // namespace
+
+void add_stored_maps(ReportInput& input, const std::vector<Study>& studies, const Store& store) {
   for (const Study& study : studies) {
     const auto plot = std::ranges::find(study.plots, "stability", &Plot::kind);
     if (plot == study.plots.end() || study.axes.size() != 2) continue;
@@ -215,18 +243,23 @@ std::vector<MapResult> stored_maps(const std::vector<Study>& studies, const Stor
       const auto option = plot->options.find(name);
       return option == plot->options.end() ? std::string(otherwise) : option->second;
     };
-    MapResult map{study.name, study.question, axis("x", "dt"), axis("y", "iterations"),
-                  collect(study, store).records};
-    if (!map.records.empty()) maps.push_back(std::move(map));
+    MapResult map{study.name, study.question, axis("x", "dt"), axis("y", "iterations"), {}};
+    const auto held = std::ranges::find(input.studies, study.name, &StudyResult::name);
+    if (held == input.studies.end())
+      each_record(study, store, [&](const Case&, std::optional<Record> record) {
+        if (record) map.records.push_back(std::move(*record));
+      });
+    if (held != input.studies.end() ? !held->records.empty() : !map.records.empty())
+      input.maps.push_back(std::move(map));
   }
-  return maps;
 }
 
-std::vector<TimeSeries> stored_series(std::span<const Record> records, const std::string& value,
+std::vector<TimeSeries> stored_series(const Records& records, const std::string& value,
                                       const Store& store) {
   std::vector<TimeSeries> all;
   const SettingLabels labels(records);
-  for (const Record& record : records) {
+  for (const Record* r : records) {
+    const Record& record = *r;
     const std::string knobs = labels.of(record);
     const std::string label = solver_title(record.solver) + (knobs.empty() ? "" : " " + knobs);
     TimeSeries series = column(
@@ -259,19 +292,24 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
   }
   for (const Missing& one : still_missing(store))
     input.left_out.emplace_back(one.file.string(), one.sentence());
+  std::map<std::string, std::map<std::string, double>> timed;  // values of the bench, by key
+  if (input.bench)
+    for (const Record& r : input.bench->records()) timed[r.key] = r.values;
   for (const Study& study : studies) {
-    StudyRecords known = collect(study, store);
-    if (input.bench) add_costs(*input.bench, known.records);
-    StudyResult result{
-        study.name, study.question, std::move(known.records), known.cases.size(), {}};
-    for (const Case& one : known.cases) {
-      if (!seen.insert(one.scene->name).second) continue;
-      input.scenes.push_back({one.scene->name, one.scene->summary});
-    }
-    for (const Case& one : known.cases)
+    StudyResult result{study.name, study.question, {}, 0, {}};
+    each_record(study, store, [&](const Case& one, std::optional<Record> record) {
+      ++result.planned;
+      if (seen.insert(one.scene->name).second)
+        input.scenes.push_back({one.scene->name, one.scene->summary});
       if (const auto slope = theory_slope(*one.scene)) result.slopes[one.scene->name] = *slope;
+      if (!record) return;
+      if (const auto at = timed.find(record->key); at != timed.end())
+        record->values.insert(at->second.begin(), at->second.end());
+      result.records.push_back(std::move(*record));
+    });
     input.studies.push_back(std::move(result));
   }
+  complete_quoted(input, store);
   const Rivals rivals = rivals_of(input);
   for (const QuotedScene& quoted : rivals.scenes)
     for (TimeSeries& series : series_of(quoted, rivals, store))

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "experiments/report/chart/curves.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/study/campaign.hpp"
 
@@ -13,23 +13,23 @@ namespace taut::report {
 
 /// What the store has of these studies, as the report wants it: records, scenes with their
 /// summaries, the theory's exponents, costs if they were timed, values over time of one case per
-/// scene and solver. Throws InputError as load_scene() does.
+/// scene and solver. Of a record is kept what a report needs: values that are numbers, and of the
+/// cases that are quoted passes and resolved settings. Throws InputError as load_scene() does.
 ReportInput stored_results(const std::vector<Study>&, const Store&);
 
 /// What a scene shows over time, its own quantities and stretch, as far as the table has it.
 std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of);
 
 /// A value over time of those cases of which the store has it, named by what sets them apart.
-std::vector<TimeSeries> stored_series(std::span<const Record>, const std::string& value,
-                                      const Store&);
+std::vector<TimeSeries> stored_series(const Records&, const std::string& value, const Store&);
 
 /// What `taut bench STUDY` left in this file: the cases that this build would run alike,
 /// in scenes that have any; nullopt: none. Throws InputError if the file is damaged.
 std::optional<BenchSession> stored_bench(const std::filesystem::path& file);
 
-/// The maps among these studies (two sweeps and a plot of kind "stability") of which the store has
-/// something.
-std::vector<MapResult> stored_maps(const std::vector<Study>&, const Store&);
+/// Adds the maps among these studies (two sweeps and a plot of kind "stability") of which the store
+/// has something; what the input holds of a study is not read again.
+void add_stored_maps(ReportInput&, const std::vector<Study>&, const Store&);
 
 /// What two results folders have, whichever builds made them, case by case: of the same scene, its
 /// settings and solver, with the same values of those parameters that both know.

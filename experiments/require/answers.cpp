@@ -13,13 +13,6 @@ namespace taut {
 
 namespace {
 
-const MetricEntry* metric_of(const std::string& value) {
-  for (const MetricEntry* metric : metrics())
-    for (const ValueSpec& spec : metric->values)
-      if (spec.name == value) return metric;
-  return nullptr;
-}
-
 bool same(const Unit& unit, const Unit& other) {
   return unit.si == other.si && unit.shown == other.shown;
 }
@@ -82,7 +75,7 @@ double apart(const Scene& scene, const std::vector<Vec3>& x, const Scene& other,
 /// A metric's value on a motion, as the full model's scene has it measured.
 double measured(const KeptAnswer& answer, const Scene& scene,
                 const std::vector<TrajectoryReader::Frame>& frames) {
-  const MetricEntry* entry = metric_of(answer.name);
+  const auto [entry, value] = find_value(answer.name);
   const auto metric = entry->make(scene);
   if (!metric) return std::nan("");
   for (const TrajectoryReader::Frame& frame : frames) {
@@ -92,18 +85,14 @@ double measured(const KeptAnswer& answer, const Scene& scene,
     metric->observe({scene.steps - static_cast<int>(before_end), frame.t, state});
   }
   const std::vector<double> values = metric->finish();
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (entry->values[i].name == answer.name) return values[i];
-  return std::nan("");
+  return values[static_cast<std::size_t>(value - entry->values.data())];
 }
 
 }  // namespace
 
 Unit unit_of(const KeptAnswer& answer) {
-  if (const MetricEntry* metric = metric_of(answer.name))
-    for (const ValueSpec& spec : metric->values)
-      if (spec.name == answer.name) return spec.unit;
-  return kLength;
+  const ValueSpec* value = find_value(answer.name).second;
+  return value ? value->unit : kLength;
 }
 
 std::string text(const KeptAnswer& answer, double value) {
@@ -116,10 +105,9 @@ std::string text(const KeptAnswer& answer, double value) {
 KeptAnswer parse_answer(const std::string& asked, const Observation& full) {
   const auto colon = asked.find(':');
   KeptAnswer answer{asked.substr(0, colon), 0};
-  if (!answer.is_shape() && !metric_of(answer.name)) {
-    std::vector<std::string> names{kShapeAnswer};
-    for (const MetricEntry* metric : metrics())
-      for (const ValueSpec& spec : metric->values) names.emplace_back(spec.name);
+  if (!answer.is_shape() && !find_value(answer.name).second) {
+    std::vector<std::string> names = value_names();
+    names.emplace_back(kShapeAnswer);
     throw InputError("--keep " + asked + ": unknown metric value '" + answer.name + "'" +
                      suggestion(answer.name, names));
   }

@@ -52,6 +52,10 @@ Value& Draft::section(const std::string& name) {
   return slot(scene_.root, name);
 }
 
+void Draft::set(const std::string& name, const std::string& key, const std::string& toml) {
+  set(name, key, toml_value(toml));
+}
+
 void Draft::set(const std::string& name, const std::string& key, Value value) {
   slot(section(name), key) = std::move(value);
 }
@@ -93,8 +97,7 @@ CaseSpec Draft::write(const fs::path& folder, const std::string& name,
   Value root = without_empty(scene_.root);
   if (const Value* mesh = find("cloth", "mesh"); mesh && mesh->is_string()) {
     const fs::path there = fs::absolute(file_.parent_path() / mesh->string);
-    slot(slot(root, "cloth"), "mesh") =
-        text_value(fs::proximate(there, fs::absolute(folder)).string());
+    slot(slot(root, "cloth"), "mesh").string = fs::proximate(there, fs::absolute(folder)).string();
   }
   make_folder(folder);
   const fs::path file = folder / (name + ".toml");
@@ -102,32 +105,8 @@ CaseSpec Draft::write(const fs::path& folder, const std::string& name,
   return {file.string(), {}, solver};
 }
 
-Value number_value(double number) {
-  Value value;
-  value.kind = Value::Kind::real;
-  value.number = number;
-  return value;
-}
-
-Value flag_value(bool flag) {
-  Value value;
-  value.kind = Value::Kind::boolean;
-  value.boolean = flag;
-  return value;
-}
-
-Value text_value(std::string text) {
-  Value value;
-  value.kind = Value::Kind::string;
-  value.string = std::move(text);
-  return value;
-}
-
-Value array_value(const std::vector<double>& numbers) {
-  Value value;
-  value.kind = Value::Kind::array;
-  for (const double number : numbers) value.items.push_back(number_value(number));
-  return value;
+Value toml_value(const std::string& toml) {
+  return parse_document("a value", "value = " + toml, {}).root.items.front();
 }
 
 }  // namespace taut

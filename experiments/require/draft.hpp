@@ -17,7 +17,8 @@ class Draft {
   /// Throws InputError as make_case() does.
   explicit Draft(const CaseSpec&);
 
-  /// Replaces or adds [section] key of the scene.
+  /// Replaces or adds [section] key of the scene; the value as TOML, or as it was read.
+  void set(const std::string& section, const std::string& key, const std::string& toml);
   void set(const std::string& section, const std::string& key, Value);
   /// Takes away [section] or its key; what is not there stays away.
   void remove(const std::string& section);
@@ -50,11 +51,8 @@ class Draft {
 /// Takes a key out of a table; one that it does not have is none the less gone.
 void erase_key(Value& table, const std::string& key);
 
-/// Values for Draft::set.
-Value number_value(double);
-Value flag_value(bool);
-Value text_value(std::string);
-Value array_value(const std::vector<double>&);
+/// The value that a text is in TOML. Throws InputError.
+Value toml_value(const std::string& toml);
 
 /// One step towards less: what it does, in words, and to a draft.
 struct Reduction {
@@ -69,9 +67,18 @@ struct Effect {
 };
 
 /// What there is to take away or to coarsen in a case: bend and shear links, wind and its law,
-/// damping, friction, each collider, self-collision, contact of faces, swept tests, thickness,
-/// tethers, levels, substeps, sweeps, precision, resolution, duration. What the case does not have
-/// is not listed.
+/// damping, friction, each collider, self-collision, contact of faces, continuous detection,
+/// thickness, tethers, levels, substeps, sweeps, precision, resolution, duration. What the case
+/// does not have is not listed.
 std::vector<Effect> effects_of(const Case&);
+
+/// The same simulation with differences that mean nothing: what it moves by under them is noise.
+struct Perturbations {
+  std::vector<CaseSpec> rounding;  ///< one free vertex starts off by 2^-23 of the cloth's extent
+  std::vector<CaseSpec> order;     ///< the links in another order; empty: the solver offers none
+};
+
+/// Scenes that are made for it are written to `folder`. Throws InputError if they cannot be.
+Perturbations perturbations(const Case&, const std::filesystem::path& folder);
 
 }  // namespace taut

@@ -29,15 +29,10 @@ bool has_family(const Scene& scene, Family family) {
   return std::ranges::any_of(scene.links, [&](const Link& l) { return l.family == family; });
 }
 
-bool has_parameter(const SolverChoice& choice, std::string_view name) {
-  return std::ranges::any_of(choice.entry->params,
-                             [&](const ParamSpec& spec) { return spec.name == name; });
-}
-
 void add_links_and_forces(const Case& one, Effects& effects) {
   const Scene& scene = *one.scene;
   const auto no_links = [](const char* family) {
-    return [family](Draft& draft) { draft.set("links", family, flag_value(false)); };
+    return [family](Draft& draft) { draft.set("links", family, "false"); };
   };
   if (has_family(scene, Family::bend)) effects.gone("bend links", no_links("bend"));
   if (has_family(scene, Family::shear)) effects.gone("shear links", no_links("shear"));
@@ -46,7 +41,7 @@ void add_links_and_forces(const Case& one, Effects& effects) {
     if (scene.wind->law == Wind::Law::relative)
       effects.add("law of the wind", {{"relative -> literal", [](Draft& draft) {
                                          if (draft.has("wind"))
-                                           draft.set("wind", "law", text_value("literal"));
+                                           draft.set("wind", "law", "'literal'");
                                        }}});
   }
   if (scene.damping > 0)
@@ -71,25 +66,23 @@ void add_contact(const Case& one, Effects& effects) {
     effects.gone("thickness", [](Draft& draft) { draft.remove("cloth", "thickness"); });
 }
 
-void add_choice(const Case& one, Effects& effects, const std::string& name,
-                const std::string& parameter, const std::string& from, const std::string& to) {
-  if (!has_parameter(one.choice, parameter) || one.choice.params.value(parameter) != from) return;
-  effects.add(name,
-              {{from + " -> " + to, [=](Draft& draft) { draft.set_parameter(parameter, to); }}});
-}
-
-/// A whole number, halved until it is 1.
-void add_count(const Case& one, Effects& effects, const std::string& name,
-               const std::string& parameter) {
-  if (!has_parameter(one.choice, parameter)) return;
-  const int from = one.choice.params.integer(parameter);
-  std::vector<Reduction> halves;
-  for (int n = from; n > 1;) {
-    n = (n + 1) / 2;
-    halves.push_back({std::to_string(from) + " -> " + std::to_string(n),
-                      [=](Draft& draft) { draft.set_parameter(parameter, std::to_string(n)); }});
-  }
-  effects.add(name, std::move(halves));
+/// A choice with its cheaper value; a whole number is halved until it is 1.
+void add_parameter(const Case& one, Effects& effects, const OptionalEffect& effect) {
+  const std::string parameter(effect.parameter), to(effect.to);
+  const auto spec = std::ranges::find(one.choice.entry->params, parameter, &ParamSpec::name);
+  if (spec == one.choice.entry->params.end()) return;
+  const std::string from(one.choice.params.value(parameter));
+  std::vector<Reduction> reductions;
+  const auto add = [&](const std::string& value) {
+    reductions.push_back({from + " -> " + value, [parameter, value](Draft& draft) {
+                            draft.set_parameter(parameter, value);
+                          }});
+  };
+  if (spec->kind == ParamSpec::Kind::integer)
+    for (int n = std::stoi(from); n > 1;) add(std::to_string(n = (n + 1) / 2));
+  else if (from == effect.from)
+    add(to);
+  effects.add(std::string(effect.name), std::move(reductions));
 }
 
 void add_sizes(const Case& one, Effects& effects) {
@@ -104,9 +97,8 @@ void add_sizes(const Case& one, Effects& effects) {
                     (nv >= 2 || grid.nv == 1);
          ++k, nu = halved(nu), nv = halved(nv))
       coarser.push_back({text(grid.nu, grid.nv) + " -> " + text(nu, nv), [=](Draft& draft) {
-                           draft.set(
-                               "cloth", "grid",
-                               array_value({static_cast<double>(nu), static_cast<double>(nv)}));
+                           draft.set("cloth", "grid",
+                                     "[" + std::to_string(nu) + ", " + std::to_string(nv) + "]");
                          }});
     effects.add("resolution", std::move(coarser));
   }
@@ -114,9 +106,8 @@ void add_sizes(const Case& one, Effects& effects) {
   for (const int part : {2, 4, 8}) {
     const double seconds = scene.duration() / part;
     if (seconds < scene.dt) break;
-    shorter.push_back(
-        {shortest(scene.duration()) + " s -> " + shortest(seconds) + " s",
-         [=](Draft& draft) { draft.set("time", "duration", number_value(seconds)); }});
+    shorter.push_back({shortest(scene.duration()) + " s -> " + shortest(seconds) + " s",
+                       [=](Draft& draft) { draft.set("time", "duration", shortest(seconds)); }});
   }
   effects.add("duration", std::move(shorter));
 }
@@ -127,15 +118,12 @@ std::vector<Effect> effects_of(const Case& one) {
   Effects effects;
   add_links_and_forces(one, effects);
   add_contact(one, effects);
-  if (!one.scene->colliders.empty()) {
-    add_choice(one, effects, "contact of faces", "faces", "on", "off");
-    add_choice(one, effects, "swept tests", "contact", "continuous", "discrete");
-  }
-  add_choice(one, effects, "tethers", "tethers", "on", "off");
-  add_count(one, effects, "levels", "levels");
-  add_count(one, effects, "substeps", "substeps");
-  add_count(one, effects, "sweeps", "iterations");
-  add_choice(one, effects, "precision", "precision", "double", "float");
+  const SolverEntry& solver = *one.choice.entry;
+  for (const OptionalEffect& effect : solver.optional_effects)
+    if (!effect.of_contact || !one.scene->colliders.empty()) add_parameter(one, effects, effect);
+  add_parameter(one, effects, {"substeps", solver.knobs.substeps});
+  add_parameter(one, effects, {"sweeps", solver.knobs.sweeps});
+  add_parameter(one, effects, {"precision", "precision", "double", "float"});
   add_sizes(one, effects);
   return effects.take();
 }

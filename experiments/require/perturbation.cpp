@@ -1,9 +1,9 @@
-#include "experiments/require/perturbation.hpp"
 
 #include <algorithm>
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
 #include "experiments/require/draft.hpp"
 
 namespace taut {
@@ -16,14 +16,6 @@ constexpr double kRounding = 0x1p-23;  ///< of binary32
 const Vec3 kDirections[] = {{0.8, 0.5, 0.3},   {-0.8, 0.5, 0.3},  {0.8, 0.5, -0.3},
                             {-0.8, 0.5, -0.3}, {0.8, -0.5, 0.3},  {-0.8, -0.5, 0.3},
                             {0.8, -0.5, -0.3}, {-0.8, -0.5, -0.3}};
-
-/// A table { vertex, at } of [cloth] placed.
-Value placed(int vertex, const Vec3& where) {
-  Value table;
-  table.keys = {{"vertex", {}}, {"at", {}}};
-  table.items = {number_value(vertex), array_value({where.x(), where.y(), where.z()})};
-  return table;
-}
 
 /// Vertices that are neither pinned nor placed, spread over the cloth.
 std::vector<int> chosen_vertices(const Scene& scene, std::size_t count) {
@@ -40,10 +32,12 @@ std::vector<int> chosen_vertices(const Scene& scene, std::size_t count) {
 bool move_vertex(const Case& one, int vertex, const Vec3& way, const std::filesystem::path& folder,
                  const std::string& name, CaseSpec& spec) {
   Draft draft(one.spec);
-  Value all;
-  all.kind = Value::Kind::array;
-  if (const Value* known = draft.find("cloth", "placed")) all = *known;
-  all.items.push_back(placed(vertex, one.scene->start.x[to_index(vertex)] + way));
+  const Vec3 at = one.scene->start.x[to_index(vertex)] + way;
+  const Value* known = draft.find("cloth", "placed");
+  Value all = known ? *known : toml_value("[]");
+  all.items.push_back(toml_value("{ vertex = " + std::to_string(vertex) + ", at = [" +
+                                 shortest(at.x()) + ", " + shortest(at.y()) + ", " +
+                                 shortest(at.z()) + "] }"));
   draft.set("cloth", "placed", all);
   spec = draft.write(folder, name);
   try {

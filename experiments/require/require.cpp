@@ -11,7 +11,6 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/require/perturbation.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/timing.hpp"
 
@@ -62,9 +61,6 @@ class Search {
     for (const CaseSpec& spec : specs) cases.push_back(maker_.make(spec));
     const CampaignProgress campaign = run_cases(cases, store_, session_,
                                                 {.jobs = options_.jobs,
-                                                 .limits = {},
-                                                 .shard = {},
-                                                 .only_failed = false,
                                                  .frames = true,
                                                  .deadline = at(share),
                                                  .progress = options_.progress});
@@ -308,13 +304,7 @@ class Search {
     apart.prepare();
     const Case again = make_case(found_.smallest->spec);
     run_cases({again}, apart, Session(apart, "taut require", {}, {}),
-              {.jobs = 1,
-               .limits = {},
-               .shard = {},
-               .only_failed = false,
-               .frames = false,
-               .deadline = at(kVerifiedBy),
-               .progress = {}});
+              {.jobs = 1, .deadline = at(kVerifiedBy)});
     const std::optional<Record> first = store_.find(again), second = apart.find(again);
     if (!second) return found_.not_done.push_back("the verification");
     found_.verified = first && first->digest == second->digest;
@@ -323,36 +313,27 @@ class Search {
   /// What every effect costs, and what the smallest model saves, from one interleaved session.
   void measure() {
     if (found_.interrupted) return;
-    std::vector<CaseSpec> specs{full_.record.spec};
-    std::vector<int> steps{full_.record.steps};
+    std::vector<TimedCase> cases{{full_.record.spec, full_.record.steps}};
     std::vector<std::optional<Interval>*> wanted{nullptr};
     const auto ask = [&](const ModelTrial& trial, std::optional<Interval>& ratio) {
       if (!trial.done || !trial.why.empty()) return;
-      specs.push_back(trial.spec), steps.push_back(trial.steps), wanted.push_back(&ratio);
+      cases.push_back({trial.spec, trial.steps}), wanted.push_back(&ratio);
     };
     if (found_.smallest) ask(*found_.smallest, found_.time_ratio);
     for (EffectTrial& effect : found_.effects)
-      if (effect.done()) ask(effect.told(), effect.time);
-    const auto steps_of = [&](const CaseSpec& spec) {
-      for (std::size_t i = 0; i < specs.size(); ++i)
-        if (specs[i].scene == spec.scene && specs[i].solver == spec.solver) return steps[i];
-      return 1;
-    };
-    const Bench bench = run_bench(specs, {.rounds = kTimingRounds,
-                                          .seconds = 0.02,
-                                          .program = program_of,
-                                          .steps = steps_of,
-                                          .progress = {},
-                                          .deadline = at(kTimedBy)});
+      if (effect.done()) ask(effect.representative(), effect.time);
+    const Bench bench = run_bench(
+        cases,
+        {.rounds = kTimingRounds, .seconds = 0.02, .progress = {}, .deadline = at(kTimedBy)});
     found_.control = bench.control;
-    for (std::size_t i = 1; i < specs.size(); ++i) {
+    for (std::size_t i = 1; i < cases.size(); ++i) {
       if (bench.timings[i].samples.empty() || !bench.timings[i].failure.empty() ||
           bench.timings[0].samples.size() != bench.timings[i].samples.size()) {
         if (found_.not_done.empty() || found_.not_done.back() != "timing")
           found_.not_done.emplace_back("timing");
         continue;
       }
-      const double longer = static_cast<double>(steps[i]) / steps[0];
+      const double longer = static_cast<double>(cases[i].steps) / cases[0].steps;
       const Interval ratio = bench.ratio(i, 0);
       *wanted[i] = Interval{ratio.low * longer, ratio.mid * longer, ratio.high * longer};
     }

@@ -36,7 +36,7 @@ struct EffectTrial {
   bool done() const { return !trials.empty() && trials.back().done; }
   bool may_go() const { return allowed > 0; }
   /// The trial that speaks for the effect: the strongest that stays within, else the weakest.
-  const ModelTrial& told() const { return trials[allowed > 0 ? allowed - 1 : 0]; }
+  const ModelTrial& representative() const { return trials[allowed > 0 ? allowed - 1 : 0]; }
 };
 
 /// What a scene requires of a model.

@@ -122,8 +122,10 @@ std::optional<Record> wait_for(IsolatedCase& running, Clock::time_point deadline
   return std::nullopt;
 }
 
-std::optional<Record> run_and_store(const Case& one, const Store& store, const Limits& limits,
-                                    Clock::time_point deadline) {
+}  // namespace
+
+std::optional<Record> run_stored(const Case& one, const Store& store, const Limits& limits,
+                                 Clock::time_point deadline) {
   if (const auto record = store.find(one)) return record;
   const std::filesystem::path folder = store.stage(one.key);
   std::optional<Record> record;
@@ -137,17 +139,6 @@ std::optional<Record> run_and_store(const Case& one, const Store& store, const L
     throw InputError(one.id + ": another result than the one stored; see " +
                      (store.root() / "conflicts").string());
   return record;
-}
-
-}  // namespace
-
-Record run_stored(const Case& one, const Store& store, const Limits& limits) {
-  return *run_and_store(one, store, limits, Clock::time_point::max());
-}
-
-std::optional<Record> run_stored_until(const Case& one, const Store& store,
-                                       Clock::time_point deadline) {
-  return run_and_store(one, store, {}, deadline);
 }
 
 Record run_again(const Case& one, const Store& store, const Limits& limits) {

@@ -51,15 +51,14 @@ struct CampaignOptions {
 CampaignProgress run_cases(const std::vector<Case>&, const Store&, const Session&,
                            const CampaignOptions&);
 
-/// The stored record of a case, or the one that a process of its own gives and that is stored now.
-/// Throws InputError if the result differs from one that is stored.
-Record run_stored(const Case&, const Store&, const Limits& = {});
+/// The stored record of a case, or the one that a process of its own gives and that is stored now;
+/// nothing if it has not ended by the deadline. Throws InputError if the result differs from one
+/// that is stored.
+std::optional<Record> run_stored(
+    const Case&, const Store&, const Limits& = {},
+    std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max());
 
-/// The same, but nothing if it has not ended by then; nothing is stored of that.
-std::optional<Record> run_stored_until(const Case&, const Store&,
-                                       std::chrono::steady_clock::time_point deadline);
-
-/// The same without looking into the store and without leaving anything there.
+/// The same without a deadline, without looking into the store and without leaving anything there.
 Record run_again(const Case&, const Store&, const Limits& = {});
 
 /// What the store knows of a study.

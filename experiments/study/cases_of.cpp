@@ -1,6 +1,5 @@
 // From a study to its cases.
 #include <algorithm>
-#include <functional>
 #include <set>
 
 #include "core/model/input_error.hpp"
@@ -94,16 +93,15 @@ CaseSpec spec_of(const Study& study, const std::string& scene, const std::string
 
 }  // namespace
 
-std::vector<Case> cases_of(const Study& study) {
+void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
   require_few(study);
   CaseMaker maker;
-  std::vector<Case> cases;
   std::set<std::string> keys, said;
   std::vector<Diagnostic> wrong;
   const auto add = [&](const CaseSpec& spec) {
     try {
       Case one = maker.make(spec);
-      if (keys.insert(one.key).second) cases.push_back(std::move(one));
+      if (keys.insert(one.key).second) visit(std::move(one));
     } catch (const InputError& error) {
       for (Diagnostic d : error.diagnostics()) {
         if (const auto at = study.places.find(d.file); at != study.places.end())
@@ -124,6 +122,11 @@ std::vector<Case> cases_of(const Study& study) {
         });
     });
   if (!wrong.empty()) throw InputError(wrong);
+}
+
+std::vector<Case> cases_of(const Study& study) {
+  std::vector<Case> cases;
+  each_case(study, [&](Case&& one) { cases.push_back(std::move(one)); });
   return cases;
 }
 

@@ -51,7 +51,6 @@ class IsolatedCase {
 
   /// Ready for reading when the process has ended.
   int descriptor() const { return process_.descriptor(); }
-  std::chrono::steady_clock::time_point deadline() const { return deadline_; }
   /// Its record once it has ended or its time is up (it is killed then); until then nothing.
   /// Throws InputError if it could not write what it found.
   std::optional<Record> poll();

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -49,5 +48,20 @@ std::vector<ManifestEntry> read_manifest_lines(const std::filesystem::path& file
 /// What the sessions of a results folder were to run, each key once. Throws InputError with file
 /// and line.
 std::vector<ManifestEntry> read_manifests(const std::filesystem::path& root);
+
+/// Marks a results folder: these cases were planned and are not there. The mark stands in
+/// <root>/missing/<name>.jsonl; reports show it until the cases come. Throws InputError.
+void mark_missing(const std::filesystem::path& root, const std::string& name,
+                  const std::vector<ManifestEntry>&);
+
+/// A mark that still holds.
+struct Missing {
+  std::filesystem::path file;
+  std::vector<std::string> ids;  ///< of cases that the store still lacks
+  std::size_t cases = 0;         ///< that lacked when it was marked
+  std::string sentence() const;
+};
+/// Throws InputError with file and line.
+std::vector<Missing> still_missing(const Store&);
 
 }  // namespace taut

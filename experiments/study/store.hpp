@@ -19,7 +19,7 @@ inline constexpr const char* kFramesFile = "frames.traj";
 inline constexpr int kFrames = 32;
 
 /// Results by content address. No locks and no shared appends: any number of processes may write,
-/// and one that is killed leaves at most a folder in tmp/, which is swept up later.
+/// and one that is killed leaves at most a folder in tmp/, which is removed later.
 ///
 ///     <root>/store/7f/7f3a.../  case.json    the record
 ///                               series.csv   values over time, if there are any
@@ -60,7 +60,7 @@ class Store {
   /// Whether the motion of a stored case is kept, as folder(key) / kFramesFile.
   bool has_frames(const std::string& key) const;
 
-  /// Makes sure that results can be written, and sweeps up after killed processes of this host.
+  /// Makes sure that results can be written, and removes what killed processes of this host.
   /// Throws InputError with the reason.
   void prepare() const;
   /// An empty folder in tmp/ for a case to write into.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <set>
 
 #include "core/io/section.hpp"
 #include "core/model/printable.hpp"
@@ -302,6 +301,13 @@ Study load_study(const std::string& name_or_path, const std::string& preset) {
   StudyReader(diagnostics, study).read(document.root, preset);
   diagnostics.throw_if_any();
   return study;
+}
+
+void require_preset(const Study& study, const std::string& preset) {
+  if (preset.empty() || !study.preset.empty()) return;
+  throw InputError({{study.file, 0, 0,
+                     "study '" + study.name + "' has no preset '" + preset + "'" +
+                         suggestion(preset, study.presets)}});
 }
 
 }  // namespace taut

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -53,8 +54,13 @@ struct Study {
 /// study lacks replaces nothing. Throws InputError with every diagnostic at once.
 Study load_study(const std::string& name_or_path, const std::string& preset = "");
 
+/// Throws InputError if the study lacks the preset that load_study was asked for.
+void require_preset(const Study&, const std::string& preset);
+
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
 /// wrong with any of the scenes, or if it would be more than 100 000.
 std::vector<Case> cases_of(const Study&);
+/// The same, one after the other: none is held.
+void each_case(const Study&, const std::function<void(Case&&)>& visit);
 
 }  // namespace taut

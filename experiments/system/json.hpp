@@ -1,10 +1,15 @@
 #pragma once
 
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "core/io/text_file.hpp"
 
 namespace taut {
 
@@ -62,6 +67,16 @@ template <class Read>
 auto read_json(std::string_view text, const std::string& file, Read read, int line = 0) {
   const Json json = parse_json_of(text, file, line);
   return read(JsonReader(json, file, line));
+}
+
+/// What `read` makes of each line of a file. Throws InputError with file and line.
+template <class Read>
+auto read_json_lines(const std::filesystem::path& file, Read read) {
+  std::vector<decltype(read(std::declval<JsonReader>()))> all;
+  std::istringstream lines(read_text(file));
+  for (std::string line; std::getline(lines, line);)
+    all.push_back(read_json(line, file.string(), read, static_cast<int>(all.size()) + 1));
+  return all;
 }
 
 }  // namespace taut

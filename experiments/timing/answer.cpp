@@ -1,7 +1,6 @@
 #include "experiments/timing/answer.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -28,10 +27,9 @@ Certainty certainty_of_cost(const Interval& ratio, const Interval& control, doub
 }
 
 std::string line(const BenchedCase& c, const std::string& metric) {
-  const auto error = c.record.values.find(metric);
   return parse_solver(c.record.spec.solver).brief() + ", " + metric + " " +
-         (error == c.record.values.end() ? "-" : number_text(error->second)) + ", " +
-         interval_text(c.cost(), 1e-3) + " ms CPU per simulated s";
+         number_text(c.record.value(metric)) + ", " + interval_text(c.cost(), 1e-3) +
+         " ms CPU per simulated s";
 }
 
 /// What a solver that did not reach the target came nearest to.
@@ -49,17 +47,8 @@ std::string nearest(const SolverAnswer& solver, const SceneBench& bench, const A
 }  // namespace
 
 std::string_view to_string(Certainty certainty) {
-  switch (certainty) {
-    case Certainty::clear:
-      return "clear";
-    case Certainty::likely:
-      return "likely";
-    case Certainty::a_tie:
-      return "a tie";
-    case Certainty::unopposed:
-      return "unopposed";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"clear", "likely", "a tie", "unopposed"};
+  return kNames[static_cast<std::size_t>(certainty)];
 }
 
 std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Target& target,

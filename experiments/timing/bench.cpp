@@ -8,8 +8,9 @@
 #include <tuple>
 
 #include "core/model/input_error.hpp"
-#include "experiments/case/key.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/timing.hpp"
 
@@ -32,8 +33,7 @@ Interval interval_of(const JsonReader& j) {
 
 BenchedCase case_of(const JsonReader& j) {
   BenchedCase benched{record_of(j.at("record")), {}};
-  benched.timing = {.spec = benched.record.spec,
-                    .samples = j.at("cpu_seconds_per_step").numbers(),
+  benched.timing = {.samples = j.at("cpu_seconds_per_step").numbers(),
                     .wall = j.at("wall_seconds_per_step").numbers(),
                     .peak_bytes = j.at("peak_bytes").count(),
                     .failure = j.at("failure").text(),
@@ -72,11 +72,10 @@ Interval BenchedCase::cost() const {
 std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
   std::vector<Candidate> all;
   for (const BenchedCase& c : cases) {
-    const auto value = c.record.values.find(metric);
-    const double error = value == c.record.values.end() ? std::nan("") : std::abs(value->second);
     std::string failure = c.timing.failure;
     if (failure.empty() && !c.stable()) failure = describe(c.record.status);
-    all.push_back({c.record.solver, c.record.spec.solver, c.cost(), error, failure});
+    all.push_back({c.record.solver, c.record.spec.solver, c.cost(),
+                   std::abs(c.record.value(metric)), failure});
   }
   return all;
 }
@@ -110,6 +109,17 @@ bool SceneBench::searched_to_the_end(const std::string& solver) const {
   const std::vector<KnobRange> ranges = knob_ranges(solver);
   return !ranges.empty() &&
          std::ranges::all_of(ranges, [](const KnobRange& r) { return r.largest >= r.end; });
+}
+
+SceneBench bench_scene(const std::string& scene, const std::vector<Record>& records,
+                       const BenchOptions& options) {
+  std::vector<TimedCase> cases;
+  for (const Record& record : records) cases.push_back({record.spec, steps_done(record)});
+  Bench bench = run_bench(cases, options);
+  SceneBench result{scene, bench.control, {}};
+  for (std::size_t i = 0; i < records.size(); ++i)
+    result.cases.push_back({records[i], std::move(bench.timings[i])});
+  return result;
 }
 
 std::vector<std::string> solvers_of(const SceneBench& bench) {
@@ -171,6 +181,13 @@ std::filesystem::path bench_file(const std::filesystem::path& results,
                                  const BenchSession& session) {
   return results / "bench" / session.study /
          (session.host + "-" + session.build.substr(0, 10) + ".json");
+}
+
+std::filesystem::path keep(const std::filesystem::path& results, const BenchSession& session) {
+  const std::filesystem::path file = bench_file(results, session);
+  make_folder(file.parent_path());
+  write_durably(file, to_json(session));
+  return file;
 }
 
 std::vector<std::filesystem::path> bench_files(const std::filesystem::path& results,

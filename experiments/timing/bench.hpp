@@ -60,6 +60,9 @@ struct BenchSession {
   std::vector<Record> records() const;
 };
 
+/// Times cases of one scene whose physics are known.
+SceneBench bench_scene(const std::string& scene, const std::vector<Record>&, const BenchOptions&);
+
 /// Names of the solvers in a bench, in order of appearance.
 std::vector<std::string> solvers_of(const SceneBench&);
 
@@ -69,6 +72,9 @@ BenchSession bench_from_json(std::string_view text, const std::string& where);
 
 /// Where a session lies in a results folder: a file for each host and build.
 std::filesystem::path bench_file(const std::filesystem::path& results, const BenchSession&);
+
+/// Writes it there.
+std::filesystem::path keep(const std::filesystem::path& results, const BenchSession&);
 
 /// What is stored of a study: of this host and build, of this host, of others by name.
 std::vector<std::filesystem::path> bench_files(const std::filesystem::path& results,

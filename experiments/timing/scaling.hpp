@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/reference/fit.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/timing/bench.hpp"
 
@@ -17,7 +18,7 @@ struct ScalingLine {
   std::vector<std::string> skipped;  ///< "512 x 512: expected to take 310 s of 60"
   std::optional<PowerLaw> cpu;       ///< CPU seconds per step over vertices
   std::optional<PowerLaw> wall;      ///< wall seconds per step over vertices
-  std::optional<PowerLaw> memory;    ///< bytes of the solver's plan over vertices
+  std::optional<PowerLaw> memory;    ///< bytes of the passes of a step over vertices
 };
 
 /// Measures a case: its record, its samples, and how long both took [s].

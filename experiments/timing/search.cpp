@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "core/model/solver.hpp"
 
@@ -186,8 +187,7 @@ class KnobSearch {
     }
   }
 
-  /// The two cheapest columns, each between the fewest substeps that reach the error and half of
-  /// them, which do not.
+  /// The substeps of the two cheapest columns.
   void bisect() {
     if (!worth_more()) return;
     std::vector<Met> ends = met_;
@@ -199,33 +199,30 @@ class KnobSearch {
       if (columns > 0 && (values == first || end.cost > 1.7 * ends.front().cost)) continue;
       if (columns++ == 0) first = values;
       if (columns > 2) return;
-      bisect(values, end.substeps);
+      halve(end.substeps, [&](int substeps) { return attempt(values, substeps); });
     }
   }
 
-  void bisect(const Values& values, int high) {
-    int low = high / 2;
-    while (high - low > std::max(1, high / 10)) {
+  /// Between `high`, which reaches the error, and half of it, which does not.
+  template <class At>
+  void halve(int high, const At& at) {
+    for (int low = high / 2; high - low > std::max(1, high / 10);) {
       const int middle = (low + high) / 2;
-      const Candidate* candidate = attempt(values, middle);
+      const Candidate* candidate = at(middle);
       if (!candidate) return;
       (target_.meets(*candidate) ? high : low) = middle;
     }
   }
 
-  /// The sweeps of the best, between what it has and half of it.
+  /// The sweeps of the best.
   void bisect_sweeps() {
     if (!worth_more()) return;
     Values values = without_substeps(best_values_);
     const int substeps = best_substeps_;
-    int high = std::stoi(values[knobs_.sweeps()]), low = high / 2;
-    while (high - low > std::max(1, high / 10)) {
-      const int middle = (low + high) / 2;
-      values[knobs_.sweeps()] = std::to_string(middle);
-      const Candidate* candidate = attempt(values, substeps);
-      if (!candidate) return;
-      (target_.meets(*candidate) ? high : low) = middle;
-    }
+    halve(std::stoi(values[knobs_.sweeps()]), [&](int sweeps) {
+      values[knobs_.sweeps()] = std::to_string(sweeps);
+      return attempt(values, substeps);
+    });
   }
 
   /// Whether this solver is near enough to the best of the others to be polished.

@@ -23,6 +23,7 @@ double median_of(std::vector<double>& values) {
 }  // namespace
 
 std::string number_text(double value, int digits) {
+  if (std::isnan(value)) return "-";
   std::ostringstream text;
   text << std::setprecision(digits) << value;
   return text.str();
@@ -70,31 +71,11 @@ double spread(const Interval& control) {
   return std::expm1(std::max(std::abs(std::log(control.low)), std::abs(std::log(control.high))));
 }
 
-bool is_significant(const Interval& ratio, const Interval& control, double tolerance) {
-  return !ratio.contains(1) &&
-         std::abs(std::log(ratio.mid)) > std::log1p(std::max(tolerance, spread(control)));
-}
-
 Difference compare_costs(const Interval& ratio, const Interval& control, double tolerance) {
   if (!(spread(control) <= tolerance)) return Difference::too_noisy;
-  if (!is_significant(ratio, control, tolerance)) return Difference::none;
+  if (ratio.contains(1) || !(std::abs(std::log(ratio.mid)) > std::log1p(tolerance)))
+    return Difference::none;
   return ratio.mid < 1 ? Difference::faster : Difference::slower;
-}
-
-PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
-  assert(x.size() == y.size() && x.size() >= 2);
-  const auto n = static_cast<double>(x.size());
-  double mx = 0, my = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) mx += std::log(x[i]) / n, my += std::log(y[i]) / n;
-  double sxx = 0, sxy = 0, syy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double dx = std::log(x[i]) - mx, dy = std::log(y[i]) - my;
-    sxx += dx * dx, sxy += dx * dy, syy += dy * dy;
-  }
-  const double slope = sxy / sxx;
-  const double residual = std::max(0.0, syy - slope * sxy);
-  const double error = n > 2 ? std::sqrt(residual / (n - 2) / sxx) : 0;
-  return {std::exp(my - slope * mx), slope, error};
 }
 
 }  // namespace taut

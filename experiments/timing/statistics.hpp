@@ -15,7 +15,7 @@ struct Interval {
   bool contains(double value) const { return low <= value && value <= high; }
 };
 
-/// A number with so many significant digits, and "2.3 (2.1 to 2.5)" in a unit.
+/// A number with so many significant digits ("-": NaN), and "2.3 (2.1 to 2.5)" in a unit.
 std::string number_text(double value, int digits = 3);
 std::string interval_text(const Interval&, double unit = 1);
 
@@ -39,26 +39,14 @@ inline constexpr double kTolerance = 0.05;
 /// How far the ratio of a code to itself lies from 1, as a share: 0.03 for 0.98 to 1.03.
 double spread(const Interval& control);
 
-/// Whether a ratio of costs A / B is a difference: its interval excludes 1, AND the change exceeds
-/// the tolerance (0.05: five per cent), AND it exceeds the spread of the same session's control.
-bool is_significant(const Interval& ratio, const Interval& control, double tolerance = kTolerance);
-
-/// What a ratio of costs A / B allows us to say.
+/// What a ratio of costs A / B allows us to say. It is a difference if its interval excludes 1 and
+/// it exceeds the tolerance (0.05: five per cent).
 enum class Difference {
-  none,      ///< not significant
+  none,
   faster,    ///< A costs less
   slower,    ///< A costs more
   too_noisy  ///< the control itself spreads further than the tolerance: nothing can be said
 };
 Difference compare_costs(const Interval& ratio, const Interval& control, double tolerance);
-
-/// y = a x^slope through positive points by least squares in logarithms, with the slope's standard
-/// error.
-struct PowerLaw {
-  double factor = 0;
-  double slope = 0;
-  double slope_error = 0;
-};
-PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
 
 }  // namespace taut

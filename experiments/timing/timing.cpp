@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -15,6 +14,7 @@
 #include <thread>
 
 #include "core/model/input_error.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -23,19 +23,13 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-double wall_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// Adds the time of its life to a StepTime.
 class Clock {
  public:
   Clock(StepTime& into, const Solver& solver) : into_(into), solver_(solver) {}
   ~Clock() {
     into_.cpu += solver_.cpu_seconds() - cpu_;
-    into_.wall += wall_seconds() - wall_;
+    into_.wall += seconds_of(CLOCK_MONOTONIC) - wall_;
   }
   Clock(const Clock&) = delete;
   Clock& operator=(const Clock&) = delete;
@@ -43,7 +37,7 @@ class Clock {
  private:
   StepTime& into_;
   const Solver& solver_;
-  double wall_ = wall_seconds();
+  double wall_ = seconds_of(CLOCK_MONOTONIC);
   double cpu_ = solver_.cpu_seconds();
 };
 
@@ -59,18 +53,6 @@ std::vector<std::string> worker_command(const std::filesystem::path& program,
 }
 
 }  // namespace
-
-double time_steps(const Scene& scene, Solver& solver, int steps) {
-  solver.load(scene.start);
-  solver.step(0, scene.dt);
-  solver.load(scene.start);
-  StepTime time;
-  {
-    const Clock clock(time, solver);
-    for (int n = 0; n < steps; ++n) solver.step(n * scene.dt, scene.dt);
-  }
-  return time.cpu / steps;
-}
 
 CheckpointedRun::CheckpointedRun(const Scene& scene, Solver& solver, int steps) : dt_(scene.dt) {
   const int starts = std::clamp(steps / 8, 1, 4);
@@ -195,21 +177,22 @@ struct BenchCase {
   }
 };
 
-BenchCase start_case(const CaseSpec& spec, const BenchOptions& options) {
+BenchCase start_case(const TimedCase& timed, const BenchOptions& options) {
   BenchCase one;
-  one.timing.spec = spec;
   one.guard([&] {
-    one.worker = std::make_unique<TimingWorker>(options.program(spec), spec);
+    one.worker = std::make_unique<TimingWorker>(program_of(timed.spec), timed.spec);
     if (options.deadline != Steady::time_point::max()) one.worker->give_up_at(options.deadline);
-    const int all = std::max(1, options.steps(spec));
-    const double pilot = one.worker->pilot_run(all).cpu;
-    one.steps = std::clamp(static_cast<int>(std::min(options.seconds / std::max(pilot, 1e-9), 1e9)),
-                           1, all);
+    const int all = std::max(1, timed.steps);
+    one.steps = times_within(options.seconds, one.worker->pilot_run(all).cpu, all);
   });
   return one;
 }
 
 }  // namespace
+
+int times_within(double seconds, double each, int most) {
+  return std::clamp(static_cast<int>(std::min(seconds / std::max(each, 1e-9), 1e9)), 1, most);
+}
 
 std::filesystem::path program_of(const CaseSpec& spec) {
   const SolverChoice choice = parse_solver(spec.solver);
@@ -236,11 +219,11 @@ Interval Bench::ratio(std::size_t i, std::size_t j) const {
   return interleaved_ratio(timings[i].samples, timings[j].samples);
 }
 
-Bench run_bench(const std::vector<CaseSpec>& specs, const BenchOptions& options) {
+Bench run_bench(const std::vector<TimedCase>& all, const BenchOptions& options) {
   std::vector<BenchCase> cases;
-  for (const CaseSpec& spec : specs) cases.push_back(start_case(spec, options));
-  if (!specs.empty()) {
-    cases.push_back(start_case(specs.front(), options));  // the A/A control
+  for (const TimedCase& one : all) cases.push_back(start_case(one, options));
+  if (!all.empty()) {
+    cases.push_back(start_case(all.front(), options));  // the A/A control
     cases.back().steps = cases.front().steps;
   }
   const auto sample = [](BenchCase& one) {
@@ -269,7 +252,7 @@ Bench run_bench(const std::vector<CaseSpec>& specs, const BenchOptions& options)
     });
     bench.timings.push_back(std::move(one.timing));
   }
-  if (specs.empty()) return bench;
+  if (all.empty()) return bench;
   const Timing control = std::move(bench.timings.back());
   bench.timings.pop_back();
   if (control.failure.empty() && bench.timings.front().failure.empty())

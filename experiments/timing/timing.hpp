@@ -15,16 +15,12 @@
 
 namespace taut {
 
-/// What one sample says of a step.
+/// What one sample says of a step, by the solver's CPU clock (Solver::cpu_seconds) and by the
+/// wall's: only Solver::step is inside the clocks.
 struct StepTime {
   double cpu = 0;   ///< s, of all threads together
   double wall = 0;  ///< s; longer than cpu / threads on a busy machine, so only for display
 };
-
-/// CPU seconds per step that `solver` needs for the first `steps` steps of the scene, as its CPU
-/// clock counts them (Solver::cpu_seconds): only Solver::step is inside the clock. One untimed step
-/// comes first (caches, first touch). With several threads it is the CPU time of all of them.
-double time_steps(const Scene&, Solver&, int steps);
 
 /// A run that was seen once, so that samples can begin anywhere in it: the first steps alone would
 /// miss the contacts, which come later. Up to four states, evenly spaced, at least eight steps
@@ -83,6 +79,9 @@ int serve_timing(const Scene&, const SolverChoice&);
 /// between cores. Nothing if it may use fewer.
 void pin(int cores);
 
+/// How many times what takes `each` [s] fits into `seconds`; 1 to `most`.
+int times_within(double seconds, double each, int most);
+
 /// Which program can time the case: this one, or its sibling with the other build of Bullet.
 std::filesystem::path program_of(const CaseSpec&);
 
@@ -94,12 +93,17 @@ std::string machine_name();
 
 /// What was measured of one case.
 struct Timing {
-  CaseSpec spec;
   std::vector<double> samples;    ///< CPU seconds per step, in the order taken: two per round
   std::vector<double> wall = {};  ///< the same in wall time
   std::size_t peak_bytes = 0;
   std::string failure;      ///< why it could not be timed; empty: it was
   std::string remark = {};  ///< why its time is to be doubted; empty: it is not
+};
+
+/// A case to be timed, and how many steps it has (or survived).
+struct TimedCase {
+  CaseSpec spec;
+  int steps = 0;
 };
 
 /// One session: every case sampled in rounds of alternating order (ABBA: A B C C B A), so that a
@@ -117,13 +121,10 @@ struct BenchOptions {
   int rounds = 5;         ///< each gives two samples of every case
   double seconds = 0.05;  ///< CPU time of one sample: as many steps as fit, all the steps at most;
                           ///< they are spread over the whole run
-  std::function<std::filesystem::path(const CaseSpec&)>
-      program;                                ///< which executable times the case
-  std::function<int(const CaseSpec&)> steps;  ///< how many steps the case has (or survived)
   std::function<void(std::size_t done, std::size_t all)> progress;
   /// No round begins that would not end by then; a case that is not ready by then has a failure.
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
 };
-Bench run_bench(const std::vector<CaseSpec>&, const BenchOptions&);
+Bench run_bench(const std::vector<TimedCase>&, const BenchOptions&);
 
 }  // namespace taut

@@ -1,22 +1,14 @@
 // What every solver keeps whatever its method: asked of the solvers from outside that
 // `taut verify --solver` names. Tolerances admit float32.
 #include <cmath>
-#include <functional>
 
 #include "core/model/index.hpp"
-#include "experiments/truths/probe.hpp"
+#include "experiments/metrics/summary.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 
 namespace {
-
-Vec3 mean(const Scene& scene, const std::vector<Vec3>& x) {
-  Vec3 sum = Vec3::Zero();
-  double mass = 0;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    sum += scene.mesh.mass[i] * x[i], mass += scene.mesh.mass[i];
-  return sum / mass;
-}
 
 /// A free sheet of which every link is a fiftieth too long.
 Scene stretched() {
@@ -28,12 +20,11 @@ Scene stretched() {
 void momentum(Findings& findings, const std::string& solver) {
   Scene s = stretched();
   s.gravity = Vec3(0, -kG, 0);
-  if (!claims(findings, solver, s)) return;
+  if (!can_run(findings, solver, s)) return;
   const Vec3 throw_(1, 2, -0.5);
   for (Vec3& v : s.start.v) v = throw_;
-  Probe probe(s, solver);
-  probe.step(64);
-  const Vec3 way = mean(s, probe.state().x) - mean(s, s.start.x) - throw_;
+  Simulation sim(s, solver, 64);
+  const Vec3 way = mean(s.mesh.mass, sim.state().x) - mean(s.mesh.mass, s.start.x) - throw_;
   // g t^2/2 (1 + c/n), -1 <= c <= 1 by the integrator
   findings.equal(solver, "fall of the centre of mass of a strained sheet over g t^2/2 at 1 s", "1",
                  -way.y() / (kG / 2), 1, 1.05 / 64);
@@ -43,27 +34,29 @@ void momentum(Findings& findings, const std::string& solver) {
 
 void rest(Findings& findings, const std::string& solver) {
   const Scene s = bare::sheet(6, 5, {.shear = true});
-  if (!claims(findings, solver, s)) return;
-  Probe probe(s, solver);
-  probe.step(64);
+  if (!can_run(findings, solver, s)) return;
+  Simulation sim(s, solver, 64);
   findings.below(solver, "way of a sheet at rest that nothing moves, in 1 s", "m",
-                 max_distance(probe.state().x, s.start.x), 1e-5);
+                 max_distance(sim.state().x, s.start.x), 1e-5);
 }
 
 void pins(Findings& findings, const std::string& solver) {
   Scene s = stretched();
   s.gravity = Vec3(0, -kG, 0);
   s.pins = {0, 5};
-  if (!claims(findings, solver, s)) return;
-  Probe probe(s, solver);
-  probe.step(64);
+  if (!can_run(findings, solver, s)) return;
+  Simulation sim(s, solver, 64);
   double way = 0;
-  for (const int pin : s.pins)
-    way = std::max(way, (probe.x(pin) - s.start.x[to_index(pin)]).norm());
+  for (const int pin : s.pins) way = std::max(way, (sim.x(pin) - s.start.x[to_index(pin)]).norm());
   findings.below(solver, "way of two pinned vertices in 1 s", "m", way, 1e-6);
 }
 
-void any_solver(Findings& findings) {
+}  // namespace
+
+TAUT_TRUTH(any_solver, 3, 10,
+           "Links move no centre of mass, pins stay, a sheet at rest "
+           "rests: of solvers from outside",
+           "Newton's laws") {
   for (const std::string& solver : findings.asked()) {
     if (solver == "reference" || parse_solver(solver).entry->implementation.empty()) continue;
     for (const auto& check : {momentum, rest, pins}) try {
@@ -74,15 +67,4 @@ void any_solver(Findings& findings) {
   }
 }
 
-}  // namespace
-
 }  // namespace taut
-
-TAUT_TRUTH(any_solver) = {.name = "any-solver",
-                          .section = 3,
-                          .row = 10,
-                          .statement =
-                              "Links move no centre of mass, pins stay, a sheet at rest "
-                              "rests: of solvers from outside",
-                          .source = "Newton's laws",
-                          .check = taut::any_solver};

@@ -1,9 +1,8 @@
 // Section 3, particles without springs: falling, damping, wind on a face, the tilted strip.
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 
@@ -26,80 +25,6 @@ std::vector<std::string> verlet_like() {
           mass_spring("symplectic-euler", 1)};
 }
 
-void free_fall(Findings& findings) {
-  const auto check = [&](const std::string& solver, const char* quantity, double offset,
-                         const Vec3& correction) {
-    Scene s = thrown();
-    for (Vec3& v : s.start.v) v += correction;
-    if (!claims(findings, solver, s)) return;
-    Probe probe(s, solver);
-    double worst = 0;
-    for (int n = 1; n <= 64; ++n) {
-      probe.step();
-      const double t = n * s.dt;
-      const Vec3 expected = kThrow * t + kGravity * (t * t / 2 + offset * t * s.dt / 2);
-      worst = std::max(worst, (probe.x(0) - expected).norm());
-    }
-    findings.below(solver, quantity, "m", worst, 1e-12);
-  };
-  for (const std::string& solver : verlet_like()) {
-    check(solver, "distance from v0 t + g t^2/2 + g t dt/2 over 1 s", 1, Vec3::Zero());
-    check(solver, "distance from the exact parabola, start x_-1 = x0 - v0 dt + g dt^2/2", 0,
-          -kGravity / 128);
-  }
-  check(mass_spring("explicit-euler", 1), "distance from v0 t + g t^2/2 - g t dt/2 over 1 s", -1,
-        Vec3::Zero());
-  const std::string in_float = "jakobsen:substeps=1,order=mesh,precision=float";
-  Scene s = thrown();
-  if (!claims(findings, in_float, s)) return;
-  Probe probe(s, in_float);
-  probe.step(64);
-  findings.below(in_float, "distance from v0 t + g t^2/2 + g t dt/2 at 1 s", "m",
-                 (probe.x(0) - (kThrow + kGravity * (0.5 + 1.0 / 128))).norm(), 1e-4);
-}
-
-/// In float, x + (x - x') is a whole number of units in the last place of x, so that every step
-/// adds gravity's g dt^2 rounded to such units: not noise, but another gravity in each binade.
-void float_gravity(Findings& findings) {
-  const std::string solver = "jakobsen:substeps=1,order=mesh,precision=float";
-  Scene s = bare::scene({Vec3(0, -4.5, 0), Vec3(1, -4.5, 0)}, {1, 1}, {});
-  s.gravity = kGravity;
-  s.dt = 1.0 / 1024;
-  if (!claims(findings, solver, s)) return;
-  const int n = 800;
-  Probe probe(s, solver);
-  probe.step(n);
-  const double unit = 0x1p-21;  // of coordinates from 4 m to 8 m
-  const double step = kG * s.dt * s.dt, fallen = n * (n + 1) / 2.0;
-  findings.deviates(solver, "way fallen in 800 steps of 1/1024 s from 4.5 m off the origin", "m",
-                    -4.5 - probe.x(0).y(), fallen * step, fallen * std::round(step / unit) * unit,
-                    1e-12, "g dt^2 = 19.6 units in the last place of the coordinates counts as 20");
-}
-
-void damping(Findings& findings) {
-  for (const std::string& solver : verlet_like()) {
-    Scene s = thrown();
-    s.damping = 3;
-    if (!claims(findings, solver, s)) continue;
-    const double q = std::exp(-s.damping * s.dt);
-    Probe probe(s, solver);
-    double worst = 0;
-    for (int n = 1; n <= 64; ++n) {
-      probe.step();
-      const double decay = q * (1 - std::pow(q, n)) / (1 - q);
-      const Vec3 a = kGravity * s.dt * s.dt;
-      const Vec3 expected = kThrow * s.dt * decay + a / (1 - q) * (n - decay);
-      worst = std::max(worst, (probe.x(0) - expected).norm());
-    }
-    const bool is_bullet = solver.starts_with("bullet");
-    findings.below(solver, "distance from the closed form of x + q (x - x') + g dt^2 over 1 s", "m",
-                   worst, is_bullet ? 1e-9 : 1e-12);
-    probe.step(64 * 14);
-    findings.equal(solver, "terminal speed g dt/(1 - q)", "m/s", -probe.v(0).y(),
-                   kG * s.dt / (1 - q), 1e-9);
-  }
-}
-
 /// One horizontal face of equal masses, wind of strength c, nothing else.
 Scene face(double strength, Wind::Law law) {
   Scene s = bare::scene({Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 0, -0.5)}, {0.1, 0.1, 0.1}, {});
@@ -110,54 +35,6 @@ Scene face(double strength, Wind::Law law) {
 }
 
 constexpr double kArea = 0.25, kMass = 0.3;
-
-void wind_on_a_face(Findings& findings) {
-  for (const std::string& solver : verlet_like()) {
-    const double c = 8;
-    const Scene s = face(c, Wind::Law::relative);
-    if (!claims(findings, solver, s)) continue;
-    const double rate = c * kArea * s.dt / kMass, terminal = kMass * kG / (c * kArea);
-    Probe probe(s, solver);
-    double worst = 0;
-    for (int n = 1; n <= 64; ++n) {
-      probe.step();
-      const double speed = terminal * (1 - std::pow(1 - rate, n));
-      for (int i = 0; i < 3; ++i) worst = std::max(worst, (probe.v(i) - Vec3(0, -speed, 0)).norm());
-    }
-    findings.below(solver, "distance from (m g/cA)(1 - (1 - cA dt/m)^n)", "m/s", worst, 1e-11);
-    probe.step(1000);
-    findings.equal(solver, "terminal speed m g/(cA)", "m/s", -probe.v(0).y(), terminal, 1e-11);
-
-    // Stable while cA dt/m < 2: the factor 1 - rate per step is measured on both sides.
-    double factors[2];
-    for (const bool above : {false, true}) {
-      Scene edge = face((above ? 2.001 : 1.999) * kMass / (kArea * s.dt), Wind::Law::relative);
-      edge.gravity.setZero();
-      edge.start.v.assign(3, Vec3(0, -1, 0));
-      Probe fast(edge, solver);
-      fast.step(101);
-      const double first = fast.v(0).y();
-      fast.step();
-      factors[above] = std::abs(fast.v(0).y() / first);
-    }
-    findings.equal(solver, "growth per step at cA dt/m = 1.999", "1", factors[0], 0.999, 1e-9);
-    findings.equal(solver, "growth per step at cA dt/m = 2.001", "1", factors[1], 1.001, 1e-9);
-  }
-}
-
-void literal_wind(Findings& findings) {
-  for (const std::string& solver : verlet_like()) {
-    Scene s = face(0.4, Wind::Law::literal);
-    s.wind->velocity = Vec3(0, 2, 1);
-    if (!claims(findings, solver, s)) continue;
-    Probe probe(s, solver);
-    probe.step(640);
-    // c (n . d) n A/m upwards, whatever the speed
-    const double a = 0.4 * 2 * kArea / kMass - kG;
-    findings.equal(solver, "speed after 10 s: no terminal speed", "m/s", probe.v(0).y(), 10 * a,
-                   1e-9);
-  }
-}
 
 /// A strip hung by its top edge. Each quad is covered twice, once per diagonal, at half the
 /// strength: the only triangulation that loads the vertices of a row alike.
@@ -180,28 +57,138 @@ Scene strip(double wind_speed, double strength, double area_density) {
   return s;
 }
 
-void wind_tilt(Findings& findings) {
+}  // namespace
+
+TAUT_TRUTH(free_fall, 3, 1, "x_n = x0 + v0 t + g t^2/2 + g t dt/2; explicit Euler has -g t dt/2",
+           "sum of the Verlet recurrence") {
+  const auto check = [&](const std::string& solver, const char* quantity, double offset,
+                         const Vec3& correction) {
+    Scene s = thrown();
+    for (Vec3& v : s.start.v) v += correction;
+    if (!can_run(findings, solver, s)) return;
+    Simulation sim(s, solver);
+    double worst = 0;
+    for (int n = 1; n <= 64; ++n) {
+      sim.step();
+      const double t = n * s.dt;
+      const Vec3 expected = kThrow * t + kGravity * (t * t / 2 + offset * t * s.dt / 2);
+      worst = std::max(worst, (sim.x(0) - expected).norm());
+    }
+    findings.below(solver, quantity, "m", worst, 1e-12);
+  };
+  for (const std::string& solver : verlet_like()) {
+    check(solver, "distance from v0 t + g t^2/2 + g t dt/2 over 1 s", 1, Vec3::Zero());
+    check(solver, "distance from the exact parabola, start x_-1 = x0 - v0 dt + g dt^2/2", 0,
+          -kGravity / 128);
+  }
+  check(mass_spring("explicit-euler", 1), "distance from v0 t + g t^2/2 - g t dt/2 over 1 s", -1,
+        Vec3::Zero());
+  const std::string in_float = "jakobsen:substeps=1,order=mesh,precision=float";
+  Scene s = thrown();
+  if (!can_run(findings, in_float, s)) return;
+  Simulation sim(s, in_float, 64);
+  findings.below(in_float, "distance from v0 t + g t^2/2 + g t dt/2 at 1 s", "m",
+                 (sim.x(0) - (kThrow + kGravity * (0.5 + 1.0 / 128))).norm(), 1e-4);
+}
+
+TAUT_TRUTH(damping_factor, 3, 2,
+           "x_n = x0 + u0 q(1-q^n)/(1-q) + a/(1-q) [n - q(1-q^n)/(1-q)], q = exp(-damping dt)",
+           "sum of x* = x + q (x - x') + a dt^2") {
+  for (const std::string& solver : verlet_like()) {
+    Scene s = thrown();
+    s.damping = 3;
+    if (!can_run(findings, solver, s)) continue;
+    const double q = std::exp(-s.damping * s.dt);
+    Simulation sim(s, solver);
+    double worst = 0;
+    for (int n = 1; n <= 64; ++n) {
+      sim.step();
+      const double decay = q * (1 - std::pow(q, n)) / (1 - q);
+      const Vec3 a = kGravity * s.dt * s.dt;
+      const Vec3 expected = kThrow * s.dt * decay + a / (1 - q) * (n - decay);
+      worst = std::max(worst, (sim.x(0) - expected).norm());
+    }
+    const bool is_bullet = solver.starts_with("bullet");
+    findings.below(solver, "distance from the closed form of x + q (x - x') + g dt^2 over 1 s", "m",
+                   worst, is_bullet ? 1e-9 : 1e-12);
+    sim.step(64 * 14);
+    findings.equal(solver, "terminal speed g dt/(1 - q)", "m/s", -sim.v(0).y(), kG * s.dt / (1 - q),
+                   1e-9);
+  }
+}
+
+TAUT_TRUTH(wind_face, 3, 6, "v_n = (m g/cA)(1 - (1 - cA dt/m)^n); stable iff cA dt/m < 2",
+           "Vasilovici, Cloth Simulation Report, section 3, with d the wind relative to the face") {
+  for (const std::string& solver : verlet_like()) {
+    const double c = 8;
+    const Scene s = face(c, Wind::Law::relative);
+    if (!can_run(findings, solver, s)) continue;
+    const double rate = c * kArea * s.dt / kMass, terminal = kMass * kG / (c * kArea);
+    Simulation sim(s, solver);
+    double worst = 0;
+    for (int n = 1; n <= 64; ++n) {
+      sim.step();
+      const double speed = terminal * (1 - std::pow(1 - rate, n));
+      for (int i = 0; i < 3; ++i) worst = std::max(worst, (sim.v(i) - Vec3(0, -speed, 0)).norm());
+    }
+    findings.below(solver, "distance from (m g/cA)(1 - (1 - cA dt/m)^n)", "m/s", worst, 1e-11);
+    sim.step(1000);
+    findings.equal(solver, "terminal speed m g/(cA)", "m/s", -sim.v(0).y(), terminal, 1e-11);
+
+    // Stable while cA dt/m < 2: the factor 1 - rate per step is measured on both sides.
+    double factors[2];
+    for (const bool above : {false, true}) {
+      Scene edge = face((above ? 2.001 : 1.999) * kMass / (kArea * s.dt), Wind::Law::relative);
+      edge.gravity.setZero();
+      edge.start.v.assign(3, Vec3(0, -1, 0));
+      Simulation fast(edge, solver, 101);
+      const double first = fast.v(0).y();
+      fast.step();
+      factors[above] = std::abs(fast.v(0).y() / first);
+    }
+    findings.equal(solver, "growth per step at cA dt/m = 1.999", "1", factors[0], 0.999, 1e-9);
+    findings.equal(solver, "growth per step at cA dt/m = 2.001", "1", factors[1], 1.001, 1e-9);
+  }
+}
+
+TAUT_TRUTH(wind_literal, 3, 7, "with d the wind itself, as printed, a face accelerates without end",
+           "Vasilovici, Cloth Simulation Report, section 3, read literally") {
+  for (const std::string& solver : verlet_like()) {
+    Scene s = face(0.4, Wind::Law::literal);
+    s.wind->velocity = Vec3(0, 2, 1);
+    if (!can_run(findings, solver, s)) continue;
+    Simulation sim(s, solver, 640);
+    // c (n . d) n A/m upwards, whatever the speed
+    const double a = 0.4 * 2 * kArea / kMass - kG;
+    findings.equal(solver, "speed after 10 s: no terminal speed", "m/s", sim.v(0).y(), 10 * a,
+                   1e-9);
+  }
+}
+
+TAUT_TRUTH(wind_tilt, 3, 8,
+           "a strip hung by its top edge in steady wind is a plane: tan(tilt) = wind/weight",
+           "balance of moments of every row, masses lumped by area") {
   const double speed = 4, c = 0.25, density = 0.1;  // c U = 1 N/m^2 against 0.981 N/m^2
   const double expected = std::atan(c * speed / (density * kG)) * 180 / std::numbers::pi;
   findings.equal("closed form", "tilt where the wind weighs 1/0.981 of the cloth", "deg", expected,
                  45.5495, 5e-5);
   const auto check = [&](const std::string& solver) {
     const Scene s = strip(speed, c, density);
-    if (!claims(findings, solver, s)) return;
-    Probe probe(s, solver);
-    if (!settle(probe, 1e-9, 64, 64 * 100)) {
+    if (!can_run(findings, solver, s)) return;
+    Simulation sim(s, solver);
+    if (!settle(sim, 1e-9, 64, 64 * 100)) {
       findings.equal(solver, "comes to rest", "1", 0, 1, 0);
       return;
     }
     double flattest = 1e300, steepest = 0;
     for (int j = 1; j < 9; ++j)
       for (int i = 0; i < 2; ++i) {
-        const Vec3 d = probe.x(2 * j + i) - probe.x(i);
+        const Vec3 d = sim.x(2 * j + i) - sim.x(i);
         const double tilt = std::atan2(d.z(), -d.y()) * 180 / std::numbers::pi;
         flattest = std::min(flattest, tilt), steepest = std::max(steepest, tilt);
       }
     // Stretched faces catch more wind: strain e adds e cos(tilt) sin(tilt) rad.
-    const double slack = 1e-6 + max_strain(s, probe.state()) * 90 / std::numbers::pi;
+    const double slack = 1e-6 + max_strain(s, sim.state()) * 90 / std::numbers::pi;
     findings.equal(solver, "smallest tilt of a row", "deg", flattest, expected, slack);
     findings.equal(solver, "largest tilt of a row", "deg", steepest, expected, slack);
   };
@@ -211,56 +198,23 @@ void wind_tilt(Findings& findings) {
   check(xpbd(64));
 }
 
-}  // namespace
+/// In float, x + (x - x') is a whole number of units in the last place of x, so that every step
+/// adds gravity's g dt^2 rounded to such units: not noise, but another gravity in each binade.
+TAUT_TRUTH(float_gravity, 3, 9,
+           "in float a step adds g dt^2 rounded to units in the last place of the coordinates",
+           "x - x' is exact (Sterbenz 1974), so only the sum is rounded") {
+  const std::string solver = "jakobsen:substeps=1,order=mesh,precision=float";
+  Scene s = bare::scene({Vec3(0, -4.5, 0), Vec3(1, -4.5, 0)}, {1, 1}, {});
+  s.gravity = kGravity;
+  s.dt = 1.0 / 1024;
+  if (!can_run(findings, solver, s)) return;
+  const int n = 800;
+  Simulation sim(s, solver, n);
+  const double unit = 0x1p-21;  // of coordinates from 4 m to 8 m
+  const double step = kG * s.dt * s.dt, fallen = n * (n + 1) / 2.0;
+  findings.deviates(solver, "way fallen in 800 steps of 1/1024 s from 4.5 m off the origin", "m",
+                    -4.5 - sim.x(0).y(), fallen * step, fallen * std::round(step / unit) * unit,
+                    1e-12, "g dt^2 = 19.6 units in the last place of the coordinates counts as 20");
+}
+
 }  // namespace taut
-
-TAUT_TRUTH(free_fall) = {
-    .name = "free-fall",
-    .section = 3,
-    .row = 1,
-    .statement = "x_n = x0 + v0 t + g t^2/2 + g t dt/2; explicit Euler has -g t dt/2",
-    .source = "sum of the Verlet recurrence",
-    .check = taut::free_fall};
-
-TAUT_TRUTH(damping_factor) = {
-    .name = "damping-factor",
-    .section = 3,
-    .row = 2,
-    .statement =
-        "x_n = x0 + u0 q(1-q^n)/(1-q) + a/(1-q) [n - q(1-q^n)/(1-q)], q = exp(-damping dt)",
-    .source = "sum of x* = x + q (x - x') + a dt^2",
-    .check = taut::damping};
-
-TAUT_TRUTH(wind_face) = {
-    .name = "wind-face",
-    .section = 3,
-    .row = 6,
-    .statement = "v_n = (m g/cA)(1 - (1 - cA dt/m)^n); stable iff cA dt/m < 2",
-    .source =
-        "Vasilovici, Cloth Simulation Report, section 3, with d the wind relative to the face",
-    .check = taut::wind_on_a_face};
-
-TAUT_TRUTH(wind_literal) = {
-    .name = "wind-literal",
-    .section = 3,
-    .row = 7,
-    .statement = "with d the wind itself, as printed, a face accelerates without end",
-    .source = "Vasilovici, Cloth Simulation Report, section 3, read literally",
-    .check = taut::literal_wind};
-
-TAUT_TRUTH(wind_tilt) = {
-    .name = "wind-tilt",
-    .section = 3,
-    .row = 8,
-    .statement = "a strip hung by its top edge in steady wind is a plane: tan(tilt) = wind/weight",
-    .source = "balance of moments of every row, masses lumped by area",
-    .check = taut::wind_tilt};
-
-TAUT_TRUTH(float_gravity) = {
-    .name = "float-gravity",
-    .section = 3,
-    .row = 9,
-    .statement =
-        "in float a step adds g dt^2 rounded to units in the last place of the coordinates",
-    .source = "x - x' is exact (Sterbenz 1974), so only the sum is rounded",
-    .check = taut::float_gravity};

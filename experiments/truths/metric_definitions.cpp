@@ -2,9 +2,10 @@
 #include <cmath>
 #include <map>
 
+#include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 
@@ -18,8 +19,7 @@ std::map<std::string, double> measure(std::string_view name, Scene scene,
     if (entry->name != name) continue;
     const auto metric = entry->make(scene);
     if (!metric) return {};
-    for (int n = 0; n <= scene.steps; ++n)
-      metric->observe({n, n * scene.dt, states[static_cast<std::size_t>(n)]});
+    for (int n = 0; n <= scene.steps; ++n) metric->observe({n, n * scene.dt, states[to_index(n)]});
     const std::vector<double> numbers = metric->finish();
     std::map<std::string, double> values;
     for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -35,8 +35,7 @@ double value(const std::map<std::string, double>& values, const std::string& nam
 }
 
 Scene sheet() {
-  Scene s = bare::sheet(5, 5, {.shear = true, .bend = true});
-  s.gravity = {0, -kG, 0};
+  Scene s = under_gravity(bare::sheet(5, 5, {.shear = true, .bend = true}));
   return s;
 }
 
@@ -45,7 +44,10 @@ State still(std::vector<Vec3> x) {
   return {std::move(x), std::vector<Vec3>(n, Vec3::Zero())};
 }
 
-void stretch(Findings& findings) {
+}  // namespace
+
+TAUT_TRUTH(metric_stretch, 10, 1, "strain is (d - r)/r per link; area strain A/A0 - 1",
+           "a uniformly scaled sheet") {
   const Scene s = sheet();
   std::vector<Vec3> wide = s.mesh.rest, narrow = s.mesh.rest;
   for (Vec3& x : wide) x *= 1.1;
@@ -63,7 +65,7 @@ void stretch(Findings& findings) {
                  0.21, 1e-13);
 }
 
-void energy(Findings& findings) {
+TAUT_TRUTH(metric_energy, 10, 2, "free fall conserves (KE + PE)/(m g L)", "the exact parabola") {
   Scene s = sheet();
   s.steps = 128;
   std::vector<State> falling;
@@ -85,7 +87,8 @@ void energy(Findings& findings) {
                  value(values, "energy.kinetic"), kinetic / count / (kG * std::sqrt(2.0)), 1e-9);
 }
 
-void motion(Findings& findings) {
+TAUT_TRUTH(metric_motion, 10, 3, "jitter, popping, drift and settling of prescribed motions",
+           "their definitions") {
   const Scene s = sheet();
   State steady = s.start;
   for (Vec3& v : steady.v) v = Vec3(0.3, 0, 0.4);
@@ -108,9 +111,9 @@ void motion(Findings& findings) {
                  value(measure("settle", s, slows), "settle.time"), 31 * s.dt, 1e-14);
 }
 
-void penetration(Findings& findings) {
-  Scene s = bare::scene({Vec3(0, 0.47, 0), Vec3(0, 2, 0)}, {1, 1}, {});
-  s.gravity = {0, -kG, 0};
+TAUT_TRUTH(metric_penetration, 10, 4, "penetration is max(0, -signed distance)",
+           "a vertex placed 3 cm deep") {
+  Scene s = under_gravity(bare::scene({Vec3(0, 0.47, 0), Vec3(0, 2, 0)}, {1, 1}, {}));
   const auto depth = [&](const Shape& shape) {
     Scene with_shape = s;
     with_shape.colliders.push_back({shape, {}, 0});
@@ -125,14 +128,15 @@ void penetration(Findings& findings) {
   findings.below("metric:penetration", "none outside", "m", depth(Ball{Vec3(0, -1, 0), 0.5}), 0);
 }
 
-void face_geometry(Findings& findings) {
+TAUT_TRUTH(metric_faces, 10, 5,
+           "a face with its corners on a ball is l^2/(4R) deep, all of it geometry",
+           "the circumscribed circle of a right triangle") {
   // A right triangle with legs l and its corners on a ball of radius R.
   const double radius = 0.5, l = 0.05, half = l / std::sqrt(2.0);
   const double height = std::sqrt(radius * radius - half * half);
-  Scene s = bare::scene({Vec3(half, height, 0), Vec3(-half, height, 0), Vec3(0, height, half)},
-                        {1, 1, 1}, {});
+  Scene s = under_gravity(bare::scene(
+      {Vec3(half, height, 0), Vec3(-half, height, 0), Vec3(0, height, half)}, {1, 1, 1}, {}));
   s.mesh.triangles = {{0, 1, 2}};
-  s.gravity = {0, -kG, 0};
   s.colliders.push_back({Ball{Vec3::Zero(), radius}, {}, 0});
   const auto values = measure("faces", s, {s.start, s.start});
   findings.equal("metric:faces", "face.max of a face with its corners on a ball", "m",
@@ -143,9 +147,10 @@ void face_geometry(Findings& findings) {
                  std::abs(value(values, "face.excess")), 1e-12);
 }
 
-void passing_through(Findings& findings) {
-  Scene s = bare::scene({Vec3(0, 1, 0), Vec3(3, 1, 0)}, {1, 1}, {});
-  s.gravity = {0, -kG, 0};
+TAUT_TRUTH(metric_tunnelling, 10, 6,
+           "vertices that end on the other side are counted, even within one step",
+           "a vertex through a ball's centre") {
+  Scene s = under_gravity(bare::scene({Vec3(0, 1, 0), Vec3(3, 1, 0)}, {1, 1}, {}));
   s.colliders.push_back({Ball{Vec3::Zero(), 0.3}, {}, 0});
   std::vector<State> states(2, s.start);
   for (Vec3& x : states[1].x) x.y() = -1;  // one through the middle, one past it
@@ -153,7 +158,8 @@ void passing_through(Findings& findings) {
                  value(measure("tunnelling", s, states), "tunnelling.count"), 1, 0);
 }
 
-void crossing_faces(Findings& findings) {
+TAUT_TRUTH(metric_crossings, 10, 7, "crossing faces that share no vertex are counted",
+           "two triangles") {
   Scene s = bare::scene({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.2, 0.2, -1),
                          Vec3(0.2, 0.2, 1), Vec3(-1, -1, 3)},
                         std::vector<double>(6, 1.0), {});
@@ -169,57 +175,4 @@ void crossing_faces(Findings& findings) {
                  value(clear, "self.crossings"), 0, 0);
 }
 
-}  // namespace
 }  // namespace taut
-
-TAUT_TRUTH(metric_stretch) = {.name = "metric-stretch",
-                              .section = 10,
-                              .row = 1,
-                              .statement = "strain is (d - r)/r per link; area strain A/A0 - 1",
-                              .source = "a uniformly scaled sheet",
-                              .check = taut::stretch};
-
-TAUT_TRUTH(metric_energy) = {.name = "metric-energy",
-                             .section = 10,
-                             .row = 2,
-                             .statement = "free fall conserves (KE + PE)/(m g L)",
-                             .source = "the exact parabola",
-                             .check = taut::energy};
-
-TAUT_TRUTH(metric_motion) = {
-    .name = "metric-motion",
-    .section = 10,
-    .row = 3,
-    .statement = "jitter, popping, drift and settling of prescribed motions",
-    .source = "their definitions",
-    .check = taut::motion};
-
-TAUT_TRUTH(metric_penetration) = {.name = "metric-penetration",
-                                  .section = 10,
-                                  .row = 4,
-                                  .statement = "penetration is max(0, -signed distance)",
-                                  .source = "a vertex placed 3 cm deep",
-                                  .check = taut::penetration};
-
-TAUT_TRUTH(metric_faces) = {
-    .name = "metric-faces",
-    .section = 10,
-    .row = 5,
-    .statement = "a face with its corners on a ball is l^2/(4R) deep, all of it geometry",
-    .source = "the circumscribed circle of a right triangle",
-    .check = taut::face_geometry};
-
-TAUT_TRUTH(metric_tunnelling) = {
-    .name = "metric-tunnelling",
-    .section = 10,
-    .row = 6,
-    .statement = "vertices that end on the other side are counted, even within one step",
-    .source = "a vertex through a ball's centre",
-    .check = taut::passing_through};
-
-TAUT_TRUTH(metric_crossings) = {.name = "metric-crossings",
-                                .section = 10,
-                                .row = 7,
-                                .statement = "crossing faces that share no vertex are counted",
-                                .source = "two triangles",
-                                .check = taut::crossing_faces};

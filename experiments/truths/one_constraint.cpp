@@ -1,12 +1,35 @@
 // Section 1: what one projection of one link does, in closed form.
 #include <cmath>
 
-#include "experiments/truths/printed_listing.hpp"
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 
 namespace {
+
+/// Vasilovici's second listing ("the algorithm then becomes") as printed, a test double that must
+/// never be used to simulate: its first line belongs to the square-root-free form and its last two
+/// to the exact one, so `diff` is undefined there and, whatever it may mean, the signs push apart.
+///
+///     Delta *= restlength * restlength / (delta * delta + restlength * restlength) - 0.5
+///     x1 += delta * 0.5 * diff;
+///     x2 -= delta * 0.5 * diff;
+enum class PrintedReading {
+  opposite_sign,  ///< 0.5 diff = 1: the square-root-free form with the printed += and -=
+  literal         ///< diff = (d - r)/d, from Vasilovici's first listing
+};
+
+/// Strain after one application to a link of unit rest length and strain e, equal masses.
+double printed_strain(PrintedReading reading, double e) {
+  const double rest = 1, d = rest + e;
+  double x1 = 0, x2 = d;
+  const double diff = reading == PrintedReading::literal ? (d - rest) / d : 2;
+  double delta = x2 - x1;
+  delta *= rest * rest / (delta * delta + rest * rest) - 0.5;
+  x1 += delta * 0.5 * diff;
+  x2 -= delta * 0.5 * diff;
+  return (x2 - x1) / rest - 1;
+}
 
 constexpr double kStrains[] = {-0.9, -0.5, -0.1, -1e-3, 1e-3, 0.1, 0.5, 1, 4, 20};
 constexpr double kRest = 0.7;
@@ -16,10 +39,10 @@ const char* const kFloat = ",precision=float";
 /// Strain of a link after one step from rest, which is nothing but the sweeps; below -1 if its ends
 /// have changed sides.
 double projected(std::string_view solver, double strain, double mass1 = 1, double mass2 = 3) {
-  Probe probe(bare::pair(kRest * (1 + strain), kRest, mass1, mass2), solver);
-  const Vec3 before = (probe.x(1) - probe.x(0)).normalized();
-  probe.step();
-  const Vec3 after = probe.x(1) - probe.x(0);
+  Simulation sim(bare::pair(kRest * (1 + strain), kRest, mass1, mass2), solver);
+  const Vec3 before = (sim.x(1) - sim.x(0)).normalized();
+  sim.step();
+  const Vec3 after = sim.x(1) - sim.x(0);
   return std::copysign(after.norm(), after.dot(before)) / kRest - 1;
 }
 
@@ -41,9 +64,12 @@ double worst_over_strains(const F& error) {
   return worst;
 }
 
-void exact_form(Findings& findings) {
+}  // namespace
+
+TAUT_TRUTH(exact_projection, 1, 1, "one projection of an isolated link gives |delta| = r",
+           "Jakobsen 2001, section 4") {
   const auto check = [&](const std::string& solver, double tolerance) {
-    if (!claims(findings, solver, bare::pair(1, 1))) return;
+    if (!can_run(findings, solver, bare::pair(1, 1))) return;
     findings.below(solver, "strain left by one projection, -90 % to +2000 %", "1",
                    worst_over_strains([&](double e) { return projected(solver, e); }), tolerance);
   };
@@ -52,9 +78,10 @@ void exact_form(Findings& findings) {
   check(xpbd(1), 32 * kEpsilon);
 }
 
-void sqrt_free_form(Findings& findings) {
+TAUT_TRUTH(sqrt_free_projection, 1, 2, "the square-root-free form leaves e' = -e^2/(2 + 2e + e^2)",
+           "algebra on Jakobsen 2001, section 4, with the signs corrected") {
   const auto check = [&](const std::string& solver, double tolerance) {
-    if (!claims(findings, solver, bare::pair(1, 1))) return;
+    if (!can_run(findings, solver, bare::pair(1, 1))) return;
     findings.below(
         solver, "distance from -e^2/(2 + 2e + e^2), -90 % to +2000 %", "1",
         worst_over_strains([&](double e) { return projected(solver, e) - sqrt_free(e); }),
@@ -65,10 +92,11 @@ void sqrt_free_form(Findings& findings) {
   check(bullet(1), 32 * kEpsilon);
 }
 
-void repeated_sqrt_free(Findings& findings) {
+TAUT_TRUTH(repeated_sqrt_free, 1, 3, "n passes give |delta|/r = tanh(2^n atanh(min(x0, 1/x0)))",
+           "the map x -> 2x/(1 + x^2) is the doubling of the hyperbolic tangent") {
   for (const bool is_bullet : {false, true}) {
     const auto solver = [&](int n) { return is_bullet ? bullet(n) : jakobsen(n, "sqrt-free"); };
-    if (!claims(findings, solver(4), bare::pair(1, 1))) continue;
+    if (!can_run(findings, solver(4), bare::pair(1, 1))) continue;
     double worst = 0;
     for (int n = 1; n <= 5; ++n)
       for (const double e : {-0.5, 0.1, 0.5, 1.0, 4.0}) {
@@ -80,9 +108,10 @@ void repeated_sqrt_free(Findings& findings) {
   }
 }
 
-void relative_correction(Findings& findings) {
+TAUT_TRUTH(relative_correction, 1, 4, "sqrt-free / exact correction = 1 + e/(2 + 2e + e^2)",
+           "algebra on both forms") {
   const std::string exact = jakobsen(1), approximate = jakobsen(1, "sqrt-free");
-  if (!claims(findings, exact, bare::pair(1, 1))) return;
+  if (!can_run(findings, exact, bare::pair(1, 1))) return;
   findings.below(exact, "sqrt-free / exact correction against 1 + e/(2 + 2e + e^2)", "1",
                  worst_over_strains([&](double e) {
                    const double ratio = (e - projected(approximate, e)) / (e - projected(exact, e));
@@ -91,14 +120,18 @@ void relative_correction(Findings& findings) {
                  1e-12);  // at e = 1e-3 the strains carry three digits less
 }
 
-void far_overshoot(Findings& findings) {
+TAUT_TRUTH(far_overshoot, 1, 5,
+           "at five rest lengths one sqrt-free projection collapses the link to 5/13 r",
+           "2 r^2 d/(d^2 + r^2) at d = 5r") {
   for (const std::string& solver : {jakobsen(1, "sqrt-free"), bullet(1)})
-    if (claims(findings, solver, bare::pair(1, 1)))
+    if (can_run(findings, solver, bare::pair(1, 1)))
       findings.equal(solver, "length after one projection from five rest lengths", "r",
                      1 + projected(solver, 4), 5.0 / 13, 1e-15);
 }
 
-void wrong_signs(Findings& findings) {
+TAUT_TRUTH(wrong_signs, 1, 6,
+           "Vasilovici's printed listing pushes the particles apart in every reading",
+           "Vasilovici's second listing, transcribed literally as a test double") {
   const char* const flipped = "printed listing, opposite sign";
   const char* const literal = "printed listing, diff = (d - r)/d";
   double worst_flipped = 0, worst_literal = 0, least_growth = 1e300;
@@ -124,28 +157,29 @@ void wrong_signs(Findings& findings) {
   }
   findings.below("corrected form", "strain of 1 % after ten passes", "1", std::abs(corrected),
                  1e-15);
-  findings.equal(flipped, "diverges: strain of 1 % after ten passes exceeds", "1", a > 10, 1, 0);
-  findings.equal(literal, "diverges: strain of 1 % after ten passes exceeds 1 %", "1", b > 0.01, 1,
-                 0);
+  findings.holds(flipped, "diverges: strain of 1 % after ten passes exceeds", a > 10);
+  findings.holds(literal, "diverges: strain of 1 % after ten passes exceeds 1 %", b > 0.01);
 }
 
-void mass_weighted(Findings& findings) {
+TAUT_TRUTH(mass_weighted, 1, 7,
+           "each end moves by its share of the inverse masses; btSoftBody's kLST = 1 is this",
+           "Bullet 3.24, PSolve_Links") {
   // Each end moves by its share of the inverse masses; the centre of mass stays.
   for (const std::string& solver : {bullet(1), jakobsen(1, "sqrt-free"), jakobsen(1), xpbd(1)}) {
-    if (!claims(findings, solver, bare::pair(1, 1))) continue;
+    if (!can_run(findings, solver, bare::pair(1, 1))) continue;
     double worst = 0;
     for (const double ratio : {1.0, 3.0, 100.0})
       for (const double e : kStrains) {
-        Probe probe(bare::pair(kRest * (1 + e), kRest, 1, ratio), solver);
-        const Vec3 start = probe.x(0) + ratio * probe.x(1);
-        probe.step();
-        worst = std::max(worst, (probe.x(0) + ratio * probe.x(1) - start).norm() / (1 + ratio));
+        Simulation sim(bare::pair(kRest * (1 + e), kRest, 1, ratio), solver);
+        const Vec3 start = sim.x(0) + ratio * sim.x(1);
+        sim.step();
+        worst = std::max(worst, (sim.x(0) + ratio * sim.x(1) - start).norm() / (1 + ratio));
       }
     findings.below(solver, "motion of the centre of mass, mass ratios 1, 3, 100", "m", worst,
                    1e-14);
   }
   const std::string twin = jakobsen(1, "sqrt-free");
-  if (!claims(findings, bullet(1), bare::pair(1, 1))) return;
+  if (!can_run(findings, bullet(1), bare::pair(1, 1))) return;
   findings.below(bullet(1), "distance from our square-root-free projection", "1",
                  worst_over_strains([&](double e) {
                    return projected(bullet(1), e, 1, 3) - projected(twin, e, 1, 3);
@@ -153,60 +187,4 @@ void mass_weighted(Findings& findings) {
                  32 * kEpsilon);
 }
 
-}  // namespace
 }  // namespace taut
-
-TAUT_TRUTH(exact_projection) = {.name = "exact-projection",
-                                .section = 1,
-                                .row = 1,
-                                .statement = "one projection of an isolated link gives |delta| = r",
-                                .source = "Jakobsen 2001, section 4",
-                                .check = taut::exact_form};
-
-TAUT_TRUTH(sqrt_free_projection) = {
-    .name = "sqrt-free-projection",
-    .section = 1,
-    .row = 2,
-    .statement = "the square-root-free form leaves e' = -e^2/(2 + 2e + e^2)",
-    .source = "algebra on Jakobsen 2001, section 4, with the signs corrected",
-    .check = taut::sqrt_free_form};
-
-TAUT_TRUTH(repeated_sqrt_free) = {
-    .name = "repeated-sqrt-free",
-    .section = 1,
-    .row = 3,
-    .statement = "n passes give |delta|/r = tanh(2^n atanh(min(x0, 1/x0)))",
-    .source = "the map x -> 2x/(1 + x^2) is the doubling of the hyperbolic tangent",
-    .check = taut::repeated_sqrt_free};
-
-TAUT_TRUTH(relative_correction) = {
-    .name = "relative-correction",
-    .section = 1,
-    .row = 4,
-    .statement = "sqrt-free / exact correction = 1 + e/(2 + 2e + e^2)",
-    .source = "algebra on both forms",
-    .check = taut::relative_correction};
-
-TAUT_TRUTH(far_overshoot) = {
-    .name = "far-overshoot",
-    .section = 1,
-    .row = 5,
-    .statement = "at five rest lengths one sqrt-free projection collapses the link to 5/13 r",
-    .source = "2 r^2 d/(d^2 + r^2) at d = 5r",
-    .check = taut::far_overshoot};
-
-TAUT_TRUTH(wrong_signs) = {
-    .name = "wrong-signs",
-    .section = 1,
-    .row = 6,
-    .statement = "Vasilovici's printed listing pushes the particles apart in every reading",
-    .source = "Vasilovici's second listing, transcribed literally as a test double",
-    .check = taut::wrong_signs};
-
-TAUT_TRUTH(mass_weighted) = {
-    .name = "mass-weighted",
-    .section = 1,
-    .row = 7,
-    .statement = "each end moves by its share of the inverse masses; btSoftBody's kLST = 1 is this",
-    .source = "Bullet 3.24, PSolve_Links",
-    .check = taut::mass_weighted};

@@ -4,20 +4,20 @@
 #include <numbers>
 
 #include "core/model/angle.hpp"
+#include "core/model/index.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/dense.hpp"
+#include "core/reference/fit.hpp"
 #include "core/reference/relaxation.hpp"
 #include "core/reference/shake.hpp"
-#include "experiments/truths/fit.hpp"
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 
 namespace {
 
 Scene pendulum(double amplitude, double dt) {
-  Scene s = bare::chain(1, 1, 1, {std::sin(amplitude), -std::cos(amplitude), 0});
-  s.gravity = {0, -kG, 0};
+  Scene s = under_gravity(bare::chain(1, 1, 1, {std::sin(amplitude), -std::cos(amplitude), 0}));
   s.dt = dt;
   return s;
 }
@@ -36,19 +36,19 @@ double quarter_period(const std::function<Vec3()>& next, double dt) {
 
 /// The angle [rad] to which the mass swings up on the other side.
 double turning_angle(const std::string& solver, double amplitude, double dt) {
-  Probe probe(pendulum(amplitude, dt), solver);
+  Simulation sim(pendulum(amplitude, dt), solver);
   double furthest = 0;
   const int half = static_cast<int>(0.6 * reference::pendulum_period(1, kG, amplitude) / dt);
   for (int n = 0; n < half; ++n) {
-    probe.step();
-    furthest = std::max(furthest, std::atan2(-probe.x(1).x(), -probe.x(1).y()));
+    sim.step();
+    furthest = std::max(furthest, std::atan2(-sim.x(1).x(), -sim.x(1).y()));
   }
   return furthest;
 }
 
 double solver_quarter(const std::string& solver, double amplitude, double dt) {
-  Probe probe(pendulum(amplitude, dt), solver);
-  return quarter_period([&] { return probe.step(), probe.x(1); }, dt);
+  Simulation sim(pendulum(amplitude, dt), solver);
+  return quarter_period([&] { return sim.step(), sim.x(1); }, dt);
 }
 
 double shake_quarter(double amplitude, double dt) {
@@ -57,7 +57,7 @@ double shake_quarter(double amplitude, double dt) {
 }
 
 struct Convergence {
-  Slope order;
+  PowerLaw order;
   double limit = 0;  ///< extrapolated with the predicted order
 };
 
@@ -70,10 +70,28 @@ Convergence converge(const std::function<double(double)>& value, double exact, i
     error.push_back(std::abs(values.back() - exact));
   }
   const double fine = values.back(), coarse = values[values.size() - 2];
-  return {log_slope(dt, error), fine + (fine - coarse) / (std::exp2(order) - 1)};
+  return {fit_power_law(dt, error), fine + (fine - coarse) / (std::exp2(order) - 1)};
 }
 
-void pendulum_period(Findings& findings) {
+/// Settings whose projection has converged for one link.
+std::vector<std::string> converged() {
+  return {jakobsen(1), jakobsen(8, "sqrt-free"), xpbd(1), bullet(8)};
+}
+
+Scene double_pendulum(double dt) {
+  const double a = 120 * kDegree, b = -10 * kDegree;
+  Scene s = under_gravity(bare::chain(2, 2, 1));
+  s.start.x[1] = Vec3(std::sin(a), -std::cos(a), 0);
+  s.start.x[2] = s.start.x[1] + Vec3(std::sin(b), -std::cos(b), 0);
+  s.dt = dt;
+  return s;
+}
+
+}  // namespace
+
+TAUT_TRUTH(pendulum_period, 4, 1,
+           "T = 2 pi sqrt(L/g)/AGM(1, cos(theta0/2)); order 1 in dt, SHAKE 2",
+           "Gauss; the arithmetic-geometric mean") {
   const std::pair<double, double> printed[] = {
       {10, 2.009892627}, {90, 2.367841948}, {170, 4.893524274}};
   for (const auto& [degrees, seconds] : printed) {
@@ -84,19 +102,18 @@ void pendulum_period(Findings& findings) {
     if (findings.wants(kShake)) {
       const Convergence c =
           converge([&](double dt) { return shake_quarter(amplitude, dt); }, exact, 6, 10, 2);
-      findings.slope(kShake, "order in dt of the quarter period" + at, c.order.value, c.order.error,
-                     2, 0.05);
+      findings.slope(kShake, "order in dt of the quarter period" + at, c.order, 2, 0.05);
       findings.equal(kShake, "quarter period for dt -> 0" + at, "s", c.limit, exact, 1e-6);
     }
     for (const std::string& solver : {jakobsen(1), jakobsen(1, "sqrt-free"), xpbd(1), bullet(1)}) {
-      if (!claims(findings, solver, pendulum(amplitude, 1.0 / 64))) continue;
+      if (!can_run(findings, solver, pendulum(amplitude, 1.0 / 64))) continue;
       const Convergence quarter = converge(
           [&](double dt) { return solver_quarter(solver, amplitude, dt); }, exact, 8, 12, 1);
       findings.equal(solver, "quarter period for dt -> 0" + at, "s", quarter.limit, exact, 1e-5);
       // Small swings lose height in first order but keep time in second; near the top the height
       // is not yet asymptotic at these steps, the time is.
       const bool small = degrees < 100;
-      const Slope order =
+      const PowerLaw order =
           small ? converge([&](double dt) { return turning_angle(solver, amplitude, dt); },
                            amplitude, 8, 12, 1)
                       .order
@@ -105,24 +122,21 @@ void pendulum_period(Findings& findings) {
                      (small ? "order in dt of the angle on the other side"
                             : "order in dt of the quarter period") +
                          at,
-                     order.value, order.error, 1, 0.05);
+                     order, 1, 0.05);
     }
   }
 }
 
-/// Settings whose projection has converged for one link.
-std::vector<std::string> converged() {
-  return {jakobsen(1), jakobsen(8, "sqrt-free"), xpbd(1), bullet(8)};
-}
-
-void small_swings(Findings& findings) {
+TAUT_TRUTH(small_swings, 4, 2,
+           "converged projection: z = 1/(1 +- i w dt), decay ln(1 + w^2 dt^2)/(2 dt)",
+           "linearisation: implicit Euler of a transverse mode") {
   const double dt = 1.0 / 64;
   const auto check = [&](const std::string& solver, const std::string& what, Scene scene, int mass,
                          double w, double tolerance) {
-    if (!claims(findings, solver, scene)) return;
-    Probe probe(scene, solver);
+    if (!can_run(findings, solver, scene)) return;
+    Simulation sim(scene, solver);
     std::vector<double> y;
-    for (int n = 0; n < 100; ++n) probe.step(), y.push_back(probe.x(mass).x());
+    for (int n = 0; n < 100; ++n) sim.step(), y.push_back(sim.x(mass).x());
     const auto [p, q] = two_term_recurrence(y);
     const double radius = std::sqrt(-q);
     findings.equal(solver, "decay rate, " + what, "1/s", -std::log(radius) / dt,
@@ -136,29 +150,29 @@ void small_swings(Findings& findings) {
 
 /// The chain's modes: implicit Euler exactly for one link only. In a chain the corrections of a
 /// step act along links that are still turning while the sweeps go on.
-void chain_swings(Findings& findings) {
+TAUT_TRUTH(chain_swings, 4, 3,
+           "transverse modes of a chain obey z^2 - 2 mu z + mu = 0 with mu of the sweeps, "
+           "within 1 % of 1/(1 + w^2 dt^2) for the low ones",
+           "linearised Gauss-Seidel sweeps about the hanging chain") {
   const int n = 8, k = 1500;
   const double dt = 1.0 / 64, a = kG * dt * dt;
   const auto w = reference::hanging_chain_frequencies(n, 1, kG);
   const reference::Modes modes = reference::modes(reference::transverse_sweeps(n, k, a, 1.0 / n));
   for (int mode = 0; mode < 3; ++mode) {
-    const double implicit =
-        1 / (1 + w[static_cast<std::size_t>(mode)] * w[static_cast<std::size_t>(mode)] * dt * dt);
+    const double implicit = 1 / (1 + w[to_index(mode)] * w[to_index(mode)] * dt * dt);
     Eigen::Index nearest = 0;
     (modes.eigenvalues.array() - implicit).abs().minCoeff(&nearest);
     const double mu = modes.eigenvalues[nearest].real();
     const Eigen::VectorXd shape = modes.eigenvectors.col(nearest).real();
-    Scene s = bare::chain(n, 1, 0.1);
-    s.gravity = {0, -kG, 0};
+    Scene s = under_gravity(bare::chain(n, 1, 0.1));
     for (int i = 1; i <= n; ++i)
-      s.start.x[static_cast<std::size_t>(i)].x() =
-          1e-7 * shape[i - 1] / shape.cwiseAbs().maxCoeff();
+      s.start.x[to_index(i)].x() = 1e-7 * shape[i - 1] / shape.cwiseAbs().maxCoeff();
     const std::string name = "mode " + std::to_string(mode + 1) + " of 8 links";
     for (const std::string& solver : {jakobsen(k), bullet(k)}) {
-      if (!claims(findings, solver, s)) continue;
-      Probe probe(s, solver);
+      if (!can_run(findings, solver, s)) continue;
+      Simulation sim(s, solver);
       std::vector<double> y;
-      for (int i = 0; i < 60; ++i) probe.step(), y.push_back(probe.x(n).x());
+      for (int i = 0; i < 60; ++i) sim.step(), y.push_back(sim.x(n).x());
       const auto [p, q] = two_term_recurrence(y);
       findings.equal(solver, "2 mu of z^2 - 2 mu z + mu, " + name, "1", p, 2 * mu, 1e-6);
       findings.equal(solver, "mu of z^2 - 2 mu z + mu, " + name, "1", -q, mu, 1e-6);
@@ -169,20 +183,21 @@ void chain_swings(Findings& findings) {
   }
 }
 
-void stick(Findings& findings) {
+TAUT_TRUTH(turning_stick, 4, 4, "tan(phi') = sin(phi)/(2 - cos(phi)), phi = angle per step",
+           "geometry of 2x - x' and its projection") {
   const double dt = static_cast<double>(1.0F / 60), start = 2 * std::numbers::pi * dt;
   for (const std::string& solver : converged()) {
     Scene s = bare::chain(1, 1, 1, Vec3::UnitX());
     s.dt = dt;
     s.start.v[1] = (s.start.x[1] - Vec3(std::cos(start), -std::sin(start), 0)) / dt;
-    if (!claims(findings, solver, s)) continue;
-    Probe probe(s, solver);
+    if (!can_run(findings, solver, s)) continue;
+    Simulation sim(s, solver);
     double phi = start, worst = 0, angle = 0, before = 0;
     for (int n = 0; n < 120; ++n) {
       phi = reference::stick_next_angle(phi);
-      probe.step();
+      sim.step();
       before = angle;
-      angle = std::atan2(probe.x(1).y(), probe.x(1).x());
+      angle = std::atan2(sim.x(1).y(), sim.x(1).x());
       const double turned = std::remainder(angle - before, 2 * std::numbers::pi);
       worst = std::max(worst, std::abs(turned - phi));
     }
@@ -193,17 +208,9 @@ void stick(Findings& findings) {
   }
 }
 
-Scene double_pendulum(double dt) {
-  const double a = 120 * kDegree, b = -10 * kDegree;
-  Scene s = bare::chain(2, 2, 1);
-  s.start.x[1] = Vec3(std::sin(a), -std::cos(a), 0);
-  s.start.x[2] = s.start.x[1] + Vec3(std::sin(b), -std::cos(b), 0);
-  s.gravity = {0, -kG, 0};
-  s.dt = dt;
-  return s;
-}
-
-void double_pendulum_truth(Findings& findings) {
+TAUT_TRUTH(double_pendulum, 4, 5,
+           "from (120, -10) deg at rest: the Lagrangian path at 1 s and 2 s; order 1 in dt",
+           "Runge-Kutta on the Lagrangian equations") {
   const Vec3 printed[2][2] = {
       {{-0.9986224057, -0.0524718108, 0}, {-0.7505341127, -1.0212092359, 0}},
       {{0.9139048043, -0.4059285759, 0}, {0.4635538327, -1.2987801886, 0}}};
@@ -213,7 +220,7 @@ void double_pendulum_truth(Findings& findings) {
     for (const int i : {0, 1})
       findings.below("closed form",
                      "distance of mass " + std::to_string(i + 1) + " from the table" + at, "m",
-                     (exact[static_cast<std::size_t>(i)] - printed[t - 1][i]).norm(), 1e-10);
+                     (exact[to_index(i)] - printed[t - 1][i]).norm(), 1e-10);
     if (findings.wants(kShake)) {
       const auto motion = reference::converged_motion(double_pendulum(1.0 / 512),
                                                       {static_cast<double>(t)}, 1.0 / 512);
@@ -222,65 +229,21 @@ void double_pendulum_truth(Findings& findings) {
                      1e-6);
     }
     for (const std::string& solver : {jakobsen(60), bullet(60)}) {
-      if (!claims(findings, solver, double_pendulum(1.0 / 512))) continue;
+      if (!can_run(findings, solver, double_pendulum(1.0 / 512))) continue;
       std::vector<double> dts, errors;
       std::vector<Vec3> ends;
       for (int r = 10; r <= 13; ++r) {
         const double dt = std::ldexp(1, -r);
-        Probe probe(double_pendulum(dt), solver);
-        probe.step(t << r);
-        dts.push_back(dt), ends.push_back(probe.x(2));
-        errors.push_back((probe.x(2) - exact[1]).norm());
+        Simulation sim(double_pendulum(dt), solver, t << r);
+        dts.push_back(dt), ends.push_back(sim.x(2));
+        errors.push_back((sim.x(2) - exact[1]).norm());
       }
-      const Slope order = log_slope(dts, errors);
-      findings.slope(solver, "order in dt of mass 2" + at, order.value, order.error, 1, 0.1);
+      const PowerLaw order = fit_power_law(dts, errors);
+      findings.slope(solver, "order in dt of mass 2" + at, order, 1, 0.1);
       findings.below(solver, "distance of mass 2 for dt -> 0" + at, "m",
                      (2 * ends[3] - ends[2] - exact[1]).norm(), t == 1 ? 1e-4 : 1e-2);
     }
   }
 }
 
-}  // namespace
 }  // namespace taut
-
-TAUT_TRUTH(pendulum_period) = {
-    .name = "pendulum-period",
-    .section = 4,
-    .row = 1,
-    .statement = "T = 2 pi sqrt(L/g)/AGM(1, cos(theta0/2)); order 1 in dt, SHAKE 2",
-    .source = "Gauss; the arithmetic-geometric mean",
-    .check = taut::pendulum_period};
-
-TAUT_TRUTH(small_swings) = {
-    .name = "small-swings",
-    .section = 4,
-    .row = 2,
-    .statement = "converged projection: z = 1/(1 +- i w dt), decay ln(1 + w^2 dt^2)/(2 dt)",
-    .source = "linearisation: implicit Euler of a transverse mode",
-    .check = taut::small_swings};
-
-TAUT_TRUTH(chain_swings) = {
-    .name = "chain-swings",
-    .section = 4,
-    .row = 3,
-    .statement =
-        "transverse modes of a chain obey z^2 - 2 mu z + mu = 0 with mu of the sweeps, "
-        "within 1 % of 1/(1 + w^2 dt^2) for the low ones",
-    .source = "linearised Gauss-Seidel sweeps about the hanging chain",
-    .check = taut::chain_swings};
-
-TAUT_TRUTH(turning_stick) = {
-    .name = "turning-stick",
-    .section = 4,
-    .row = 4,
-    .statement = "tan(phi') = sin(phi)/(2 - cos(phi)), phi = angle per step",
-    .source = "geometry of 2x - x' and its projection",
-    .check = taut::stick};
-
-TAUT_TRUTH(double_pendulum) = {
-    .name = "double-pendulum",
-    .section = 4,
-    .row = 5,
-    .statement = "from (120, -10) deg at rest: the Lagrangian path at 1 s and 2 s; order 1 in dt",
-    .source = "Runge-Kutta on the Lagrangian equations",
-    .check = taut::double_pendulum_truth};

@@ -1,9 +1,9 @@
 // Section 8: numbers that papers print, and how near to them the same set-up comes here.
 #include <cmath>
 
+#include "core/reference/fit.hpp"
 #include "core/reference/textbook.hpp"
-#include "experiments/truths/fit.hpp"
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 
@@ -12,20 +12,24 @@ namespace {
 /// Largest stretch [m] over 30 s of a chain of 20 free particles, 1 cm apart, the last 1e5 times
 /// heavier than the others, released unstrained.
 double peak_stretch(const Scene& s, const std::string& solver) {
-  Probe probe(s, solver);
+  Simulation sim(s, solver);
   const int n = static_cast<int>(s.links.size());
   double peak = 0;
   for (int step = 0; step < s.steps; ++step) {
-    probe.step();
-    peak = std::max(peak, -probe.x(n).y() - n * 0.01);
+    sim.step();
+    peak = std::max(peak, -sim.x(n).y() - n * 0.01);
   }
   return peak;
 }
 
-void small_steps(Findings& findings) {
-  Scene s = bare::chain(20, 0.2, 1);
+}  // namespace
+
+TAUT_TRUTH(small_steps, 8, 1,
+           "mass ratio 1:1e5: 100 iterations stretch a chain 100.7 times (322.1 m over 3.2 m) what "
+           "100 substeps do; reproduced here: 99.6",
+           "Macklin et al., Small Steps in Physics Simulation, SCA 2019, section 6.1") {
+  Scene s = under_gravity(bare::chain(20, 0.2, 1));
   s.mesh.mass.back() = 1e5;
-  s.gravity = {0, -kG, 0};
   s.dt = 1.0 / 64;
   s.steps = 64 * 30;
   // The paper prints 322.1 m and 3.2 m, so a ratio of 99.1 to 102.3 by the rounding of its digits,
@@ -33,7 +37,7 @@ void small_steps(Findings& findings) {
   constexpr double kPrinted = 322.1 / 3.2, kDigits = 322.15 / 3.15 - kPrinted;
   constexpr double kHere = 99.6;  // what Jakobsen's exact projection and XPBD both give here
   const auto ratio = [&](const std::string& iterations, const std::string& substeps) {
-    if (!claims(findings, iterations, s) || !claims(findings, substeps, s)) return;
+    if (!can_run(findings, iterations, s) || !can_run(findings, substeps, s)) return;
     const double measured = peak_stretch(s, iterations) / peak_stretch(s, substeps);
     findings.equal(substeps, "stretch of 100 iterations over that of 100 substeps, as printed", "1",
                    measured, kPrinted, kDigits);
@@ -42,7 +46,7 @@ void small_steps(Findings& findings) {
   ratio(jakobsen(100), jakobsen(1, "exact", "substeps=100"));
   ratio("xpbd:iterations=100,substeps=1,precision=double", xpbd(100));
   const std::string theirs = bullet(100);
-  if (claims(findings, theirs, s)) {
+  if (can_run(findings, theirs, s)) {
     const double measured =
         peak_stretch(s, theirs) / peak_stretch(s, with(bullet(1), "substeps=100"));
     findings.deviates(theirs, "stretch of 100 iterations over that of 100 substeps", "1", measured,
@@ -53,7 +57,8 @@ void small_steps(Findings& findings) {
   }
 }
 
-void xpbd_spring(Findings& findings) {
+TAUT_TRUTH(xpbd_spring, 8, 2, "a compliant spring moves the same for any number of iterations",
+           "Macklin, Mueller, Chentanez, XPBD, MIG 2016, figure 2") {
   // alpha = 0.001 m/N, 1 kg, released at x0 = 1.5 from a rest length of 1 (figure 2 of the paper).
   const double alpha = 0.001, dt = 1.0 / 64, w2 = 1 / alpha;
   for (const int k : {1, 5, 50}) {
@@ -61,10 +66,10 @@ void xpbd_spring(Findings& findings) {
         "xpbd:iterations=" + std::to_string(k) + ",substeps=1,structural=0.001,precision=double";
     Scene s = bare::chain(1, 1, 1);
     s.start.x[1].y() = -1.5;
-    if (!claims(findings, solver, s)) continue;
-    Probe probe(s, solver);
+    if (!can_run(findings, solver, s)) continue;
+    Simulation sim(s, solver);
     std::vector<double> y{0.5};
-    for (int n = 0; n < 12; ++n) probe.step(), y.push_back(-probe.x(1).y() - 1);
+    for (int n = 0; n < 12; ++n) sim.step(), y.push_back(-sim.x(1).y() - 1);
     const auto [p, q] = two_term_recurrence(y);
     findings.equal(solver, "implicit Euler whatever the sweeps: 2/(1 + w^2 dt^2)", "1", p,
                    2 / (1 + w2 * dt * dt), 1e-10);
@@ -72,7 +77,9 @@ void xpbd_spring(Findings& findings) {
   }
 }
 
-void xpbd_chain_force(Findings& findings) {
+TAUT_TRUTH(xpbd_chain_force, 8, 3,
+           "constraint forces of a hanging chain come out of the multipliers",
+           "Macklin, Mueller, Chentanez, XPBD, MIG 2016, figure 3") {
   findings.not_claimed(
       "xpbd",
       "force error of 6 / 2 / 0.5 % at 50 / 100 / 1000 iterations (figure 3a): the "
@@ -81,20 +88,19 @@ void xpbd_chain_force(Findings& findings) {
   for (const int k : {1, 50}) {
     const std::string solver =
         "xpbd:iterations=" + std::to_string(k) + ",substeps=1,precision=double";
-    Scene s = bare::chain(20, 20, 1);
-    s.gravity = {0, -kG, 0};
-    if (!claims(findings, solver, s)) continue;
-    Probe probe(s, solver);
-    probe.step(12000 / k);
+    Scene s = under_gravity(bare::chain(20, 20, 1));
+    if (!can_run(findings, solver, s)) continue;
+    Simulation sim(s, solver, 12000 / k);
     Textbook<double> textbook(s, k);
-    textbook.load(probe.state());
+    textbook.load(sim.state());
     textbook.step();
     findings.equal(solver, "force of the top link of 20 at rest over the weight", "1",
                    textbook.lambda()[0] / s.dt / s.dt / (20 * kG), 1, 1e-6);
   }
 }
 
-void tetrahedron(Findings& findings) {
+TAUT_TRUTH(tetrahedron, 8, 4, "three to four passes are enough for a tetrahedron",
+           "Jakobsen 2001, section 5") {
   // "3 or 4 iterations should be enough": six links, a vertex pushed out by a fifth. Enough is a
   // tenth of the strain: the paper gives no number.
   const std::vector<Vec3> x{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
@@ -107,25 +113,24 @@ void tetrahedron(Findings& findings) {
   for (const auto& [few, four] :
        {std::pair(jakobsen(1, "sqrt-free"), jakobsen(4, "sqrt-free")),
         std::pair(jakobsen(1), jakobsen(4)), std::pair(bullet(1), bullet(4))}) {
-    if (!claims(findings, few, s)) continue;
-    Probe probe(s, four);
-    probe.step();
+    if (!can_run(findings, few, s)) continue;
+    Simulation sim(s, four);
+    sim.step();
     findings.below(four, "share of the strain that four passes leave", "1",
-                   max_strain(s, probe.state()) / start, 0.1);
+                   max_strain(s, sim.state()) / start, 0.1);
   }
 }
 
-void three_sweeps(Findings& findings) {
+TAUT_TRUTH(three_sweeps, 8, 5, "three sweeps suffice for a good result",
+           "Vasilovici, Cloth Simulation Report, section 4.1") {
   // "3 iterations suffice": by how much, on the sheet that Vasilovici shows.
   for (const std::string& solver : {jakobsen(3, "sqrt-free"), bullet(3)}) {
-    Scene s = bare::sheet(16, 16, {.shear = true});
+    Scene s = under_gravity(bare::sheet(16, 16, {.shear = true}));
     s.pins = {0, 15};
-    s.gravity = {0, -kG, 0};
     s.damping = 1;
-    if (!claims(findings, solver, s)) continue;
-    Probe probe(s, solver);
-    probe.step(640);
-    const double rms = rms_strain(s, probe.state());
+    if (!can_run(findings, solver, s)) continue;
+    Simulation sim(s, solver, 640);
+    const double rms = rms_strain(s, sim.state());
     findings.deviates(solver, "RMS strain of a 16x16 sheet on two corners, 1/64 s", "1", rms, 0,
                       0.06, 0.03,
                       "three sweeps suffice to look right, not to hold lengths; 6 % is what they "
@@ -133,45 +138,4 @@ void three_sweeps(Findings& findings) {
   }
 }
 
-}  // namespace
 }  // namespace taut
-
-TAUT_TRUTH(small_steps) = {
-    .name = "small-steps",
-    .section = 8,
-    .row = 1,
-    .statement =
-        "mass ratio 1:1e5: 100 iterations stretch a chain 100.7 times (322.1 m over 3.2 m) what "
-        "100 substeps do; reproduced here: 99.6",
-    .source = "Macklin et al., Small Steps in Physics Simulation, SCA 2019, section 6.1",
-    .check = taut::small_steps};
-
-TAUT_TRUTH(xpbd_spring) = {
-    .name = "xpbd-spring",
-    .section = 8,
-    .row = 2,
-    .statement = "a compliant spring moves the same for any number of iterations",
-    .source = "Macklin, Mueller, Chentanez, XPBD, MIG 2016, figure 2",
-    .check = taut::xpbd_spring};
-
-TAUT_TRUTH(xpbd_chain_force) = {
-    .name = "xpbd-chain-force",
-    .section = 8,
-    .row = 3,
-    .statement = "constraint forces of a hanging chain come out of the multipliers",
-    .source = "Macklin, Mueller, Chentanez, XPBD, MIG 2016, figure 3",
-    .check = taut::xpbd_chain_force};
-
-TAUT_TRUTH(tetrahedron) = {.name = "tetrahedron",
-                           .section = 8,
-                           .row = 4,
-                           .statement = "three to four passes are enough for a tetrahedron",
-                           .source = "Jakobsen 2001, section 5",
-                           .check = taut::tetrahedron};
-
-TAUT_TRUTH(three_sweeps) = {.name = "three-sweeps",
-                            .section = 8,
-                            .row = 5,
-                            .statement = "three sweeps suffice for a good result",
-                            .source = "Vasilovici, Cloth Simulation Report, section 4.1",
-                            .check = taut::three_sweeps};

@@ -59,15 +59,19 @@ void Findings::equal(std::string_view subject, std::string_view quantity, std::s
   add(finding(subject, quantity, unit, measured, expected, tolerance));
 }
 
-void Findings::below(std::string_view subject, std::string_view quantity, std::string_view unit,
-                     double measured, double limit) {
-  add(finding(subject, quantity, unit, measured, 0, limit));
+void Findings::holds(std::string_view subject, std::string_view quantity, bool measured) {
+  equal(subject, quantity, "1", measured, 1, 0);
 }
 
-void Findings::slope(std::string_view subject, std::string_view quantity, double measured,
-                     double uncertainty, double expected, double tolerance) {
-  Finding f = finding(subject, quantity, "1", measured, expected, tolerance);
-  f.uncertainty = uncertainty;
+void Findings::below(std::string_view subject, std::string_view quantity, std::string_view unit,
+                     double measured, double limit) {
+  equal(subject, quantity, unit, measured, 0, limit);
+}
+
+void Findings::slope(std::string_view subject, std::string_view quantity, const PowerLaw& fitted,
+                     double expected, double tolerance) {
+  Finding f = finding(subject, quantity, "1", fitted.exponent, expected, tolerance);
+  f.uncertainty = fitted.error;
   add(std::move(f));
 }
 

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/reference/fit.hpp"
+
 namespace taut {
 
 /// How a measured number compares with what is known.
@@ -43,12 +45,14 @@ class Findings {
   /// |measured - expected| <= tolerance (absolute, in the quantity's unit).
   void equal(std::string_view subject, std::string_view quantity, std::string_view unit,
              double measured, double expected, double tolerance);
+  /// What is so or not.
+  void holds(std::string_view subject, std::string_view quantity, bool measured);
   /// 0 <= measured <= limit: an error that has to be small.
   void below(std::string_view subject, std::string_view quantity, std::string_view unit,
              double measured, double limit);
   /// A fitted exponent with its standard error.
-  void slope(std::string_view subject, std::string_view quantity, double measured,
-             double uncertainty, double expected, double tolerance);
+  void slope(std::string_view subject, std::string_view quantity, const PowerLaw& fitted,
+             double expected, double tolerance);
   /// The truth says `expected`; this subject legitimately gives `explained` (within tolerance).
   /// Where both are within the tolerance it passes: nobody could tell them apart.
   void deviates(std::string_view subject, std::string_view quantity, std::string_view unit,
@@ -64,8 +68,7 @@ class Findings {
   std::vector<Finding> findings_;
 };
 
-/// How a truth introduces itself: found by its TAUT_TRUTH line. Its place in the list of truths is
-/// section.row, as in `taut verify --section 4`.
+/// How a truth introduces itself: found by its TAUT_TRUTH line.
 struct TruthEntry {
   std::string_view name;  ///< "hanging-chain-sweeps"
   int section = 0;        ///< 1 constraint, 2 twin, 3 free motion, 4 pendulum and chain,
@@ -76,6 +79,15 @@ struct TruthEntry {
   void (*check)(Findings&);
 };
 
+/// "hanging-chain-sweeps" of hanging_chain_sweeps.
+template <std::size_t length>
+struct Hyphenated {
+  consteval Hyphenated(const char (&id)[length]) {
+    for (std::size_t i = 0; i < length; ++i) text[i] = id[i] == '_' ? '-' : id[i];
+  }
+  char text[length];
+};
+
 /// All truths (generated; see cmake/registry.cmake).
 std::span<const TruthEntry* const> truths();
 
@@ -84,9 +96,12 @@ std::string_view section_title(int section);
 
 }  // namespace taut
 
-/// Defines the entry under the name by which the generated registry finds it.
-#define TAUT_TRUTH(id)                \
-  namespace taut {                    \
-  extern const TruthEntry truth_##id; \
-  }                                   \
-  const taut::TruthEntry taut::truth_##id
+/// A truth within namespace taut: its name with underscores, section and row of the list (as in
+/// `taut verify --section 4`), what must hold, and its source; then the function that checks it:
+///     TAUT_TRUTH(weightless, 3, 99, "Without forces ...", "Newton") { findings.below(...); }
+#define TAUT_TRUTH(id, section, row, statement, source)                                     \
+  static void check_##id(Findings&);                                                        \
+  static constexpr Hyphenated name_##id(#id);                                               \
+  extern const TruthEntry truth_##id;                                                       \
+  const TruthEntry truth_##id{name_##id.text, section, row, statement, source, check_##id}; \
+  static void check_##id(Findings& findings)

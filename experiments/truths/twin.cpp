@@ -1,5 +1,5 @@
 // Section 2: btSoftBody with its Positions solver takes our path, vertex by vertex.
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 
@@ -8,9 +8,8 @@ namespace {
 constexpr int kSweeps = 8;
 
 Scene hanging_sheet(double dt) {
-  Scene s = bare::sheet(20, 20, {.shear = true, .bend = true});
+  Scene s = under_gravity(bare::sheet(20, 20, {.shear = true, .bend = true}));
   s.pins = {0, 19};
-  s.gravity = {0, -kG, 0};
   s.dt = dt;
   return s;
 }
@@ -21,7 +20,7 @@ struct Gap {
 };
 
 Gap gap(const Scene& scene, std::string_view a, std::string_view b) {
-  Probe ours(scene, a), theirs(scene, b);
+  Simulation ours(scene, a), theirs(scene, b);
   Gap g;
   for (int n = 1; n <= 600; ++n) {
     ours.step(), theirs.step();
@@ -32,20 +31,26 @@ Gap gap(const Scene& scene, std::string_view a, std::string_view b) {
   return g;
 }
 
-void twin(Findings& findings) {
+}  // namespace
+
+TAUT_TRUTH(twin, 2, 1,
+           "btSoftBody and jakobsen (sqrt-free, same order) take the same path to rounding",
+           "Bullet 3.24, btSoftBody.cpp: v += g dt; x += v dt; sweeps; v = (x - q)/dt") {
   const Scene scene = hanging_sheet(1.0 / 64);
   const std::string theirs = bullet(kSweeps), ours = jakobsen(kSweeps, "sqrt-free");
-  if (!claims(findings, theirs, scene)) return;
+  if (!can_run(findings, theirs, scene)) return;
   const Gap g = gap(scene, ours, theirs);
   findings.below(theirs, "distance from jakobsen after one step, 20x20, 8 sweeps", "m", g.first,
                  2e-15);
   findings.below(theirs, "largest distance over 600 steps (10 s)", "m", g.largest, 1e-8);
 }
 
-void twin_float(Findings& findings) {
+TAUT_TRUTH(twin_float, 2, 2,
+           "in float the first step agrees to 3e-7 m; later distances are amplified rounding",
+           "measured; the float build of Bullet runs in taut-f32") {
   const Scene scene = hanging_sheet(1.0 / 64);
   const std::string theirs = "bullet:iterations=8,precision=float";
-  if (!claims(findings, theirs, scene)) return;
+  if (!can_run(findings, theirs, scene)) return;
   const Gap g =
       gap(scene, "jakobsen:iterations=8,substeps=1,order=mesh,projection=sqrt-free,precision=float",
           theirs);
@@ -54,10 +59,12 @@ void twin_float(Findings& findings) {
                  0.1);
 }
 
-void binary32_dt(Findings& findings) {
+TAUT_TRUTH(twin_dt, 2, 3,
+           "Bullet's time step is float(dt): give every solver one that is exact in binary32",
+           "Bullet 3.24, btSoftRigidDynamicsWorld.cpp") {
   const Scene sixty = hanging_sheet(1.0 / 60);
   const std::string theirs = bullet(kSweeps), ours = jakobsen(kSweeps, "sqrt-free");
-  if (!claims(findings, theirs, sixty)) return;
+  if (!can_run(findings, theirs, sixty)) return;
   const Gap g = gap(sixty, ours, theirs);
   const double cast_dt = static_cast<double>(1.0F / 60);
   findings.deviates(theirs, "distance from jakobsen after one step of 1/60 s in double", "m",
@@ -69,29 +76,4 @@ void binary32_dt(Findings& findings) {
                  1e-8);
 }
 
-}  // namespace
 }  // namespace taut
-
-TAUT_TRUTH(twin) = {
-    .name = "twin",
-    .section = 2,
-    .row = 1,
-    .statement = "btSoftBody and jakobsen (sqrt-free, same order) take the same path to rounding",
-    .source = "Bullet 3.24, btSoftBody.cpp: v += g dt; x += v dt; sweeps; v = (x - q)/dt",
-    .check = taut::twin};
-
-TAUT_TRUTH(twin_float) = {
-    .name = "twin-float",
-    .section = 2,
-    .row = 2,
-    .statement = "in float the first step agrees to 3e-7 m; later distances are amplified rounding",
-    .source = "measured; the float build of Bullet runs in taut-f32",
-    .check = taut::twin_float};
-
-TAUT_TRUTH(twin_dt) = {
-    .name = "twin-dt",
-    .section = 2,
-    .row = 3,
-    .statement = "Bullet's time step is float(dt): give every solver one that is exact in binary32",
-    .source = "Bullet 3.24, btSoftRigidDynamicsWorld.cpp",
-    .check = taut::binary32_dt};

@@ -9,7 +9,3 @@ ours=jakobsen:substeps=1,order=mesh,iterations=
 
 mkdir -p "$folder"
 "$taut" render ball --solver ${ours}16 --solver bullet:iterations=16 --at 1 --size 1280x720 -o "$folder/ball.png"
-"$taut" render hang --solver ${ours}4 --solver bullet:iterations=4 --solver ${ours}64 --solver bullet:iterations=64 \
-  --at 2 --size 1080x1080 -o "$folder/hang.png"
-"$taut" render box --solver ${ours}16 --solver bullet:iterations=16 --at 1 --colour penetration --size 1280x720 \
-  -o "$folder/box-penetration.png"

@@ -23,10 +23,10 @@ std::vector<JudgedClaim> judged(TruthVerdict of_three_sweeps) {
 
 TEST(ClaimsBaseline, HasEveryClaimWithVerdictAndFigure) {
   const auto claims = judged(TruthVerdict::passed);
-  ASSERT_EQ(claims.size(), seed_claims().size());
+  ASSERT_EQ(claims.size(), vasilovici_claims().size());
   for (std::size_t i = 0; i < claims.size(); ++i) {
-    EXPECT_EQ(claims[i].verdict, to_string(seed_claims()[i].verdict));
-    EXPECT_EQ(claims[i].figure.empty(), seed_claims()[i].truth.empty()) << claims[i].claim;
+    EXPECT_EQ(claims[i].verdict, to_string(vasilovici_claims()[i].verdict));
+    EXPECT_EQ(claims[i].figure.empty(), vasilovici_claims()[i].truth.empty()) << claims[i].claim;
   }
   EXPECT_TRUE(compare_claims(claims, claims).empty());
 }

@@ -1,10 +1,10 @@
 // What moved, by scene and value.
-#include "experiments/baseline/roll_up.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <utility>
+
+#include "experiments/baseline/baseline.hpp"
 
 namespace taut {
 namespace {

@@ -40,10 +40,11 @@ def main(report, out):
         checks.empty(browser.run(accessibility.CONTRAST), "texts have contrast")
         checks.empty(browser.run(accessibility.RULES), "accessibility: the serious rules, written out")
         browser.screenshot(os.path.join(out, "report.png"))
-        browser.size(390, 900)
-        browser.settle()
-        wide = browser.run("document.documentElement.scrollWidth")
-        checks.true(wide <= 390, "a phone: no sideways scrolling", wide)
+        for width in (768, 390):
+            browser.size(width, 900)
+            browser.settle()
+            wide = browser.run("document.documentElement.scrollWidth")
+            checks.true(wide <= width, f"{width} px: no sideways scrolling", wide)
         page.quiet(checks, "the report")
     finally:
         browser.close()

@@ -10,6 +10,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
+#include "tests/bullet_ref/differences.hpp"
 #include "tests/support/cloths.hpp"
 
 #ifndef TAUT_BULLET_PRECISION

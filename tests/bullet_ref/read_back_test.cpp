@@ -8,6 +8,8 @@
 #include <array>
 #include <numbers>
 
+#include "tests/bullet_ref/differences.hpp"
+
 namespace taut {
 namespace {
 

@@ -402,7 +402,7 @@ class Verbs(CommandLine):
         out = self.taut("bench", "kernels", *short).out
         self.assertIn("textbook, float", out)
         self.assertIn("fixed: what a step costs without a sweep", out)
-        fixed = [float(line.split()[-1]) for line in out.splitlines() if line.startswith("jakobsen:")]
+        fixed = [float(line.split()[-1]) for line in out.splitlines() if line.startswith("  jakobsen:")]
         self.assertGreater(len(fixed), 8)
         self.assertTrue(all(map(math.isfinite, fixed)))  # a difference: below 0 where other programs slowed the sweeps
         traffic = re.search(r"loaded and stored .*: ([\d.]+) ns in float, ([\d.]+) ns in double", out)

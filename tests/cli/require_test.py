@@ -86,7 +86,7 @@ class Require(CommandLine):
             self.assertEqual(self.verdicts(found)["friction"], "keep", found)
 
     def test_a_fast_sheet_needs_swept_tests(self):
-        self.assertEqual(self.verdicts(self.require(FAST))["swept tests"], "keep")
+        self.assertEqual(self.verdicts(self.require(FAST))["continuous detection"], "keep")
 
     def test_a_heavy_weight_needs_substeps(self):
         found = self.require(HEAVY, solver="jakobsen:substeps=16,iterations=1")

@@ -321,6 +321,23 @@ class Starts(Cluster):
         self.assertEqual(self.merge("c", "--out", "m")["store"], self.single())
         self.assertLess(time.monotonic() - begun, 30)
 
+    def test_a_case_whose_folder_vanishes_is_no_result(self):
+        self.slow()
+        scratch = self.folder / "scratch"
+        scratch.mkdir()
+        process = self.start("cluster", "run", "c", "--shard", 1, program="taut-faulty", env={**QUICK, "TMPDIR": str(scratch)})
+        self.addCleanup(process.kill)
+        self.wait_for(lambda: list(scratch.glob("taut.*/*/heartbeat")))
+        for case in scratch.glob("taut.*/*"):
+            shutil.rmtree(case, ignore_errors=True)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("vanished while its case was running", err)
+        status = self.status(expect=3, program="taut-faulty")
+        self.assertEqual(status["failed"], [], "what nobody saw end is stored as nothing")
+        self.shard(1, program="taut-faulty")
+        self.assertEqual(self.merge("c", "--out", "m")["store"], self.single())
+
     def test_clocks_that_differ_by_hours(self):
         self.slow()
         first = self.begin()

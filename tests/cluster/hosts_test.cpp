@@ -38,7 +38,7 @@ class Timed {
       SceneBench scene{"hang", {0.99, 1, 1.01}, {}};
       for (std::size_t i = 0; i < records.size(); ++i) {
         const std::vector<double> samples(10, seconds * static_cast<double>(i + 1));
-        scene.cases.push_back({records[i], {records[i].spec, samples, samples, 4096, "", ""}});
+        scene.cases.push_back({records[i], {samples, samples, 4096, "", ""}});
       }
       session.scenes = {scene};
       const std::filesystem::path file = bench_file(store.root(), session);

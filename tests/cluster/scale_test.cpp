@@ -1,5 +1,5 @@
-// A study of many cheap cases: planned, packed by shards, merged and read back. Prints what each
-// part costs; TAUT_SCALE_CASES=100000 makes the table of results/benchmarks/cluster.md.
+// A study of many cheap cases: planned, packed by shards, merged, read back, reported. Prints what
+// each part costs; TAUT_SCALE_CASES=100000 makes the table of results/benchmarks/cluster.md.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -11,6 +11,8 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/cluster/manifest.hpp"
 #include "experiments/cluster/merge.hpp"
+#include "experiments/report/report.hpp"
+#include "experiments/report/stored.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
 
@@ -19,11 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the process holds now [MB].
-long resident() {
-  long pages = 0, held = 0;
-  std::ifstream("/proc/self/statm") >> pages >> held;
-  return held / 256;
+/// What the process holds now (VmRSS), or held at most since forget_peak() (VmHWM) [kB].
+long held(const std::string& what) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with(what + ":")) return std::stol(line.substr(what.size() + 1));
+  return 0;
+}
+
+void forget_peak() {
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5";
 }
 
 class Stopwatch {
@@ -31,7 +39,7 @@ class Stopwatch {
   void lap(const char* what) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - last_;
     malloc_trim(0);
-    std::cout << "| " << what << " | " << spent.count() << " | " << resident() << " |\n";
+    std::cout << "| " << what << " | " << spent.count() << " | " << held("VmRSS") / 1024 << " |\n";
     last_ = std::chrono::steady_clock::now();
   }
 
@@ -52,6 +60,50 @@ Study many(int cases, const fs::path& root) {
   return load_study((root / "many.toml").string());
 }
 
+/// One small result, which every case of a study gets under its own name and settings.
+class Copies {
+ public:
+  explicit Copies(const Study& study)
+      : run_(run_case(make_case({"hang", study.settings, "jakobsen"}), {.series_rows = 120})),
+        parts_{{"series.csv", to_csv(run_.series)}} {}
+  void put(Store& into, const std::string& key, const std::string& id, const CaseSpec& spec) {
+    Record& record = run_.record;
+    record.key = key, record.id = id, record.spec = spec;
+    const SolverChoice choice = parse_solver(spec.solver);
+    for (const std::string name : {"iterations", "seed"})
+      record.params[name] = choice.params.value(name);
+    into.commit(parts_, record);
+  }
+
+ private:
+  CaseRun run_;
+  EntryParts parts_;
+};
+
+/// What a report of the study holds at most beside what was held before [bytes].
+double peak_of_report(const Study& study, const Store& store) {
+  forget_peak();
+  const long before = held("VmRSS");
+  EXPECT_FALSE(report::make_report(report::stored_results({study}, store)).empty());
+  return 1024.0 * static_cast<double>(held("VmHWM") - before);
+}
+
+TEST(StoreScale, AReportHoldsFewBytesOfACase) {
+  const Scratch root;
+  const Study few = many(4200, root.path() / "few"), all = many(8400, root.path() / "all");
+  Store store(root.path() / "results");
+  store.pack_into("a", 1 << 20);
+  Copies copies(all);
+  each_case(all, [&](Case&& one) { copies.put(store, one.key, one.id, one.spec); });
+  store.flush();
+  // What a page holds of some cases it holds of the first 4000: beyond them only records grow.
+  const double first = peak_of_report(few, store), both = peak_of_report(all, store);
+  ASSERT_GT(first, 1e6) << "the peak was not measured";
+  const double of_a_case = (both - first) / 4200;
+  std::cout << "bytes of a case: " << of_a_case << ", of the first 4200 in all: " << first << '\n';
+  EXPECT_LT(of_a_case, 7000);
+}
+
 TEST(StoreScale, ManyCheapCases) {
   const char* given = std::getenv("TAUT_SCALE_CASES");
   const char* keep = std::getenv("TAUT_SCALE_FOLDER");
@@ -70,8 +122,7 @@ TEST(StoreScale, ManyCheapCases) {
     write_file((make_folder(folder), folder / "manifest.jsonl"), manifest_text(manifest));
   }
   watch.lap("plan: keys, shards, manifest");
-  CaseRun done = run_case(make_case({"hang", study.settings, "jakobsen"}), {.series_rows = 120});
-  const EntryParts parts{{"series.csv", to_csv(done.series)}};
+  Copies copies(study);
   {
     const Manifest manifest = read_manifest(folder);
     ASSERT_EQ(manifest.cases.size(), static_cast<std::size_t>(count));
@@ -79,14 +130,8 @@ TEST(StoreScale, ManyCheapCases) {
     for (int shard = 1; shard <= manifest.shards; ++shard) {
       Store store(shard_folder(folder, shard));
       store.pack_into("a", 1 << 20);
-      for (const PlannedCase& one : manifest.cases) {
-        if (one.shard != shard) continue;
-        done.record.key = one.key, done.record.id = one.id, done.record.spec = one.spec;
-        const SolverChoice choice = parse_solver(one.spec.solver);
-        for (const std::string name : {"iterations", "seed"})
-          done.record.params[name] = choice.params.value(name);
-        store.commit(parts, done.record);
-      }
+      for (const PlannedCase& one : manifest.cases)
+        if (one.shard == shard) copies.put(store, one.key, one.id, one.spec);
       store.flush();
     }
   }

@@ -227,5 +227,21 @@ TEST_F(Positions, ASequenceHasAllItsFramesInOrder) {
   EXPECT_NE(message(folder_ / "cloth.obj").find("cloth10.obj: has 2 vertices"), std::string::npos);
 }
 
+// A modelling program finds a sheet's material coordinates and faces, and a chain as a line.
+TEST_F(Positions, ObjHoldsWhatAModellingProgramWants) {
+  const auto written = [&](const SheetShape& shape) {
+    const Mesh mesh = make_sheet(shape);
+    create_positions(folder_ / "w.obj", mesh)->append(0.5, mesh.rest);
+    return read_text(folder_ / "w_00000.obj");
+  };
+  const std::string sheet = written({.nu = 2, .nv = 2, .width = 1, .height = 1, .mass = 1});
+  EXPECT_NE(sheet.find("# t = 0.5 s"), std::string::npos);
+  EXPECT_NE(sheet.find("vt 0 1\nvt 1 1\nvt 0 0\nvt 1 0\nf "), std::string::npos) << sheet;
+  EXPECT_NE(sheet.find("f 1/1 "), std::string::npos) << sheet;
+  const std::string chain = written({.nu = 3, .nv = 1, .width = 1, .height = 0, .mass = 1});
+  EXPECT_NE(chain.find("\nl 1 2 3\n"), std::string::npos) << chain;
+  EXPECT_EQ(chain.find("vt "), std::string::npos) << chain;
+}
+
 }  // namespace
 }  // namespace taut

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/reference/catenary.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/relaxation.hpp"
 #include "core/reference/shake.hpp"

@@ -10,7 +10,6 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/plot/gnuplot.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
 

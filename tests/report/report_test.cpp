@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/report/model/model.hpp"
 #include "experiments/report/page.hpp"

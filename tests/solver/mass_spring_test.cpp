@@ -1,7 +1,7 @@
 // Vasilovici's section 3 and XPBD, held to each other and to what their formulas say.
 #include <gtest/gtest.h>
 
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 namespace {
@@ -17,8 +17,8 @@ Scene hanging_sheet() {
 
 TEST(MassSpring, SymplecticEulerAndVerletAreTheSameMotion) {
   const Scene s = hanging_sheet();
-  Probe euler(s, mass_spring("symplectic-euler", 0.5, 1e-3));
-  Probe verlet(s, mass_spring("verlet", 0.5, 1e-3));
+  Simulation euler(s, mass_spring("symplectic-euler", 0.5, 1e-3));
+  Simulation verlet(s, mass_spring("verlet", 0.5, 1e-3));
   euler.step(64), verlet.step(64);
   EXPECT_LT(max_distance(euler.state().x, verlet.state().x), 1e-12);
 }
@@ -26,15 +26,15 @@ TEST(MassSpring, SymplecticEulerAndVerletAreTheSameMotion) {
 TEST(MassSpring, SubstepsAreShorterSteps) {
   Scene s = hanging_sheet(), fine = s;
   fine.dt = s.dt / 4;
-  Probe a(s, with("mass-spring:precision=double", "substeps=4"));
-  Probe b(fine, with("mass-spring:precision=double", "substeps=1"));
+  Simulation a(s, with("mass-spring:precision=double", "substeps=4"));
+  Simulation b(fine, with("mass-spring:precision=double", "substeps=1"));
   a.step(16), b.step(64);
   EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-12);
 }
 
 TEST(MassSpring, FloatFollowsDouble) {
   const Scene s = hanging_sheet();
-  Probe a(s, "mass-spring:precision=double"), b(s, "mass-spring:precision=float");
+  Simulation a(s, "mass-spring:precision=double"), b(s, "mass-spring:precision=float");
   a.step(32), b.step(32);
   EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-4);
 }
@@ -51,8 +51,8 @@ TEST(Xpbd, WithoutComplianceItIsJakobsensExactProjection) {
   Scene s = hanging_sheet();
   s.pin_motions.push_back({{7}, {.velocity = Vec3(-0.3, 0, 0)}});
   for (const int substeps : {1, 4}) {
-    Probe a(s, xpbd(substeps));
-    Probe b(s, jakobsen(1, "exact", "substeps=" + std::to_string(substeps)));
+    Simulation a(s, xpbd(substeps));
+    Simulation b(s, jakobsen(1, "exact", "substeps=" + std::to_string(substeps)));
     a.step(), b.step();
     EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-15);
     a.step(63), b.step(63);
@@ -66,9 +66,9 @@ TEST(Xpbd, AConvergedCompliantLinkIsASpring) {
   Scene s = bare::chain(1, 1, 0.5);
   s.gravity = {0, -kG, 0};
   s.damping = 4;
-  Probe probe(s, xpbd(4, "structural=0.01"));
-  ASSERT_TRUE(settle(probe, 1e-9, 16, 4096));
-  EXPECT_NEAR(probe.x(1).y(), -1 - 0.01 * 0.5 * kG, 1e-8);
+  Simulation sim(s, xpbd(4, "structural=0.01"));
+  ASSERT_TRUE(settle(sim, 1e-9, 16, 4096));
+  EXPECT_NEAR(sim.x(1).y(), -1 - 0.01 * 0.5 * kG, 1e-8);
 }
 
 }  // namespace

@@ -153,6 +153,29 @@ State one_by_one(Scene scene, std::vector<Link> order, const std::string& more) 
   return simulate(scene, listing("iterations=4,simd=scalar," + more), 20);
 }
 
+/// The links in the order in which the sweep visits them.
+template <class Real>
+std::vector<Link> order_of(const RegularLinks& regular, const InterleavedSheet<Real>& sheet) {
+  const SheetSides& grid = regular.grid;
+  const SheetSweep<Real>& sweep = sheet.sweep();
+  std::vector<Link> links;
+  for (const int parity : {0, 1})
+    for (std::size_t block = 0; block < sheet.blocks().count(parity); ++block) {
+      const auto [begin, end] = sheet.blocks().of(parity, block);
+      visit_rows(sweep, begin, end, [&](const SheetDirection<Real>& d, int j) {
+        const Family family =
+            regular.directions[static_cast<std::size_t>(&d - sweep.direction)].family;
+        visit_vectors(sweep, d, [&](int k) {
+          for (int lane = 0; lane < sweep.lanes; ++lane)
+            if (const int i = lane * sweep.vectors + k; i + d.columns < grid.columns)
+              links.push_back({grid.index(i, j + d.left), grid.index(i + d.columns, j + d.right),
+                               static_cast<double>(d.rest), family});
+        });
+      });
+    }
+  return links;
+}
+
 TEST(SameBits, InterleavedSheetsAreTheGenericPathInTheirOrder) {
   for (const auto& [nu, nv] : {std::pair{31, 33},
                                {65, 7},
@@ -169,22 +192,79 @@ TEST(SameBits, InterleavedSheetsAreTheGenericPathInTheirOrder) {
       const std::vector<double> w = inverse_masses(scene);
       const auto links = regular_links(scene.mesh, scene.links);
       ASSERT_TRUE(links);
-      const auto compare = [&](const std::vector<Link>& order, const std::string& more) {
+      const auto compare = [&]<class Real>(const InterleavedSheet<Real>& sheet,
+                                           const std::string& more) {
+        const std::vector<Link> order = order_of(*links, sheet);
         EXPECT_EQ(order.size(), scene.links.size());
         const State interleaved =
             simulate(scene, listing("order=coloured,layout=interleaved,iterations=4,") + more, 20);
         EXPECT_TRUE(same_bits(one_by_one(scene, order, more), interleaved))
             << scene.mesh.grid->nu << more;
       };
-      compare(InterleavedSheet<float>(*links, w, 1).order(), "precision=float");
-      compare(InterleavedSheet<double>(*links, w, 1).order(), "precision=double,projection=exact");
+      compare(InterleavedSheet<float>(*links, w, 1), "precision=float");
+      compare(InterleavedSheet<double>(*links, w, 1), "precision=double,projection=exact");
     }
+}
+
+/// A mesh of 90 000 vertices that is no grid, whose numbers say nothing of where they are: many
+/// tiles, and links whose ends 16 bits cannot tell apart.
+Scene shuffled_mesh() {
+  const int side = 300, n = side * side;
+  Scene scene = hanging_sheet(side, side, {true, false, false});
+  scene.mesh.grid.reset();
+  const auto renamed = [&](int v) { return (v * 7919 + 13) % n; };  // 7919 and n share no factor
+  const Scene plain = scene;
+  for (int v = 0; v < n; ++v) {
+    const auto from = static_cast<std::size_t>(v), to = static_cast<std::size_t>(renamed(v));
+    scene.mesh.rest[to] = plain.mesh.rest[from], scene.mesh.mass[to] = plain.mesh.mass[from];
+  }
+  scene.start.x = scene.mesh.rest;
+  for (Link& link : scene.links) link.a = renamed(link.a), link.b = renamed(link.b);
+  for (Triangle& face : scene.mesh.triangles)
+    for (int& v : face) v = renamed(v);
+  scene.pins = {renamed(0), renamed(side - 1)};
+  std::sort(scene.pins.begin(), scene.pins.end());
+  // A seam from the first tile to the last: between the lower left and the upper right corner.
+  for (int i = 0; i < 50; ++i)
+    scene.links.push_back({renamed(n - side + i), renamed(side - 1 - i), 1.4});
+  return crumpled(scene, 0.001);
+}
+
+TEST(SameBits, AnyMeshWithFarLinksIsTheGenericPathInItsOrderAndOneForAll) {
+  const Scene scene = shuffled_mesh();
+  const std::vector<double> w = inverse_masses(scene);
+  const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.mesh));
+  const ColourBatches<float> batches(colour(scene.links, scene.mesh), w, 1, layout);
+  std::vector<Link> order;
+  for (const DistanceConstraint<float>& c : batches.order(layout))
+    order.push_back({c.a, c.b, static_cast<double>(c.rest), Family::structural});
+  const auto ends = [](const std::vector<Link>& links) {
+    std::vector<std::pair<int, int>> all;
+    for (const Link& link : links) all.emplace_back(link.a, link.b);
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_EQ(ends(order), ends(scene.links));
+  std::size_t near = 0, far = 0;
+  for (std::size_t phase = 0; phase < batches.phases(); ++phase)
+    for (std::size_t tile = 0; tile < batches.parts(phase); ++tile)
+      for (const BatchRun<float>& run : batches.runs(phase, tile))
+        (run.near ? near : far) += run.count;
+  EXPECT_GT(near, 10 * far) << "neighbours lie beside each other, whatever they are called";
+  EXPECT_GT(far, 5u);
+  const std::string method = listing("order=coloured,iterations=2");
+  const State want = simulate(scene, method, 2);
+  Scene in_order = scene;
+  in_order.links = order;
+  EXPECT_TRUE(same_bits(simulate(in_order, listing("iterations=2"), 2), want));
+  EXPECT_TRUE(same_bits(simulate(scene, method + ",simd=scalar", 2), want));
+  EXPECT_TRUE(same_bits(simulate(scene, method + ",threads=2", 2), want));
 }
 
 TEST(SameBits, BatchesAreTheGenericPathInTheirOrder) {
   for (const Scene& scene : scenes()) {
     const std::vector<double> w = inverse_masses(scene);
-    const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.links, scene.mesh));
+    const Layout layout = Layout::packed(scene.start.x.size(), tile_ranks(scene.mesh));
     const ColourBatches<double> batches(colour(scene.links, scene.mesh), w, 1, layout);
     std::vector<Link> order;
     for (const DistanceConstraint<double>& c : batches.order(layout))
@@ -237,15 +317,16 @@ TEST(SameBits, AsRecorded) {
 /// The benchmark's measure of traffic: each end of a link is loaded, changed and stored once.
 template <class Real>
 void expect_both_ends_stored(Simd simd) {
-  Batch<Real> batch{};
+  NearBatch<Real> batch{};
   std::vector<Real> x(4 * 2 * kLanes);
   for (std::size_t l = 0; l < kLanes; ++l) {
-    batch.a[l] = static_cast<std::uint32_t>(4 * ((5 * l) % kLanes));
-    batch.b[l] = static_cast<std::uint32_t>(4 * (kLanes + (3 * l) % kLanes));
+    batch.a[l] = static_cast<std::uint16_t>((5 * l) % kLanes);
+    batch.b[l] = static_cast<std::uint16_t>(kLanes + (3 * l) % kLanes);
   }
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<Real>(i);
-  kernels<Real>(simd).load_and_store(
-      {.batches = &batch, .count = 1, .equal_share = 0, .shares = nullptr}, x.data());
+  BatchRun<Real> run{};
+  run.near = &batch, run.count = 1;
+  kernels<Real>(simd).load_and_store(run, x.data());
   for (std::size_t i = 0; i < x.size(); ++i)
     if (i % 4 != 3) {
       EXPECT_NEAR(x[i] - static_cast<Real>(i), i < x.size() / 2 ? 0.001 : -0.001, 1e-5) << i;

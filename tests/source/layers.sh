@@ -22,7 +22,7 @@ experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(system|case|external))/|taut_solver.hpp)
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
 experiments/cluster      | (core/(model|io)|experiments/(system|case|study|cluster))/
-experiments/timing       | (core/model|experiments/(system|case|timing))/
+experiments/timing       | (core/(model|reference)|experiments/(system|case|timing))/
 experiments/extremes     | (core/(model|io)|experiments/(system|case|study|extremes))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|truths|baseline))/
 experiments/require      | (core/(model|io)|experiments/(system|metrics|case|study|timing|require))/
@@ -31,6 +31,10 @@ experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/(model|io)|experiments/(system|case|render))/
 experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|extremes|truths|report))/
+experiments/report/chart | (core/model|experiments/(metrics|case|timing|report/chart))/|experiments/report/input
+experiments/report/claims | experiments/(case|timing|report/(chart|claims))/|experiments/report/input
+experiments/report/plot  | (core/model|experiments/(system|extremes|timing|report/(chart|plot)))/
+experiments/report/model | (core/model|experiments/(system|case|timing|baseline|truths|report/(chart|claims|model)))/|experiments/report/input
 experiments/bench        | (core/(model|io|solver|reference)|experiments/(system|timing|bench))/
 experiments/film         | (core/(model|io)|experiments/(system|case|render|report|film))/
 '
@@ -113,6 +117,10 @@ experiments/cluster/planted.cpp|"experiments/timing/bench.hpp"
 experiments/extremes/planted.cpp|"experiments/timing/bench.hpp"
 experiments/require/planted.cpp|"experiments/report/chart/format.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
+experiments/report/chart/planted.hpp|"experiments/report/claims/rivals.hpp"
+experiments/report/claims/planted.cpp|"experiments/report/model/parts.hpp"
+experiments/report/plot/planted.cpp|"experiments/report/claims/claim.hpp"
+experiments/report/model/planted.cpp|"experiments/report/plot/plot.hpp"
 experiments/render/image/planted.cpp|"experiments/render/opengl/camera.hpp"
 experiments/render/opengl/planted.cpp|"experiments/render/picture/figure.hpp"
 core/solver/planted.cpp|<BulletSoftBody/btSoftBody.h>

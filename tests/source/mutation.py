@@ -48,7 +48,7 @@ MUTATIONS = {
 }
 
 
-SIMD = [f"core/solver/simd/{isa}.cpp" for isa in ("scalar", "sse2", "avx2", "avx512")]
+SIMD = ["core/solver/simd/instruction_set.cpp"]  # four times
 RESPONSES = ["core/solver/contact/responses.cpp"]
 CLAIMS = [f"experiments/report/claims/{name}.cpp" for name in ("claim", "cost_claims", "physics_claims", "difference_claims")]
 SEARCH = ["tests/solver/self_collision_test.cpp"]  # which instantiates the templates itself
@@ -84,8 +84,8 @@ TESTED = {
     "reach too small": ("core/solver/contact/self_collision.hpp",
                         "std::min(2 * motion, 4 * diameter_)", "0 * motion", RESPONSES,
                         "SelfCollision.*"),
-    "searched too seldom": ("core/solver/contact/self_collision.hpp", "}) > skin_)",
-                            "}) > 5 * skin_)", RESPONSES, "SelfCollision.*"),
+    "searched too seldom": ("core/solver/contact/self_collision.hpp", "search, skin_ / 4)",
+                            "search, 5 * skin_)", RESPONSES, "SelfCollision.*"),
     "skin too small": ("core/solver/contact/self_collision.hpp", "reach = diameter_ + skin_",
                        "reach = diameter_ + skin_ / 8", RESPONSES, "SelfCollision.*"),
     "those that have passed stay": ("core/solver/contact/self_collision.hpp",
@@ -100,14 +100,14 @@ TESTED = {
                              '"penetration.max"', CLAIMS, "Claims.*"),
     "vertices for faces": ("experiments/report/claims/physics_claims.cpp", '"face.peak"',
                            '"penetration.peak"', CLAIMS, "Claims.*"),
-    "mean over failures": ("experiments/report/claims/claim.cpp", "completed(r) && std::isfinite(value)",
+    "mean over failures": ("experiments/report/claims/claim.cpp", "completed(r.status) && std::isfinite(value)",
                            "std::isfinite(value)", CLAIMS, "Claims.*"),
     "a failure not counted": ("experiments/report/claims/physics_claims.cpp",
-                              "if (completed(*r) || r->status", "if (true || r->status", CLAIMS,
+                              "if (completed(r->status) || r->status", "if (true || r->status", CLAIMS,
                               "Claims.*"),
     "a failed step skipped": ("experiments/report/claims/physics_claims.cpp",
-                              "return completed(*r); })) break;",
-                              "return completed(*r); })) continue;", CLAIMS, "Claims.*"),
+                              "return completed(r->status); })) break;",
+                              "return completed(r->status); })) continue;", CLAIMS, "Claims.*"),
     "tethers among what both have": ("experiments/report/claims/cost_claims.cpp",
                                      "theirs : ours).empty()", "theirs : ours).size() < 9", CLAIMS,
                                      "Claims.*"),
@@ -116,13 +116,14 @@ TESTED = {
 }
 
 
-def compile_command(build, unit):
-    """How `unit` is compiled, by itself or in a batch of files (TAUT_UNITY)."""
+def compile_commands(build, unit):
+    """How `unit` is compiled: by itself, perhaps several times, or in a batch of files."""
+    commands = []
     for entry in json.loads((build / "compile_commands.json").read_text()):
         file = pathlib.Path(entry["file"])
         if file == ROOT / unit or "Unity" in file.parts and f'"{ROOT / unit}"' in file.read_text():
-            return shlex.split(entry["command"])
-    sys.exit(f"mutation: {unit} is not in {build}/compile_commands.json")
+            commands.append([word for word in shlex.split(entry["command"]) if word != "-Werror"])  # may be odd
+    return commands or sys.exit(f"mutation: {unit} is not in {build}/compile_commands.json")
 
 
 def link_command(build, target):
@@ -142,9 +143,8 @@ def plant(build, folder, name, mutation, target):
     (copy / file).parent.mkdir(parents=True)
     (copy / file).write_text(text.replace(there, planted))
     mutants = []
-    for unit in units:
-        command = [word for word in compile_command(build, unit) if word != "-Werror"]  # may be odd
-        mutants.append(str(copy / f"{pathlib.Path(unit).stem}.o"))
+    for unit, command in ((unit, command) for unit in units for command in compile_commands(build, unit)):
+        mutants.append(str(copy / f"{pathlib.Path(unit).stem}{len(mutants)}.o"))
         command[command.index("-o") + 1] = mutants[-1]
         command[command.index("-c") + 1] = str(copy / unit if unit == file else ROOT / unit)
         first = next(i for i, word in enumerate(command) if word.startswith("-I"))

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "experiments/case/record_io.hpp"
-#include "experiments/study/missing.hpp"
+#include "experiments/study/session.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"

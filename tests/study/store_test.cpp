@@ -136,6 +136,28 @@ TEST_F(StoreTest, ADamagedEntryIsSetAsideAndSaidSo) {
   EXPECT_EQ(put(r), Store::Commit::stored);
 }
 
+TEST_F(StoreTest, WhereNoFileCanBeMadeIsSaidBeforeACaseRuns) {
+  fs::create_directories(root_ / "store");
+  fs::create_directory_symlink("/proc/self", root_ / "tmp");  // there, and nobody can write in it
+  EXPECT_THROW(store_.prepare(), InputError);
+}
+
+TEST_F(StoreTest, WhoLosesTheRenameLooksAgain) {
+  const Record r = some_record();
+  put(r);
+  std::ofstream(store_.folder(r.key) / "case.json", std::ios::app) << " ";
+  // The notice of the damaged entry comes between this commit's look and its rename.
+  Store::Commit others = Store::Commit::conflict;
+  const Store racing(root_, [&](const std::string&) {
+    const Store other(root_);
+    others = other.commit(other.stage(r.key), r);
+  });
+  EXPECT_EQ(racing.commit(racing.stage(r.key), r), Store::Commit::same);
+  EXPECT_EQ(others, Store::Commit::stored);
+  EXPECT_EQ(to_json(*store_.find(r.key)), to_json(r));
+  EXPECT_TRUE(fs::is_empty(root_ / "tmp"));
+}
+
 TEST_F(StoreTest, ReadingCreatesNothing) {
   EXPECT_FALSE(store_.find(some_record().key));
   EXPECT_TRUE(store_.keys().empty());

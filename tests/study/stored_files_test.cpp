@@ -38,8 +38,7 @@ Record stored_record() {
 std::string bench_text() {
   SceneBench scene{"hang", {0.9, 1, 1.1}, {}};
   for (int i = 0; i < 2; ++i)
-    scene.cases.push_back(
-        {stored_record(), {{}, {1e-3, 2e-3, 1e-3, 3e-3}, {1, 2, 3, 4}, 4096, ""}});
+    scene.cases.push_back({stored_record(), {{1e-3, 2e-3, 1e-3, 3e-3}, {1, 2, 3, 4}, 4096, ""}});
   return to_json(BenchSession{"trade", "a machine", {scene}});
 }
 

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
-#include "experiments/case/key.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 

@@ -34,8 +34,8 @@ TEST(Scaling, TheExponentsOfEverySettingAreFound) {
   ASSERT_EQ(lines.size(), 2u);
   for (const ScalingLine& line : lines) {
     EXPECT_EQ(line.cases.front().record.vertices, 16);  // by rising size
-    EXPECT_NEAR(line.cpu->slope, 1.5, 1e-9);
-    EXPECT_NEAR(line.memory->slope, 1, 1e-9);
+    EXPECT_NEAR(line.cpu->exponent, 1.5, 1e-9);
+    EXPECT_NEAR(line.memory->exponent, 1, 1e-9);
     EXPECT_TRUE(line.skipped.empty());
   }
 }

@@ -165,20 +165,5 @@ TEST(Statistics, ALinearDriftCancelsInsideABlock) {
   EXPECT_NEAR(interleaved_ratio(a, b).mid, 1, 1e-12);
 }
 
-TEST(Statistics, APowerLawIsFoundWithItsUncertainty) {
-  std::vector<double> x, exact, bent;
-  for (double v = 1; v <= 256; v *= 2) {
-    x.push_back(v);
-    exact.push_back(3 / v);
-    bent.push_back(3 / v * (1 + 0.1 * std::sin(v)));
-  }
-  const PowerLaw law = fit_power_law(x, exact), rough = fit_power_law(x, bent);
-  EXPECT_NEAR(law.slope, -1, 1e-12);
-  EXPECT_NEAR(law.factor, 3, 1e-12);
-  EXPECT_LT(law.slope_error, 1e-12);
-  EXPECT_GT(rough.slope_error, 1e-3);
-  EXPECT_LT(std::abs(rough.slope + 1), 4 * rough.slope_error);
-}
-
 }  // namespace
 }  // namespace taut

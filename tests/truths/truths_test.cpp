@@ -7,11 +7,11 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
+#include "core/reference/fit.hpp"
 #include "core/reference/textbook.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/reference_store.hpp"
-#include "experiments/truths/fit.hpp"
-#include "experiments/truths/probe.hpp"
+#include "experiments/truths/simulation.hpp"
 
 namespace taut {
 namespace {
@@ -62,13 +62,29 @@ TEST(Findings, KeepsOnlyTheSolversAskedFor) {
 TEST(Fit, SlopesAndRecurrencesOfExactData) {
   std::vector<double> x, y, wave;
   for (const double v : {1.0, 2.0, 4.0, 8.0}) x.push_back(v), y.push_back(3 * std::pow(v, -1.5));
-  const Slope slope = log_slope(x, y);
-  EXPECT_NEAR(slope.value, -1.5, 1e-12);
-  EXPECT_LT(slope.error, 1e-12);
+  const PowerLaw law = fit_power_law(x, y);
+  EXPECT_NEAR(law.factor, 3, 1e-12);
+  EXPECT_NEAR(law.exponent, -1.5, 1e-12);
+  EXPECT_LT(law.error, 1e-12);
   for (int n = 0; n < 20; ++n) wave.push_back(std::pow(0.9, n) * std::cos(0.3 * n + 1));
   const auto [p, q] = two_term_recurrence(wave);
   EXPECT_NEAR(p, 2 * 0.9 * std::cos(0.3), 1e-10);
   EXPECT_NEAR(q, -0.81, 1e-10);
+}
+
+TEST(Fit, APowerLawIsFoundWithItsUncertainty) {
+  std::vector<double> x, exact, bent;
+  for (double v = 1; v <= 256; v *= 2) {
+    x.push_back(v);
+    exact.push_back(3 / v);
+    bent.push_back(3 / v * (1 + 0.1 * std::sin(v)));
+  }
+  const PowerLaw law = fit_power_law(x, exact), rough = fit_power_law(x, bent);
+  EXPECT_NEAR(law.exponent, -1, 1e-12);
+  EXPECT_NEAR(law.factor, 3, 1e-12);
+  EXPECT_LT(law.error, 1e-12);
+  EXPECT_GT(rough.error, 1e-3);
+  EXPECT_LT(std::abs(rough.exponent + 1), 4 * rough.error);
 }
 
 TEST(Textbook, TheSolverTakesTheStepsOfThePublishedListing) {
@@ -76,10 +92,10 @@ TEST(Textbook, TheSolverTakesTheStepsOfThePublishedListing) {
   s.pins = {0, 5};
   s.gravity = {0, -kG, 0};
   Textbook<double> textbook(s, 3);
-  Probe probe(s, jakobsen(3));
+  Simulation sim(s, jakobsen(3));
   for (int n = 0; n < 64; ++n) {
-    textbook.step(), probe.step();
-    ASSERT_LT(max_distance(textbook.x(), probe.state().x), 1e-10) << n;
+    textbook.step(), sim.step();
+    ASSERT_LT(max_distance(textbook.x(), sim.state().x), 1e-10) << n;
   }
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/io/positions/formats.hpp"
-#include "core/io/words.hpp"
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 
 namespace taut {

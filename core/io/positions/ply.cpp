@@ -4,7 +4,6 @@
 
 #include "core/io/positions/formats.hpp"
 #include "core/io/text_file.hpp"
-#include "core/io/words.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 

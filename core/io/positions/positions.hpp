@@ -60,7 +60,8 @@ class PositionWriter {
   virtual void finish() {}
 };
 
-/// Replaces what is there; frames of a sequence are NAME_00000.obj and on, with the triangles.
+/// Replaces what is there; frames of a sequence are NAME_00000.obj and on, with the triangles; .obj
+/// has material coordinates too, and a line for a chain.
 /// Throws InputError: another extension, or it cannot be written.
 std::unique_ptr<PositionWriter> create_positions(const std::filesystem::path&, const Mesh&);
 

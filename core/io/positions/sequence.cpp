@@ -4,7 +4,6 @@
 
 #include "core/io/positions/formats.hpp"
 #include "core/io/text_file.hpp"
-#include "core/io/words.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 
@@ -147,9 +146,24 @@ std::string obj_text(double t, const std::vector<Vec3>& x, const Mesh& mesh) {
   std::string out = "# t = " + shortest(t) + " s, metres\n";
   for (const Vec3& v : x)
     out += "v " + shortest(v.x()) + ' ' + shortest(v.y()) + ' ' + shortest(v.z()) + '\n';
-  for (const auto& [a, b, c] : mesh.triangles)
-    out += "f " + std::to_string(a + 1) + ' ' + std::to_string(b + 1) + ' ' +
-           std::to_string(c + 1) + '\n';
+  const bool textured = mesh.grid && !mesh.triangles.empty();
+  for (int j = 0; textured && j < mesh.grid->nv; ++j)
+    for (int i = 0; i < mesh.grid->nu; ++i)
+      out += "vt " + shortest(1.0 * i / (mesh.grid->nu - 1)) + ' ' +
+             shortest(1 - 1.0 * j / (mesh.grid->nv - 1)) + '\n';
+  for (const Triangle& triangle : mesh.triangles) {
+    out += 'f';
+    for (const int vertex : triangle) {
+      const std::string number = std::to_string(vertex + 1);
+      out += ' ' + number + (textured ? '/' + number : "");
+    }
+    out += '\n';
+  }
+  if (mesh.grid && mesh.triangles.empty()) {  // a chain
+    out += 'l';
+    for (int i = 1; i <= mesh.size(); ++i) out += ' ' + std::to_string(i);
+    out += '\n';
+  }
   return out;
 }
 

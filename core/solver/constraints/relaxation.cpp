@@ -101,27 +101,26 @@ class JacobiPass final : public Pass<Real> {
   std::vector<Real> factor_;
 };
 
-/// One Gauss-Seidel sweep over an interleaved sheet, a vector of links at a time.
-template <class Real>
-class SheetPass final : public Pass<Real> {
+/// One Gauss-Seidel sweep over InterleavedSheet or ColourBatches, phase after phase; threads share
+/// the parts of a phase.
+template <class Real, template <class> class Links>
+class ColouredPass final : public Pass<Real> {
  public:
-  SheetPass(InterleavedSheet<Real> sheet, std::vector<PassCost> costs, Projection projection,
-            Simd simd, ThreadPool& pool)
-      : sheet_(std::move(sheet)),
+  ColouredPass(Links<Real> links, std::vector<PassCost> costs, Projection projection, Simd simd,
+               ThreadPool& pool)
+      : links_(std::move(links)),
         costs_(std::move(costs)),
-        project_(choose(kernels<Real>(simd), sheet_.sweep().lanes)[static_cast<int>(projection)]),
+        projection_(projection),
+        kernels_(kernels<Real>(simd)),
         pool_(pool) {}
 
   void apply(Particles<Real>& p, double, double) override {
-    const RowBlocks blocks = sheet_.blocks();
-    for (const int parity : {0, 1})
+    for (std::size_t phase = 0; phase < links_.phases(); ++phase)
       pool_.run(
-          blocks.count(parity),
+          links_.parts(phase),
           [&](std::size_t begin, std::size_t end) {
-            for (std::size_t block = begin; block < end; ++block) {
-              const auto [from, to] = blocks.of(parity, block);
-              project_(sheet_.sweep(), p.x.data(), from, to);
-            }
+            for (std::size_t part = begin; part < end; ++part)
+              links_.project(kernels_, projection_, p.x.data(), phase, part);
           },
           p.size() >= ThreadPool::kWorthSharing);
   }
@@ -129,44 +128,10 @@ class SheetPass final : public Pass<Real> {
   std::vector<PassCost> cost() const override { return costs_; }
 
  private:
-  static const auto& choose(const Kernels<Real>& kernels, int lanes) {
-    return lanes == kWide ? kernels.wide_sheet : kernels.narrow_sheet;
-  }
-  InterleavedSheet<Real> sheet_;
+  Links<Real> links_;
   std::vector<PassCost> costs_;
-  void (*project_)(const SheetSweep<Real>&, Real*, int, int);
-  ThreadPool& pool_;
-};
-
-/// One Gauss-Seidel sweep over the colour batches of any mesh.
-template <class Real>
-class BatchPass final : public Pass<Real> {
- public:
-  BatchPass(ColourBatches<Real> batches, std::vector<PassCost> costs, Projection projection,
-            Simd simd, ThreadPool& pool)
-      : batches_(std::move(batches)),
-        costs_(std::move(costs)),
-        project_(kernels<Real>(simd).batches[static_cast<int>(projection)]),
-        pool_(pool) {}
-
-  void apply(Particles<Real>& p, double, double) override {
-    for (std::size_t phase = 0; phase < batches_.phases(); ++phase)
-      pool_.run(
-          batches_.tiles(phase),
-          [&](std::size_t begin, std::size_t end) {
-            for (std::size_t tile = begin; tile < end; ++tile)
-              for (const BatchRun<Real>& run : batches_.runs(phase, tile))
-                project_(run, p.x.data());
-          },
-          p.size() >= ThreadPool::kWorthSharing);
-  }
-
-  std::vector<PassCost> cost() const override { return costs_; }
-
- private:
-  ColourBatches<Real> batches_;
-  std::vector<PassCost> costs_;
-  void (*project_)(const BatchRun<Real>&, Real*);
+  Projection projection_;
+  const Kernels<Real>& kernels_;
   ThreadPool& pool_;
 };
 
@@ -221,18 +186,18 @@ Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
                     : make_sequential<Real, Projection::sqrt_free>(scene, w, settings);
     return {Layout::packed(n), std::move(pass)};
   }
-  if (const auto links = regular(scene, settings.layout)) {
-    InterleavedSheet<Real> sheet(*links, w, settings.omega);
-    auto costs = family_costs(scene.links, w, sheet.bytes());
-    return {interleaved_layout(links->grid),
-            std::make_unique<SheetPass<Real>>(std::move(sheet), std::move(costs), projection,
-                                              settings.simd, pool)};
-  }
-  Layout layout = Layout::packed(n, tile_ranks(scene.links, scene.mesh));
+  const auto coloured = [&]<template <class> class Links>(Layout layout, Links<Real> sweep) {
+    auto costs = family_costs(scene.links, w, sweep.bytes());
+    return Relaxation<Real>{std::move(layout), std::make_unique<ColouredPass<Real, Links>>(
+                                                   std::move(sweep), std::move(costs), projection,
+                                                   settings.simd, pool)};
+  };
+  if (const auto links = regular(scene, settings.layout))
+    return coloured(interleaved_layout(links->grid),
+                    InterleavedSheet<Real>(*links, w, settings.omega));
+  Layout layout = Layout::packed(n, tile_ranks(scene.mesh));
   ColourBatches<Real> batches(colour(scene.links, scene.mesh), w, settings.omega, layout);
-  auto costs = family_costs(scene.links, w, batches.bytes());
-  return {std::move(layout), std::make_unique<BatchPass<Real>>(std::move(batches), std::move(costs),
-                                                               projection, settings.simd, pool)};
+  return coloured(std::move(layout), std::move(batches));
 }
 
 template <class Real>

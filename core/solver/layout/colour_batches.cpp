@@ -1,9 +1,21 @@
 #include "core/solver/layout/colour_batches.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <type_traits>
 
 namespace taut {
+
+namespace {
+
+/// Near ends count from so many particles before their tile: neighbouring tiles, of which most come
+/// later, are within what 16 bits can say.
+constexpr std::size_t kBefore = 16384, kNear = std::numeric_limits<std::uint16_t>::max();
+
+std::size_t place(const Layout& layout, int v) { return layout.slot(to_index(v)) / 4; }
+
+}  // namespace
 
 template <class Real>
 ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<const double> w,
@@ -11,66 +23,107 @@ ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<c
   phase_.push_back(0), tile_.push_back(0);
   for (const Phase& phase : phases) {
     for (const Tile& tile : phase) {
-      for (const Colour& colour : tile)
-        add_colour(make_distance_constraints<Real>(colour, w, omega), layout);
+      add_tile(tile, w, omega, layout);
       tile_.push_back(runs_.size());
     }
     phase_.push_back(tile_.size() - 1);
   }
   // Only now do the arrays stay where they are.
-  std::size_t batch = 0, share = 0;
+  std::size_t near = 0, far = 0, share = 0;
   for (BatchRun<Real>& run : runs_) {
-    run.batches = batches_.data() + batch;
-    batch += run.count;
-    if (run.equal_share == Real(-1)) {
+    if (run.near)
+      run.near = near_.data() + near, near += run.count;
+    else
+      run.far = far_.data() + far, far += run.count;
+    if (run.shares) {
       run.shares = shares_.data() + share;
       share += 2 * kLanes * run.count;
     }
   }
+  look_ahead();
 }
 
 template <class Real>
-void ColourBatches<Real>::add_colour(std::vector<DistanceConstraint<Real>> constraints,
+void ColourBatches<Real>::add_tile(const Tile& tile, std::span<const double> w, double omega,
+                                   const Layout& layout) {
+  Extent extent{layout.size(), 0};
+  for (const Colour& colour : tile)
+    for (const Link& link : colour) {
+      const std::size_t at = place(layout, link.a);
+      extent = {std::min(extent.first, at), std::max(extent.last, at)};
+    }
+  extents_.push_back(extent);
+  for (const Colour& colour : tile)
+    add_colour(make_distance_constraints<Real>(colour, w, omega),
+               extent.first - std::min(extent.first, kBefore), layout);
+}
+
+template <class Real>
+void ColourBatches<Real>::add_colour(Constraints constraints, std::size_t first,
                                      const Layout& layout) {
   std::map<Real, int> votes;  // equal shares, by how many links have them
   for (const DistanceConstraint<Real>& c : constraints)
     if (c.share_a == c.share_b) ++votes[c.share_a];
   const auto most = std::max_element(
       votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  const auto equal =
-      std::stable_partition(constraints.begin(), constraints.end(), [&](const auto& s) {
-        return most != votes.end() && s.share_a == most->first && s.share_b == most->first;
-      });
-  // Equal ones that do not fill a batch go with the others.
-  const auto whole = constraints.begin() + (equal - constraints.begin()) / kLanes * kLanes;
-  add_run({constraints.begin(), whole}, true, layout);
-  add_run({whole, constraints.end()}, false, layout);
+  const auto near = [&](int v) {
+    return place(layout, v) >= first && place(layout, v) - first <= kNear;
+  };
+  const auto whole = [](auto begin, auto end) { return begin + (end - begin) / kLanes * kLanes; };
+  const auto begin = constraints.begin(), end = constraints.end();
+  const auto far =
+      std::stable_partition(begin, end, [&](const auto& c) { return near(c.a) && near(c.b); });
+  const auto unequal = std::stable_partition(begin, far, [&](const auto& c) {
+    return most != votes.end() && c.share_a == most->first && c.share_b == most->first;
+  });
+  const auto equal_end = whole(begin, unequal), near_end = whole(equal_end, far);
+  add_run({begin, equal_end}, true, first, layout, near_);
+  add_run({equal_end, near_end}, false, first, layout, near_);
+  add_run({near_end, end}, false, 0, layout, far_);
 }
 
 template <class Real>
+template <class Number>
 void ColourBatches<Real>::add_run(std::span<const DistanceConstraint<Real>> constraints, bool equal,
-                                  const Layout& layout) {
+                                  std::size_t first, const Layout& layout,
+                                  std::vector<Batch<Real, Number>>& to) {
   if (constraints.empty()) return;
-  const auto slot = [&](int v) {
-    return static_cast<std::uint32_t>(layout.slot(static_cast<std::size_t>(v)));
-  };
-  const auto spare = static_cast<std::uint32_t>(4 * layout.size());
   BatchRun<Real> run{};
-  run.equal_share = equal ? constraints.front().share_a : Real(-1);
-  for (std::size_t first = 0; first < constraints.size(); first += kLanes, ++run.count) {
-    Batch<Real>& batch = batches_.emplace_back();
+  run.first = first, run.equal_share = equal ? constraints.front().share_a : Real(0);
+  for (std::size_t next = 0; next < constraints.size(); next += kLanes, ++run.count) {
+    Batch<Real, Number>& batch = to.emplace_back();
     const std::size_t base = shares_.size();
     if (!equal) shares_.resize(base + 2 * kLanes);
     for (std::size_t l = 0; l < kLanes; ++l) {
-      const bool real = first + l < constraints.size();
-      const DistanceConstraint<Real> c = real ? constraints[first + l] : DistanceConstraint<Real>{};
-      batch.a[l] = real ? slot(c.a) : spare;
-      batch.b[l] = real ? slot(c.b) : spare + 4;
+      const bool real = next + l < constraints.size();
+      const DistanceConstraint<Real> c = real ? constraints[next + l] : DistanceConstraint<Real>{};
+      batch.a[l] = static_cast<Number>((real ? place(layout, c.a) : layout.size()) - first);
+      batch.b[l] = static_cast<Number>((real ? place(layout, c.b) : layout.size() + 1) - first);
       batch.rest[l] = real ? c.rest : static_cast<Real>(kTinyLength);
       if (!equal) shares_[base + l] = c.share_a, shares_[base + kLanes + l] = c.share_b;
     }
   }
+  // Not yet where they will stay, but whether there are any.
+  if constexpr (std::is_same_v<Number, std::uint16_t>)
+    run.near = to.data();
+  else
+    run.far = to.data();
+  run.shares = equal ? nullptr : shares_.data();
   runs_.push_back(run);
+}
+
+/// While a tile is worked off, batch by batch, the particles of the next come from memory.
+template <class Real>
+void ColourBatches<Real>::look_ahead() {
+  constexpr std::size_t line = 64 / sizeof(Real);
+  for (std::size_t tile = 0; tile + 1 < extents_.size(); ++tile) {
+    const Extent& next = extents_[tile + 1];
+    std::size_t ahead = 4 * next.first;
+    for (std::size_t r = tile_[tile]; r < tile_[tile + 1] && ahead <= 4 * next.last; ++r) {
+      runs_[r].ahead = ahead, runs_[r].stride = line;
+      ahead += line * runs_[r].count;
+    }
+  }
 }
 
 template <class Real>
@@ -81,11 +134,12 @@ std::vector<DistanceConstraint<Real>> ColourBatches<Real>::order(const Layout& l
   for (const BatchRun<Real>& run : runs_)
     for (std::size_t n = 0; n < run.count; ++n)
       for (std::size_t l = 0; l < kLanes; ++l) {
-        const Batch<Real>& batch = run.batches[n];
         const Real* const shares = run.shares ? run.shares + 2 * kLanes * n + l : nullptr;
-        const DistanceConstraint<Real> c{vertex[batch.a[l] / 4], vertex[batch.b[l] / 4],
-                                         batch.rest[l], shares ? shares[0] : run.equal_share,
-                                         shares ? shares[kLanes] : run.equal_share};
+        const auto link = [&](const auto& batch) -> DistanceConstraint<Real> {
+          return {vertex[run.first + batch.a[l]], vertex[run.first + batch.b[l]], batch.rest[l],
+                  shares ? shares[0] : run.equal_share, shares ? shares[kLanes] : run.equal_share};
+        };
+        const DistanceConstraint<Real> c = run.near ? link(run.near[n]) : link(run.far[n]);
         if (c.share_a != 0 || c.share_b != 0) constraints.push_back(c);
       }
   return constraints;
@@ -93,7 +147,8 @@ std::vector<DistanceConstraint<Real>> ColourBatches<Real>::order(const Layout& l
 
 template <class Real>
 std::size_t ColourBatches<Real>::bytes() const {
-  return sizeof *this + batches_.size() * sizeof batches_[0] + shares_.size() * sizeof(Real) +
+  return sizeof *this + near_.size() * sizeof near_[0] + far_.size() * sizeof far_[0] +
+         extents_.size() * sizeof extents_[0] + shares_.size() * sizeof(Real) +
          runs_.size() * sizeof runs_[0] + (tile_.size() + phase_.size()) * sizeof tile_[0];
 }
 

@@ -12,9 +12,9 @@
 namespace taut {
 
 /// A Gauss-Seidel sweep over any links of packed particles: phases of tiles of batches of kLanes
-/// independent links, the last batch of a colour filled up with links that do nothing between the
-/// two spare particles of Layout::packed. Batches of links whose ends have the same share
-/// come first in each colour and need no table of shares.
+/// independent links. In each colour come first those whose ends have the same share, which need no
+/// table of shares, and near ones before far ones; what does not fill a batch is far, the last
+/// batch filled up with links that do nothing between the two spare particles of Layout::packed.
 template <class Real>
 class ColourBatches {
  public:
@@ -25,10 +25,17 @@ class ColourBatches {
   ColourBatches(const ColourBatches&) = delete;  // it points into itself
 
   std::size_t phases() const { return phase_.size() - 1; }
-  std::size_t tiles(std::size_t phase) const { return phase_[phase + 1] - phase_[phase]; }
+  /// Tiles of a phase.
+  std::size_t parts(std::size_t phase) const { return phase_[phase + 1] - phase_[phase]; }
   std::span<const BatchRun<Real>> runs(std::size_t phase, std::size_t tile) const {
     const std::size_t t = phase_[phase] + tile;
     return {runs_.data() + tile_[t], runs_.data() + tile_[t + 1]};
+  }
+
+  void project(const Kernels<Real>& kernels, Projection projection, Real* x, std::size_t phase,
+               std::size_t part) const {
+    const auto project = kernels.batches[static_cast<int>(projection)];
+    for (const BatchRun<Real>& run : runs(phase, part)) project(run, x);
   }
 
   /// The links in the order in which the sweep visits them.
@@ -36,10 +43,21 @@ class ColourBatches {
   std::size_t bytes() const;
 
  private:
-  void add_colour(std::vector<DistanceConstraint<Real>> constraints, const Layout&);
-  void add_run(std::span<const DistanceConstraint<Real>> constraints, bool equal, const Layout&);
+  using Constraints = std::vector<DistanceConstraint<Real>>;
+  /// Places of particles in memory, first and last.
+  struct Extent {
+    std::size_t first, last;
+  };
+  void add_tile(const Tile&, std::span<const double> w, double omega, const Layout&);
+  void add_colour(Constraints, std::size_t first, const Layout&);
+  template <class Number>
+  void add_run(std::span<const DistanceConstraint<Real>>, bool equal, std::size_t first,
+               const Layout&, std::vector<Batch<Real, Number>>& to);
+  void look_ahead();
 
-  std::vector<Batch<Real>> batches_;
+  std::vector<NearBatch<Real>> near_;
+  std::vector<FarBatch<Real>> far_;
+  std::vector<Extent> extents_;  ///< of each tile
   std::vector<Real> shares_;
   std::vector<BatchRun<Real>> runs_;
   std::vector<std::size_t> tile_, phase_;  ///< where each begins, and the end

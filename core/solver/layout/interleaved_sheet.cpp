@@ -102,7 +102,7 @@ Layout interleaved_layout(const SheetSides& grid) {
 template <class Real>
 InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<const double> w,
                                          double omega)
-    : links_(links) {
+    : blocks_{links.grid.rows} {
   const SheetSides& grid = links.grid;
   const SheetRows in_memory = rows_of(grid);
   const int lanes = sweep_.lanes = in_memory.lanes;
@@ -164,27 +164,6 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
   const SheetRow<Real>* row = rows_.data();
   for (std::size_t d = 0; d < links.directions.size(); row += sweep_.direction[d++].rows)
     sweep_.direction[d].row = row;
-}
-
-template <class Real>
-std::vector<Link> InterleavedSheet<Real>::order() const {
-  const SheetSides& grid = links_.grid;
-  std::vector<Link> links;
-  for (const int parity : {0, 1})
-    for (std::size_t block = 0; block < blocks().count(parity); ++block)
-      visit_rows(sweep_, blocks().of(parity, block).begin, blocks().of(parity, block).end,
-                 [&](const SheetDirection<Real>& d, int j) {
-                   const Family family =
-                       links_.directions[static_cast<std::size_t>(&d - sweep_.direction)].family;
-                   visit_vectors(sweep_, d, [&](int k) {
-                     for (int lane = 0; lane < sweep_.lanes; ++lane)
-                       if (const int i = lane * sweep_.vectors + k; i + d.columns < grid.columns)
-                         links.push_back({grid.index(i, j + d.left),
-                                          grid.index(i + d.columns, j + d.right),
-                                          static_cast<double>(d.rest), family});
-                   });
-                 });
-  return links;
 }
 
 template <class Real>

@@ -64,14 +64,22 @@ class InterleavedSheet {
   InterleavedSheet(const InterleavedSheet&) = delete;  // it points into itself
 
   const SheetSweep<Real>& sweep() const { return sweep_; }
-  RowBlocks blocks() const { return {links_.grid.rows}; }
+  RowBlocks blocks() const { return blocks_; }
 
-  /// The links in the order in which the sweep visits them.
-  std::vector<Link> order() const;
+  /// Even blocks, then odd ones.
+  std::size_t phases() const { return 2; }
+  std::size_t parts(std::size_t phase) const { return blocks_.count(static_cast<int>(phase)); }
+  void project(const Kernels<Real>& kernels, Projection projection, Real* x, std::size_t phase,
+               std::size_t part) const {
+    const auto& sweeps = sweep_.lanes == kWide ? kernels.wide_sheet : kernels.narrow_sheet;
+    const auto [from, to] = blocks_.of(static_cast<int>(phase), part);
+    sweeps[static_cast<int>(projection)](sweep_, x, from, to);
+  }
+
   std::size_t bytes() const;
 
  private:
-  RegularLinks links_;
+  RowBlocks blocks_;
   SheetSweep<Real> sweep_{};
   std::vector<SheetRow<Real>> rows_;
   std::vector<std::vector<Real>> shares_;  ///< different rows' tables, each kept once

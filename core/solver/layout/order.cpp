@@ -1,5 +1,6 @@
 #include "core/solver/layout/order.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <numeric>
@@ -12,8 +13,28 @@ namespace {
 constexpr int kTileSide = 32;                         ///< grid vertices
 constexpr int kTileVertices = kTileSide * kTileSide;  ///< 16 KiB of packed float positions
 
-/// Tile of each vertex: squares of a grid; runs of a breadth-first walk on any other mesh.
-std::vector<int> tiles_of(std::span<const Link> links, const Mesh& mesh) {
+/// Cuts the vertices into halves across their longest side at rest until each part is a tile.
+void cut(std::span<int> vertices, const Mesh& mesh, int& next, std::vector<int>& tile) {
+  const std::size_t tiles = (vertices.size() + kTileVertices - 1) / kTileVertices;
+  if (tiles <= 1) {
+    for (const int v : vertices) tile[to_index(v)] = next;
+    ++next;
+    return;
+  }
+  Eigen::AlignedBox3d box;
+  for (const int v : vertices) box.extend(mesh.rest[to_index(v)]);
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const std::size_t half = vertices.size() * (tiles / 2) / tiles;
+  const auto place = [&](int v) { return std::pair(mesh.rest[to_index(v)][axis], v); };
+  std::ranges::nth_element(vertices, vertices.begin() + static_cast<std::ptrdiff_t>(half), {},
+                           place);
+  cut(vertices.first(half), mesh, next, tile);
+  cut(vertices.subspan(half), mesh, next, tile);
+}
+
+/// Tile of each vertex: squares of a grid; of any other mesh neighbours at rest.
+std::vector<int> tiles_of(const Mesh& mesh) {
   std::vector<int> tile(to_index(mesh.size()), -1);
   if (mesh.grid) {
     const int across = (mesh.grid->nu + kTileSide - 1) / kTileSide;
@@ -21,20 +42,10 @@ std::vector<int> tiles_of(std::span<const Link> links, const Mesh& mesh) {
       tile[to_index(v)] = v / mesh.grid->nu / kTileSide * across + v % mesh.grid->nu / kTileSide;
     return tile;
   }
-  const Adjacency neighbours(links, mesh.size());
-  std::vector<int> queue;
-  queue.reserve(tile.size());
-  for (int start = 0, next = 0; start < mesh.size(); ++start) {
-    if (tile[to_index(start)] >= 0) continue;
-    tile[to_index(start)] = static_cast<int>(queue.size()) / kTileVertices;
-    queue.push_back(start);
-    for (; next < static_cast<int>(queue.size()); ++next)
-      for (const auto& [v, link] : neighbours.of(queue[to_index(next)]))
-        if (tile[to_index(v)] < 0) {
-          tile[to_index(v)] = static_cast<int>(queue.size()) / kTileVertices;
-          queue.push_back(v);
-        }
-  }
+  std::vector<int> vertices(tile.size());
+  std::iota(vertices.begin(), vertices.end(), 0);
+  int next = 0;
+  cut(vertices, mesh, next, tile);
   return tile;
 }
 
@@ -83,7 +94,7 @@ std::vector<Phase> phases(std::vector<Tile> tiles, std::size_t vertices) {
 }  // namespace
 
 std::vector<Phase> colour(std::span<const Link> links, const Mesh& mesh) {
-  const std::vector<int> tile_of = tiles_of(links, mesh);
+  const std::vector<int> tile_of = tiles_of(mesh);
   const int count = mesh.size() == 0 ? 0 : *std::max_element(tile_of.begin(), tile_of.end()) + 1;
   std::vector<std::array<std::vector<Link>, kFamilies.size()>> sorted(to_index(count));
   for (const Link& link : links)
@@ -100,8 +111,8 @@ std::vector<Phase> colour(std::span<const Link> links, const Mesh& mesh) {
   return phases(std::move(tiles), to_index(mesh.size()));
 }
 
-std::vector<std::uint32_t> tile_ranks(std::span<const Link> links, const Mesh& mesh) {
-  const std::vector<int> tile = tiles_of(links, mesh);
+std::vector<std::uint32_t> tile_ranks(const Mesh& mesh) {
+  const std::vector<int> tile = tiles_of(mesh);
   std::vector<std::uint32_t> sorted(tile.size()), rank(tile.size());
   std::iota(sorted.begin(), sorted.end(), 0u);
   std::stable_sort(sorted.begin(), sorted.end(),

@@ -67,7 +67,7 @@ using Phase = std::vector<Tile>;
 std::vector<Phase> colour(std::span<const Link>, const Mesh&);
 
 /// Places of the vertices in memory such that those of a tile are neighbours.
-std::vector<std::uint32_t> tile_ranks(std::span<const Link>, const Mesh&);
+std::vector<std::uint32_t> tile_ranks(const Mesh&);
 
 /// All links, one after the other.
 std::vector<Link> flatten(const std::vector<Phase>&);

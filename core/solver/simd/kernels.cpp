@@ -1,12 +1,8 @@
 #include "core/solver/simd/kernels.hpp"
 
 #include <cassert>
-#include <type_traits>
 
 namespace taut {
-
-extern const Kernels<float> kScalarFloat, kSse2Float, kAvx2Float, kAvx512Float;
-extern const Kernels<double> kScalarDouble, kSse2Double, kAvx2Double, kAvx512Double;
 
 std::string_view to_string(Simd simd) {
   switch (simd) {
@@ -46,19 +42,12 @@ Simd widest() {
 template <class Real>
 const Kernels<Real>& kernels(Simd simd) {
   assert(available(simd));
-  constexpr bool single = std::is_same_v<Real, float>;
-  const auto pick = [](const auto& f, const auto& d) -> const Kernels<Real>& {
-    if constexpr (single)
-      return f;
-    else
-      return d;
-  };
 #if defined(__x86_64__)
-  if (simd == Simd::avx512) return pick(kAvx512Float, kAvx512Double);
-  if (simd == Simd::avx2) return pick(kAvx2Float, kAvx2Double);
-  if (simd == Simd::sse2) return pick(kSse2Float, kSse2Double);
+  if (simd == Simd::avx512) return kernels_for<Simd::avx512, Real>();
+  if (simd == Simd::avx2) return kernels_for<Simd::avx2, Real>();
+  if (simd == Simd::sse2) return kernels_for<Simd::sse2, Real>();
 #endif
-  return pick(kScalarFloat, kScalarDouble);
+  return kernels_for<Simd::scalar, Real>();
 }
 
 template const Kernels<float>& kernels(Simd);

@@ -58,18 +58,27 @@ struct SheetSweep {
   SheetDirection<Real> direction[6];
 };
 
-/// kLanes links without a common vertex.
-template <class Real>
+/// kLanes links without a common vertex, of packed particles. A large sheet takes as long as its
+/// links take to come from memory, so those between neighbours have short numbers.
+template <class Real, class Number>
 struct Batch {
-  std::uint32_t a[kLanes], b[kLanes];  ///< slots in the packed layout
+  Number a[kLanes], b[kLanes];  ///< places of particles
   Real rest[kLanes];
 };
+template <class Real>
+using NearBatch = Batch<Real, std::uint16_t>;  ///< counts from the first particle of its run
+template <class Real>
+using FarBatch = Batch<Real, std::uint32_t>;
 
 /// Batches between equal masses have one share; others have a table.
 template <class Real>
 struct BatchRun {
-  const Batch<Real>* batches;
+  const NearBatch<Real>* near;  ///< [count], or null: `far` has them
+  const FarBatch<Real>* far;
   std::size_t count;
+  std::size_t first;   ///< particle from which near ends count
+  std::size_t ahead;   ///< number of x that will be needed in the next tile
+  std::size_t stride;  ///< of such numbers from one batch to the next: a cache line, or 0
   Real equal_share;
   const Real* shares;  ///< [count][2][kLanes], or null: all are `equal_share`
 };
@@ -105,7 +114,7 @@ struct SheetFaces {
 /// kLanes faces of packed particles.
 template <class Real>
 struct FaceBatch {
-  std::uint32_t corner[3][kLanes];  ///< slots
+  std::uint32_t corner[3][kLanes];  ///< places of particles
   Real w[3][kLanes];                ///< 1/kg
 };
 
@@ -228,6 +237,10 @@ Simd widest();
 /// Precondition: available. All of them compute the same bits.
 template <class Real>
 const Kernels<Real>& kernels(Simd);
+
+/// What instruction_set.cpp makes for each.
+template <Simd, class Real>
+const Kernels<Real>& kernels_for();
 
 /// Calls f(i) for [begin, end) so that i and i + lag are far apart: first those with i / lag even,
 /// then the others; lag 0: in order. The sweeps over rows and over vectors both run like this.

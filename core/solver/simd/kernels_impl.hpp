@@ -96,23 +96,6 @@ void sweep_sheet(const SheetSweep<Real>& sweep, Real* x, int begin, int end) {
   });
 }
 
-/// One link after the other: batches for a machine without lanes.
-template <Projection kind, class Real>
-[[gnu::always_inline]] inline void batches_one_by_one(const BatchRun<Real>& run, Real* x) {
-  for (std::size_t n = 0; n < run.count; ++n) {
-    const Batch<Real>& batch = run.batches[n];
-    for (int l = 0; l < kLanes; ++l) {
-      Real *a = x + batch.a[l], *b = x + batch.b[l];
-      Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
-      const Real* const shares = run.shares ? run.shares + 2 * kLanes * n + l : nullptr;
-      project_distance<kind>(x1, x2, batch.rest[l], shares ? shares[0] : run.equal_share,
-                             shares ? shares[kLanes] : run.equal_share);
-      a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
-      b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
-    }
-  }
-}
-
 /// x + y + z of each.
 template <class T>
 [[gnu::always_inline]] inline T sums(const T (&d)[4]) {
@@ -130,74 +113,101 @@ template <int l, class T>
 }
 
 /// Links g .. g + kWidth<T> - 1 of a batch; shares null: all are equal_share.
-template <class T, Projection kind, bool equal, class Real>
-[[gnu::always_inline]] inline void project_batch(const Batch<Real>& batch, int g,
+template <class T, Projection kind, bool equal, class Real, class Number>
+[[gnu::always_inline]] inline void project_batch(const Batch<Real, Number>& batch, int g,
                                                  const Real* shares, T equal_share, Real* x) {
-  T x1[4], x2[4], delta[4], squared[4];
-  four_times([&](auto l) {
-    x1[l] = load_particles<T>(x, batch.a + g + l);
-    x2[l] = load_particles<T>(x, batch.b + g + l);
-    delta[l] = x2[l] - x1[l];
-    squared[l] = delta[l] * delta[l];
-  });
-  const T f = excess<kind>(sums(squared), load<T>(batch.rest + g));
-  if constexpr (equal) {
-    const T share = equal_share * f;
-    four_times([&](auto l) {
-      const T moved = spread<l>(share) * delta[l];
-      store_particles(x, batch.a + g + l, x1[l] + moved);
-      store_particles(x, batch.b + g + l, x2[l] - moved);
-    });
+  if constexpr (kWidth<T> == 1) {
+    Real *a = particle(x, batch.a[g]), *b = particle(x, batch.b[g]);
+    Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
+    project_distance<kind>(x1, x2, batch.rest[g], equal ? equal_share : shares[g],
+                           equal ? equal_share : shares[kLanes + g]);
+    a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
+    b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
+    return;
   } else {
-    const T share1 = load<T>(shares + g) * f, share2 = load<T>(shares + kLanes + g) * f;
+    T x1[4], x2[4], delta[4], squared[4];
     four_times([&](auto l) {
-      store_particles(x, batch.a + g + l, x1[l] + spread<l>(share1) * delta[l]);
-      store_particles(x, batch.b + g + l, x2[l] - spread<l>(share2) * delta[l]);
+      x1[l] = load_particles<T>(x, batch.a + g + l);
+      x2[l] = load_particles<T>(x, batch.b + g + l);
+      delta[l] = x2[l] - x1[l];
+      squared[l] = delta[l] * delta[l];
     });
+    const T f = excess<kind>(sums(squared), load<T>(batch.rest + g));
+    if constexpr (equal) {
+      const T share = equal_share * f;
+      four_times([&](auto l) {
+        const T moved = spread<l>(share) * delta[l];
+        store_particles(x, batch.a + g + l, x1[l] + moved);
+        store_particles(x, batch.b + g + l, x2[l] - moved);
+      });
+    } else {
+      const T share1 = load<T>(shares + g) * f, share2 = load<T>(shares + kLanes + g) * f;
+      four_times([&](auto l) {
+        store_particles(x, batch.a + g + l, x1[l] + spread<l>(share1) * delta[l]);
+        store_particles(x, batch.b + g + l, x2[l] - spread<l>(share2) * delta[l]);
+      });
+    }
   }
 }
 
-/// Batches with T holding a particle (4 lanes) or two (8): a whole particle is one load.
+/// Calls f(batch, n, x) for the n-th batch of a run; x: the particle from which its ends count.
+/// Meanwhile the batches after it and the next tile's particles come from memory: no machine sees
+/// by itself that these will be needed (results/benchmarks/effects.md).
+template <class Real, class F>
+[[gnu::always_inline]] inline void visit_batches(const BatchRun<Real> run, Real* x, const F& f) {
+  constexpr std::size_t kBatchesAhead = 8;
+  const auto visit = [&](const auto* batches, Real* first) __attribute__((always_inline)) {
+    for (std::size_t n = 0; n < run.count; ++n) {
+      __builtin_prefetch(batches + n + kBatchesAhead);
+      __builtin_prefetch(x + run.ahead + n * run.stride);
+      f(batches[n], n, first);
+    }
+  };
+  run.near ? visit(run.near, particle(x, run.first)) : visit(run.far, x);
+}
+
+/// Batches with T holding a particle (4 lanes) or two (8): a whole particle is one load. On a
+/// machine without lanes one link after the other.
 template <class T, Projection kind, class Real>
 void batches(const BatchRun<Real>& run, Real* x) {
-  if constexpr (kWidth<T> == 1) {
-    batches_one_by_one<kind>(run, x);
-  } else if (run.shares) {
-    for (std::size_t n = 0; n < run.count; ++n)
-      for (int g = 0; g < kLanes; g += kWidth<T>)
-        project_batch<T, kind, false>(run.batches[n], g, run.shares + 2 * kLanes * n, T(0.0), x);
-  } else {
-    const T equal_share(run.equal_share);
-    for (std::size_t n = 0; n < run.count; ++n)
-      for (int g = 0; g < kLanes; g += kWidth<T>)
-        project_batch<T, kind, true, Real>(run.batches[n], g, nullptr, equal_share, x);
-  }
+  const Real* const all_shares = run.shares;
+  const T equal_share(run.equal_share);
+  if (all_shares)
+    visit_batches(
+        run, x, [&](const auto& batch, std::size_t n, Real* first) __attribute__((always_inline)) {
+          for (int g = 0; g < kLanes; g += kWidth<T>)
+            project_batch<T, kind, false>(batch, g, all_shares + 2 * kLanes * n, T(0), first);
+        });
+  else
+    visit_batches(
+        run, x, [&](const auto& batch, std::size_t, Real* first) __attribute__((always_inline)) {
+          for (int g = 0; g < kLanes; g += kWidth<T>)
+            project_batch<T, kind, true, Real>(batch, g, nullptr, equal_share, first);
+        });
 }
 
 /// What batches() loads and stores, with nothing but an addition in between.
 template <class T, class Real>
 void load_and_store(const BatchRun<Real>& run, Real* x) {
   const T little(static_cast<Real>(0.001));
-  for (std::size_t n = 0; n < run.count; ++n) {
-    const Batch<Real>& batch = run.batches[n];
-    if constexpr (kWidth<T> == 1) {
-      for (int l = 0; l < kLanes; ++l)
-        for (unsigned axis = 0; axis < 3; ++axis)
-          x[batch.a[l] + axis] += little, x[batch.b[l] + axis] -= little;
-    } else {
-      for (int g = 0; g < kLanes; g += kWidth<T>) {
-        T x1[4], x2[4];
-        four_times([&](auto l) {
-          x1[l] = load_particles<T>(x, batch.a + g + l);
-          x2[l] = load_particles<T>(x, batch.b + g + l);
-        });
-        four_times([&](auto l) {
-          store_particles(x, batch.a + g + l, x1[l] + little);
-          store_particles(x, batch.b + g + l, x2[l] - little);
-        });
-      }
-    }
-  }
+  visit_batches(
+      run, x, [&](const auto& batch, std::size_t, Real* first) __attribute__((always_inline)) {
+        for (int g = 0; g < kLanes; g += kWidth<T>)
+          if constexpr (kWidth<T> == 1) {
+            Real *a = particle(first, batch.a[g]), *b = particle(first, batch.b[g]);
+            for (int axis = 0; axis < 3; ++axis) a[axis] += little, b[axis] -= little;
+          } else {
+            T x1[4], x2[4];
+            four_times([&](auto l) {
+              x1[l] = load_particles<T>(first, batch.a + g + l);
+              x2[l] = load_particles<T>(first, batch.b + g + l);
+            });
+            four_times([&](auto l) {
+              store_particles(first, batch.a + g + l, x1[l] + little);
+              store_particles(first, batch.b + g + l, x2[l] - little);
+            });
+          }
+      });
 }
 
 /// Calls f(place, present) for kWidth<T> particles after the other, of the parts [begin, end):

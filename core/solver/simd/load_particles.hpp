@@ -2,6 +2,7 @@
 
 // Included once for each instruction set, as kernels_impl.hpp says.
 
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -18,22 +19,29 @@ template <class F>
 }
 
 inline constexpr int kPackedLanes = 1;
-inline constexpr std::uint32_t kPacked[8] = {0, 4, 8, 12, 16, 20, 24, 28};
+inline constexpr std::uint32_t kPacked[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+
+/// Where the particle at a place of the packed layout is.
+template <class Real, class Number>
+[[gnu::always_inline]] inline Real* particle(Real* x, Number place) {
+  return x + 4 * static_cast<std::size_t>(place);
+}
 
 /// T holds the x y z 0 of one particle, or of two.
-template <class T, class Real>
-[[gnu::always_inline]] inline T load_particles(const Real* x, const std::uint32_t* slot) {
+template <class T, class Real, class Number>
+[[gnu::always_inline]] inline T load_particles(const Real* x, const Number* place) {
   if constexpr (kWidth<T> == 4)
-    return load<T>(x + slot[0]);
+    return load<T>(particle(x, place[0]));
   else
-    return T::join(load<typename T::Half>(x + slot[0]), load<typename T::Half>(x + slot[4]));
+    return T::join(load<typename T::Half>(particle(x, place[0])),
+                   load<typename T::Half>(particle(x, place[4])));
 }
-template <class T, class Real>
-[[gnu::always_inline]] inline void store_particles(Real* x, const std::uint32_t* slot, T t) {
+template <class T, class Real, class Number>
+[[gnu::always_inline]] inline void store_particles(Real* x, const Number* place, T t) {
   if constexpr (kWidth<T> == 4)
-    store(x + slot[0], t);
+    store(particle(x, place[0]), t);
   else
-    store(x + slot[0], t.lower()), store(x + slot[4], t.upper());
+    store(particle(x, place[0]), t.lower()), store(particle(x, place[4]), t.upper());
 }
 
 /// The x, y and z of 4 or 8 particles: lane l is that of p[l % 4], of its half l / 4.
@@ -82,13 +90,13 @@ template <class T>
 }
 /// kWidth<T> packed particles, wherever they are.
 template <class T, class Real>
-[[gnu::always_inline]] inline Vec3T<T> gather_packed(const Real* x, const std::uint32_t* slot) {
+[[gnu::always_inline]] inline Vec3T<T> gather_packed(const Real* x, const std::uint32_t* place) {
   if constexpr (kWidth<T> == 1) {
-    x += *slot;
+    x = particle(x, *place);
     return {x[0], x[1], x[2]};
   } else {
     T p[4];
-    four_times([&](auto l) { p[l] = load_particles<T>(x, slot + l); });
+    four_times([&](auto l) { p[l] = load_particles<T>(x, place + l); });
     return transposed(p);
   }
 }

@@ -102,7 +102,7 @@ void wind_on_faces(const WindStep<Real>& wind_in, std::span<const FaceBatch<Real
     }
     for (int l = 0; l < kLanes; ++l)
       for (int c = 0; c < 3; ++c) {
-        Real* const a = wind.a + batch.corner[c][l];
+        Real* const a = particle(wind.a, batch.corner[c][l]);
         const Real w = batch.w[c][l];
         for (int axis = 0; axis < 3; ++axis) a[axis] += w * force[4 * l + axis];
       }

@@ -1,17 +1,20 @@
 // taut-solver/1 for C++17, no dependency: copy this file beside your solver.
 //
 //     struct Mine {
-//       static constexpr const char* kAbout =   // the answer to "hello", without its protocol
+//       using Json = taut_solver::Json;
+//       // The answer to "hello", without its protocol.
+//       static constexpr const char* kAbout =
 //           R"("name": "mine", "version": "1.0", "params": {"iterations":
 //              {"type": "integer", "min": 1, "max": 1000, "default": 8, "doc": "Sweeps"}})";
-//       // why the scene would be misread; empty: it is not
-//       static std::vector<std::string> cannot(const taut_solver::Json& scene, const
-//       taut_solver::Json& params); Mine(const taut_solver::Json& scene, const taut_solver::Json&
-//       params);  // scene["dt"].number, ... void load(const double* x, const double* v);  // start
-//       here: 3n [m] and 3n [m/s] void step(double t, double dt);               // advance from t
-//       to t + dt [s] void store(double* x, double* v) const;       // 3n each std::string extras()
-//       const;  // "" or more members of the answer to "scene": its plan,
-//     };                             // its settings; begins with a comma
+//       // Why the scene would be misread; empty: it is not.
+//       static std::vector<std::string> cannot(const Json& scene, const Json& params);
+//       Mine(const Json& scene, const Json& params);  // scene["dt"].number, ...
+//       void load(const double* x, const double* v);  // start here: 3n [m] and 3n [m/s]
+//       void step(double t, double dt);               // advance from t to t + dt [s]
+//       void store(double* x, double* v) const;       // 3n each
+//       // "" or more members of the answer to "scene" (its plan, its settings), after a comma.
+//       std::string extras() const;
+//     };
 //     int main() { return taut_solver::serve<Mine>(); }
 //
 // A new version for every change that moves results. Standard output belongs to the protocol: print

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/model/input_error.hpp"
+
 namespace taut {
 
 namespace {
@@ -67,7 +69,28 @@ std::string trimmed(double value) {
   return text.data();
 }
 
+/// How each of them is named and shown, in the order of the enumeration.
+struct Look {
+  const char *name, *title;
+  double shown;  ///< number of units in one of SI
+  const char* unit;
+  const ColourMap& (*map)();
+};
+constexpr Look kLooks[] = {
+    {"strain", "mean edge strain ε at each vertex", 100, "%", ColourMap::diverging},
+    {"penetration", "depth below a collider's surface", 1e3, "mm", ColourMap::violet},
+    {"speed", "speed", 1, "m/s", ColourMap::teal}};
+
+const Look& look(ColourBy by) { return kLooks[static_cast<std::size_t>(by)]; }
+
 }  // namespace
+
+ColourBy parse_colour_by(const std::string& name) {
+  const auto found = std::ranges::find(kLooks, name, &Look::name);
+  if (found != std::end(kLooks)) return static_cast<ColourBy>(found - std::begin(kLooks));
+  throw InputError("unknown colour '" + name + "': strain, penetration or speed" +
+                   suggestion(name, {"strain", "penetration", "speed"}));
+}
 
 const ColourMap& ColourMap::diverging() {
   static const ColourMap map(tabulate([](double s) {
@@ -97,35 +120,16 @@ Rgb8 ColourMap::at(double s) const {
   return table_[static_cast<std::size_t>(std::lround(clamped * (kSize - 1)))];
 }
 
-const ColourMap& ColourScale::map() const {
-  switch (quantity) {
-    case Quantity::strain:
-      return ColourMap::diverging();
-    case Quantity::penetration:
-      return ColourMap::violet();
-    case Quantity::speed:
-      break;
-  }
-  return ColourMap::teal();
-}
+const ColourMap& ColourScale::map() const { return look(colour_by).map(); }
 
-std::string ColourScale::title() const {
-  switch (quantity) {
-    case Quantity::strain:
-      return "mean edge strain ε at each vertex";
-    case Quantity::penetration:
-      return "depth below a collider's surface";
-    case Quantity::speed:
-      break;
-  }
-  return "speed";
-}
+std::string ColourScale::title() const { return look(colour_by).title; }
+
+double ColourScale::shown() const { return look(colour_by).shown; }
 
 std::string ColourScale::text(double value) const {
-  if (quantity == Quantity::speed) return trimmed(value) + " m/s";
-  if (quantity == Quantity::penetration) return trimmed(1e3 * value) + " mm";
-  const std::string percent = trimmed(std::abs(100 * value)) + " %";
-  return value == 0 ? "0" : (value < 0 ? "\u2212" : "+") + percent;
+  if (colour_by == ColourBy::strain && value == 0) return "0";
+  const char* sign = colour_by != ColourBy::strain ? "" : value < 0 ? "\u2212" : "+";
+  return sign + trimmed(std::abs(shown() * value)) + " " + look(colour_by).unit;
 }
 
 std::vector<double> ColourScale::ticks() const {

@@ -28,22 +28,25 @@ class ColourMap {
 };
 
 /// What colours the cloth.
-enum class Quantity {
+enum class ColourBy {
   strain,       ///< mean strain of the structural links at a vertex, signed
   penetration,  ///< depth below the surface of a collider, m
   speed         ///< m/s
 };
 
+ColourBy parse_colour_by(const std::string&);  ///< throws InputError
+
 /// How numbers become colours: [low, high] is the bar; what lies beyond takes the end's colour and
 /// is announced by the bar's arrows.
 struct ColourScale {
-  Quantity quantity = Quantity::strain;
+  ColourBy colour_by = ColourBy::strain;
   double high = 1;  ///< SI units, > 0; low is -high for strain, 0 otherwise
 
-  double low() const { return quantity == Quantity::strain ? -high : 0; }
+  double low() const { return colour_by == ColourBy::strain ? -high : 0; }
   double position(double value) const { return (value - low()) / (high - low()); }
   const ColourMap& map() const;
   Rgb8 colour(double value) const { return map().at(position(value)); }
+  double shown() const;                  ///< number of shown units in one of SI: 100 for %
   std::string title() const;             ///< "mean edge strain ε at each vertex"
   std::string text(double value) const;  ///< "+2 %", "1.5 mm", "0.8 m/s": three digits
   std::vector<double> ticks() const;     ///< both ends and round numbers between

@@ -3,9 +3,7 @@
 #include <png.h>
 
 #include <cassert>
-#include <cstring>
 
-#include "core/model/input_error.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut {
@@ -54,19 +52,6 @@ std::string png_bytes(const Image& image) {
 
 void write_png(const std::filesystem::path& path, const Image& image) {
   write_file(path, png_bytes(image));
-}
-
-Image read_png(const std::filesystem::path& path) {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  const auto fail = [&] { throw InputError({{path.string(), 0, 0, png.message}}); };
-  if (!png_image_begin_read_from_file(&png, path.c_str())) fail();
-  png.format = PNG_FORMAT_RGB;
-  std::vector<Rgb8> pixels(std::size_t{png.width} * png.height);
-  if (!png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr)) fail();
-  Image image(static_cast<int>(png.width), static_cast<int>(png.height));
-  std::memcpy(&image.at(0, 0), pixels.data(), pixels.size() * sizeof(Rgb8));
-  return image;
 }
 
 }  // namespace taut

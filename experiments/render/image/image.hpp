@@ -51,6 +51,5 @@ Image shrunk(const Image&, int k);
 /// PNG, without a time stamp: the same image gives the same bytes.
 std::string png_bytes(const Image&);
 void write_png(const std::filesystem::path&, const Image&);  ///< throws InputError
-Image read_png(const std::filesystem::path&);                ///< throws InputError
 
 }  // namespace taut

@@ -2,6 +2,8 @@
 
 #include <cassert>
 #include <cmath>
+#include <iterator>
+#include <sstream>
 
 #include "core/model/input_error.hpp"
 
@@ -9,24 +11,15 @@ namespace taut {
 
 namespace {
 
-std::vector<std::string> words(std::initializer_list<std::vector<std::string>> parts) {
-  std::vector<std::string> all;
-  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
+/// A command of words that hold no blank.
+std::vector<std::string> split(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
 }
 
-std::vector<std::string> raw_input(int width, int height) {
-  return {"ffmpeg",
-          "-nostdin",
-          "-v",
-          "error",
-          "-y",
-          "-f",
-          "rawvideo",
-          "-pix_fmt",
-          "rgb24",
-          "-s",
-          std::to_string(width) + "x" + std::to_string(height)};
+std::string raw_input(int width, int height) {
+  return "ffmpeg -nostdin -v error -y -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) +
+         "x" + std::to_string(height);
 }
 
 bool put(Process& process, const Image& image) {
@@ -56,18 +49,15 @@ VideoWriter::VideoWriter(const std::filesystem::path& mp4, const Options& option
   const std::string rate =
       std::to_string(options.rate.numerator) + "/" + std::to_string(options.rate.denominator);
   try {
-    ffmpeg_.emplace(
-        words({raw_input(options.width, options.height),
-               {"-framerate", rate, "-i", "-"},
-               {"-vf",
-                "scale=out_color_matrix=bt709:out_range=tv:"
-                "flags=accurate_rnd+full_chroma_int,format=yuv420p"},
-               {"-c:v", "libx264", "-preset", "medium", "-tune", "animation", "-threads", "1"},
-               {"-g", "12", "-bf", "2", "-crf", std::to_string(options.crf)},
-               {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"},
-               {"-color_range", "tv", "-movflags", "+faststart", "-map_metadata", "-1"},
-               {"-fflags", "+bitexact", "-flags:v", "+bitexact", "file:" + temporary_.string()}}),
-        ProcessOptions{.input = ProcessOptions::Stream::piped});
+    std::vector<std::string> words = split(
+        raw_input(options.width, options.height) + " -framerate " + rate +
+        " -i - -vf scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,"
+        "format=yuv420p -c:v libx264 -preset medium -tune animation -threads 1 -g 12 -bf 2 -crf " +
+        std::to_string(options.crf) +
+        " -colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv"
+        " -movflags +faststart -map_metadata -1 -fflags +bitexact -flags:v +bitexact");
+    words.push_back("file:" + temporary_.string());
+    ffmpeg_.emplace(std::move(words), ProcessOptions{.input = ProcessOptions::Stream::piped});
   } catch (const InputError& error) {
     failure_ = on_path("ffmpeg") ? error.what() : "ffmpeg is not installed";
   }
@@ -97,9 +87,8 @@ std::string VideoWriter::finish() {
 
 std::string jpeg_bytes(const Image& image) try {
   using Stream = ProcessOptions::Stream;
-  Process ffmpeg(words({raw_input(image.width(), image.height()),
-                        {"-i", "-", "-frames:v", "1", "-q:v", "3", "-fflags", "+bitexact"},
-                        {"-flags:v", "+bitexact", "-f", "mjpeg", "-"}}),
+  Process ffmpeg(split(raw_input(image.width(), image.height()) +
+                       " -i - -frames:v 1 -q:v 3 -fflags +bitexact -flags:v +bitexact -f mjpeg -"),
                  {.input = Stream::piped, .output = Stream::piped});
   const bool written = put(ffmpeg, image);
   ffmpeg.close_input();

@@ -100,7 +100,7 @@ struct Fit {
   double distance = 0;  ///< m, of the eye along the line of sight
 };
 
-Fit fit(const std::vector<Vec3>& points, Camera camera, double aspect, const Frame& frame) {
+Fit fit(const std::vector<Vec3>& points, Camera camera, double aspect, const FitRegion& frame) {
   constexpr double tan = kTanHalfHeight;
   const Vec3 right = camera.right.cast<double>(), top = camera.up.cast<double>(),
              back = camera.back.cast<double>();
@@ -120,7 +120,7 @@ Fit fit(const std::vector<Vec3>& points, Camera camera, double aspect, const Fra
   return {camera, distance};
 }
 
-bool hides_any(const Frame& frame, const Camera& camera, float aspect,
+bool hides_any(const FitRegion& frame, const Camera& camera, float aspect,
                const std::vector<Vec3>& points) {
   const Eigen::Matrix4f clip = camera.world_to_clip(aspect);
   const auto inset_left = static_cast<float>(frame.inset_left);
@@ -134,12 +134,12 @@ bool hides_any(const Frame& frame, const Camera& camera, float aspect,
 }  // namespace
 
 Camera fit_camera(const std::vector<Vec3>& points, const Vec3& up, const View& view, double aspect,
-                  const Frame& frame) {
+                  const FitRegion& frame) {
   assert(!points.empty());
   const Camera direction = turned(up, view);
   const Fit whole = fit(points, direction, aspect, frame);
   if (!hides_any(frame, whole.camera, static_cast<float>(aspect), points)) return whole.camera;
-  Frame below = frame, beside = frame;
+  FitRegion below = frame, beside = frame;
   below.top = frame.inset_bottom, below.right = -frame.left;
   beside.right = frame.inset_left;
   const Fit one = fit(points, direction, aspect, below),

@@ -36,16 +36,16 @@ struct Camera {
 Vec3 up_direction(const Scene&);
 
 /// The part of the picture that the points have to fill: [-1, 1], y upwards.
-struct Frame {
+struct FitRegion {
   double left = -0.8, right = 0.8, bottom = -0.62, top = 0.8;
   /// Points both right of and above this corner are hidden by an inset.
   double inset_left = 2, inset_bottom = 2;
-  static Frame beside_inset() { return {-0.84, 0.66, -0.62, 0.78, 0.53, 0.39}; }
+  static FitRegion beside_inset() { return {-0.84, 0.66, -0.62, 0.78, 0.53, 0.39}; }
 };
 
 /// Places the camera so that the points just fit into the frame, below or beside the inset if it
 /// would hide one of them, whichever shows them larger. Precondition: points not empty.
 Camera fit_camera(const std::vector<Vec3>& points, const Vec3& up, const View&, double aspect,
-                  const Frame&);
+                  const FitRegion&);
 
 }  // namespace taut

@@ -5,7 +5,8 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
-#include <vector>
+#include <mutex>
+#include <utility>
 
 #include "core/model/input_error.hpp"
 
@@ -13,152 +14,124 @@ namespace taut {
 
 namespace {
 
-/// Why a backend cannot be had.
+/// Why a context cannot be had.
 struct Unavailable {
   std::string why;
 };
 
-/// Libraries stay open until the process ends: Mesa's threads and caches outlive a context.
-void* open_library(const std::string& file) {
-  void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library) throw Unavailable{dlerror()};
-  return library;
+void require(bool good, const std::string& why) {
+  if (!good) throw Unavailable{why};
 }
 
-template <class Function>
-Function symbol(void* library, const char* name) {
-  const auto function = reinterpret_cast<Function>(dlsym(library, name));
-  if (!function) throw Unavailable{std::string("no function ") + name};
-  return function;
-}
+/// Stays open until the process ends: Mesa's threads and caches outlive a context.
+class Library {
+ public:
+  Library(const char* variable, const char* usual) {
+    const char* own = std::getenv(variable);
+    handle_ = dlopen(own ? own : usual, RTLD_NOW | RTLD_LOCAL);
+    if (!handle_) throw Unavailable{dlerror()};
+  }
+  template <class Function>
+  Function get(const char* name) const {
+    const auto function = reinterpret_cast<Function>(dlsym(handle_, name));
+    require(function, std::string("no function ") + name);
+    return function;
+  }
+
+ private:
+  void* handle_;
+};
+
+/// A context that is current, who ends it, and where its functions are asked for.
+struct Made {
+  void* context;
+  void (*destroy)(void*);
+  void* (*function)(const char*);
+};
 
 /// Mesa's off-screen library (dropped from Mesa in 25.1). Names and values: GL/osmesa.h.
-class OsMesa final : public GlContext::Backend {
- public:
-  explicit OsMesa(const std::string& file) {
-    void* library = open_library(file);
-    const auto create = symbol<void* (*)(const int*, void*)>(library, "OSMesaCreateContextAttribs");
-    const auto make_current =
-        symbol<unsigned char (*)(void*, void*, unsigned, int, int)>(library, "OSMesaMakeCurrent");
-    get_ = symbol<void* (*)(const char*)>(library, "OSMesaGetProcAddress");
-    destroy_ = symbol<void (*)(void*)>(library, "OSMesaDestroyContext");
-    constexpr int kFormat = 0x22, kProfile = 0x33, kCore = 0x34, kMajor = 0x36, kMinor = 0x37;
-    const int wanted[] = {kFormat, GL_RGBA, kProfile, kCore, kMajor, 3, kMinor, 3, 0};
-    context_ = create(wanted, nullptr);
-    if (!context_) throw Unavailable{"no OpenGL 3.3 core context"};
-    buffer_.resize(kSide * kSide * 4);
-    if (!make_current(context_, buffer_.data(), GL_UNSIGNED_BYTE, kSide, kSide)) {
-      destroy_(context_);
-      throw Unavailable{"the context cannot be made current"};
-    }
+Made make_osmesa() {
+  const Library library("TAUT_OSMESA", "libOSMesa.so.8");
+  constexpr int kFormat = 0x22, kProfile = 0x33, kCore = 0x34, kMajor = 0x36, kMinor = 0x37;
+  const int wanted[] = {kFormat, GL_RGBA, kProfile, kCore, kMajor, 3, kMinor, 3, 0};
+  const auto destroy = library.get<void (*)(void*)>("OSMesaDestroyContext");
+  void* context =
+      library.get<void* (*)(const int*, void*)>("OSMesaCreateContextAttribs")(wanted, nullptr);
+  require(context, "no OpenGL 3.3 core context");
+  static unsigned char surface[4];  // a pixel that nobody draws to
+  if (!library.get<unsigned char (*)(void*, void*, unsigned, int, int)>("OSMesaMakeCurrent")(
+          context, surface, GL_UNSIGNED_BYTE, 1, 1)) {
+    destroy(context);
+    require(false, "the context cannot be made current");
   }
-  ~OsMesa() override { destroy_(context_); }
-  const char* name() const override { return "OSMesa"; }
-  void* function(const char* gl_name) const override { return get_(gl_name); }
-
- private:
-  static constexpr int kSide = 16;
-  std::vector<unsigned char> buffer_;  ///< OSMesa writes to it until the context is gone
-  void* context_ = nullptr;
-  void* (*get_)(const char*) = nullptr;
-  void (*destroy_)(void*) = nullptr;
-};
+  return {context, destroy, library.get<void* (*)(const char*)>("OSMesaGetProcAddress")};
+}
 
 /// EGL without a surface (EGL_MESA_platform_surfaceless).
-class SurfacelessEgl final : public GlContext::Backend {
- public:
-  explicit SurfacelessEgl(const std::string& file) {
-    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
-    void* library = open_library(file);
-    get_ = symbol<decltype(get_)>(library, "eglGetProcAddress");
-    make_current_ = symbol<decltype(make_current_)>(library, "eglMakeCurrent");
-    destroy_ = symbol<decltype(destroy_)>(library, "eglDestroyContext");
-    const auto platform_display =
-        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(get_("eglGetPlatformDisplayEXT"));
-    if (!platform_display) throw Unavailable{"no EGL_EXT_platform_base"};
-    display_ = platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    if (!symbol<decltype(&eglInitialize)>(library, "eglInitialize")(display_, nullptr, nullptr))
-      throw Unavailable{"no surfaceless display"};
-    symbol<decltype(&eglBindAPI)>(library, "eglBindAPI")(EGL_OPENGL_API);
-    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
-                             3,
-                             EGL_CONTEXT_MINOR_VERSION,
-                             3,
-                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                             EGL_NONE};
-    context_ = symbol<decltype(&eglCreateContext)>(library, "eglCreateContext")(
-        display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
-    if (context_ == EGL_NO_CONTEXT) throw Unavailable{"no OpenGL 3.3 core context"};
-    if (!make_current_(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
-      destroy_(display_, context_);
-      throw Unavailable{"the context cannot be made current without a surface"};
-    }
+Made make_egl() {
+  setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
+  static const Library library("TAUT_EGL", "libEGL.so.1");
+  static const auto get = library.get<decltype(&eglGetProcAddress)>("eglGetProcAddress");
+  static const auto make_current = library.get<decltype(&eglMakeCurrent)>("eglMakeCurrent");
+  const auto platform_display =
+      reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(get("eglGetPlatformDisplayEXT"));
+  require(platform_display, "no EGL_EXT_platform_base");
+  static const EGLDisplay display =
+      platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  require(library.get<decltype(&eglInitialize)>("eglInitialize")(display, nullptr, nullptr),
+          "no surfaceless display");
+  library.get<decltype(&eglBindAPI)>("eglBindAPI")(EGL_OPENGL_API);
+  const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3, EGL_NONE};
+  const EGLContext context = library.get<decltype(&eglCreateContext)>("eglCreateContext")(
+      display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
+  require(context != EGL_NO_CONTEXT, "no OpenGL 3.3 core context");
+  const auto destroy = [](void* made) {
+    make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    library.get<decltype(&eglDestroyContext)>("eglDestroyContext")(display, made);
+  };
+  if (!make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+    destroy(context);
+    require(false, "the context cannot be made current without a surface");
   }
-  ~SurfacelessEgl() override {
-    make_current_(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    destroy_(display_, context_);
-  }
-  const char* name() const override { return "EGL"; }
-  void* function(const char* gl_name) const override {
-    return reinterpret_cast<void*>(get_(gl_name));
-  }
+  return {context, destroy, [](const char* name) { return reinterpret_cast<void*>(get(name)); }};
+}
 
- private:
-  EGLDisplay display_ = EGL_NO_DISPLAY;
-  EGLContext context_ = EGL_NO_CONTEXT;
-  decltype(&eglGetProcAddress) get_ = nullptr;
-  decltype(&eglMakeCurrent) make_current_ = nullptr;
-  decltype(&eglDestroyContext) destroy_ = nullptr;
-};
-
-template <class Kind>
-std::unique_ptr<GlContext::Backend> attempt(const char* what, const std::string& file,
-                                            std::string& tried) {
-  if (file.empty()) return nullptr;
-  try {
-    return std::make_unique<Kind>(file);
-  } catch (const Unavailable& unavailable) {
-    tried += std::string("\n  ") + what + ": " + unavailable.why;
-    return nullptr;
-  }
+void load_functions(const Made& made) {
+  static std::once_flag once;  // every context of a process is of the same library
+  std::call_once(once, [&] {
+#define TAUT_GL_LOAD(name)                                       \
+  name = reinterpret_cast<decltype(name)>(made.function(#name)); \
+  if (!name) throw InputError("OpenGL has no function " #name);
+    TAUT_GL_FUNCTIONS(TAUT_GL_LOAD)
+#undef TAUT_GL_LOAD
+  });
 }
 
 }  // namespace
 
-GlLibraries GlLibraries::of_this_machine() {
-  const auto named = [](const char* variable, const char* usual) {
-    const char* own = std::getenv(variable);
-    return std::string(own ? own : usual);
-  };
-  return {named("TAUT_OSMESA", "libOSMesa.so.8"), named("TAUT_EGL", "libEGL.so.1")};
-}
-
-GlContext::GlContext(const GlLibraries& libraries) {
+GlContext::GlContext() {
   std::string tried;
-  backend_ = attempt<OsMesa>("OSMesa (package libosmesa6)", libraries.osmesa, tried);
-  if (!backend_)
-    backend_ = attempt<SurfacelessEgl>("surfaceless EGL (packages libegl1, libgl1-mesa-dri)",
-                                       libraries.egl, tried);
-  if (!backend_)
-    throw InputError("pictures need an off-screen OpenGL 3.3; tried" + tried +
-                     "\nInstall one of them; everything but pictures works without");
-#define TAUT_GL_LOAD(UPPER, Function)                                                             \
-  functions_.Function = reinterpret_cast<PFNGL##UPPER##PROC>(backend_->function("gl" #Function)); \
-  if (!functions_.Function)                                                                       \
-    throw InputError(std::string(backend_->name()) + ": OpenGL has no function gl" #Function);
-  TAUT_GL_FUNCTIONS(TAUT_GL_LOAD)
-#undef TAUT_GL_LOAD
+  const std::pair<Made (*)(), const char*> ways[] = {
+      {make_osmesa, "OSMesa (package libosmesa6)"},
+      {make_egl, "EGL (packages libegl1, libgl1-mesa-dri)"}};
+  for (const auto& [make, what] : ways) try {
+      const Made made = make();
+      context_ = made.context, destroy_ = made.destroy;
+      load_functions(made);
+      return;
+    } catch (const Unavailable& unavailable) {
+      tried += std::string("\n  ") + what + ": " + unavailable.why;
+    }
+  throw InputError("pictures need an off-screen OpenGL 3.3; tried" + tried +
+                   "\nInstall one of them; everything but pictures works without");
 }
-
-GlContext::~GlContext() = default;
 
 std::string GlContext::description() const {
-  const auto text = [&](GLenum name) {
-    const auto* value = reinterpret_cast<const char*>(functions_.GetString(name));
+  const auto text = [](GLenum name) {
+    const auto* value = reinterpret_cast<const char*>(glGetString(name));
     return std::string(value ? value : "unknown");
   };
-  return std::string(backend_->name()) + ", " + text(GL_VERSION) + ", " + text(GL_RENDERER);
+  return text(GL_VERSION) + ", " + text(GL_RENDERER);
 }
 
 }  // namespace taut

@@ -60,6 +60,18 @@ std::vector<std::array<std::uint32_t, 3>> lattice_triangles(int nu, int nv) {
   return triangles;
 }
 
+/// Two triangles for each quad of rows of `columns` + 1 points, the first of which is `first`.
+void join_rows(RenderMesh& mesh, std::size_t first, int rows, int columns) {
+  const auto row = static_cast<std::uint32_t>(columns + 1);
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const auto a = static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(j) * row +
+                     static_cast<std::uint32_t>(i);
+      mesh.triangles.push_back({a, a + 1, a + row});
+      mesh.triangles.push_back({a + 1, a + row + 1, a + row});
+    }
+}
+
 /// A cylinder of `sides` facets between two points.
 void append_cylinder(RenderMesh& mesh, const Vec3f& from, const Vec3f& to, float radius, int sides,
                      float value_from, float value_to) {
@@ -173,7 +185,7 @@ RenderMesh ClothMesher::tube(const std::vector<Vec3>& x, const std::vector<doubl
 }
 
 void append_ball(RenderMesh& mesh, const Vec3f& centre, float radius, int segments, float value) {
-  const auto first = static_cast<std::uint32_t>(mesh.position.size());
+  const std::size_t first = mesh.position.size();
   const int rings = segments / 2;
   for (int j = 0; j <= rings; ++j)
     for (int i = 0; i <= segments; ++i) {
@@ -185,13 +197,102 @@ void append_ball(RenderMesh& mesh, const Vec3f& centre, float radius, int segmen
       mesh.normal.push_back(out);
       mesh.value.push_back(value);
     }
-  const auto row = static_cast<std::uint32_t>(segments + 1);
-  for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rings); ++j)
-    for (std::uint32_t i = 0; i + 1 < row; ++i) {
-      const std::uint32_t a = first + j * row + i;
-      mesh.triangles.push_back({a, a + 1, a + row});
-      mesh.triangles.push_back({a + 1, a + row + 1, a + row});
+  join_rows(mesh, first, rings, segments);
+}
+
+namespace {
+
+RenderMesh ball_mesh(const Ball& ball, double inset) {
+  RenderMesh mesh;
+  append_ball(mesh, ball.center.cast<float>(),
+              static_cast<float>(std::max(ball.radius - inset, 0.5 * ball.radius)), 72, 0);
+  return mesh;
+}
+
+/// A box whose edges are rounded by `radius`: points of the cube's faces, pulled to within the
+/// smaller box and pushed out by the radius.
+RenderMesh box_mesh(const Box& box, double inset, double rounding) {
+  constexpr int kPieces = 28;
+  const Vec3 half = (box.half_extents.array() - inset).max(box.half_extents.array() * 0.5);
+  const double radius = std::min(rounding, 0.4 * half.minCoeff());
+  const Vec3 inner = half.array() - radius;
+  RenderMesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      const std::size_t first = mesh.position.size();
+      // Points crowd towards the edges, where the rounding is.
+      const auto place = [](int k) {
+        const double s = 2.0 * k / kPieces - 1;
+        return s * (1.5 - 0.5 * s * s);
+      };
+      for (int j = 0; j <= kPieces; ++j)
+        for (int i = 0; i <= kPieces; ++i) {
+          Vec3 p;
+          p[axis] = sign * half[axis];
+          p[(axis + 1) % 3] = place(i) * half[(axis + 1) % 3];
+          p[(axis + 2) % 3] = place(j) * half[(axis + 2) % 3];
+          const Vec3 core = p.cwiseMax(-inner).cwiseMin(inner);
+          const Vec3 out = (p - core).normalized();
+          mesh.position.push_back(
+              (box.center + box.rotation * (core + radius * out)).cast<float>());
+          mesh.normal.push_back((box.rotation * out).cast<float>());
+          mesh.value.push_back(0);
+        }
+      join_rows(mesh, first, kPieces, kPieces);
     }
+  return mesh;
+}
+
+RenderMesh plane_mesh(const Plane& plane, double inset, const Vec3& centre, double reach) {
+  constexpr int kPieces = 48;
+  const Vec3 u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
+  const Vec3 foot = centre - plane.normal * (plane.normal.dot(centre) - plane.offset + inset);
+  RenderMesh mesh;
+  for (int j = 0; j <= kPieces; ++j)
+    for (int i = 0; i <= kPieces; ++i) {
+      const double a = reach * (2.0 * i / kPieces - 1), b = reach * (2.0 * j / kPieces - 1);
+      mesh.position.push_back((foot + a * u + b * v).cast<float>());
+      mesh.normal.push_back(plane.normal.cast<float>());
+      mesh.value.push_back(0);
+    }
+  join_rows(mesh, 0, kPieces, kPieces);
+  return mesh;
+}
+
+/// The depth [m] up to which it is clear on which side of the collider cloth belongs.
+double liftable(const Ball& ball, const Scene&) { return 0.2 * ball.radius; }
+double liftable(const Box& box, const Scene&) { return 0.2 * box.half_extents.minCoeff(); }
+double liftable(const Plane&, const Scene& scene) { return 0.04 * extent(scene); }
+
+}  // namespace
+
+RenderMesh collider_mesh(const Collider& collider, double t, const ColliderLook& look) {
+  const Shape shape = shape_at(collider, t);
+  RenderMesh mesh;
+  if (const auto* ball = std::get_if<Ball>(&shape))
+    mesh = ball_mesh(*ball, look.inset);
+  else if (const auto* box = std::get_if<Box>(&shape))
+    mesh = box_mesh(*box, look.inset, look.rounding);
+  else
+    mesh = plane_mesh(std::get<Plane>(shape), look.inset, look.centre, look.reach);
+  mesh.uv.assign(mesh.position.size(), Eigen::Vector2f::Zero());
+  mesh.hidden.assign(mesh.position.size(), 0);
+  return mesh;
+}
+
+void lift_out_of_colliders(RenderMesh& mesh, const Scene& scene, double t, double clearance) {
+  bool lifted = false;
+  for (const Collider& collider : scene.colliders) {
+    const Shape shape = shape_at(collider, t);
+    const double deepest = std::visit([&](const auto& s) { return liftable(s, scene); }, shape);
+    for (std::size_t i = 0; i < mesh.position.size(); ++i) {
+      const auto [distance, normal] = surface(shape, mesh.position[i].cast<double>());
+      if (distance >= clearance || distance < -deepest) continue;
+      mesh.position[i] += (normal * (clearance - distance)).cast<float>();
+      lifted = true;
+    }
+  }
+  if (lifted) mesh.compute_normals();
 }
 
 }  // namespace taut

@@ -22,7 +22,7 @@ std::vector<std::string> caption(const SceneRenderer& renderer, const RecordedRu
   const auto& frame = run.at(t);
   std::vector<std::string> parts{formatted("t = %.2f s", frame.t)};
   const LiveFigures live = live_figures(scene, frame.state, frame.t);
-  for (std::string& part : quantity_text(renderer.scale().quantity, live))
+  for (std::string& part : caption_of(renderer.scale().colour_by, live))
     parts.push_back(std::move(part));
   parts.push_back(scene.mesh.grid ? std::to_string(scene.mesh.grid->nu) + " × " +
                                         std::to_string(scene.mesh.grid->nv) + " vertices"
@@ -78,7 +78,7 @@ void draw_footer(Canvas& canvas, const SceneRenderer& renderer, const PageLayout
   canvas.text({layout.width / 2.0, top + 30 * u}, scale.title(), label);
   const double width = 690 * u, x = (layout.width - width) / 2;
   draw_colour_bar(canvas, scale, {x, top + 43 * u, width, 21 * u}, u);
-  if (scale.quantity == Quantity::strain) {
+  if (scale.colour_by == ColourBy::strain) {
     canvas.text({x - 36 * u, top + 60 * u}, "compressed",
                 {18 * u, kMuted, Weight::regular, Align::right});
     canvas.text({x + width + 36 * u, top + 60 * u}, "stretched", {18 * u, kMuted});
@@ -105,14 +105,14 @@ std::string strain_text(double value, bool sign) {
   return (sign ? value < 0 ? "\u2212" : "+" : "") + digits;
 }
 
-std::vector<std::string> quantity_text(Quantity quantity, const LiveFigures& live) {
-  switch (quantity) {
-    case Quantity::strain:
+std::vector<std::string> caption_of(ColourBy colour_by, const LiveFigures& live) {
+  switch (colour_by) {
+    case ColourBy::strain:
       return {"max |ε| = " + strain_text(live.max_strain, false),
               "mean ε = " + strain_text(live.mean_strain, true)};
-    case Quantity::penetration:
+    case ColourBy::penetration:
       return {"max depth = " + formatted("%.3g mm", 1e3 * live.max_depth)};
-    case Quantity::speed:
+    case ColourBy::speed:
       break;
   }
   return {"max |v| = " + formatted("%.3g m/s", live.max_speed)};
@@ -140,10 +140,7 @@ Image compose(const SceneRenderer& renderer, const PageLayout& layout, double t)
     const int y = row * (layout.header + layout.panel_height);
     const RecordedRun& run = renderer.runs()[k];
     Image panel = renderer.panel(k, t);
-    if (run.stop && t > run.stop->t)
-      mark_stop(panel, *run.stop, layout.unit);
-    else if (!renderer.in_sight(k, t))
-      mark_gone(panel, layout.unit);
+    mark_absence(panel, renderer, k, t, layout.unit);
     picture.paste(panel, x, y + layout.header);
     draw_header(canvas, renderer, run, t, {1.0 * x, 1.0 * y}, layout);
     draw_inset(picture, renderer, k, t, {1.0 * x, 1.0 * y + layout.header}, layout);
@@ -200,8 +197,59 @@ void mark_stop(Image& panel, const RecordedRun::Stop& stop, double unit) {
   plate(panel, stop.why + formatted(" after t = %.2f s: last good state", stop.t), kAlarm, unit);
 }
 
-void mark_gone(Image& panel, double unit) {
-  plate(panel, "has left the picture", rgb(0x4A5361), unit);
+void mark_absence(Image& panel, const SceneRenderer& renderer, std::size_t run, double t,
+                  double unit) {
+  const auto& stop = renderer.runs()[run].stop;
+  if (stop && t > stop->t)
+    mark_stop(panel, *stop, unit);
+  else if (!renderer.in_sight(run, t))
+    plate(panel, "has left the picture", rgb(0x4A5361), unit);
+}
+
+Image compose_sheet(const SceneRenderer& renderer, const std::vector<double>& times) {
+  const int wide = renderer.options().width, high = renderer.options().height, gap = 6;
+  const double u = high / 400.0;
+  const Rgb8 background = renderer.options().theme.top;
+  const Rgb8 on_background = background.g > 128 ? kMuted : rgb(0xC3CBD8);
+  const int head = static_cast<int>(64 * u), foot = static_cast<int>(96 * u);
+  const int columns = static_cast<int>(renderer.runs().size());
+  const int rows = static_cast<int>(times.size());
+  Image picture(columns * (wide + gap) - gap, head + rows * (high + gap) + foot, rgb(0xFFFFFF));
+  Canvas canvas(picture);
+  for (int column = 0; column < columns; ++column) {
+    const auto index = static_cast<std::size_t>(column);
+    const RecordedRun& run = renderer.runs()[index];
+    const double x = column * (wide + gap) + 18 * u;
+    canvas.disc({x + 8 * u, 34 * u}, 7 * u, run.colour);
+    const double room = wide - 60 * u, gap_width = 14 * u;
+    const double needed =
+        text_width(run.title, 21 * u, Weight::bold) + gap_width + text_width(run.settings, 15 * u);
+    const double shrink = std::min(1.0, room / needed);
+    const double advance =
+        canvas.text({x + 26 * u, 41 * u}, run.title, {21 * u * shrink, kInk, Weight::bold});
+    canvas.text({x + 26 * u + advance + gap_width, 41 * u}, run.settings,
+                {15 * u * shrink, kMuted});
+    for (int row = 0; row < rows; ++row) {
+      const double t = times[static_cast<std::size_t>(row)];
+      Image panel = renderer.panel(index, t);
+      if (run.stop && t > run.stop->t) mark_stop(panel, *run.stop, u * 0.8);
+      const auto& frame = run.at(t);
+      const LiveFigures live = live_figures(renderer.scene(), frame.state, frame.t);
+      char time[32];
+      std::snprintf(time, sizeof time, "t = %.2f s    ", frame.t);
+      Canvas(panel).text({18 * u, 30 * u},
+                         time + caption_of(renderer.scale().colour_by, live).front(),
+                         {15 * u, on_background});
+      picture.paste(panel, column * (wide + gap), head + row * (high + gap));
+    }
+  }
+  const double bar = std::min(460 * u, 0.6 * picture.width());
+  const double top = head + rows * (high + gap);
+  canvas.text({picture.width() / 2.0, top + 22 * u}, renderer.scale().title(),
+              {13.5 * u, kMuted, Weight::regular, Align::centre});
+  draw_colour_bar(canvas, renderer.scale(),
+                  {(picture.width() - bar) / 2, top + 34 * u, bar, 15 * u}, 0.72 * u);
+  return picture;
 }
 
 }  // namespace taut

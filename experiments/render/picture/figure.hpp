@@ -26,7 +26,7 @@ std::string strain_text(double value, bool sign);
 
 /// What is written below a picture of this quantity: the strains, the depth or the speed of this
 /// moment, "max depth = 1.5 mm".
-std::vector<std::string> quantity_text(Quantity, const LiveFigures&);
+std::vector<std::string> caption_of(ColourBy, const LiveFigures&);
 
 /// A picture of all runs at one moment: captions with live figures, panels, material space, the
 /// colour bar. Sizes come from the layout that the renderer was made for.
@@ -45,7 +45,7 @@ void draw_colour_bar(Canvas&, const ColourScale&, const BarPlace&, double unit);
 /// Says on a panel that the run ended before this moment.
 void mark_stop(Image& panel, const RecordedRun::Stop&, double unit);
 
-/// Says on a panel that its cloth is out of sight.
-void mark_gone(Image& panel, double unit);
+/// Says on a panel that the run ended before this moment, or that its cloth is out of sight.
+void mark_absence(Image& panel, const SceneRenderer&, std::size_t run, double t, double unit);
 
 }  // namespace taut

@@ -64,12 +64,7 @@ Image side_by_side(const SceneRenderer& renderer, const MediaOptions& options, d
     const auto index = static_cast<std::size_t>(k);
     Image panel = renderer.panel(index, t);
     if (!hides) add_flat(panel, renderer, index, t);
-    const auto& stop = renderer.runs()[index].stop;
-    const double unit = options.height / 836.0;
-    if (stop && t > stop->t)
-      mark_stop(panel, *stop, unit);
-    else if (!renderer.in_sight(index, t))
-      mark_gone(panel, unit);
+    mark_absence(panel, renderer, index, t, options.height / 836.0);
     picture.paste(panel, k * width, 0);
   }
   return picture;
@@ -109,16 +104,6 @@ std::size_t most_telling(const Media& media, const Scene& scene,
   return peak(place, kPlace * extent(scene)).value_or(media.t.size() * 2 / 3);
 }
 
-std::string strip(const SceneRenderer& renderer, const MediaOptions& options, const Media& media) {
-  constexpr std::size_t kMoments = 5;
-  Image picture(options.width, options.height * static_cast<int>(kMoments));
-  for (std::size_t k = 0; k < kMoments; ++k)
-    picture.paste(
-        side_by_side(renderer, options, media.t[k * (media.t.size() - 1) / (kMoments - 1)]), 0,
-        static_cast<int>(k) * options.height);
-  return png_bytes(picture);
-}
-
 /// Four moments: the first motion, two on the way, the end.
 void lay_flat(Media& media, const SceneRenderer& renderer) {
   constexpr int kSide = 66;
@@ -141,11 +126,8 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
                    const MediaOptions& options, const std::function<void(int, int)>& progress) {
   assert(!runs.empty() && runs.size() <= 4);
   Media media;
-  media.width = options.width, media.height = options.height;
   media.t = frame_times(scene, runs, options);
-  media.rate = frame_rate((media.t[1] - media.t[0]) / options.speed);
   for (const RecordedRun& run : runs) {
-    media.stops.push_back(run.stop);
     auto& series = media.rms_strain.emplace_back();
     for (const double t : media.t)
       series.push_back(live_figures(scene, run.at(t).state, run.at(t).t).rms_strain);
@@ -156,7 +138,7 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   look.theme = Theme::dark();
   look.quality = options.quality;
   look.view = options.view;
-  look.quantity = options.quantity;
+  look.colour_by = options.colour_by;
   look.frame = {-0.94, 0.84, -0.64, 0.74};
   look.to = media.t.back();
   const SceneRenderer renderer(scene, runs, look);
@@ -169,19 +151,18 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   media.poster_type = "image/jpeg";
   if (media.poster.empty()) {
     media.poster = png_bytes(poster_image), media.poster_type = "image/png";
-    media.strip_png = strip(renderer, options, media);
     return media;
   }
   const Scratch scratch;
   const std::filesystem::path file = scratch.path() / "film.mp4";
-  VideoWriter video(file, {options.width, options.height, media.rate, options.crf});
+  VideoWriter video(file, {options.width, options.height,
+                           frame_rate((media.t[1] - media.t[0]) / options.speed), options.crf});
   for (std::size_t k = 0; k < media.t.size(); ++k) {
     if (!video.write(k == poster ? poster_image : side_by_side(renderer, options, media.t[k])))
       break;
     if (progress) progress(static_cast<int>(k) + 1, static_cast<int>(media.t.size()));
   }
   if (video.finish().empty()) media.mp4 = read_text(file);
-  if (media.mp4.empty()) media.strip_png = strip(renderer, options, media);
   return media;
 }
 

@@ -15,7 +15,7 @@ struct MediaOptions {
   double duration = 4;            ///< s of the scene's beginning
   double speed = 1;               ///< simulated seconds per second of video
   double fps = 22;  ///< of the video; frames are whole steps: the nearest rate that dt allows
-  Quantity quantity = Quantity::strain;
+  ColourBy colour_by = ColourBy::strain;
   View view;
   RenderQuality quality = RenderQuality::video();
   int crf = 25;
@@ -26,9 +26,6 @@ struct Media {
   std::string mp4;          ///< H.264; "" without ffmpeg
   std::string poster;       ///< the moment of the greatest difference
   std::string poster_type;  ///< "image/jpeg", or "image/png" without ffmpeg
-  std::string strip_png;    ///< five moments one above the other, only without ffmpeg
-  int width = 0, height = 0;
-  FrameRate rate;
   /// A run's cloth laid flat, without light.
   struct Flat {
     double t = 0;    ///< s
@@ -40,8 +37,7 @@ struct Media {
   double poster_t = 0;                          ///< s
   std::vector<double> t;                        ///< s, of each frame
   std::vector<std::vector<double>> rms_strain;  ///< [run][frame]
-  std::vector<std::optional<RecordedRun::Stop>> stops;  ///< [run]
-  ColourScale scale;                                    ///< of the pictures
+  ColourScale scale;                            ///< of the pictures
 };
 
 /// Draws the runs. `progress(done, total)` is told after each frame. Throws InputError without a

@@ -88,7 +88,7 @@ std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Recor
 View telling_view(const View& view, const std::vector<Vec3>& cloth, const Vec3& up) {
   if (!view.either_side) return view;
   const auto spread = [&](const View& candidate) {
-    const Vec3 right = fit_camera(cloth, up, candidate, 1, Frame{}).right.cast<double>();
+    const Vec3 right = fit_camera(cloth, up, candidate, 1, FitRegion{}).right.cast<double>();
     double sum = 0, squares = 0;
     for (const Vec3& x : cloth) sum += x.dot(right), squares += x.dot(right) * x.dot(right);
     const auto count = static_cast<double>(cloth.size());
@@ -133,8 +133,8 @@ GroundLight Placing::wall(const Vec3& point) const {
 }
 
 Placing place(const Scene& scene, const std::vector<RecordedRun>& runs,
-              const std::vector<double>& times, const View& view, const Frame& frame, double aspect,
-              double inset) {
+              const std::vector<double>& times, const View& view, const FitRegion& frame,
+              double aspect, double inset) {
   Placing p;
   p.up = up_direction(scene);
   p.follows = scene.pins.empty() && scene.colliders.empty();

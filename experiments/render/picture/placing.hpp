@@ -32,6 +32,6 @@ Vec3 centroid(const std::vector<RecordedRun>&, double t);
 /// something to land on is expected to stay near; what slips off or stretches away leaves the
 /// picture rather than shrinking all the rest. `inset` [m] is that of colliders.
 Placing place(const Scene&, const std::vector<RecordedRun>&, const std::vector<double>& times,
-              const View&, const Frame&, double aspect, double inset);
+              const View&, const FitRegion&, double aspect, double inset);
 
 }  // namespace taut

@@ -10,7 +10,7 @@ SceneRenderer::SceneRenderer(const Scene& scene, const std::vector<RecordedRun>&
     : scene_(scene),
       runs_(runs),
       options_(options),
-      scale_{options.quantity, options.range},
+      scale_{options.colour_by, options.range},
       mesher_(scene, options.quality.finest_sheet),
       renderer_(gl_, options.width, options.height, options.quality.supersampling) {
   options_.to = std::min(options_.to, scene.duration());
@@ -40,23 +40,23 @@ void SceneRenderer::choose_scale() {
   for (const double t : sampled_times())
     for (const RecordedRun& run : runs_) {
       if (any_stable && !stable(run)) continue;
-      for (const double v : vertex_values(scene_, scale_.quantity, run.at(t).state, run.at(t).t))
+      for (const double v : vertex_values(scene_, scale_.colour_by, run.at(t).state, run.at(t).t))
         if (std::isfinite(v)) magnitudes.push_back(std::abs(v));
     }
   const auto rank = static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(magnitudes.size() - 1));
   std::nth_element(magnitudes.begin(), magnitudes.begin() + rank, magnitudes.end());
-  const double least = scale_.quantity == Quantity::strain        ? 1e-3
-                       : scale_.quantity == Quantity::penetration ? 1e-3 * extent(scene_)
-                                                                  : 0.1;
+  const double least = scale_.colour_by == ColourBy::strain        ? 1e-3
+                       : scale_.colour_by == ColourBy::penetration ? 1e-3 * extent(scene_)
+                                                                   : 0.1;
   scale_.high = round_up(magnitudes[static_cast<std::size_t>(rank)], least);
-  if (scale_.quantity == Quantity::strain) scale_.high = std::min(scale_.high, kMostStrain);
+  if (scale_.colour_by == ColourBy::strain) scale_.high = std::min(scale_.high, kMostStrain);
 }
 
 std::vector<RenderMesh> SceneRenderer::meshes(const TrajectoryReader::Frame& frame,
                                               const Vec3& centre) const {
   std::vector<RenderMesh> meshes{
-      mesher_.mesh(frame.state.x, vertex_values(scene_, scale_.quantity, frame.state, frame.t),
-                   vertex_values(scene_, Quantity::penetration, frame.state, frame.t))};
+      mesher_.mesh(frame.state.x, vertex_values(scene_, scale_.colour_by, frame.state, frame.t),
+                   vertex_values(scene_, ColourBy::penetration, frame.state, frame.t))};
   lift_out_of_colliders(meshes[0], scene_, frame.t, placing_.inset);
   const ColliderLook look{placing_.inset, 0.7 * mesher_.mean_rest_length(), centre,
                           1.2 * placing_.radius};
@@ -112,6 +112,41 @@ Image SceneRenderer::panel(std::size_t index, double t) const {
   if (!meshes.back().triangles.empty())
     panel.painted.push_back({&meshes.back(), options_.theme.pin, 0});
   return renderer_.draw(panel);
+}
+
+Image SceneRenderer::material_space(std::size_t index, double t, int longest_side) const {
+  if (!scene_.mesh.grid) return {};
+  const Grid& grid = *scene_.mesh.grid;
+  const auto& frame = runs_[index].at(t);
+  const std::vector<double> values = vertex_values(scene_, scale_.colour_by, frame.state, frame.t);
+  const auto side = [&](int from, int to) {
+    return (scene_.mesh.rest[static_cast<std::size_t>(to)] -
+            scene_.mesh.rest[static_cast<std::size_t>(from)])
+        .norm();
+  };
+  const double across = side(grid.index(0, 0), grid.index(grid.nu - 1, 0));
+  const double down = side(grid.index(0, 0), grid.index(0, grid.nv - 1));
+  const double scale = longest_side / std::max(across, down);
+  Image image(std::max(longest_side / 9, static_cast<int>(std::lround(across * scale))),
+              std::max(longest_side / 9, static_cast<int>(std::lround(down * scale))));
+  // Linear between the vertices; the outermost vertices lie on the border.
+  const auto locate = [](int pixel, int pixels, int vertices) {
+    const double s = std::clamp((pixel + 0.5) / pixels, 0.0, 1.0) * (vertices - 1);
+    const int i = std::min(static_cast<int>(s), std::max(vertices - 2, 0));
+    return std::pair{i, s - i};
+  };
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      const auto [i, a] = locate(x, image.width(), grid.nu);
+      const auto [j, b] = locate(y, image.height(), grid.nv);
+      const auto at = [&, i = i, j = j](int di, int dj) {
+        return values[static_cast<std::size_t>(
+            grid.index(std::min(i + di, grid.nu - 1), std::min(j + dj, grid.nv - 1)))];
+      };
+      image.at(x, y) = scale_.colour((1 - b) * ((1 - a) * at(0, 0) + a * at(1, 0)) +
+                                     b * ((1 - a) * at(0, 1) + a * at(1, 1)));
+    }
+  return image;
 }
 
 }  // namespace taut

@@ -4,8 +4,8 @@
 
 #include "experiments/render/opengl/renderer.hpp"
 #include "experiments/render/picture/placing.hpp"
-#include "experiments/render/picture/quantity.hpp"
 #include "experiments/render/picture/recorded_run.hpp"
+#include "experiments/render/picture/vertex_values.hpp"
 
 namespace taut {
 
@@ -25,8 +25,8 @@ struct SceneRendererOptions {
   Theme theme = Theme::paper();
   RenderQuality quality = RenderQuality::still();
   View view;
-  Frame frame;  ///< what the scene has to fill of the panel
-  Quantity quantity = Quantity::strain;
+  FitRegion frame;  ///< what the scene has to fill of the panel
+  ColourBy colour_by = ColourBy::strain;
   double range = 0;  ///< end of the colour bar, SI; 0: chosen from the runs
   /// s: what the camera and the colour bar have to fit
   double from = 0, to = std::numeric_limits<double>::infinity();

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/palette.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/chart/settings.hpp"
 
 namespace taut::report {
 
@@ -22,28 +22,26 @@ bool plays_a_file(const Record& r) { return std::isfinite(value_of(r, kStrainFlo
 
 /// The study with most distinct values of `setting` on a scene, cut to that scene; empty if none
 /// has two. Only records with a value of `needs` make a study count.
-std::vector<Record> swept(const ReportInput& input, const std::string& scene,
-                          const std::string& setting, const std::string& needs,
-                          std::string* study_name = nullptr) {
-  std::vector<Record> best;
+Records records_along(const ReportInput& input, const std::string& scene,
+                      const std::string& setting, const std::string& needs) {
+  Records best;
   std::size_t most = 1;
   for (const StudyResult& study : input.studies) {
-    std::vector<Record> here, levels;
+    Records here, levels;
     std::set<double> values;
     bool any = needs.empty();
     for (const Record& r : study.records) {
       const double value = value_of(r, setting);
       if (r.scene != scene) continue;
-      if (is_setting(setting) && plays_a_file(r)) levels.push_back(r);
+      if (is_setting(setting) && plays_a_file(r)) levels.push_back(&r);
       if (!std::isfinite(value)) continue;
       any = any || std::isfinite(value_of(r, needs));
       values.insert(value);
-      here.push_back(r);
+      here.push_back(&r);
     }
     if (!any || values.size() <= most) continue;
     most = values.size(), best = std::move(here);
     best.insert(best.end(), levels.begin(), levels.end());
-    if (study_name) *study_name = study.name;
   }
   return best;
 }
@@ -76,29 +74,6 @@ void draw_levels(Chart& chart) {
   }
 }
 
-/// The record without its two swept settings, so that all cells of a map share the others.
-Record without(Record r, const std::string& x, const std::string& y) {
-  for (const std::string& swept : {x, y}) {
-    if (swept == "dt") r.dt = 1;
-    r.params.erase(swept);
-    const std::string key = swept == "vertices" ? "cloth.grid" : swept == "dt" ? "time.dt" : swept;
-    std::erase_if(r.spec.overrides,
-                  [&](const std::string& text) { return text.starts_with(key + "="); });
-  }
-  return r;
-}
-
-/// Points into records that live as long as the input: copies of a slice do not.
-struct Scope {
-  const ReportInput& input;
-  const Record* find(const Record& r) const {
-    for (const StudyResult& study : input.studies)
-      for (const Record& own : study.records)
-        if (own.key == r.key && own.id == r.id) return &own;
-    return nullptr;
-  }
-};
-
 }  // namespace
 
 void add_strain_floor(Chart& chart) {
@@ -109,19 +84,16 @@ void add_strain_floor(Chart& chart) {
   for (const TimeSeries& series : chart.series) raise_floor(chart, series.floor, kRounding);
 }
 
-bool failed(const Point& p) { return !completed(*p.record); }
+bool failed(const Point& p) { return !completed(p.record->status); }
 
-Chart make_chart(std::string kind, std::span<const Record> records, const std::string& x,
+Chart make_chart(std::string kind, const Records& records, const std::string& x,
                  const std::string& y, const std::string& along) {
   Chart chart{.id = {},
-              .scene = {},
               .kind = std::move(kind),
-              .title = {},
               .x = quantity(x),
               .y = quantity(y),
               .along = along,
-              .curves = make_curves(records, x, y, along),
-              .cost = {}};
+              .curves = make_curves(records, x, y, along)};
   if (is_setting(x)) draw_levels(chart);
   bool any = false;
   std::set<double> values;
@@ -131,7 +103,7 @@ Chart make_chart(std::string kind, std::span<const Record> records, const std::s
       any = any || p.measured();
       if (std::isfinite(p.x)) values.insert(p.x);
     }
-    // A line through settings that differ in two knobs would join what nobody tries in a row.
+    // A line through settings that differ in two parameters would join what nobody tries in a row.
     std::set<int> substeps, sweeps;
     for (const Point& p : curve.points) {
       substeps.insert(work_of(*p.record).substeps), sweeps.insert(work_of(*p.record).sweeps);
@@ -166,44 +138,33 @@ std::vector<Point> pareto_front(const Chart& chart) {
   return front;
 }
 
-std::vector<StatusMap> make_maps(std::span<const Record> records, const std::string& scene,
+std::vector<StatusMap> make_maps(const Records& records, const std::string& scene,
                                  const std::string& x, const std::string& y) {
-  std::vector<const Record*> all;
-  std::vector<Record> flat;
-  for (const Record& r : records)
-    if (r.scene == scene && std::isfinite(value_of(r, x)) && std::isfinite(value_of(r, y)))
-      all.push_back(&r), flat.push_back(without(r, x, y));
+  Records all = records;
+  std::erase_if(all, [&](const Record* r) {
+    return r->scene != scene || !std::isfinite(value_of(*r, x)) || !std::isfinite(value_of(*r, y));
+  });
   std::vector<StatusMap> maps;
-  for (const Curve& curve : make_curves(flat, x, y, x)) {
-    StatusMap map{.scene = {},
+  for (const Curve& curve : make_curves(all, x, y, x, y)) {
+    StatusMap map{.scene = scene,
                   .solver = curve.solver,
                   .label = curve.label,
-                  .study = {},
                   .x = quantity(x),
-                  .y = quantity(y),
-                  .columns = {},
-                  .rows = {},
-                  .cells = {}};
-    std::vector<const Record*> own;
+                  .y = quantity(y)};
     std::set<double> columns, rows;
-    for (const Point& p : curve.points) {
-      own.push_back(all[static_cast<std::size_t>(p.record - flat.data())]);
-      columns.insert(value_of(*own.back(), x)), rows.insert(value_of(*own.back(), y));
-    }
+    for (const Point& p : curve.points) columns.insert(p.x), rows.insert(p.y);
     map.columns.assign(columns.begin(), columns.end()), map.rows.assign(rows.begin(), rows.end());
     const auto index = [](const std::vector<double>& values, double value) {
       return static_cast<std::size_t>(std::ranges::lower_bound(values, value) - values.begin());
     };
     std::map<std::pair<std::size_t, std::size_t>, StatusMap::Cell> cells;
-    for (const Record* r : own) {
-      const std::size_t column = index(map.columns, value_of(*r, x)),
-                        row = index(map.rows, value_of(*r, y));
+    for (const Point& p : curve.points) {
+      const std::size_t column = index(map.columns, p.x), row = index(map.rows, p.y);
       const auto [at, fresh] = cells.try_emplace({row, column});
-      if (!fresh && at->second.record->status.kind >= r->status.kind) continue;
-      at->second = {column, row, r};
+      if (!fresh && at->second.record->status.kind >= p.record->status.kind) continue;
+      at->second = {column, row, p.record};
     }
     for (const auto& [at, cell] : cells) map.cells.push_back(cell);
-    map.scene = scene;
     maps.push_back(std::move(map));
   }
   if (maps.empty()) throw InputError("no case has both '" + x + "' and '" + y + "'");
@@ -218,18 +179,18 @@ std::string tick_of(const Quantity& q, double si) {
 
 std::vector<Chart> scene_charts(const ReportInput& input, const std::string& scene) {
   std::vector<Chart> charts;
-  const Scope scope{input};
+  // Curves along the time step are of one number of sweeps, all others of one time step.
   const auto add = [&](const std::string& id, const std::string& kind, const std::string& x,
-                       const std::string& y, const std::string& along, const std::string& held,
-                       double preferred, const std::string& title, const std::string& caption) {
-    const std::string over = along == "setting" ? "iterations" : along;
-    Slice slice = hold(swept(input, scene, over, y), held, preferred);
+                       const std::string& y, const std::string& along, const std::string& caption) {
+    const std::string over = along == "setting" ? "iterations" : along,
+                      held = along == "dt" ? "iterations" : "dt";
+    const Slice slice =
+        hold(records_along(input, scene, over, y), held, held == "dt" ? 1.0 / 64 : 16);
     try {
       Chart chart = make_chart(kind, slice.records, x, y, along);
-      for (Curve& curve : chart.curves)
-        for (Point& p : curve.points) p.record = scope.find(*p.record);
-      chart.id = scene + "-" + id, chart.scene = scene, chart.title = title,
-      chart.caption = caption;
+      chart.id = scene + "-" + id, chart.scene = scene, chart.caption = caption;
+      chart.title =
+          capitalised(chart.y.title) + " over " + (x == "dt" ? "the time step" : chart.x.title);
       add_strain_floor(chart);
       if (std::isfinite(slice.value)) chart.held = held_text(held, slice.value);
       charts.push_back(std::move(chart));
@@ -238,18 +199,11 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
       return false;  // nothing to draw
     }
   };
-  const auto over = [](const std::string& y, const std::string& x) {
-    return capitalised(quantity(y).title) + " over " +
-           (x == "dt" ? "the time step" : quantity(x).title);
-  };
-  const double step = 1.0 / 64;
-  if (add("convergence", "convergence", "iterations", "stretch.rms", "iterations", "dt", step,
-          over("stretch.rms", "iterations"), "Last second."))
+  if (add("convergence", "convergence", "iterations", "stretch.rms", "iterations", "Last second."))
     for (const StudyResult& study : input.studies)
       if (const auto at = study.slopes.find(scene); at != study.slopes.end())
         charts.back().slope = at->second;
-  if (add("reference", "convergence", "iterations", "reference.rms", "iterations", "dt", step,
-          over("reference.rms", "iterations"),
+  if (add("reference", "convergence", "iterations", "reference.rms", "iterations",
           "The reference is the static equilibrium of the same cloth, found without any of these "
           "solvers."))
     for (const Curve& curve : charts.back().curves)
@@ -257,28 +211,26 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
         raise_floor(charts.back(), value_of(*p.record, "reference.floor"),
                     "the reference's own error");
   const bool timed =
-      std::ranges::any_of(swept(input, scene, "iterations", "stretch.rms"),
-                          [](const Record& r) { return std::isfinite(value_of(r, kCpuValue)); });
-  const std::string work = timed ? kCpuValue : "projections";
-  if (add("work", "work-precision", work, "stretch.rms", "setting", "dt", step,
-          over("stretch.rms", work), "Down and left is better."))
+      std::ranges::any_of(records_along(input, scene, "iterations", "stretch.rms"),
+                          [](const Record* r) { return std::isfinite(value_of(*r, kCpuValue)); });
+  if (add("work", "work-precision", timed ? kCpuValue : "projections", "stretch.rms", "setting",
+          "Down and left is better."))
     charts.back().front = true;
   for (const auto& [y, id] : {std::pair<std::string, std::string>{"penetration.peak", "vertices"},
                               {"face.peak", "faces"},
                               {"tunnelling.events", "passages"},
                               {"slip.distance", "slip"}}) {
-    add(id, "contact", "iterations", y, "iterations", "dt", step, over(y, "iterations"),
-        y.ends_with(".peak") ? "Peak over the whole run." : "");
-    add(id + "-dt", "contact", "dt", y, "dt", "iterations", 16, over(y, "dt"),
-        y.ends_with(".peak") ? "Peak over the whole run." : "");
+    const std::string caption = y.ends_with(".peak") ? "Peak over the whole run." : "";
+    add(id, "contact", "iterations", y, "iterations", caption);
+    add(id + "-dt", "contact", "dt", y, "dt", caption);
   }
   return charts;
 }
 
 std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& scene) {
   std::vector<StatusMap> maps;
-  const auto add = [&](const std::string& study, std::span<const Record> records,
-                       const std::string& x, const std::string& y) {
+  const auto add = [&](const std::string& study, const Records& records, const std::string& x,
+                       const std::string& y) {
     try {
       for (StatusMap& map : make_maps(records, scene, x, y)) {
         if (map.columns.size() < 2 || map.rows.size() < 2) continue;
@@ -295,11 +247,15 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
       if (r.scene == scene) sweeps.insert(value_of(r, "iterations")), steps.insert(r.dt);
     if (steps.size() >= 3 && sweeps.size() >= 3) add(study.name, study.records, "dt", "iterations");
   }
-  for (const MapResult& map : input.maps) add(map.study, map.records, map.x, map.y);
+  for (const MapResult& map : input.maps) {
+    const auto ran = std::ranges::find(input.studies, map.study, &StudyResult::name);
+    add(map.study, map.records.empty() && ran != input.studies.end() ? ran->records : map.records,
+        map.x, map.y);
+  }
   return maps;
 }
 
-Chart cost_chart(const SceneBench& scene, std::span<const Record> records) {
+Chart cost_chart(const SceneBench& scene, const Records& records) {
   Chart chart = make_chart("cost", records, "cpu.per_second", "stretch.rms", "setting");
   chart.id = scene.scene + "-cost", chart.scene = scene.scene;
   chart.title = capitalised(chart.y.title) + " over " + chart.x.title;

@@ -2,7 +2,6 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -34,10 +33,10 @@ struct Chart {
   std::map<std::string, Interval> cost = {};  ///< by case key: the interval of x
 };
 
-/// The curves of y over x for these records. "setting" as `along` frees every accuracy knob.
+/// The curves of y over x for these records. "setting" as `along` frees every accuracy parameter.
 /// Throws InputError if no record has both, or only failures have x.
-Chart make_chart(std::string kind, std::span<const Record>, const std::string& x,
-                 const std::string& y, const std::string& along);
+Chart make_chart(std::string kind, const Records&, const std::string& x, const std::string& y,
+                 const std::string& along);
 
 /// Draws the rounding of files of positions into a chart of strain.
 void add_strain_floor(Chart&);
@@ -63,9 +62,9 @@ struct StatusMap {
   std::vector<Cell> cells;
 };
 /// One for each solver and choice on this scene; of two cases in one cell the worse. Throws
-/// InputError if no case has both settings. Points into the records.
-std::vector<StatusMap> make_maps(std::span<const Record>, const std::string& scene,
-                                 const std::string& x, const std::string& y);
+/// InputError if no case has both settings.
+std::vector<StatusMap> make_maps(const Records&, const std::string& scene, const std::string& x,
+                                 const std::string& y);
 
 /// "1", "4.2", "33": a setting's value in its shown unit, for the edge of a map.
 std::string tick_of(const Quantity&, double si);
@@ -73,7 +72,7 @@ std::string tick_of(const Quantity&, double si);
 /// Everything drawn of a scene that a study ran, in the order in which to show it.
 std::vector<Chart> scene_charts(const ReportInput&, const std::string& scene);
 std::vector<StatusMap> scene_maps(const ReportInput&, const std::string& scene);
-/// Error over cost of a bench. `records` must outlive it.
-Chart cost_chart(const SceneBench&, std::span<const Record> records);
+/// Error over cost of a bench.
+Chart cost_chart(const SceneBench&, const Records&);
 
 }  // namespace taut::report

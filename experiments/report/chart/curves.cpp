@@ -6,59 +6,30 @@
 #include <map>
 #include <set>
 
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/quantity.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/chart/settings.hpp"
 
 namespace taut::report {
 
 namespace {
 
-constexpr const char* kKnobs[] = {"substeps", "iterations", "newton", "stiffness", "omega",
-                                  "order",    "tethers",    "levels", "precision"};
+using Settings = std::map<std::string, std::string>;
 
-}  // namespace
-
-SettingLabels::SettingLabels(std::span<const Record> all) {
-  for (const Record& r : all)
-    for (const char* knob : kKnobs)
-      if (const auto at = r.params.find(knob); at != r.params.end())
-        seen_[{r.solver, knob}].insert(at->second);
-}
-
-std::string SettingLabels::of(const Record& record) const {
-  std::string text;
-  bool work = false;
-  for (const char* knob : kKnobs) {
-    const auto at = record.params.find(knob);
-    if (at == record.params.end()) continue;
-    const auto seen = seen_.find({record.solver, knob});
-    const bool varies = seen != seen_.end() && seen->second.size() > seen->second.count(at->second);
-    if (!varies || at->second == "off") continue;
-    if (knob == std::string_view("substeps") || knob == std::string_view("iterations"))
-      work = true;
-    else
-      text += ", " + (at->second == "on" ? knob : at->second);
-  }
-  if (work) return work_of(record).text() + text;
-  return text.empty() ? "" : text.substr(2);
-}
-
-namespace {
-
-/// Everything that tells two cases of one solver apart, by name.
-std::map<std::string, std::string> settings(const Record& record, const std::string& along) {
-  std::map<std::string, std::string> all = record.params;
+/// Everything that tells two cases of one solver apart, by name, but for what is free.
+Settings settings(const Record& record, const std::vector<std::string>& free) {
+  Settings all = record.params;
   all["dt"] = quantity("dt").text(record.dt, 3);
   all["scene"] = record.scene;
   for (const std::string& text : record.spec.overrides)
     if (!text.starts_with("time.dt"))
       if (const auto equals = text.find('='); equals != std::string::npos)
         all[text.substr(0, equals)] = text.substr(equals + 1);
-  all.erase(along);
-  if (along == "vertices") all.erase("cloth.grid");
-  if (along == "setting")
-    for (const char* knob : kKnobs) all.erase(knob);
+  for (const std::string& name : free) {
+    all.erase(name == "vertices" ? "cloth.grid" : name);
+    if (name != "setting") continue;
+    for (const std::string& parameter : accuracy_parameters(record.solver)) all.erase(parameter);
+  }
   return all;
 }
 
@@ -71,28 +42,29 @@ bool needs_its_key(const std::string& value) {
 }  // namespace
 
 bool Point::measured() const {
-  const auto kind = record->status.kind;
-  return (kind == Status::Kind::ok || kind == Status::Kind::unsettled) && std::isfinite(x) &&
-         std::isfinite(y);
+  return completed(record->status) && std::isfinite(x) && std::isfinite(y);
 }
 
-std::vector<Curve> make_curves(std::span<const Record> records, const std::string& x,
-                               const std::string& y, const std::string& along) {
-  using Settings = std::map<std::string, std::string>;
+std::vector<Curve> make_curves(const Records& records, const std::string& x, const std::string& y,
+                               const std::string& along, const std::string& also) {
+  const std::vector<std::string> free{along, also};
   std::map<std::pair<std::string, std::string>, std::set<std::string>> seen;
-  for (const Record& record : records)
-    for (const auto& [key, value] : settings(record, along))
-      seen[{key == "dt" || key == "scene" ? "" : record.solver, key}].insert(value);
+  for (const Record* record : records)
+    for (const auto& [key, value] : settings(*record, free))
+      seen[{key == "dt" || key == "scene" ? "" : record->solver, key}].insert(value);
   const auto varies = [&](const Record& record, const std::string& key) {
     return seen[{key == "dt" || key == "scene" ? "" : record.solver, key}].size() > 1;
   };
   std::vector<Curve> curves;
-  std::map<std::pair<std::string, Settings>, std::size_t> index;
+  std::map<std::string, std::size_t> index;  // by solver and settings
   std::map<std::string, int> variants;
   const SettingLabels labels(records);
-  for (const Record& record : records) {
-    const Settings all = settings(record, along);
-    const auto [where, fresh] = index.try_emplace({record.solver, all}, curves.size());
+  for (const Record* one : records) {
+    const Record& record = *one;
+    const Settings all = settings(record, free);
+    std::string name = record.solver;
+    for (const auto& [key, value] : all) name += "\n" + key + "=" + value;
+    const auto [where, fresh] = index.try_emplace(name, curves.size());
     if (fresh) {
       Curve curve{solver_title(record.solver), record.solver, variants[record.solver]++, {}};
       for (const auto& [key, value] : all)
@@ -115,20 +87,20 @@ std::vector<Curve> make_curves(std::span<const Record> records, const std::strin
   return curves;
 }
 
-Slice hold(std::span<const Record> records, const std::string& setting, double preferred) {
+Slice hold(const Records& records, const std::string& setting, double preferred) {
   constexpr std::size_t kMostSets = 3;
   std::map<double, int> counts;
-  for (const Record& record : records)
-    if (const double value = value_of(record, setting); std::isfinite(value)) ++counts[value];
+  for (const Record* record : records)
+    if (const double value = value_of(*record, setting); std::isfinite(value)) ++counts[value];
   if (counts.empty() || (counts.size() > 1 && counts.size() <= kMostSets))
-    return {{records.begin(), records.end()}, std::numeric_limits<double>::quiet_NaN()};
+    return {records, std::numeric_limits<double>::quiet_NaN()};
   const auto badness = [&](double value) { return std::abs(std::log(value / preferred)); };
   const auto best = std::ranges::max_element(counts, [&](const auto& a, const auto& b) {
     return std::pair(a.second, -badness(a.first)) < std::pair(b.second, -badness(b.first));
   });
   Slice slice{{}, best->first};
-  for (const Record& record : records) {
-    const double value = value_of(record, setting);
+  for (const Record* record : records) {
+    const double value = value_of(*record, setting);
     if (value == slice.value || std::isnan(value)) slice.records.push_back(record);
   }
   return slice;

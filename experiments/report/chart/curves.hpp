@@ -1,12 +1,10 @@
 #pragma once
 
-#include <map>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "experiments/case/record.hpp"
+#include "experiments/report/chart/settings.hpp"
 
 namespace taut::report {
 
@@ -15,7 +13,8 @@ struct Point {
   double x = 0, y = 0;
   double along = 0;  ///< the swept setting that orders the curve
   const Record* record = nullptr;
-  std::string name = {};  ///< under "setting": the accuracy knobs, "16 × 2" for substeps x sweeps
+  std::string name =
+      {};  ///< under "setting": the accuracy parameters, "16 × 2" for substeps x sweeps
 
   /// It has a value that may be compared; everything else is drawn as a glyph.
   bool measured() const;
@@ -29,32 +28,20 @@ struct Curve {
   std::vector<Point> points;
 };
 
-/// Labels of records by those accuracy parameters that take several values among their solver's.
-class SettingLabels {
- public:
-  explicit SettingLabels(std::span<const Record> all);
-  /// "2 × 8, coloured"; "" if nothing varies.
-  std::string of(const Record&) const;
-
- private:
-  std::map<std::pair<std::string, std::string>, std::set<std::string>> seen_;  ///< solver, name
-};
-
 /// Groups records into curves of y over x: those that differ in nothing but `along` ("iterations",
-/// "dt", ...) share a curve. Labels name only the settings that vary among the records. `along` =
-/// "setting" frees every accuracy knob at once (sweeps, substeps, stiffness, Newton steps,
-/// over-relaxation, levels, precision): one curve per solver, ordered by x.
-std::vector<Curve> make_curves(std::span<const Record>, const std::string& x, const std::string& y,
-                               const std::string& along);
+/// "dt", ...) and `also` share a curve. Labels name only the settings that vary among the records.
+/// `along` = "setting" frees every accuracy parameter at once: one curve per solver, ordered by x.
+std::vector<Curve> make_curves(const Records&, const std::string& x, const std::string& y,
+                               const std::string& along, const std::string& also = "");
 
 /// The records at the value of `setting` which most of them share (ties: nearest to `preferred`),
 /// with that value in SI units. All records and NaN if two or three values were tried, which are
 /// that many sets of curves, or if none has the setting.
 struct Slice {
-  std::vector<Record> records;
+  Records records;
   double value = 0;
 };
-Slice hold(std::span<const Record>, const std::string& setting, double preferred);
+Slice hold(const Records&, const std::string& setting, double preferred);
 
 /// Fitted exponent p of y ~ x^p over the measured, positive points with x >= from; NaN with fewer
 /// than three.

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "core/model/solver.hpp"
-#include "experiments/report/chart/format.hpp"
 
 namespace taut::report {
 
@@ -50,6 +49,25 @@ constexpr std::array kLooks{
     Look{"s-slate", "square", 5, "6 2"},
 };
 
+/// What stands for a status whose name is its colour's.
+struct Mark {
+  Status::Kind status;
+  std::string_view glyph, help;
+  bool dark = false;  ///< the glyph
+};
+constexpr std::array kMarks{
+    Mark{Status::Kind::ok, "✓", "settled or ran to the end"},
+    Mark{Status::Kind::unsettled, "~", "still moving at the end", true},
+    Mark{Status::Kind::extreme, "^", "ran to the end, stretched beyond what the scene accounts for",
+         true},
+    Mark{Status::Kind::exploded, "×", "non-finite or gained energy"},
+    Mark{Status::Kind::unsupported, "–", "the solver cannot represent the scene", true},
+    Mark{Status::Kind::timeout, "T", "hit the time limit"},
+    Mark{Status::Kind::oom, "M", "hit the memory limit"},
+    Mark{Status::Kind::crash, "!", "killed by a signal"},
+    Mark{Status::Kind::protocol, "P", "its program broke the protocol"},
+    Mark{Status::Kind::error, "E", "ended with an error"}};
+
 }  // namespace
 
 SolverStyle solver_style(std::string_view solver) {
@@ -65,41 +83,11 @@ SolverStyle solver_style(std::string_view solver) {
   return {colour(look.colour), look.shape, look.marker, look.dash};
 }
 
-std::string solver_title(std::string_view solver) {
-  if (solver == "xpbd") return "XPBD";
-  std::string title(solver);
-  std::ranges::replace(title, '_', ' ');
-  std::ranges::replace(title, '-', ' ');
-  return capitalised(title);
-}
-
 StatusStyle status_style(Status::Kind kind) {
-  const Colour light = colour("glyph-light"), dark = colour("glyph-dark");
-  switch (kind) {
-    case Status::Kind::ok:
-      return {colour("ok"), "✓", "settled or ran to the end", light};
-    case Status::Kind::unsettled:
-      return {colour("unsettled"), "~", "still moving at the end", dark};
-    case Status::Kind::extreme:
-      return {colour("extreme"), "^",
-              "ran to the end, stretched beyond what the scene accounts for", dark};
-    case Status::Kind::exploded:
-      return {colour("exploded"), "×", "non-finite or gained energy", light};
-    case Status::Kind::unsupported:
-      return {colour("unsupported"), "–", "the solver cannot represent the scene", dark};
-    case Status::Kind::timeout:
-      return {colour("timeout"), "T", "hit the time limit", light};
-    case Status::Kind::oom:
-      return {colour("oom"), "M", "hit the memory limit", light};
-    case Status::Kind::crash:
-      return {colour("crash"), "!", "killed by a signal", light};
-    case Status::Kind::protocol:
-      return {colour("protocol"), "P", "its program broke the protocol", light};
-    case Status::Kind::error:
-    case Status::Kind::interrupted:
-      break;
-  }
-  return {colour("error"), "E", "ended with an error", light};
+  const auto found = std::ranges::find(kMarks, kind, &Mark::status);
+  const Mark& mark = found == kMarks.end() ? kMarks.back() : *found;
+  return {colour(to_string(mark.status)), mark.glyph, mark.help,
+          colour(mark.dark ? "glyph-dark" : "glyph-light")};
 }
 
 }  // namespace taut::report

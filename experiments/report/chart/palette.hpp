@@ -27,9 +27,6 @@ struct SolverStyle {
 /// whatever else is drawn beside it.
 SolverStyle solver_style(std::string_view solver);
 
-/// What people call a solver: "bullet-deformable" -> "Bullet deformable", "xpbd" -> "XPBD".
-std::string solver_title(std::string_view solver);
-
 /// How a status is drawn in maps, and the glyph that stands for it everywhere.
 struct StatusStyle {
   Colour colour;

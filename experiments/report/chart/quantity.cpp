@@ -106,22 +106,17 @@ Quantity quantity(std::string_view name) {
   };
   if (const auto known = std::ranges::find(kTitles, name, &Titled::name); known != kTitles.end())
     return shown(std::string(known->title), known->unit, known->help);
-  for (const MetricEntry* metric : metrics())
-    for (const ValueSpec& value : metric->values)
-      if (value.name == name) {
-        Quantity q = shown(value.title.empty() ? title_from(name) : std::string(value.title),
-                           value.unit, value.help);
-        q.window = to_string(value.window);
-        return q;
-      }
-  return shown(std::string(name), kNumber, "");
+  const ValueSpec* value = find_value(name).second;
+  if (!value) return shown(std::string(name), kNumber, "");
+  Quantity q = shown(value->title.empty() ? title_from(name) : std::string(value->title),
+                     value->unit, value->help);
+  q.window = to_string(value->window);
+  return q;
 }
 
 std::vector<std::string> quantity_names() {
-  std::vector<std::string> names;
+  std::vector<std::string> names = value_names();
   for (const Titled& known : kTitles) names.emplace_back(known.name);
-  for (const MetricEntry* metric : metrics())
-    for (const ValueSpec& value : metric->values) names.emplace_back(value.name);
   return names;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/format.hpp"
 
 namespace taut::report {
@@ -14,22 +15,6 @@ namespace {
 
 constexpr double kTolerance = kAlike - 1;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-
-/// What not every solver has, with the value that leaves it off.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kExtras{
-    {{"tethers", "off"}, {"levels", "1"}, {"omega", "1"}, {"threads", "1"}}};
-
-Evidence::Seen seen_of(const Record& r, const std::string& label) {
-  return {.scene = r.scene,
-          .solver = r.solver,
-          .label = label,
-          .setting = r.spec.solver,
-          .key = r.key,
-          .text = "",
-          .value = kNothing,
-          .interval = {},
-          .status = r.status.kind};
-}
 
 }  // namespace
 
@@ -58,18 +43,21 @@ std::string_view to_string(ClaimKind kind) {
 }
 
 std::optional<double> Evidence::look(const std::string& label, const Record& r) {
-  Seen seen = seen_of(r, label);
   const double value = value_of(r, quantity_.name);
-  if (completed(r) && std::isfinite(value)) seen.value = value;
-  const bool has = std::isfinite(seen.value);
-  seen.text = has ? quantity_.text(value)
-                  : std::string(completed(r) ? "no value" : to_string(r.status.kind));
-  seen_.push_back(std::move(seen));
+  const bool has = completed(r.status) && std::isfinite(value);
+  seen_.push_back({&r, label, has ? value : kNothing});
   return has ? std::optional(value) : std::nullopt;
 }
 
+std::string Evidence::text(const Seen& seen) const {
+  if (std::isfinite(seen.value)) return quantity_.text(seen.value);
+  if (!seen.why.empty()) return seen.why;
+  return std::string(completed(seen.record->status) ? "no value"
+                                                    : to_string(seen.record->status.kind));
+}
+
 void Evidence::look(const BenchedCase& c, const Interval& cost, const std::string& label) {
-  Seen seen = seen_of(c.record, label);
+  Seen seen{&c.record, label, kNothing};
   seen.n = c.timing.samples.size();
   if (c.stable()) {
     seen.interval = cost;
@@ -77,9 +65,8 @@ void Evidence::look(const BenchedCase& c, const Interval& cost, const std::strin
       for (double* end : {&seen.interval->low, &seen.interval->mid, &seen.interval->high})
         *end *= c.record.dt;
     seen.value = seen.interval->mid;
-    seen.text = quantity_.text(seen.value);
   } else {
-    seen.text = c.timing.failure.empty() ? to_string(c.record.status.kind) : c.timing.failure;
+    seen.why = c.timing.failure.empty() ? to_string(c.record.status.kind) : c.timing.failure;
   }
   seen_.push_back(std::move(seen));
 }
@@ -95,10 +82,20 @@ Claim::Claim(std::string name, ClaimKind what, std::string of, std::string text,
       about(std::move(of)),
       sentence(std::move(text)),
       sure(how),
-      basis(std::move(evidence)) {
-  if (basis.empty() || std::ranges::any_of(basis, [](const auto& e) { return e.seen().empty(); }))
+      basis(std::make_shared<const std::vector<Evidence>>(std::move(evidence))) {
+  if (basis->empty() || std::ranges::any_of(*basis, [](const auto& e) { return e.seen().empty(); }))
     throw std::logic_error("a claim without its basis: " + sentence);
 }
+
+Claim::Claim(const Claim& of, std::string heading, std::string what, std::vector<Bar> bars)
+    : id("tile-" + of.id),
+      kind(ClaimKind::tile),
+      about(of.about),
+      sentence(std::move(what)),
+      sure(of.sure),
+      basis(of.basis),
+      heading_(std::move(heading)),
+      bars_(std::move(bars)) {}
 
 Claim& Claim::emphasise(const std::vector<std::string>& parts) {
   for (const std::string& part : parts)
@@ -107,10 +104,7 @@ Claim& Claim::emphasise(const std::vector<std::string>& parts) {
 }
 
 Claim Claim::tile(std::string heading, std::string what, std::vector<Bar> bars) const {
-  Claim tile("tile-" + id, ClaimKind::tile, about, std::move(what), sure, basis);
-  tile.heading_ = std::move(heading);
-  tile.bars_ = std::move(bars);
-  return tile;
+  return {*this, std::move(heading), std::move(what), std::move(bars)};
 }
 
 double strayed(const Interval& control) {
@@ -146,18 +140,12 @@ double geometric_mean(const std::vector<double>& values) {
   return std::exp(sum / static_cast<double>(values.size()));
 }
 
-std::string share_text(double ratio) {
-  return ratio <= 0.55 ? "1/" + significant(1 / ratio, 2) : fixed(100 * ratio, 0) + "\u00A0%";
+std::string sentence_if(const std::string& opening, const std::vector<std::string>& names) {
+  return names.empty() ? "" : opening + joined(names) + ".";
 }
 
-std::vector<std::string> extras(const Record& r, const std::map<std::string, std::string>& others) {
-  std::vector<std::string> used;
-  for (const auto& [knob, off] : kExtras) {
-    const auto at = r.params.find(std::string(knob));
-    if (at != r.params.end() && at->second != off && !others.contains(at->first))
-      used.emplace_back(knob);
-  }
-  return used;
+std::string share_text(double ratio) {
+  return ratio <= 0.55 ? "1/" + significant(1 / ratio, 2) : fixed(100 * ratio, 0) + "\u00A0%";
 }
 
 }  // namespace taut::report

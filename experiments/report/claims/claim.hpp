@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,8 +24,9 @@ std::string_view to_string(Sure);
 /// What the word means, one sentence.
 std::string_view meaning(Sure);
 
-/// Values of one quantity that a claim rests on. Looking at a case is the only way to get its value
-/// here, and every case that was looked at is counted by its status, whether it has a value or not.
+/// Values of one quantity that a claim rests on. Points to the cases that it looked at. Looking at
+/// a case is the only way to get its value here, and every case that was looked at is counted by
+/// its status, whether it has a value or not.
 class Evidence {
  public:
   /// `metric`: a name that quantity() knows; it says of which part of the run the values speak.
@@ -41,12 +43,15 @@ class Evidence {
 
   /// One case as it was seen.
   struct Seen {
-    std::string scene, solver, label, setting, key, text;
+    const Record* record = nullptr;
+    std::string label;
     double value = 0;  ///< NaN: none
-    std::optional<Interval> interval;
+    std::optional<Interval> interval = {};
     std::size_t n = 1;
-    Status::Kind status = Status::Kind::ok;
+    std::string why = {};  ///< of a case that could not be timed, what ended it
   };
+  /// What was seen as a text: the value, or why there is none.
+  std::string text(const Seen&) const;
   const std::vector<Seen>& seen() const { return seen_; }
   const Quantity& quantity() const { return quantity_; }
   const std::string& rule() const { return rule_; }
@@ -82,7 +87,7 @@ class Claim {
   const ClaimKind kind;
   const std::string about, sentence;
   const Sure sure;
-  const std::vector<Evidence> basis;
+  const std::shared_ptr<const std::vector<Evidence>> basis;  ///< its tile has the same
 
   /// Parts of the sentence to emphasise; what is not in it is left out.
   Claim& emphasise(const std::vector<std::string>&);
@@ -95,6 +100,8 @@ class Claim {
   const std::vector<Bar>& bars() const { return bars_; }
 
  private:
+  /// The tile of a claim.
+  Claim(const Claim&, std::string heading, std::string what, std::vector<Bar>);
   std::vector<std::string> strong_;
   std::string heading_;
   std::vector<Bar> bars_;
@@ -127,9 +134,8 @@ double strayed(const Interval& control);
 /// Geometric mean of independent ratios: their errors add as squares of logarithms.
 Interval geometric_mean(const std::vector<Interval>&);
 double geometric_mean(const std::vector<double>&);
+/// The opening and these names as a sentence; "" without names.
+std::string sentence_if(const std::string& opening, const std::vector<std::string>& names);
 /// "1/11" or "71 %" of what is compared with; below 1.
 std::string share_text(double ratio);
-/// Knobs that this case uses and that a solver with these parameters does not have ("tethers").
-std::vector<std::string> extras(const Record&, const std::map<std::string, std::string>& others);
-
 }  // namespace taut::report

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
 
 namespace taut::report {
@@ -75,10 +75,6 @@ std::string share_interval(const Interval& r) {
 
 Interval inverse(const Interval& r) { return {1 / r.high, 1 / r.mid, 1 / r.low}; }
 
-std::string clause(const std::string& opening, const std::vector<std::string>& scenes) {
-  return scenes.empty() ? "" : " " + opening + joined(scenes) + ".";
-}
-
 /// Why a solver's cases do not reach the level: the search went to the end, or it did not.
 std::string not_reached(const SceneBench& scene, const std::string& solver,
                         const std::string& label) {
@@ -140,10 +136,10 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
                     fixed(mean.mid, 2) + ", 95\u00A0% interval " + fixed(mean.low, 2) + " to " +
                     fixed(mean.high, 2) + over + ".";
   }
-  verdicts.text += clause("Less with " + pair.first_label + " on ", ours) +
-                   clause("Less with " + pair.other_label + " on ", theirs) +
-                   clause("No difference that can be told on ", even) +
-                   clause("Too noisy to judge on ", noisy) + noise_text(noise);
+  verdicts.text += sentence_if(" Less with " + pair.first_label + " on ", ours) +
+                   sentence_if(" Less with " + pair.other_label + " on ", theirs) +
+                   sentence_if(" No difference that can be told on ", even) +
+                   sentence_if(" Too noisy to judge on ", noisy) + noise_text(noise);
   return verdicts;
 }
 
@@ -185,8 +181,8 @@ void claim_price(const std::vector<Timed>& scenes, const Pair& pair, bool with_t
                               " in the last second, each at the cheapest setting tried with what "
                               "both have: ";
   std::string rest;
-  for (const auto& [how, names] : missed) rest += clause(how + " on ", names);
-  rest += clause("Not timed with " + pair.other_label + " on ", absent);
+  for (const auto& [how, names] : missed) rest += sentence_if(" " + how + " on ", names);
+  rest += sentence_if(" Not timed with " + pair.other_label + " on ", absent);
   const std::string id = "cost-" + pair.other;
   if (ratios.empty()) {
     claims.emplace_back(id, ClaimKind::headline, "cost",

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
 
 namespace taut::report {

@@ -2,8 +2,9 @@
 #include <cmath>
 #include <set>
 
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
 
 namespace taut::report {
@@ -34,7 +35,7 @@ std::string at_step(const Rivals& rivals, const std::vector<std::string>& scenes
 /// Why a quoted case has no value: "exploded", "was not run like this".
 std::string why_none(const Record* r) {
   if (!r) return "was not run like this";
-  if (completed(*r)) return "has no value";
+  if (completed(r->status)) return "has no value";
   return "ended as " + std::string(to_string(r->status.kind));
 }
 
@@ -62,10 +63,6 @@ std::vector<SceneValues> look_at_all(const Rivals& rivals, Evidence& evidence) {
     all.push_back(std::move(here));
   }
   return all;
-}
-
-std::string sentence_if(const std::string& opening, const std::vector<std::string>& names) {
-  return names.empty() ? "" : opening + joined(names) + ".";
 }
 
 /// Who has least of it on which scenes.
@@ -261,7 +258,7 @@ StepMap step_map(const std::vector<const Rival*>& rivals, const std::string& sce
 double largest_stable(const std::map<double, std::vector<const Record*>>& cases) {
   double largest = 0;
   for (const auto& [dt, records] : cases) {
-    if (!std::ranges::all_of(records, [](const Record* r) { return completed(*r); })) break;
+    if (!std::ranges::all_of(records, [](const Record* r) { return completed(r->status); })) break;
     largest = dt;
   }
   return largest;
@@ -343,7 +340,7 @@ void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
     for (const Record* r : cases) {
       evidence.look(name, *r);
       if (r->status.kind == Status::Kind::unsupported) ++unsupported;
-      if (completed(*r) || r->status.kind == Status::Kind::unsupported) continue;
+      if (completed(r->status) || r->status.kind == Status::Kind::unsupported) continue;
       ++failures, ++failed[std::string(to_string(r->status.kind))];
     }
     std::string kinds;

@@ -5,10 +5,7 @@
 #include <map>
 #include <set>
 
-#include "core/model/input_error.hpp"
-#include "core/model/solver.hpp"
-#include "experiments/report/chart/palette.hpp"
-#include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/chart/settings.hpp"
 
 namespace taut::report {
 
@@ -21,23 +18,23 @@ std::map<std::string, std::string> choice_of(const Record& r) {
 }
 
 Rival choose(const std::string& solver, const std::vector<const Record*>& cases) {
-  using Choice = std::map<std::string, std::string>;
-  std::vector<std::pair<Choice, std::vector<const Record*>>> groups;
-  std::map<Choice, std::size_t> index;
+  std::vector<std::vector<const Record*>> groups;
+  std::map<std::string, std::size_t> index;
+  std::map<std::pair<std::string, std::string>, std::size_t> having;  // groups with that setting
   for (const Record* r : cases) {
-    const auto [at, fresh] = index.try_emplace(choice_of(*r), groups.size());
-    if (fresh) groups.push_back({at->first, {}});
-    groups[at->second].second.push_back(r);
+    const auto choice = choice_of(*r);
+    std::string text;
+    for (const auto& [name, value] : choice) text += name + "=" + value + "\n";
+    const auto [at, fresh] = index.try_emplace(text, groups.size());
+    if (fresh) groups.emplace_back();
+    if (fresh)
+      for (const auto& setting : choice) ++having[setting];
+    groups[at->second].push_back(r);
   }
-  const auto most =
-      std::ranges::max_element(groups, {}, [](const auto& g) { return g.second.size(); });
-  Rival rival{solver, solver_title(solver), most->second};
-  for (const auto& [name, value] : most->first)
-    if (std::ranges::any_of(groups, [&, name = name, value = value](const auto& g) {
-          const auto other = g.first.find(name);
-          return other == g.first.end() || other->second != value;
-        }))
-      rival.label += " " + value;
+  const auto most = std::ranges::max_element(groups, {}, [](const auto& g) { return g.size(); });
+  Rival rival{solver, solver_title(solver), *most};
+  for (const auto& setting : choice_of(*most->front()))
+    if (having.at(setting) < groups.size()) rival.label += " " + setting.second;
   return rival;
 }
 
@@ -111,67 +108,6 @@ QuotedScene quote(const std::string& scene, const std::vector<Rival>& rivals) {
 
 }  // namespace
 
-bool completed(const Record& r) {
-  return r.status.kind == Status::Kind::ok || r.status.kind == Status::Kind::unsettled;
-}
-
-std::string Work::text() const {
-  if (sweeps < 0) return substeps < 0 ? "defaults" : std::to_string(substeps) + " substeps";
-  if (substeps < 0) return std::to_string(sweeps) + " sweeps";
-  return std::to_string(substeps) + " × " + std::to_string(sweeps);
-}
-
-Work work_of(const Record& r) {
-  const auto number = [&](const char* name) {
-    const double value = value_of(r, name);
-    return std::isfinite(value) ? static_cast<int>(value) : -1;
-  };
-  const int substeps = number("substeps"), sweeps = number("iterations");
-  return {sweeps >= 0 ? std::max(1, substeps) : substeps, sweeps};  // whole steps are one substep
-}
-
-std::string brief_settings(const std::string& solver) try {
-  const SolverChoice choice = parse_solver(solver);
-  Work work;
-  std::string text;
-  for (const ParamSpec& spec : choice.params.specs()) {
-    const std::string value(choice.params.value(spec.name));
-    if (spec.name == "iterations")
-      work.sweeps = std::stoi(value);
-    else if (spec.name == "substeps")
-      work.substeps = std::stoi(value);
-    else if (value != spec.default_value)
-      text += ", " + std::string(spec.name) + "=" + value;
-  }
-  if (work.sweeps >= 0) work.substeps = std::max(1, work.substeps);
-  if (work == Work{} && !text.empty()) return text.substr(2);
-  return work.text() + text;
-} catch (const InputError&) {
-  const auto colon = solver.find(':');
-  return colon == std::string::npos ? "" : solver.substr(colon + 1);
-}
-
-std::string unequal_work(std::span<const Record> records) {
-  std::map<std::string, std::set<Work>> works;
-  std::vector<std::string> solvers;
-  for (const Record& r : records)
-    if (const Work work = work_of(r); work.sweeps > 0) {
-      if (!works.contains(r.solver)) solvers.push_back(r.solver);
-      works[r.solver].insert(work);
-    }
-  if (works.size() < 2) return "";
-  std::set<Work> common = works.begin()->second;
-  std::string text;
-  for (const std::string& solver : solvers) {
-    const std::set<Work>& own = works[solver];
-    std::erase_if(common, [&](const Work& work) { return !own.contains(work); });
-    const Work &first = *own.begin(), &last = *own.rbegin();
-    text += (text.empty() ? "" : ", ") + solver_title(solver) + " " + first.text() +
-            (own.size() > 1 ? " to " + last.text() : "");
-  }
-  return common.empty() ? text + " (substeps × sweeps)" : "";
-}
-
 Question question_of(const Record& r) {
   Question question{r.scene, r.spec.overrides, r.dt};
   std::erase_if(question.overrides, [](const auto& text) { return text.starts_with("time.dt="); });
@@ -202,7 +138,7 @@ std::string Rivals::work_text() const {
 Rivals rivals_of(const ReportInput& input) {
   Rivals rivals;
   std::vector<std::string> solvers, scenes;
-  std::set<std::string> keys;
+  std::set<std::string_view> keys;
   const auto add = [](std::vector<std::string>& names, const std::string& name) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };

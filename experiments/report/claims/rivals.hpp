@@ -2,32 +2,13 @@
 
 #include <compare>
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/input.hpp"
 
 namespace taut::report {
-
-/// It ran to its end: only then have its values a meaning.
-bool completed(const Record&);
-
-/// Work of a step; -1 where the solver has no such setting.
-struct Work {
-  int substeps = -1, sweeps = -1;
-  auto operator<=>(const Work&) const = default;
-  std::string text() const;  ///< "1 × 16": substeps × sweeps
-};
-Work work_of(const Record&);
-
-/// "1 × 16, order=mesh": the work of "jakobsen:substeps=1,iterations=16,...", and what else is not
-/// the default. Of a solver that this program does not have: what follows its name.
-std::string brief_settings(const std::string& solver);
-
-/// "Jakobsen 5 × 1 to 64, Bullet 1 × 1 to 64" (substeps × sweeps), if no such work is common to all
-/// solvers that have sweeps; "": some is.
-std::string unequal_work(std::span<const Record>);
 
 /// What a case is asked, apart from the solver: scene, its settings and the time step.
 struct Question {

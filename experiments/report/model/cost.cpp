@@ -2,7 +2,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/timing/answer.hpp"
 #include "experiments/timing/profile.hpp"

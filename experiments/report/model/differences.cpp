@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/model/parts.hpp"
 
 namespace taut::report {
@@ -13,42 +14,58 @@ constexpr std::size_t kMostRows = 200;  ///< of the table; the data has all
 
 /// A value of a case that B has otherwise.
 struct Changed {
-  const Record* b;
-  std::string title, a_text, b_text, change, judged;
-  double size;  ///< |b - a| over the larger; 2: another status
+  const std::pair<Record, Record>* pair;
+  const std::string* value;  ///< nullptr: the status
+  double size;               ///< |b - a| over the larger; 2: another status
 };
 
-std::vector<Changed> all_changed(const Differences& differences, References& refs) {
+/// The largest first.
+std::vector<Changed> all_changed(const Differences& differences) {
   std::vector<Changed> all;
-  for (const auto& [a, b] : differences.pairs) {
+  for (const auto& pair : differences.pairs) {
+    const auto& [a, b] = pair;
     if (a.status.kind != b.status.kind) {
-      all.push_back({&b, "status", std::string(to_string(a.status.kind)),
-                     std::string(to_string(b.status.kind)), "–", "", 2});
+      all.push_back({&pair, nullptr, 2});
       continue;
     }
-    if (!completed(b)) continue;
+    if (!completed(b.status)) continue;
     for (const auto& [name, now] : b.values) {
       const auto at = a.values.find(name);
       if (at == a.values.end() || !std::isfinite(now) || !std::isfinite(at->second)) continue;
       const double before = at->second;
-      if (now == before) continue;
-      const Quantity& q = refs.use(name);
-      all.push_back({&b, q.title, q.text(before, 4), q.text(now, 4),
-                     before == 0 ? "–" : significant(100 * (now / before - 1), 2) + "\u00A0%",
-                     !q.less_is_better ? ""
-                     : now < before    ? "better"
-                                       : "worse",
-                     std::abs(now - before) / std::max(std::abs(now), std::abs(before))});
+      if (now != before)
+        all.push_back(
+            {&pair, &name, std::abs(now - before) / std::max(std::abs(now), std::abs(before))});
     }
   }
   std::ranges::stable_sort(all, [](const Changed& x, const Changed& y) { return x.size > y.size; });
   return all;
 }
 
+/// Its row: what it is, in A, in B, the change, and whether that is better.
+Json row_of(const Changed& changed, References& refs) {
+  const auto& [a, b] = *changed.pair;
+  Json head{{"text", b.scene + " " + solver_title(b.solver) + " " + brief_settings(b.spec.solver) +
+                         ", " + quantity("dt").text(b.dt, 3)}};
+  add_if(head, "case", refs.key(b));
+  if (!changed.value)
+    return {head, "status", to_string(a.status.kind), to_string(b.status.kind), "–", ""};
+  const Quantity& q = refs.use(*changed.value);
+  const double before = a.values.at(*changed.value), now = b.values.at(*changed.value);
+  return {head,
+          q.title,
+          q.text(before, 4),
+          q.text(now, 4),
+          before == 0 ? "–" : significant(100 * (now / before - 1), 2) + "\u00A0%",
+          !q.less_is_better ? ""
+          : now < before    ? "better"
+                            : "worse"};
+}
+
 }  // namespace
 
 Json json_of(const Differences& differences, References& refs, Json& tables) {
-  const std::vector<Changed> changed = all_changed(differences, refs);
+  const std::vector<Changed> changed = all_changed(differences);
   Json one{{"a", differences.a}, {"b", differences.b}};
   if (changed.empty()) return one;
   const std::size_t rows = std::min(changed.size(), kMostRows);
@@ -61,14 +78,7 @@ Json json_of(const Differences& differences, References& refs, Json& tables) {
              {"rows", Json::array()}};
   for (const char* title : {"case", "value", "A", "B", "change", "judged"})
     table["columns"].push_back({{"title", title}});
-  for (std::size_t i = 0; i < rows; ++i) {
-    const Changed& c = changed[i];
-    Json head{{"text", c.b->scene + " " + solver_title(c.b->solver) + " " +
-                           brief_settings(c.b->spec.solver) + ", " +
-                           quantity("dt").text(c.b->dt, 3)}};
-    add_if(head, "case", refs.key(*c.b));
-    table["rows"].push_back({head, c.title, c.a_text, c.b_text, c.change, c.judged});
-  }
+  for (std::size_t i = 0; i < rows; ++i) table["rows"].push_back(row_of(changed[i], refs));
   one["tables"].push_back(table["id"]);
   tables.push_back(std::move(table));
   return one;

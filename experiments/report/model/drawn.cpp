@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/model/parts.hpp"
 
 namespace taut::report {
@@ -21,7 +21,7 @@ Json json_of_axis(const Quantity& q, const std::vector<double>& ticks) {
   return axis;
 }
 
-Json json_of(const Point& p, const Chart& chart, const References& refs) {
+Json json_of(const Point& p, const Chart& chart, References& refs) {
   const bool none = failed(p);
   Json point{{"x", json_number(p.x)},
              {"y", none ? Json() : json_number(p.y)},
@@ -36,7 +36,7 @@ Json json_of(const Point& p, const Chart& chart, const References& refs) {
 }
 
 /// Times and values of a series.
-Json json_of(const TimeSeries& series, const References& refs) {
+Json json_of(const TimeSeries& series, References& refs) {
   Json one{{"solver", series.solver}, {"label", series.label}, {"t", series.t}};
   for (const double y : series.y) one["y"].push_back(json_number(y));
   add_if(one, "case", refs.key(series.key));
@@ -116,15 +116,23 @@ Json json_of(const Chart& chart, References& refs) {
            {"y", json_of_axis(refs.use(chart.y.name), {})}};
   add_if(one, "held", chart.held);
   bool zeros = true;
+  std::size_t all = 0, failures = 0;
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points)
+      ++all, failures += failed(p), zeros = zeros && (failed(p) || p.y == 0);
+  const std::vector<std::size_t> shown =
+      spread(chart.curves.size(), all > kMostPoints ? kMostCurves : chart.curves.size());
+  std::size_t drawn = 0;
   std::map<std::string, int> variants;
-  for (const Curve& curve : chart.curves) {
+  for (const std::size_t i : shown) {
+    const Curve& curve = chart.curves[i];
     Json series{{"solver", curve.solver},
                 {"label", curve.label},
                 {"variant", variants[curve.solver]++},
                 {"join", chart.join}};
-    for (const Point& p : curve.points) {
-      series["points"].push_back(json_of(p, chart, refs));
-      zeros = zeros && (failed(p) || p.y == 0);
+    for (const std::size_t k : spread(curve.points.size(), kMostPoints / shown.size())) {
+      series["points"].push_back(json_of(curve.points[k], chart, refs));
+      ++drawn, failures -= failed(curve.points[k]);
     }
     one["series"].push_back(std::move(series));
     const auto& points = curve.points;
@@ -133,6 +141,11 @@ Json json_of(const Chart& chart, References& refs) {
     if (std::isfinite(slope))
       one["fits"].push_back({{"solver", curve.solver}, {"label", curve.label}, {"slope", slope}});
   }
+  if (drawn < all)
+    one["thinned"] = "Drawn: " + std::to_string(drawn) + " of " + std::to_string(all) +
+                     " points, on " + std::to_string(shown.size()) + " of " +
+                     std::to_string(chart.curves.size()) + " curves; " + std::to_string(failures) +
+                     " cases that failed are among the others.";
   for (const TimeSeries& series : chart.series) one["series"].push_back(json_of(series, refs));
   if (const double factor = theory_factor(chart); std::isfinite(factor))
     one["theory"] = {{"slope", *chart.slope},
@@ -219,7 +232,7 @@ Json json_of(const SceneMedia& media, const ReportInput& input, References& refs
   return films;
 }
 
-Json json_of_fairness(const QuotedScene& quoted, const Rivals& rivals, const References& refs) {
+Json json_of_fairness(const QuotedScene& quoted, const Rivals& rivals, References& refs) {
   Json panel{{"caption", "Settings each solver used for this scene"}};
   std::vector<const Record*> cases;
   std::vector<std::string> names;

@@ -8,6 +8,7 @@
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/model/parts.hpp"
 
 namespace taut::report {
@@ -152,8 +153,9 @@ class Builder {
     if (input_.bench)
       for (const SceneBench& scene : input_.bench->scenes)
         for (const BenchedCase& c : scene.cases) timed[c.record.key] = &c;
-    for (const Record* r : refs_.cases()) {
-      Json one = json_of_case(*r, timed[r->key], refs_);
+    for (const Record* r : refs_.listed()) {
+      const auto its = timed.find(r->key);
+      Json one = json_of_case(*r, its == timed.end() ? nullptr : its->second, refs_);
       if (const auto film = film_of_.find(refs_.key(*r)); film != film_of_.end())
         one["film"] = film->second;
       cases.push_back(std::move(one));
@@ -177,6 +179,11 @@ class Builder {
     add_if(model, "differences", std::move(differences));
     model["method"] = method();
     add_if(model, "missing", missing());
+    if (maps_left_out_ > 0)
+      model["left_out"].push_back(
+          {{"file", "maps"},
+           {"why", std::to_string(maps_left_out_) + " stability maps; a page has at most " +
+                       std::to_string(kMostCells) + " cells of maps: taut plot STUDY"}});
     for (const auto& [file, why] : input_.left_out)
       model["left_out"].push_back({{"file", file}, {"why", why}});
     add_if(model, "cases", std::move(cases));
@@ -184,7 +191,7 @@ class Builder {
   }
 
  private:
-  Json meta(std::size_t cases) const {
+  Json meta(std::size_t listed) const {
     Json one{{"title", report_title(input_)}};
     add_if(one, "question", input_.question);
     one["build"] = Json::object();
@@ -198,7 +205,8 @@ class Builder {
     std::size_t planned = 0;
     for (const StudyResult& study : input_.studies)
       planned += std::max(study.planned, study.records.size()) - study.records.size();
-    one["cases"] = cases, one["planned"] = cases + planned;
+    one["cases"] = refs_.cases().size(), one["planned"] = refs_.cases().size() + planned;
+    if (listed < refs_.cases().size()) one["listed"] = listed;
     for (const Sure sure :
          {Sure::clear, Sure::likely, Sure::too_noisy, Sure::none, Sure::single_run})
       one["policy"][std::string(to_string(sure))] = meaning(sure);
@@ -287,6 +295,11 @@ class Builder {
     if (!one.contains("films")) add_series(one, name);
     std::map<std::string, int> names;
     for (const StatusMap& map : scene_maps(input_, name)) {
+      if (map.cells.size() > cells_) {
+        ++maps_left_out_;
+        continue;
+      }
+      cells_ -= map.cells.size();
       std::string id = name + "-" + map.study + "-" + map.solver;
       if (const int n = names[id]++; n > 0) id += "-" + std::to_string(n + 1);
       one["maps"].push_back(id);
@@ -462,6 +475,7 @@ class Builder {
   std::map<std::string, std::set<std::string>> film_cases_;  ///< by scene
   std::map<std::string, std::string> film_of_;               ///< by short key of the case
   std::size_t budget_ = 6'000'000;                           ///< bytes of pictures in a page
+  std::size_t cells_ = kMostCells, maps_left_out_ = 0;
 };
 
 }  // namespace

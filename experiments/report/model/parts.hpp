@@ -5,6 +5,9 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
 
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/claims/claim.hpp"
@@ -13,24 +16,41 @@
 
 namespace taut::report {
 
+// What one page can carry and one person look at; beyond it the model says how much it leaves out.
+// Sentences, fronts and counts are of all cases nevertheless.
+inline constexpr std::size_t kMostCases = 4000;   ///< listed; more if more are named
+inline constexpr std::size_t kMostPoints = 1000;  ///< of a chart
+inline constexpr std::size_t kMostCurves = 40;    ///< of a chart of more points than that
+inline constexpr std::size_t kMostValues = 300;   ///< of the basis of a claim
+inline constexpr std::size_t kMostCells = 10000;  ///< of all maps
+
+/// Places in a list of n of at most `most` that are spread evenly, first and last among them.
+std::vector<std::size_t> spread(std::size_t n, std::size_t most);
+
 /// What parts of the model refer to: cases by key, quantities by name.
 class References {
  public:
   /// Every record of the input, each once; a key as short as it may be.
   explicit References(const ReportInput&);
-  /// The short key; "" if it is no case of the input.
-  std::string key(const std::string& key) const;
-  std::string key(const Record& r) const { return key(r.key); }
+  /// The short key, and from now on the case is named; "" if it is no case of the input.
+  std::string key(const std::string& key);
+  std::string key(const Record& r) { return key(r.key); }
   const Quantity& use(const std::string& name);
 
   const std::vector<const Record*>& cases() const { return cases_; }
+  /// Those that are named, and as many others, spread evenly, as make kMostCases.
+  std::vector<const Record*> listed() const;
   const std::map<std::string, Quantity>& quantities() const { return quantities_; }
-  std::set<std::string> studies_of(const Record& r) const { return studies_.at(r.key); }
+  std::set<std::string> studies_of(const Record& r) const;
 
  private:
+  struct Known {
+    std::vector<const std::string*> studies;
+    bool named = false;
+  };
   std::size_t length_ = 12;
   std::vector<const Record*> cases_;
-  std::map<std::string, std::set<std::string>> studies_;  ///< by key
+  std::unordered_map<std::string_view, Known> known_;  ///< by key
   std::map<std::string, Quantity> quantities_;
 };
 
@@ -53,6 +73,6 @@ Json json_of_limits(const ReportInput&, Json& tables);
 /// What Vasilovici's report claims, with verdicts: as its truths say now, if they were checked.
 Json json_of_seed_claims(const std::optional<Truths>&);
 /// Settings of every rival on a scene, row by row; null without a case.
-Json json_of_fairness(const QuotedScene&, const Rivals&, const References&);
+Json json_of_fairness(const QuotedScene&, const Rivals&, References&);
 
 }  // namespace taut::report

@@ -1,13 +1,12 @@
-#include "experiments/truths/seed_claims.hpp"
-
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/truths/vasilovici/claims.hpp"
 
 namespace taut::report {
 
 Json json_of_seed_claims(const std::optional<Truths>& truths) {
   Json all = Json::array();
-  for (const SeedClaim& claim : seed_claims()) {
+  for (const VasiloviciClaim& claim : vasilovici_claims()) {
     Json one{{"section", claim.section},
              {"claim", typeset(claim.claim)},
              {"verdict", to_string(claim.verdict)},

@@ -119,7 +119,7 @@ function chartFigure(spec) {
   const points = spec.series.flatMap((s) => s.points);
   const heading = el('h4', {}, short(spec.title, 120));
   const held = spec.held && spec.held[0].toUpperCase() + spec.held.slice(1) + '.';
-  const note = el('p', {className: 'note'}, [held, spec.caption].filter(Boolean).join(' '));
+  const note = el('p', {className: 'note'}, [held, spec.caption, spec.thinned].filter(Boolean).join(' '));
   if (points.length && points.every((p) => p.zero))
     return el('figure', {className: 'card chart flat', id: `chart-${spec.id}`}, el('figcaption', {}, heading, note),
               el('p', {}, `Every value is exactly zero (${count(points.length, 'case')}).`));

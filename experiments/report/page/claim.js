@@ -57,7 +57,8 @@ function evidence(entry) {
     ['rule', [entry.rule]],
     ['settings', (entry.settings ?? []).map(({solver, text}) => el('div', {}, named(solver), ' ', text))],
     ...group.map(({key, values}) => [key || 'values', values.map((value) => evidenceValue(value, quantity))]),
-    ['cases looked at', statusText.map((line) => el('div', {}, line))],
+    ['cases looked at', [...statusText, entry.unlisted && `${entry.unlisted} further values are not listed`]
+      .filter(Boolean).map((line) => el('div', {}, line))],
     ['left out', [entry.left_out]],
   ];
   return rows.filter(([, content]) => content.some(Boolean))

@@ -1,4 +1,3 @@
-#include "experiments/report/plot/frontier_plot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +5,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
-#include "experiments/report/plot/gnuplot.hpp"
+#include "experiments/report/plot/plot.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {

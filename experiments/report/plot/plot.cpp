@@ -9,9 +9,9 @@
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
-#include "experiments/report/claims/rivals.hpp"
-#include "experiments/report/plot/gnuplot.hpp"
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
 #include "experiments/timing/profile.hpp"
 
 namespace taut::report {
@@ -19,20 +19,13 @@ namespace taut::report {
 namespace {
 
 constexpr std::array kKinds{
-    PlotKind{"error-iterations",
-             "An error over sweeps per substep, with the theory's slope where it has one",
-             "iterations", "stretch.rms", "iterations"},
-    PlotKind{"penetration", "Depth inside the colliders over sweeps or the time step, whole run",
-             "iterations", "penetration.peak", "iterations"},
-    PlotKind{"profile", "How often each solver is within a factor of the cheapest (Dolan and More)",
-             "cpu.per_second", "stretch.rms", "setting"},
-    PlotKind{"scaling", "A cost or an error over the number of vertices", "vertices",
-             "cpu.per_step", "vertices"},
-    PlotKind{"series", "A value over simulated time", "t", "stretch.rms", "t"},
-    PlotKind{"stability", "How cases end over two settings: a mark for each outcome", "dt",
-             "iterations", "dt"},
-    PlotKind{"work-precision", "An error over what it cost, with the Pareto front", "projections",
-             "stretch.rms", "setting"},
+    PlotKind{"error-iterations", "iterations", "stretch.rms", "iterations"},
+    PlotKind{"penetration", "iterations", "penetration.peak", "iterations"},
+    PlotKind{"profile", "cpu.per_second", "stretch.rms", "setting"},  // Dolan and More
+    PlotKind{"scaling", "vertices", "cpu.per_step", "vertices"},
+    PlotKind{"series", "t", "stretch.rms", "t"},
+    PlotKind{"stability", "dt", "iterations", "dt"},
+    PlotKind{"work-precision", "projections", "stretch.rms", "setting"},
 };
 
 std::string colour_of(std::string_view solver) {
@@ -314,20 +307,20 @@ const PlotKind& find_plot_kind(std::string_view name) {
                    suggestion(std::string(name), names));
 }
 
-void check_value_name(const std::string& name, std::span<const Record> records) {
+void check_value_name(const std::string& name, const Records& records) {
   std::vector<std::string> known = quantity_names();
   known.emplace_back("setting");
-  for (const Record& r : records) {
-    if (std::isfinite(value_of(r, name))) return;
-    for (const auto& [param, value] : r.params) known.push_back(param);
+  for (const Record* r : records) {
+    if (std::isfinite(value_of(*r, name))) return;
+    for (const auto& [param, value] : r->params) known.push_back(param);
   }
   if (std::ranges::find(known, name) == known.end())
     throw InputError("unknown value '" + name + "'" + suggestion(name, known) +
                      " (`taut list metrics`)");
 }
 
-PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
-                    std::span<const TimeSeries> series, const std::filesystem::path& folder) {
+PlotFiles make_plot(PlotSpec spec, const Records& records, std::span<const TimeSeries> series,
+                    const std::filesystem::path& folder) {
   const PlotKind& kind = find_plot_kind(spec.kind);
   if (spec.x.empty()) spec.x = kind.x;
   if (spec.y.empty()) spec.y = kind.y;
@@ -341,7 +334,7 @@ PlotFiles make_plot(PlotSpec spec, std::span<const Record> records,
     sheet = series_sheet(series, spec.y, spec.title);
   } else if (spec.kind == "stability") {
     if (records.empty()) throw InputError("there is no case to draw");
-    sheet = map_sheet(make_maps(records, records.front().scene, spec.x, spec.y), spec.title);
+    sheet = map_sheet(make_maps(records, records.front()->scene, spec.x, spec.y), spec.title);
   } else {
     Chart chart = make_chart(spec.kind, records, spec.x, spec.y, spec.along);
     add_strain_floor(chart);
@@ -362,6 +355,47 @@ PlotFiles make_profile_plot(PlotSpec spec, const BenchSession& bench,
     throw InputError("no setting of any solver reaches an error of " + spec.y +
                      " that is asked for");
   return write_plot(spec, profile_sheet(profiles, spec.title), folder);
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path temporary(const fs::path& path) {
+  return path.parent_path() / ("." + path.filename().string() + "." + unique_suffix());
+}
+
+/// Runs `program -e commands script` in the script's folder; gives its exit code and what it said.
+std::pair<int, std::string> run_program(const std::string& program, const fs::path& script,
+                                        const std::string& commands) try {
+  Process process({program, "-e", commands, "./" + script.filename().string()},
+                  {.errors = ProcessOptions::Stream::piped, .folder = script.parent_path()});
+  const std::string said = process.read_all();
+  return {process.wait()->exit_code, said};
+} catch (const InputError& error) {
+  throw PlotError(std::string(error.what()) +
+                  ": install the Debian package gnuplot-nox to get figures");
+}
+
+}  // namespace
+
+void run_gnuplot(const fs::path& script, const std::string& terminal, const fs::path& out,
+                 const std::string& program) {
+  const fs::path absolute = fs::absolute(script);
+  const fs::path temp = temporary(fs::absolute(out));
+  const EndsWithProgram tie(temp);
+  const auto [code, said] =
+      run_program(program, absolute,
+                  "set terminal " + terminal + "; set output " + gnuplot_string(temp.string()));
+  std::error_code missing;
+  const auto size = fs::file_size(temp, missing);
+  if (code == 0 && !missing && size > 0) {
+    fs::rename(temp, out);
+    return;
+  }
+  fs::remove(temp, missing);
+  throw PlotError("gnuplot could not draw " + script.string() + ": " +
+                  (said.empty() ? "exit code " + std::to_string(code) : said));
 }
 
 }  // namespace taut::report

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "experiments/extremes/extremes.hpp"
 #include "experiments/report/chart/charts.hpp"
 
 namespace taut::report {
@@ -12,7 +16,6 @@ namespace taut::report {
 /// A kind of plot and what it shows unless asked otherwise.
 struct PlotKind {
   std::string_view name;         ///< "error-iterations"
-  std::string_view summary;      ///< one sentence
   std::string_view x, y, along;  ///< defaults; `along`: the setting that orders a curve
 };
 std::span<const PlotKind> plot_kinds();
@@ -34,7 +37,7 @@ struct PlotFiles {
 /// bars, failures on the upper edge. The CSV has one header and a row for each point. Throws
 /// InputError if x or y is not known (with a suggestion) or there is nothing to draw, and PlotError
 /// without gnuplot (script and CSV are there then).
-PlotFiles make_plot(PlotSpec, std::span<const Record>, std::span<const TimeSeries>,
+PlotFiles make_plot(PlotSpec, const Records&, std::span<const TimeSeries>,
                     const std::filesystem::path& folder);
 
 /// The share of problems, an error `spec.y` to be reached on a scene, in which each solver costs at
@@ -42,6 +45,25 @@ PlotFiles make_plot(PlotSpec, std::span<const Record>, std::span<const TimeSerie
 PlotFiles make_profile_plot(PlotSpec, const BenchSession&, const std::filesystem::path& folder);
 
 /// Throws InputError with a suggestion if no case and no metric has a value of this name.
-void check_value_name(const std::string& name, std::span<const Record>);
+void check_value_name(const std::string& name, const Records&);
+
+/// gnuplot is missing or refused a script. Says what to do; the caller goes on without the figure.
+class PlotError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Runs `script` with its folder as working directory; the picture goes to `out` by way of a
+/// temporary name, and only if gnuplot succeeded and wrote something. `terminal` is the argument of
+/// "set terminal"; `program` is looked up in PATH. Throws PlotError.
+void run_gnuplot(const std::filesystem::path& script, const std::string& terminal,
+                 const std::filesystem::path& out, const std::string& program = "gnuplot");
+
+/// A bar for each knob and solver, as long as the knob may be made harder than where it starts,
+/// with what goes wrong at its end; a mark where theory has the end. Writes `stem`.csv, .gp and
+/// .svg into the folder and gives the picture's path. Throws PlotError without gnuplot and
+/// InputError if the files cannot be written.
+std::filesystem::path plot_frontiers(const std::vector<KnobFrontier>&,
+                                     const std::filesystem::path& folder, const std::string& stem);
 
 }  // namespace taut::report

@@ -1,0 +1,337 @@
+// Surfaces of polygons: reading their OBJ files, what is wrong with them, meshes and links of them.
+#include "core/io/mesh_io.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "core/io/text_file.hpp"
+#include "core/model/index.hpp"
+#include "core/model/input_error.hpp"
+
+namespace taut {
+
+namespace {
+
+/// Collects what is wrong with a surface; a hopeless file does not flood the terminal.
+class SurfaceErrors {
+ public:
+  explicit SurfaceErrors(std::string file) : file_(std::move(file)) {}
+  void report(int line, const std::string& message, int column = 1);
+  /// Throws InputError with the first hundred in the order of the file; returns if there are none.
+  void throw_if_any();
+
+ private:
+  std::string file_;
+  std::vector<Diagnostic> found_;
+};
+
+void SurfaceErrors::report(int line, const std::string& message, int column) {
+  found_.push_back({file_, line, column, message});
+}
+
+void SurfaceErrors::throw_if_any() {
+  if (found_.empty()) return;
+  std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  });
+  constexpr std::size_t kMost = 100;
+  if (found_.size() > kMost) {
+    const std::string more = std::to_string(found_.size() - kMost) + " more errors";
+    found_.resize(kMost);
+    found_.push_back({file_, 0, 0, more});
+  }
+  throw InputError(found_);
+}
+
+/// An edge with the faces that have it; a < b.
+struct Edge {
+  int a = 0, b = 0;
+  std::vector<int> faces;
+};
+double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b - a).cross(c - a).norm() / 2;
+}
+
+/// Mean over the fans from each vertex of a face: what each vertex owns of the face's area (a third
+/// of every triangle that it is a corner of).
+std::vector<double> shares(const Polygons& p, const std::vector<int>& face) {
+  const std::size_t n = face.size();
+  std::vector<double> share(n, 0.0);
+  const double fans = n == 3 ? 1 : static_cast<double>(n);
+  for (std::size_t apex = 0; apex < (n == 3 ? 1 : n); ++apex)
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+      const std::size_t corners[] = {apex, (apex + k) % n, (apex + k + 1) % n};
+      const double third = triangle_area(p.vertices[to_index(face[corners[0]])],
+                                         p.vertices[to_index(face[corners[1]])],
+                                         p.vertices[to_index(face[corners[2]])]) /
+                           3;
+      for (const std::size_t corner : corners) share[corner] += third / fans;
+    }
+  return share;
+}
+
+double face_area(const Polygons& p, const std::vector<int>& face) {
+  const auto share = shares(p, face);
+  return std::accumulate(share.begin(), share.end(), 0.0);
+}
+
+std::string number(int vertex) { return std::to_string(vertex + 1); }  // as OBJ counts
+
+void judge_faces(const Polygons& p, SurfaceErrors& errors) {
+  for (std::size_t f = 0; f < p.faces.size(); ++f) {
+    double longest2 = 0;
+    for (std::size_t k = 0; k < p.faces[f].size(); ++k) {
+      const Vec3& a = p.vertices[to_index(p.faces[f][k])];
+      const Vec3& b = p.vertices[to_index(p.faces[f][(k + 1) % p.faces[f].size()])];
+      longest2 = std::max(longest2, (b - a).squaredNorm());
+    }
+    if (!(face_area(p, p.faces[f]) > 1e-9 * longest2))
+      errors.report(p.face_lines[f], "the face has no area");
+  }
+}
+
+void judge_vertices(const Polygons& p, SurfaceErrors& errors) {
+  std::vector<bool> used(p.vertices.size());
+  for (const auto& face : p.faces)
+    for (const int v : face) used[to_index(v)] = true;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (!used[v])
+      errors.report(p.vertex_lines[v],
+                    "vertex " + number(static_cast<int>(v)) + " belongs to no face");
+  std::map<std::array<double, 3>, int> seen;
+  for (int v = 0; v < static_cast<int>(p.vertices.size()); ++v) {
+    const Vec3& x = p.vertices[to_index(v)];
+    const auto [first, added] = seen.emplace(std::array{x[0] + 0, x[1] + 0, x[2] + 0}, v);
+    if (!added)
+      errors.report(p.vertex_lines[to_index(v)],
+                    "vertex " + number(v) + " coincides with vertex " + number(first->second) +
+                        " (line " + std::to_string(p.vertex_lines[to_index(first->second)]) +
+                        "): a cloth is one surface, so join them");
+  }
+}
+
+/// Sorted by a, then b; faces in their order.
+std::vector<Edge> edges_of(const Polygons& p) {
+  std::vector<std::array<int, 3>> sides;  // a, b, face
+  for (std::size_t f = 0; f < p.faces.size(); ++f)
+    for (std::size_t k = 0; k < p.faces[f].size(); ++k) {
+      const int a = p.faces[f][k], b = p.faces[f][(k + 1) % p.faces[f].size()];
+      sides.push_back({std::min(a, b), std::max(a, b), static_cast<int>(f)});
+    }
+  std::sort(sides.begin(), sides.end());
+  std::vector<Edge> edges;
+  for (const auto& [a, b, face] : sides) {
+    if (edges.empty() || edges.back().a != a || edges.back().b != b) edges.push_back({a, b, {}});
+    edges.back().faces.push_back(face);
+  }
+  return edges;
+}
+
+/// Reports faces without area, edges of more than two faces, vertices without a face and vertices
+/// that coincide. Precondition: every face names vertices that exist.
+void judge_surface(const Polygons& p, SurfaceErrors& errors) {
+  if (p.faces.empty()) return errors.report(1, "no face: a cloth needs one at least");
+  judge_vertices(p, errors);
+  judge_faces(p, errors);
+  for (const Edge& edge : edges_of(p))
+    if (edge.faces.size() > 2)
+      errors.report(p.face_lines[to_index(edge.faces[2])],
+                    "the edge from vertex " + number(edge.a) + " to " + number(edge.b) + " has " +
+                        std::to_string(edge.faces.size()) + " faces; a cloth has two at most");
+}
+
+}  // namespace
+
+double area(const Polygons& p) {
+  double sum = 0;
+  for (const auto& face : p.faces) sum += face_area(p, face);
+  return sum;
+}
+
+Mesh make_mesh(const Polygons& p, double mass, Lumping lumping) {
+  assert(!p.faces.empty() && mass > 0);
+  Mesh mesh;
+  mesh.rest = p.vertices;
+  for (std::vector<int> face : p.faces) {
+    const auto x = [&](std::size_t k) { return p.vertices[to_index(face[k])]; };
+    if (face.size() == 4 && (x(1) - x(3)).squaredNorm() < (x(0) - x(2)).squaredNorm())
+      std::rotate(face.begin(), face.begin() + 1, face.end());
+    for (std::size_t k = 1; k + 1 < face.size(); ++k)
+      mesh.triangles.push_back({face[0], face[k], face[k + 1]});
+  }
+  const auto n = p.vertices.size();
+  if (lumping == Lumping::equal) {
+    mesh.mass.assign(n, mass / static_cast<double>(n));
+    return mesh;
+  }
+  mesh.mass.assign(n, 0.0);
+  const double density = mass / area(p);
+  for (const auto& face : p.faces) {
+    const auto share = shares(p, face);
+    for (std::size_t k = 0; k < face.size(); ++k)
+      mesh.mass[to_index(face[k])] += density * share[k];
+  }
+  return mesh;
+}
+
+namespace {
+
+/// The vertex beside `of` in the face, on the side away from `other`, which is its other neighbour.
+int beside(const std::vector<int>& face, int of, int other) {
+  const auto n = face.size();
+  const auto k = static_cast<std::size_t>(std::find(face.begin(), face.end(), of) - face.begin());
+  const int before = face[(k + n - 1) % n], after = face[(k + 1) % n];
+  return before == other ? after : before;
+}
+
+}  // namespace
+
+std::vector<Link> mesh_links(const Polygons& p, const LinkChoice& choice) {
+  using Pair = std::pair<int, int>;
+  const auto edges = edges_of(p);
+  std::set<Pair> edge_pairs, diagonals, across;
+  for (const Edge& e : edges) edge_pairs.emplace(e.a, e.b);
+  const auto add = [&](std::set<Pair>& to, int a, int b, const std::set<Pair>& except) {
+    const Pair pair = std::minmax(a, b);
+    if (a != b && !edge_pairs.count(pair) && !except.count(pair)) to.insert(pair);
+  };
+  for (const auto& face : p.faces)
+    if (face.size() == 4) {
+      add(diagonals, face[0], face[2], {});
+      add(diagonals, face[1], face[3], {});
+    }
+  const std::set<Pair> sheared = choice.shear ? diagonals : std::set<Pair>{};
+  for (const auto& [a, b, faces] : edges) {
+    if (faces.size() != 2) continue;
+    const auto &left = p.faces[to_index(faces[0])], &right = p.faces[to_index(faces[1])];
+    add(across, beside(left, a, b), beside(right, a, b), sheared);
+    add(across, beside(left, b, a), beside(right, b, a), sheared);
+  }
+  std::vector<Link> links;
+  const auto emit = [&](const std::set<Pair>& pairs, Family family) {
+    for (const auto& [a, b] : pairs)
+      links.push_back({a, b, (p.vertices[to_index(b)] - p.vertices[to_index(a)]).norm(), family});
+  };
+  if (choice.structural) emit(edge_pairs, Family::structural);
+  if (choice.shear) emit(diagonals, Family::shear);
+  if (choice.bend) emit(across, Family::bend);
+  return links;
+}
+
+namespace {
+
+/// Keywords that say nothing about the shape.
+constexpr std::string_view kSkipped[] = {"vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib"};
+
+class ObjReader {
+ public:
+  ObjReader(const std::string& file, SurfaceErrors& errors) : errors_(errors) {
+    polygons_.file = file;
+  }
+
+  void line(std::string_view text) {
+    ++line_;
+    words_ = words_of(text);
+    if (words_.empty()) return;
+    if (words_[0] == "v")
+      vertex();
+    else if (words_[0] == "f")
+      face();
+    else if (std::find(std::begin(kSkipped), std::end(kSkipped), words_[0]) == std::end(kSkipped))
+      report(0, "'" + std::string(words_[0].substr(0, 40)) +
+                    "' is not read: a cloth is made of 'v' and 'f' lines");
+  }
+
+  /// Faces may name vertices that come later in the file, so the count is known only now.
+  Polygons take() {
+    const auto count = static_cast<long>(polygons_.vertices.size());
+    for (std::size_t f = 0; f < polygons_.faces.size(); ++f)
+      for (const int v : polygons_.faces[f])
+        if (v >= count) {
+          errors_.report(polygons_.face_lines[f], "the face names vertex " +
+                                                      std::to_string(v + 1L) + ", but there are " +
+                                                      std::to_string(count));
+          break;
+        }
+    return std::move(polygons_);
+  }
+
+ private:
+  void report(std::size_t word, const std::string& message) {
+    const auto column = words_[word].data() - words_[0].data() + 1;
+    errors_.report(line_, message, static_cast<int>(column));
+  }
+
+  void vertex() {
+    Vec3 x = Vec3::Zero();
+    if (words_.size() < 4) return report(0, "a vertex needs three coordinates");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto value = whole<double>(words_[axis + 1]);
+      if (!value || !std::isfinite(*value) || std::abs(*value) > 1e9) {
+        report(axis + 1, "'" + std::string(words_[axis + 1].substr(0, 40)) +
+                             "' is not a coordinate: a finite number within 1e9");
+        break;  // the vertex stays, so that faces keep their numbers
+      }
+      x[static_cast<Eigen::Index>(axis)] = *value;
+    }
+    polygons_.vertices.push_back(x);
+    polygons_.vertex_lines.push_back(line_);
+  }
+
+  /// "7", "7/1", "7//3" or "7/1/3"; -1 is the latest vertex. Only the first number matters.
+  void face() {
+    std::vector<int> corners;
+    for (std::size_t w = 1; w < words_.size(); ++w) {
+      const auto index = whole<long>(words_[w].substr(0, words_[w].find('/')));
+      const auto so_far = static_cast<long>(polygons_.vertices.size());
+      if (!index || *index > (1L << 30))
+        return report(w, "'" + std::string(words_[w].substr(0, 40)) + "' is not a vertex number");
+      if (*index == 0) return report(w, "vertices are numbered from 1; 0 names none");
+      if (*index < -so_far)
+        return report(w, "the face names vertex " + std::to_string(*index) + ", but there are " +
+                             std::to_string(so_far) + " before it");
+      corners.push_back(static_cast<int>(*index > 0 ? *index - 1 : so_far + *index));
+    }
+    if (corners.size() < 3) return report(0, "a face needs three vertices at least");
+    std::vector<int> sorted = corners;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end())
+      return report(0, "the face names vertex " + std::to_string(*twice + 1) + " twice");
+    polygons_.faces.push_back(std::move(corners));
+    polygons_.face_lines.push_back(line_);
+  }
+
+  SurfaceErrors& errors_;
+  Polygons polygons_;
+  int line_ = 0;
+  std::vector<std::string_view> words_;
+};
+
+}  // namespace
+
+Polygons parse_obj(const std::string& file, const std::string& text) {
+  SurfaceErrors errors(file);
+  ObjReader reader(file, errors);
+  std::string_view rest = text;
+  while (!rest.empty()) reader.line(take_line(rest));
+  Polygons polygons = reader.take();
+  errors.throw_if_any();  // what follows presumes that every face names vertices that exist
+  judge_surface(polygons, errors);
+  errors.throw_if_any();
+  return polygons;
+}
+
+Polygons read_obj(const std::filesystem::path& path) {
+  return parse_obj(path.string(), read_text(path, kMostMeshBytes));
+}
+
+}  // namespace taut

@@ -1,0 +1,387 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/study/campaign.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
+#include "experiments/timing/answer.hpp"
+#include "experiments/timing/search.hpp"
+
+namespace taut::verb::advise {
+
+namespace {
+
+constexpr int kQuickSteps = 48;            ///< of the quick cost that guides the search
+constexpr std::size_t kMostFinalists = 5;  ///< timed against each other
+constexpr std::size_t kMostRefused = 4;    ///< printed; --json has all
+
+struct Options {
+  std::string scene, metric = "stretch.rms", error, out;
+  double budget = 0;  ///< ms per frame; 0: not given
+  std::vector<std::string> solvers, settings;
+  double patience = 120;
+  int rounds = 8;
+  double seconds = 0.05, tolerance = kTolerance;
+  bool json = false;
+};
+
+using Clock = std::chrono::steady_clock;
+
+/// "0.01" or "1%".
+double error_of(const std::string& text) {
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  const std::string unit = text.substr(used);
+  if (used == 0 || !(unit.empty() || unit == "%") || !(std::isfinite(value) && value > 0))
+    throw InputError("--error " + text + ": expected a number above 0 such as 0.01 or 1%");
+  return unit == "%" ? value / 100 : value;
+}
+
+Target target_of(const Options& options) {
+  if (options.error.empty() == (options.budget <= 0))
+    throw InputError("advise needs one of --error and --budget");
+  if (!options.error.empty()) return {error_of(options.error), {}};
+  return {{}, options.budget * 1e-3 / kFrame};
+}
+
+/// What was searched and found.
+struct Result {
+  Target target;
+  std::vector<Candidate> tried;
+  std::vector<std::string> unsupported;  ///< "xpbd: why"
+  std::vector<std::string> cut;          ///< solvers whose search --patience ended
+  SceneBench bench;
+  Answer answer;
+  Interval cost;  ///< of the best, widened by how far the same code strays here
+  bool same_bits = false;
+  Interval again;  ///< cost of the best in a second session
+
+  const BenchedCase& best() const { return bench.cases[*answer.best]; }
+  bool confirmed() const { return cost.contains(again.mid); }
+};
+
+/// Searches, times the finalists and verifies the best, all within --patience.
+class Advisor {
+ public:
+  explicit Advisor(const Options& options)
+      : options_(options), store_(options.out), result_{.target = target_of(options)} {
+    store_.prepare();
+  }
+
+  Result run() {
+    search();
+    decide();
+    return std::move(result_);
+  }
+  double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  Case make(const std::string& solver) {
+    Case one = maker_.make({options_.scene, options_.settings, parse_solver(solver).canonical()});
+    duration_ = one.scene->duration(), dt_ = one.scene->dt;
+    return one;
+  }
+
+  Clock::time_point at(double seconds) const {
+    return start_ +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
+
+  /// Wall time that timing and verifying the best `most` takes, by their quick costs [s].
+  double seconds_of_final(std::size_t most, int rounds) const {
+    double all = 0;
+    const auto chosen = finalists(result_.tried, result_.target, most);
+    const auto of = [&](const Candidate& c) {
+      return c.cost.mid * duration_ + 2 * rounds * (options_.seconds + 5 * c.cost.mid * dt_);
+    };
+    for (const std::size_t i : chosen) all += of(result_.tried[i]);
+    // The control, its and the best's second session, and the best's second run with its metrics.
+    if (!chosen.empty())
+      all += 3 * of(result_.tried[chosen.front()]) +
+             2 * result_.tried[chosen.front()].cost.mid * duration_;
+    return slowdown_ * all;
+  }
+
+  /// Physics and quick cost of a setting; nothing when the time is up.
+  std::optional<Candidate> evaluate(const std::string& setting, double deadline) {
+    const double end =
+        std::min(deadline, options_.patience - seconds_of_final(kMostFinalists, options_.rounds));
+    if (elapsed() >= end) return {};
+    const auto record = run_stored(make(setting), store_, {}, at(end));
+    if (!record) return {};
+    Candidate found{
+        record->solver, record->spec.solver, {}, std::abs(record->value(options_.metric)), {}};
+    if (!completed(record->status)) found.failure = describe(record->status);
+    try {
+      TimingWorker worker(program_of(record->spec), record->spec);
+      worker.give_up_at(at(end));
+      const StepTime step = worker.pilot_run(std::min(kQuickSteps, steps_done(*record)));
+      const double cost = step.cpu / record->dt;
+      found.cost = {cost, cost, cost};
+      slowdown_ = std::max(1.0, step.wall / step.cpu);
+    } catch (const TimeIsUp&) {
+      return {};
+    } catch (const std::runtime_error& error) {
+      found.failure = error.what();
+      found.cost.mid = std::nan("");
+    }
+    progress() << "  " << number_text(elapsed(), 2) << " of " << number_text(options_.patience)
+               << " s  " << parse_solver(setting).brief() << ": "
+               << (found.failure.empty() ? options_.metric + " " + number_text(found.error)
+                                         : found.failure)
+               << ", " << number_text(1e3 * found.cost.mid) << " ms per simulated s\n";
+    return found;
+  }
+
+  /// Every solver gets an equal share of the time that those before it have left.
+  void search() {
+    auto left = static_cast<double>(options_.solvers.size());
+    for (const std::string& solver : options_.solvers) {
+      const double deadline = elapsed() + (options_.patience - elapsed()) / left--;
+      const Case one = make(solver);
+      std::vector<std::string> reasons;
+      try {
+        reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
+      } catch (const SolverFailure& failure) {
+        reasons = {failure.what()};
+      }
+      if (!reasons.empty()) {
+        result_.unsupported.push_back(solver + ": " + reasons.front());
+        continue;
+      }
+      bool ended = true;
+      const Evaluation run = [&](const std::string& setting) {
+        const auto found = evaluate(setting, deadline);
+        ended = found.has_value();
+        return found;
+      };
+      const auto found = search_settings(solver, result_.target, run, result_.tried);
+      result_.tried.insert(result_.tried.end(), found.begin(), found.end());
+      if (!ended) result_.cut.push_back(solver);
+    }
+  }
+
+  SceneBench time(const std::vector<Record>& records, int rounds) const {
+    return bench_scene(
+        options_.scene, records,
+        {.rounds = rounds, .seconds = options_.seconds, .progress = Countdown("timing round")});
+  }
+
+  void decide() {
+    std::size_t most = kMostFinalists;
+    int rounds = options_.rounds;
+    const auto too_long = [&] {
+      return elapsed() + seconds_of_final(most, rounds) > options_.patience;
+    };
+    while (most > 2 && too_long()) --most;
+    while (rounds > 2 && too_long()) --rounds;
+    std::vector<Record> records;
+    for (const std::size_t i : finalists(result_.tried, result_.target, most))
+      records.push_back(*run_stored(make(result_.tried[i].setting), store_));
+    if (records.empty()) return;
+    result_.bench = time(records, rounds);
+    Answer& answer = result_.answer =
+        taut::answer(result_.bench, result_.target, options_.metric, options_.tolerance);
+    if (!answer.best) return;
+    const Record& best = result_.best().record;
+    result_.same_bits = run_again(make(best.spec.solver), store_).digest == best.digest;
+    result_.again = time({best}, rounds).cases.front().cost();
+    const double stray = 1 + spread(result_.bench.control);
+    result_.cost = result_.best().cost();
+    result_.cost.low /= stray, result_.cost.high *= stray;
+    if (answer.certainty == Certainty::clear && !(result_.cut.empty() && result_.confirmed()))
+      answer.certainty = Certainty::likely;
+  }
+
+  const Options& options_;
+  Clock::time_point start_ = Clock::now();
+  Store store_;
+  CaseMaker maker_;
+  double duration_ = 0, dt_ = 0;  ///< of the scene [s]
+  double slowdown_ = 1;           ///< wall over CPU time now: others use the machine
+  Result result_;
+};
+
+std::string command(const Options& options, const Result& result) {
+  std::string text = "taut bench " + options.scene;
+  for (const std::string& value : options.settings) text += " --set '" + value + "'";
+  const auto solver = [&](std::size_t i) {
+    text +=
+        " --solver " + shell_word(parse_solver(result.bench.cases[i].record.spec.solver).brief());
+  };
+  solver(*result.answer.best);
+  if (result.answer.runner_up) solver(*result.answer.runner_up);
+  return text + (options.metric == "stretch.rms" ? "" : " --metric " + options.metric);
+}
+
+void line(const char* what, const std::string& text) {
+  std::cout << "  " << std::left << std::setw(11) << what << text << '\n';
+}
+
+void print_best(const Options& options, const Result& result) {
+  line("cost",
+       interval_text(result.cost, 1e-3) + " ms CPU per simulated s, " +
+           number_text(1e3 * kFrame * result.cost.mid) +
+           " ms per frame; the same code against itself: " + interval_text(result.bench.control));
+  line("verified",
+       std::string(result.same_bits ? "run again, the same bits"
+                                    : "RUN AGAIN, OTHER BITS: not deterministic") +
+           "; timed again, " + interval_text(result.again, 1e-3) + " ms" +
+           (result.confirmed() ? ""
+                               : ": OUTSIDE THE INTERVAL, THIS MACHINE IS TOO NOISY NOW TO JUDGE"));
+  line("reproduce", command(options, result));
+}
+
+/// How near anything came, where nothing meets the target.
+void print_nearest(const Options& options, const Result& result) {
+  const auto miss = [&](const Candidate& c) { return result.target.error ? c.error : c.cost.mid; };
+  const Candidate* nearest = nullptr;
+  for (const Candidate& c : result.tried)
+    if (c.failure.empty() && std::isfinite(c.error) && (!nearest || miss(c) < miss(*nearest)))
+      nearest = &c;
+  std::cout << text(result.target, options.metric) << ": "
+            << (result.cut.empty() ? "never reached" : "not reached in the time given");
+  if (nearest)
+    std::cout << "; nearest: " << parse_solver(nearest->setting).brief() << ", " << options.metric
+              << " " << number_text(nearest->error) << " for "
+              << number_text(1e3 * nearest->cost.mid) << " ms CPU per simulated s";
+  std::cout << '\n';
+}
+
+void print_searched(const Options& options, const Result& result, double elapsed) {
+  line("searched", std::to_string(result.tried.size()) + " settings; " + number_text(elapsed) +
+                       " s of " + number_text(options.patience) + " s in all");
+  for (const std::string& solver : result.cut)
+    line("NOT DONE", solver + ": stopped by --patience " + number_text(options.patience));
+  for (const std::string& reason : result.unsupported) line("cannot", reason);
+  std::size_t refused = 0;
+  for (const Candidate& c : result.tried)
+    if (!c.failure.empty() && ++refused <= kMostRefused)
+      line("refused", parse_solver(c.setting).brief() + ": " + c.failure);
+  if (refused > kMostRefused)
+    line("", "and " + std::to_string(refused - kMostRefused) + " more; --json names all");
+}
+
+Json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
+
+Json json_of(const BenchedCase& c, const std::string& metric) {
+  return {{"setting", parse_solver(c.record.spec.solver).brief()},
+          {"solver", c.record.solver},
+          {"error", c.record.value(metric)},
+          {"cpu_seconds_per_second", json_of(c.cost())},
+          {"peak_bytes", c.timing.peak_bytes},
+          {"case", c.record.id}};
+}
+
+void print_json(const Options& options, const Result& result, double elapsed) {
+  Json all{{"scene", options.scene},
+           {"metric", options.metric},
+           {"best", nullptr},
+           {"runner_up", nullptr},
+           {"unsupported", result.unsupported},
+           {"seconds", elapsed},
+           {"patience_seconds", options.patience},
+           {"complete", result.cut.empty()},
+           {"not_done", result.cut},
+           {"tried", Json::array()}};
+  if (result.target.error) all["error"] = *result.target.error;
+  if (result.target.budget) all["budget_cpu_seconds_per_second"] = *result.target.budget;
+  for (const Candidate& c : result.tried)
+    all["tried"].push_back({{"setting", parse_solver(c.setting).brief()},
+                            {"error", c.error},
+                            {"quick_cost", c.cost.mid},
+                            {"refused", c.failure.empty() ? Json() : Json(c.failure)}});
+  if (const Answer& answer = result.answer; answer.best) {
+    all["best"] = json_of(result.best(), options.metric);
+    all["best"]["cpu_seconds_per_second"] = json_of(result.cost);
+    all["certainty"] = to_string(answer.certainty);
+    all["control"] = json_of(result.bench.control);
+    all["verified"] = {{"same_bits", result.same_bits},
+                       {"cpu_seconds_per_second", json_of(result.again)},
+                       {"inside_interval", result.confirmed()}};
+    all["command"] = command(options, result);
+    if (answer.runner_up)
+      all["runner_up"] = json_of(result.bench.cases[*answer.runner_up], options.metric);
+    if (answer.ratio) all["ratio"] = json_of(*answer.ratio);
+  }
+  std::cout << to_text(all, 1) << '\n';
+}
+
+int run(Options options) {
+  find_scene(options.scene);
+  target_of(options);
+  if (options.solvers.empty())
+    for (const SolverEntry* entry : all_solvers())
+      if (entry->name != "external" && entry->name != "positions")
+        options.solvers.emplace_back(entry->name);
+  check_solvers(options.solvers);
+  Advisor advisor(options);
+  const Result result = advisor.run();
+  if (result.cut.empty() && std::ranges::all_of(result.tried, [](const Candidate& c) {
+        return !c.failure.empty() || std::isnan(c.error);
+      }))
+    throw InputError(result.tried.empty()
+                         ? "no solver can run scene '" + options.scene + "'"
+                         : options.metric + " has no value on scene '" + options.scene + "'");
+  if (options.json) {
+    print_json(options, result, advisor.elapsed());
+  } else {
+    std::cout << options.scene << ", ";
+    if (result.answer.best)
+      std::cout << text(result.answer, result.bench, options.metric), print_best(options, result);
+    else
+      print_nearest(options, result);
+    print_searched(options, result, advisor.elapsed());
+  }
+  if (!result.answer.best) return kNothing;
+  return result.same_bits ? kPass : kConflict;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  app.add_option("SCENE", o->scene, "Name or path of a scene")->required();
+  app.add_option("--error", o->error, "Reach this error (0.01 or 1%) at the least cost");
+  app.add_option("--budget", o->budget,
+                 "Reach the least error within this CPU time per frame of 1/60 s [ms]")
+      ->check(above_zero());
+  app.add_option("--solver", o->solvers,
+                 "Only this solver; what its text fixes is not searched; repeat it (default: all)");
+  add_settings(app, o->settings);
+  add_judgement(app, o->metric, o->tolerance);
+  app.add_option("--patience", o->patience,
+                 "Search, time and verify within this time [s] (default: 120)")
+      ->check(above_zero());
+  add_samples(app, o->rounds, o->seconds, 2);
+  add_results(app, o->out);
+  add_json(app, o->json, "The answer and all that was tried");
+  return [o] { return run(*o); };
+}
+
+}  // namespace
+}  // namespace taut::verb::advise
+
+TAUT_VERB(advise) = {
+    .name = "advise",
+    .group = VerbGroup::cost,
+    .summary = "Finds and verifies the best setting for an error or a budget",
+    .example =
+        "taut advise hang --error 1%\n  taut advise ball --budget 4 --metric "
+        "stretch.max\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
+        "Exit: 0 found; 4 not reached; 6 the best does not repeat bit for bit",
+    .bind = taut::verb::advise::bind};

@@ -1,0 +1,196 @@
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/study/campaign.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/timing/answer.hpp"
+
+namespace taut::verb::bench {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> what, solvers, settings;
+  std::vector<double> levels{std::begin(kErrorLevels), std::end(kErrorLevels)};
+  std::string preset, metric = "stretch.rms", out;
+  int rounds = 5;
+  double seconds = 0.05;
+  double tolerance = kTolerance;
+  bool json = false, worker = false;
+};
+
+/// The physics of every case, from the store or run now.
+std::vector<Record> physics(const std::vector<Case>& cases, const Options& options) {
+  const Store store(options.out);
+  store.prepare();
+  const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  if (run_missing(cases, store, "taut bench", {.jobs = jobs}).interrupted) throw Interrupted();
+  std::vector<Record> records;
+  for (const Case& one : cases)
+    if (auto record = store.find(one)) records.push_back(std::move(*record));
+  return records;
+}
+
+void print_control(const SceneBench& bench, double tolerance) {
+  const bool noisy = spread(bench.control) > tolerance;
+  std::cout << "  the same code against itself: " << interval_text(bench.control) << ", tolerance "
+            << number_text(100 * tolerance) << " %"
+            << (noisy ? ": THIS MACHINE IS TOO NOISY NOW TO JUDGE" : "") << '\n';
+}
+
+/// Who is cheapest for each error, and who is most accurate within each budget.
+void print_answers(const SceneBench& bench, const Options& options) {
+  std::vector<Target> targets;
+  for (const double level : options.levels) targets.push_back({level, {}});
+  for (const double budget : kFrameBudgets) targets.push_back({{}, budget / kFrame});
+  for (const Target& target : targets)
+    std::cout << "  "
+              << text(answer(bench, target, options.metric, options.tolerance), bench,
+                      options.metric);
+}
+
+void print_pairs(const SceneBench& bench, double tolerance) {
+  static constexpr const char* kWords[] = {"no difference", "cheaper", "dearer",
+                                           "too noisy to judge"};
+  for (std::size_t i = 1; i < bench.cases.size(); ++i)
+    if (const auto ratio = bench.ratio(i, 0))
+      std::cout << "  " << bench.cases[i].record.id << ": " << interval_text(*ratio) << " x "
+                << bench.cases[0].record.id << ": "
+                << kWords[static_cast<int>(compare_costs(*ratio, bench.control, tolerance))]
+                << '\n';
+}
+
+void print_failures(const SceneBench& bench) {
+  for (const BenchedCase& c : bench.cases)
+    if (!c.timing.failure.empty())
+      std::cout << "  not timed: " << c.record.id << ": " << c.timing.failure << '\n';
+    else if (!c.timing.remark.empty())
+      std::cout << "  doubtful: " << c.record.id << ": " << c.timing.remark << '\n';
+}
+
+/// Cases grouped by scene, in order of appearance.
+std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
+    const std::vector<Record>& records) {
+  std::vector<std::pair<std::string, std::vector<Record>>> groups;
+  for (const Record& record : records) {
+    if (record.status.kind == Status::Kind::unsupported) continue;
+    auto group = std::ranges::find(groups, record.scene, [](const auto& g) { return g.first; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {record.scene, {}});
+    group->second.push_back(record);
+  }
+  return groups;
+}
+
+BenchSession bench(const std::string& name, const std::vector<Case>& cases,
+                   const Options& options) {
+  BenchSession session = BenchSession::here(name);
+  for (const auto& [scene, records] : by_scene(physics(cases, options))) {
+    progress() << scene << ": timing " << records.size() << " cases\n";
+    session.scenes.push_back(bench_scene(scene, records,
+                                         {.rounds = options.rounds,
+                                          .seconds = options.seconds,
+                                          .progress = Countdown("timing round")}));
+  }
+  return session;
+}
+
+void bench_study(const std::string& name, const Options& options) {
+  const Study study = load_study(name, options.preset);
+  const BenchSession session = bench(study.name, cases_of(study), options);
+  const std::filesystem::path file = keep(options.out, session);
+  if (options.json) {
+    std::cout << to_json(session);
+    return;
+  }
+  for (const SceneBench& scene : session.scenes) {
+    std::cout << scene.scene << '\n';
+    print_control(scene, options.tolerance);
+    print_answers(scene, options);
+    print_failures(scene);
+  }
+  std::cout << file.string() << '\n';
+}
+
+void compare(const std::string& scene, const Options& options) {
+  check_solvers(options.solvers);
+  std::vector<Case> cases;
+  CaseMaker maker;
+  for (const std::string& solver : options.solvers)
+    cases.push_back(maker.make({scene, options.settings, parse_solver(solver).canonical()}));
+  const BenchSession session = bench(scene, cases, options);
+  if (options.json) {
+    std::cout << to_json(session);
+    return;
+  }
+  for (const SceneBench& one : session.scenes) {
+    std::cout << one.scene << '\n';
+    print_control(one, options.tolerance);
+    for (const BenchedCase& c : one.cases)
+      std::cout << "  " << c.record.id << ": " << interval_text(c.cost(), 1e-3)
+                << " ms per simulated s, " << options.metric << " "
+                << number_text(c.record.value(options.metric)) << ", "
+                << to_string(c.record.status.kind) << '\n';
+    print_pairs(one, options.tolerance);
+    print_failures(one);
+  }
+}
+
+/// Cores that a case keeps busy.
+int threads_of(const SolverChoice& choice) {
+  for (const ParamSpec& spec : choice.params.specs())
+    if (spec.name == "threads") return std::max(1, choice.params.integer("threads"));
+  return 1;
+}
+
+int run(const Options& options) {
+  if (options.worker) {
+    if (options.what.size() != 2) throw InputError("bench --worker takes a scene and a solver");
+    const Case one = make_case({options.what[0], options.settings, options.what[1]});
+    if (std::getenv("SLURM_JOB_ID")) pin(threads_of(one.choice));
+    return serve_timing(*one.scene, one.choice);
+  }
+  require_one_quiet_host();
+  if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
+  for (const std::string& name : options.what)
+    options.solvers.empty() ? bench_study(name, options) : compare(name, options);
+  return kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  app.add_option("WHAT", o->what, "Studies; or scenes, with --solver");
+  app.add_option("--solver", o->solvers, "A solver to time on the scene; repeat it for each");
+  add_settings(app, o->settings);
+  add_preset(app, o->preset);
+  add_judgement(app, o->metric, o->tolerance);
+  app.add_option("--at", o->levels,
+                 "Errors to ask for (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
+      ->delimiter(',')
+      ->check(above_zero());
+  add_samples(app, o->rounds, o->seconds);
+  add_results(app, o->out);
+  app.add_flag("--json", o->json, "Everything measured, every sample, as JSON");
+  app.add_flag("--worker", o->worker, "Serve samples of one case over stdin and stdout (internal)")
+      ->group("");
+  return [o] { return run(*o); };
+}
+
+}  // namespace
+}  // namespace taut::verb::bench
+
+TAUT_VERB(bench) = {
+    .name = "bench",
+    .group = VerbGroup::cost,
+    .summary = "Measures cost: CPU time of Solver::step alone, with intervals",
+    .example =
+        "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
+        "jakobsen:iterations=1,substeps=16 --solver "
+        "bullet:iterations=1,substeps=16\n  taut bench kernels\n  taut bench contact",
+    .bind = taut::verb::bench::bind};

@@ -1,0 +1,365 @@
+#include "experiments/study/frontier.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
+#include "experiments/baseline/baseline.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/columns.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/extremes/extremes.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/plot/plot.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/timing/statistics.hpp"
+
+namespace taut::verb::frontier {
+
+namespace {
+
+struct Options {
+  CaseOptions which;
+  std::vector<std::string> all;  ///< solvers whose every knob is asked for; empty: one case
+  std::string baselines;
+  bool check = false, update = false;
+  std::string of = "dt", out;
+  std::optional<double> from, to;
+  std::vector<double> expected;  ///< low and high, or empty
+  double tolerance = SearchRange{}.tolerance;
+  int jobs = 1;
+  bool json = false;
+};
+
+std::string unit_of(const Options& options, const SolverChoice& choice) {
+  if (options.of == "dt") return " s";
+  for (const ParamSpec& spec : choice.entry->params)
+    if (spec.name == options.of && !spec.unit.empty()) return " " + std::string(spec.unit);
+  return "";
+}
+
+std::string percent(double ratio) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%+.2g %%", 100 * ratio);
+  return text;
+}
+
+/// How theory and the bracket agree.
+std::string agreement(const Prediction& theory, const Frontier& found) {
+  if (theory.kind != found.kind)
+    return std::string("theory says ") + std::string(to_string(theory.kind)) + " here";
+  if (theory.kind != Frontier::Kind::bracketed) return "agrees";
+  if (theory.value >= found.stable && theory.value <= found.unstable) return "inside the bracket";
+  const double nearest = theory.value < found.stable ? found.stable : found.unstable;
+  return "measured " + percent(nearest / theory.value - 1) + " from it";
+}
+
+void print_line(std::string_view label, const std::string& text) {
+  std::cout << "  " << std::left << std::setw(16) << label << text << '\n';
+}
+
+void print_theory(const Prediction& theory, const Frontier& found, const std::string& unit) {
+  std::string text = theory.kind == Frontier::Kind::bracketed ? number_text(theory.value, 5) + unit
+                                                              : std::string(to_string(theory.kind));
+  print_line("theory", text + ", " + agreement(theory, found) + ": " + theory.law);
+  if (theory.growth > 1 + 1e-6 && theory.kind == Frontier::Kind::none_stable)
+    print_line("", "growth per step " + number_text(theory.growth, 5));
+}
+
+void print_text(const CaseFrontier& result, const std::optional<Prediction>& theory,
+                const std::string& unit) {
+  const Frontier& found = result.frontier;
+  const auto outcome = [&](double value) {
+    const Probed* probe = found.at(value);
+    return shortest(value) + unit + "  " + (probe ? describe(probe->status) : "");
+  };
+  if (found.kind == Frontier::Kind::all_stable)
+    print_line("stable", "as far as was looked (--to): " + outcome(found.stable) +
+                             "; stable is not accurate");
+  else if (found.kind != Frontier::Kind::none_stable)
+    print_line("stable up to", outcome(found.stable));
+  if (found.kind != Frontier::Kind::all_stable)
+    print_line("unstable from", outcome(found.unstable));
+  if (theory)
+    print_theory(*theory, found, unit);
+  else
+    print_line("theory",
+               "none for these settings; there is one for few links, with jakobsen in order=mesh");
+  std::string above = std::to_string(found.above) + " values above the bracket, ";
+  if (found.stable_above.empty()) {
+    above += "none stable";
+  } else {
+    above += "NOT MONOTONE: stable again at";
+    for (const double value : found.stable_above) above += " " + shortest(value);
+  }
+  if (found.kind != Frontier::Kind::all_stable) print_line("looked at", above);
+  print_line("cases", std::to_string(found.probes.size()) + ", of which " +
+                          std::to_string(result.ran) + " were run now");
+}
+
+Json to_json(const Options& options, const CaseFrontier& result,
+             const std::optional<Prediction>& theory) {
+  const Frontier& found = result.frontier;
+  Json probes = Json::array();
+  for (std::size_t i = 0; i < found.probes.size(); ++i)
+    probes.push_back({{"value", found.probes[i].value},
+                      {"status", to_string(found.probes[i].status.kind)},
+                      {"reason", found.probes[i].status.reason},
+                      {"step", found.probes[i].status.step},
+                      {"id", result.records[i].id},
+                      {"key", result.records[i].key}});
+  Json all{{"of", options.of}, {"kind", to_string(found.kind)}, {"probes", probes}};
+  if (found.kind != Frontier::Kind::none_stable) all["stable"] = found.stable;
+  if (found.kind != Frontier::Kind::all_stable) all["unstable"] = found.unstable;
+  all["stable_above"] = found.stable_above;
+  if (theory) {
+    all["theory"] = {{"kind", to_string(theory->kind)}, {"law", theory->law}};
+    if (theory->kind == Frontier::Kind::bracketed) all["theory"]["value"] = theory->value;
+    if (theory->growth > 0) all["theory"]["growth"] = theory->growth;
+  }
+  return all;
+}
+
+int not_answered(const CaseFrontier& result) {
+  if (result.interrupted) return kInterrupted;
+  for (const Record& record : result.records)
+    if (record.status.kind != Status::Kind::ok) {
+      std::cerr << record.id << ": " << describe(record.status) << '\n';
+      break;
+    }
+  return kNothing;
+}
+
+/// Whether the bracket meets what was expected; a range without a frontier meets nothing.
+int judge(const Options& options, const Frontier& found) {
+  if (options.expected.empty()) return kPass;
+  const bool meets = found.kind == Frontier::Kind::bracketed &&
+                     found.unstable >= options.expected[0] && found.stable <= options.expected[1];
+  if (meets) return kPass;
+  std::cerr << "the frontier moved: expected between " << shortest(options.expected[0]) << " and "
+            << shortest(options.expected[1]) << ", found " << to_string(found.kind);
+  if (found.kind == Frontier::Kind::bracketed)
+    std::cerr << " between " << shortest(found.stable) << " and " << shortest(found.unstable);
+  std::cerr << '\n';
+  return kRegression;
+}
+
+/// "0.12 s", "none" or, where nothing goes wrong, "-".
+std::string with_unit(double value, const std::string& unit) {
+  return std::isnan(value) ? "-" : number_text(value) + (unit.empty() ? "" : " " + unit);
+}
+
+std::string theory_text(const KnobFrontier& knob) {
+  if (knob.law.empty()) return "";
+  return (std::isnan(knob.theory) ? "beyond" : number_text(knob.theory)) + ": " + knob.law;
+}
+
+/// A row a knob, three columns a solver; the theory of a single one.
+void print_all(const std::vector<KnobFrontier>& found, std::size_t solvers) {
+  const std::size_t knobs = found.size() / solvers;
+  Row head{"knob"}, names{""};
+  for (std::size_t s = 0; s < solvers; ++s) {
+    head.insert(head.end(), {"good up to", "bad from", "what goes wrong"});
+    names.insert(names.end(), {found[s * knobs].solver, "", ""});
+  }
+  if (solvers == 1) head.emplace_back("theory"), names.emplace_back();
+  std::vector<Row> rows{names, head};
+  for (std::size_t k = 0; k < knobs; ++k) {
+    const std::string& unit = found[k].unit;
+    const bool common = found[(solvers - 1) * knobs + k].unit == unit;
+    Row row{found[k].knob + (unit.empty() || !common ? "" : " [" + unit + "]")};
+    for (std::size_t s = 0; s < solvers; ++s) {
+      const KnobFrontier& one = found[s * knobs + k];
+      if (!one.lacks.empty())
+        row.insert(row.end(), {"-", "-", "(" + one.lacks.substr(0, 40) + ")"});
+      else
+        row.insert(row.end(), {with_unit(one.good, common ? "" : one.unit),
+                               with_unit(one.bad, common ? "" : one.unit),
+                               std::isnan(one.bad) ? "nothing as far as was asked" : one.symptom});
+    }
+    if (solvers == 1) row.push_back(theory_text(found[k]));
+    rows.push_back(std::move(row));
+  }
+  print_columns(rows, 1);
+  for (const KnobFrontier& one : found) {
+    if (!one.at_start.empty())
+      std::cout << one.solver << ", " << one.knob << ": not counted, for it is so at "
+                << with_unit(one.from, one.unit) << " already: " << one.at_start << '\n';
+    if (!std::isnan(one.bad))
+      std::cout << one.solver << ", " << one.knob << ", " << one.symptom << ":\n    "
+                << reproduce(one.beyond) << '\n';
+  }
+}
+
+std::filesystem::path baseline_of(const Options& options) {
+  return std::filesystem::path(options.baselines) / "frontiers.jsonl";
+}
+
+/// Writes the rows of these solvers into the baseline and leaves those of others.
+int update_baseline(const Options& options, const std::vector<KnobFrontier>& found) {
+  const std::filesystem::path file = baseline_of(options);
+  std::vector<KnobFrontier> rows;
+  if (std::filesystem::exists(file)) rows = read_knobs(file);
+  std::erase_if(rows, [&](const KnobFrontier& row) {
+    return std::ranges::any_of(found, [&](const auto& f) { return f.solver == row.solver; });
+  });
+  rows.insert(rows.end(), found.begin(), found.end());
+  std::ranges::stable_sort(rows, {}, &KnobFrontier::solver);
+  make_folder(file.parent_path());
+  write_durably(file, to_json_lines(rows));
+  progress() << file.string() << '\n';
+  return kPass;
+}
+
+int check_baseline(const Options& options, const std::vector<KnobFrontier>& found) {
+  const std::filesystem::path file = baseline_of(options);
+  std::vector<KnobFrontier> before;
+  if (std::filesystem::exists(file)) before = read_knobs(file);
+  for (const KnobFrontier& knob : found)
+    if (std::ranges::none_of(before, [&](const auto& b) { return b.solver == knob.solver; })) {
+      std::cerr << "nothing to compare with: no frontiers of " << knob.solver << " in "
+                << file.string() << '\n';
+      return kNothing;
+    }
+  int code = kPass;
+  std::size_t compared = 0;
+  for (const FrontierChange& change : compare_frontiers(before, found)) {
+    const bool narrowed = change.kind == FrontierChange::Kind::narrowed;
+    if (narrowed) code = kRegression;
+    std::cerr << (narrowed                                       ? "NARROWED "
+                  : change.kind == FrontierChange::Kind::widened ? "widened  "
+                                                                 : "changed  ")
+              << change.solver << ", " << change.knob << ": " << change.text << '\n';
+  }
+  for (const KnobFrontier& knob : found) compared += knob.lacks.empty();
+  std::cerr << compared << " frontiers compared with " << file.string() << ": "
+            << (code == kPass ? "none is narrower" : "some are narrower") << '\n';
+  return code;
+}
+
+/// Every knob of one or two solvers.
+int run_all(const Options& options) {
+  const Store store(options.out);
+  std::vector<std::string> solvers;
+  for (const std::string& text : options.all) solvers.push_back(parse_solver(text).brief());
+  if (solvers.size() == 2 && solvers[0] == solvers[1])
+    throw InputError("--all: " + solvers[0] + " twice");
+  store.prepare();
+  const Session session(store, "taut frontier --all", {}, {});
+  std::vector<KnobFrontier> found;
+  for (const std::string& solver : solvers) {
+    const Countdown countdown("knob of " + solver);
+    const Extremes extremes =
+        find_extremes(solver, store, session, {.jobs = options.jobs, .frames = true},
+                      [&](std::size_t done, std::size_t all) { countdown(done, all); });
+    if (extremes.interrupted) return kInterrupted;
+    const std::filesystem::path folder = std::filesystem::path(options.out) / kFrontiersFolder;
+    make_folder(folder);
+    write_file(folder / (report::slug(solver) + ".json"),
+               to_json(extremes.knobs, program_digest()));
+    found.insert(found.end(), extremes.knobs.begin(), extremes.knobs.end());
+  }
+  if (options.json)
+    std::cout << to_json(found, program_digest());
+  else
+    print_all(found, solvers.size());
+  try {
+    std::string stem = report::slug(solvers[0]);
+    if (solvers.size() == 2) stem += "-and-" + report::slug(solvers[1]);
+    const auto picture =
+        report::plot_frontiers(found, std::filesystem::path(options.out) / kFrontiersFolder, stem);
+    (options.json ? progress() : std::cout) << picture.string() << '\n';
+  } catch (const report::PlotError& error) {
+    std::cerr << "no picture: " << error.what() << '\n';
+  }
+  if (options.update) return update_baseline(options, found);
+  return options.check ? check_baseline(options, found) : kPass;
+}
+
+int run(const Options& options) {
+  if (!options.all.empty()) return run_all(options);
+  if (options.which.spec().scene.empty() || options.which.spec().solver.empty())
+    throw InputError("SCENE and SOLVER are required, or --all SOLVER");
+  FrontierQuestion question{options.which.spec(), options.of, {}};
+  question.range = range_of(question.base, options.of, options.from, options.to);
+  question.range.tolerance = options.tolerance;
+  const Case first = make_case(question.at(question.range.from));
+  const Store store(options.out);
+  store.prepare();
+  const Session session(store, "taut frontier " + first.id, {}, {});
+  Progress progress;
+  const CaseFrontier result = find_frontier(
+      question, store, session,
+      {.jobs = options.jobs, .progress = [&](const CampaignProgress& t, const Record* record) {
+         if (record) progress.show(t, record);
+       }});
+  if (result.frontier.kind == Frontier::Kind::not_answered) return not_answered(result);
+  const std::optional<Prediction> theory = predicted_frontier(question);
+  if (options.json) {
+    std::cout << to_text(to_json(options, result, theory), 2) << '\n';
+    return judge(options, result.frontier);
+  }
+  const CaseSpec spec = question.base;
+  std::cout << first.scene->name << ' ' << spec.solver << ": largest stable " << options.of << '\n';
+  print_text(result, theory, unit_of(options, first.choice));
+  return judge(options, result.frontier);
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  options->which.bind(app);
+  for (const char* name : {"SCENE", "SOLVER"}) app.get_option(name)->required(false);
+  auto* all =
+      app.add_option("--all", options->all,
+                     "One or two solvers: every knob of theirs and of a small standard scene, with "
+                     "what goes wrong first, as a table and a picture; a minute or so")
+          ->expected(1, 2)
+          ->excludes("SCENE")
+          ->excludes("SOLVER");
+  add_baselines(app, options->baselines);
+  app.add_flag("--check", options->check,
+               "Exit 1 if a frontier of --all is narrower than in the baseline")
+      ->needs(all);
+  app.add_flag("--update", options->update, "Keep what --all finds as the baseline")->needs(all);
+  app.add_option("--of", options->of,
+                 "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
+                 "(default: dt)");
+  app.add_option("--from", options->from, "Where to start (dt: 1e-3 s)");
+  app.add_option("--to", options->to, "Where to stop (dt: 0.5 s)");
+  app.add_option("--tolerance", options->tolerance, "Relative width of the bracket (default: 0.01)")
+      ->check(CLI::Range(1e-9, 0.5));
+  app.add_option("--expect", options->expected,
+                 "Two values; exit 1 if the bracket does not meet the range between them")
+      ->expected(2);
+  add_jobs(app, options->jobs);
+  add_results(app, options->out);
+  app.add_flag("--json", options->json, "Print JSON");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::frontier
+
+TAUT_VERB(frontier) = {
+    .name = "frontier",
+    .group = VerbGroup::extremes,
+    .summary = "Finds how far a setting can go before a solver fails, beside theory",
+    .example =
+        "taut frontier chain mass-spring:substeps=1 --tolerance 0.001\n"
+        "  taut frontier chain jakobsen:iterations=1,substeps=1,order=mesh --of omega --from 1\n"
+        "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000\n"
+        "  taut frontier --all jakobsen bullet\n"
+        "Exit: 0 as expected; 1 another frontier than --expect, or one of --all is narrower than "
+        "the baseline;\n      4 nothing was answered or compared",
+    .bind = taut::verb::frontier::bind};

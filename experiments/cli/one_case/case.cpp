@@ -1,0 +1,133 @@
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include "core/io/positions/positions.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/case/trajectory.hpp"
+#include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/study/isolate.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::verb::one_case {
+
+namespace {
+
+struct Options {
+  CaseOptions which;
+  bool json = false, verbose = false, frames = false;
+  std::string final_state, trajectory, series, into;
+};
+
+/// What keeps the motion: taut's own trajectory, or a format of other programs.
+class Keeper {
+ public:
+  Keeper(const std::string& file, const Case& one) {
+    if (file.empty()) return;
+    if (!file.ends_with(".traj"))
+      positions_ = create_positions(file, one.scene->mesh);
+    else
+      trajectory_.emplace(file, trajectory_header(one));
+  }
+  void append(const Snapshot& m) {
+    if (trajectory_) trajectory_->append(m.t, m.state);
+    if (positions_) positions_->append(m.t, m.state.x);
+  }
+  void finish() {
+    if (positions_) positions_->finish();
+  }
+
+ private:
+  std::optional<TrajectoryWriter> trajectory_;
+  std::unique_ptr<PositionWriter> positions_;
+};
+
+void tell(const Snapshot& m, int steps) {
+  if (m.step % std::max(1, steps / 20) != 0) return;
+  double fastest = 0;
+  for (const Vec3& v : m.state.v) fastest = std::max(fastest, v.norm());
+  std::cerr << "step " << m.step << "/" << steps << "  t " << m.t << " s  fastest vertex "
+            << fastest << " m/s\n";
+}
+
+/// Says of a run that takes over ten seconds how far it is and how long it will last.
+class SlowRun {
+ public:
+  explicit SlowRun(int steps) : steps_(steps) {}
+  void at(int step) {
+    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (step == 0 || spent < next_) return;
+    next_ = spent + 10;
+    const double left = spent / step * (steps_ - step);
+    if (spent + left > 10)
+      progress() << "step " << step << "/" << steps_ << ", about " << std::lround(left)
+                 << " s left\n";
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  int steps_;
+  Clock::time_point start_ = Clock::now();
+  double next_ = 2;  ///< when to speak [s since the start]
+};
+
+int run(const Options& options) try {
+  const Case one = options.which.make();
+  continue_in_right_program(one.choice);
+  if (!options.into.empty()) return run_into(one, options.into, options.frames);
+
+  Keeper keeper(options.trajectory, one);
+  SlowRun slow(one.scene->steps);
+  const CaseRun result = run_case(
+      one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Snapshot& m) {
+              keeper.append(m);
+              slow.at(m.step);
+              if (options.verbose) tell(m, one.scene->steps);
+            }});
+  keeper.finish();
+  if (!options.final_state.empty()) write_durably(options.final_state, to_csv(result.last));
+  if (!options.series.empty()) write_durably(options.series, to_csv(result.series));
+  if (options.json)
+    std::cout << to_json(result.record, 2) << '\n';
+  else
+    print_record(result.record);
+  if (options.verbose)
+    for (const auto& [name, value] : result.record.resolved_settings)
+      std::cerr << name << ": " << value << '\n';
+  return kPass;
+} catch (const std::bad_alloc&) {  // while the scene was read
+  if (options.into.empty()) throw;
+  return kOutOfMemory;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  options->which.bind(app);
+  app.add_flag("--json", options->json, "Print the record as JSON");
+  app.add_option("--final-state", options->final_state,
+                 "Write vertex,x,y,z,vx,vy,vz of the last sound state, full precision (CSV)");
+  app.add_option("--trajectory", options->trajectory,
+                 "Write every step's positions: taut's .traj, .npy, .pc2, .mdd, or a file a step, "
+                 ".obj or .ply");
+  app.add_option("--series", options->series, "Write values over time (CSV)");
+  app.add_flag("--verbose", options->verbose, "Say on stderr how far it is and what is effective");
+  app.add_option("--into", options->into, "Used by taut run")->group("");
+  app.add_flag("--frames", options->frames, "Used by taut require")->group("");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::one_case
+
+TAUT_VERB(case) = {
+    .name = "case",
+    .group = VerbGroup::one_case,
+    .summary = "Runs one case in this process; a numerical failure is a result (exit 0)",
+    .example = "taut case hang jakobsen:iterations=1,substeps=15 --dt 1/120 --final-state hang.csv",
+    .bind = taut::verb::one_case ::bind};

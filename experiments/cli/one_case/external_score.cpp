@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
+#include "experiments/case/case.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/external/recorded.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::verb::score {
+
+namespace {
+
+struct Options {
+  std::string scene, series, picture;
+  external::MotionOptions motion;
+  std::vector<std::string> settings, solvers;
+  bool json = false;
+};
+
+/// The scene gets the file's time step and, if the file is shorter, its duration.
+std::vector<std::string> fitted(const Options& o) {
+  std::vector<std::string> settings = o.settings;
+  Scene scene = load_scene(find_scene(o.scene), settings);
+  const external::MotionFile motion(scene, o.motion);
+  if (std::abs(motion.frame_dt() - scene.dt) > 1e-6 * scene.dt) {
+    settings.push_back("time.dt=" + shortest(motion.frame_dt()));
+    scene = load_scene(find_scene(o.scene), settings);
+  }
+  if (const int steps = motion.header().frames - 1; steps < scene.steps)
+    settings.push_back("time.duration=" + shortest(steps * motion.frame_dt()));
+  return settings;
+}
+
+int draw(const Options& o, const CaseSpec& spec) {
+  std::vector<std::string> words{o.scene, "--solver", spec.solver, "-o", o.picture};
+  for (const std::string& other : o.solvers) words.insert(words.end(), {"--solver", other});
+  for (const std::string& text : spec.overrides) words.insert(words.end(), {"--set", text});
+  return invoke("render", words, o.json ? Output::discarded : Output::shown);
+}
+
+int run(const Options& o) {
+  const Case one = CaseMaker().make({o.scene, fitted(o), external::solver_text(o.motion)});
+  for (const std::string& why : one.choice.entry->unsupported(*one.scene, one.choice.params))
+    throw InputError(why);
+  const CaseRun scored = run_case(one, {.series_rows = o.series.empty() ? 0 : 120});
+  if (!o.series.empty()) write_durably(o.series, to_csv(scored.series));
+  if (o.json) {
+    std::cout << to_json(scored.record, 2) << '\n';
+  } else {
+    for (const auto& [name, value] : scored.record.resolved_settings)
+      std::cout << name << ": " << value << '\n';
+    print_record(scored.record);
+  }
+  return o.picture.empty() ? kPass : draw(o, one.spec);
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  app.add_option("SCENE", o->scene, "Name of a shipped scene, or a path")->required();
+  app.add_option("POSITIONS", o->motion.file,
+                 "A .npy, .pc2, .mdd or .traj; or one .obj or .ply of a sequence")
+      ->required();
+  app.add_option("--fps", o->motion.fps, "Frames in a second (default: what the file says)")
+      ->check(above_zero());
+  app.add_option("--scale", o->motion.scale, "What the file's unit is [m] (default: what fits)")
+      ->check(above_zero());
+  app.add_option("--up", o->motion.up, "The axis that points up (default: what fits)")
+      ->check(CLI::IsMember({"auto", "y", "z"}));
+  app.add_option("--rest", o->motion.rest,
+                 "A file with the cloth at rest in the file's order, if it does not begin as the "
+                 "scene does");
+  app.add_option("--set", o->settings, "Replace a key of the scene: 'cloth.grid=[65, 65]'")
+      ->allow_extra_args(false);
+  app.add_option("--series", o->series, "Write values over time (CSV)");
+  app.add_option("--picture", o->picture, "Draw the end (.png), beside every --solver");
+  app.add_option("--solver", o->solvers, "A solver to draw beside; repeat it for each")
+      ->allow_extra_args(false);
+  add_json(app, o->json, "The record");
+  return [o] { return run(*o); };
+}
+
+}  // namespace
+}  // namespace taut::verb::score
+
+TAUT_VERB(external_score) = {
+    .name = "external score",
+    .group = VerbGroup::one_case,
+    .summary = "All metrics of positions that another program computed, from its file",
+    .example =
+        "taut external score hang blender.pc2 --fps 24 --series blender.csv\n  taut external "
+        "score hang houdini.mdd --solver jakobsen --picture hang.png",
+    .bind = taut::verb::score::bind};

@@ -1,0 +1,164 @@
+#include <iostream>
+#include <memory>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/shortest.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/metrics/metric.hpp"
+#include "experiments/study/study.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/truths/vasilovici/claims.hpp"
+
+namespace taut::verb::list {
+
+namespace {
+
+std::string allowed(const ParamSpec& spec) {
+  if (spec.kind == ParamSpec::Kind::choice) return std::string(spec.choices);
+  if (spec.kind == ParamSpec::Kind::text) return "any text";
+  if (spec.kind == ParamSpec::Kind::integer)
+    return std::to_string(static_cast<long>(spec.min)) + " to " +
+           std::to_string(static_cast<long>(spec.max));
+  return shortest(spec.min) + " to " + shortest(spec.max);
+}
+
+Json list_scenes() {
+  Json all = Json::array();
+  for (const std::string& name : shipped("scenes")) {
+    const Scene scene = load_scene(find_scene(name));
+    all.push_back({{"name", name},
+                   {"summary", scene.summary},
+                   {"vertices", scene.mesh.size()},
+                   {"links", scene.links.size()},
+                   {"dt", scene.dt},
+                   {"duration", scene.duration()}});
+  }
+  return all;
+}
+
+Json list_solvers() {
+  Json all = Json::array();
+  for (const SolverEntry* entry : all_solvers()) {
+    Json params = Json::array();
+    for (const ParamSpec& spec : entry->params)
+      params.push_back({{"name", spec.name},
+                        {"default", spec.default_value},
+                        {"unit", spec.unit},
+                        {"allowed", allowed(spec)},
+                        {"help", spec.help}});
+    all.push_back({{"name", entry->name},
+                   {"summary", entry->summary},
+                   {"source", entry->source},
+                   {"params", params}});
+  }
+  return all;
+}
+
+Json list_metrics() {
+  Json all = Json::array();
+  for (const MetricEntry* entry : metrics()) {
+    Json values = Json::array();
+    for (const ValueSpec& spec : entry->values)
+      values.push_back({{"name", spec.name},
+                        {"unit", spec.unit.si},
+                        {"help", spec.help},
+                        {"in_series", spec.in_series}});
+    all.push_back({{"name", entry->name},
+                   {"summary", entry->summary},
+                   {"source", entry->source},
+                   {"values", values}});
+  }
+  return all;
+}
+
+Json list_studies() {
+  Json all = Json::array();
+  for (const std::string& name : shipped("studies")) {
+    const Study study = load_study(name);
+    all.push_back({{"name", name},
+                   {"question", study.question},
+                   {"presets", study.presets},
+                   {"scenes", study.scenes},
+                   {"solvers", study.solvers}});
+  }
+  return all;
+}
+
+/// What Vasilovici's report claims.
+Json list_claims() {
+  Json all = Json::array();
+  for (const VasiloviciClaim& claim : vasilovici_claims())
+    all.push_back({{"name", claim.section},
+                   {"summary", claim.claim},
+                   {"verdict", to_string(claim.verdict)},
+                   {"because", claim.because},
+                   {"truth", claim.truth.empty() ? Json() : Json(claim.truth)}});
+  return all;
+}
+
+constexpr std::pair<const char*, Json (*)()> kKinds[] = {{"scenes", list_scenes},
+                                                         {"solvers", list_solvers},
+                                                         {"metrics", list_metrics},
+                                                         {"studies", list_studies},
+                                                         {"claims", list_claims}};
+
+std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
+
+void print_text(std::string_view kind, const Json& all) {
+  std::cout << kind << '\n';
+  for (const Json& one : all) {
+    std::cout << "  " << text(one["name"]) << ": "
+              << text(one.contains("summary") ? one["summary"] : one["question"]) << '\n';
+    if (one.contains("verdict")) {
+      const std::string truth = text(one["truth"]);
+      std::cout << "      " << text(one["verdict"]) << ": " << text(one["because"])
+                << (truth.empty() ? "" : " (truth " + truth + ")") << '\n';
+    }
+    if (one.contains("source")) std::cout << "      source: " << text(one["source"]) << '\n';
+    for (const Json& param : one.value("params", Json::array())) {
+      std::cout << "      " << text(param["name"]) << '=' << text(param["default"]);
+      if (const std::string unit = text(param["unit"]); !unit.empty())
+        std::cout << " [" << unit << ']';
+      std::cout << "  (" << text(param["allowed"]) << ")  " << text(param["help"]) << '\n';
+    }
+    for (const Json& value : one.value("values", Json::array()))
+      std::cout << "      " << text(value["name"]) << " [" << text(value["unit"]) << "]  "
+                << text(value["help"]) << '\n';
+  }
+}
+
+int run(const std::string& what, bool as_json) {
+  Json all;
+  for (const auto& [kind, list] : kKinds)
+    if (what.empty() || what == kind) all[kind] = list();
+  if (as_json) {
+    std::cout << to_text(what.empty() ? all : all[what], 2) << '\n';
+    return kPass;
+  }
+  for (const auto& [kind, items] : all.items()) {
+    if (kind != all.begin().key()) std::cout << '\n';
+    print_text(kind, items);
+  }
+  return kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto what = std::make_shared<std::string>();
+  const auto as_json = std::make_shared<bool>(false);
+  app.add_option("WHAT", *what, "scenes | solvers | metrics | studies | claims (default: all)")
+      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies", "claims"}));
+  app.add_flag("--json", *as_json, "Print JSON");
+  return [what, as_json] { return run(*what, *as_json); };
+}
+
+}  // namespace
+}  // namespace taut::verb::list
+
+TAUT_VERB(list) = {
+    .name = "list",
+    .group = VerbGroup::one_case,
+    .summary = "Names scenes, solvers with their parameters, metrics, studies and claims",
+    .example = "taut list solvers",
+    .bind = taut::verb::list::bind};

@@ -1,0 +1,71 @@
+#include <iostream>
+#include <memory>
+
+#include "experiments/command_line/case_options.hpp"
+#include "experiments/command_line/columns.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut::verb::planning {
+
+namespace {
+
+Json to_json(const Case& one, const std::vector<PassCost>& step_cost) {
+  Json passes = Json::array();
+  for (const PassCost& cost : step_cost)
+    passes.push_back({{"pass", cost.pass},
+                      {"items", cost.items},
+                      {"repeats", cost.repeats},
+                      {"bytes", cost.bytes},
+                      {"projections", cost.projections}});
+  return {{"id", one.id}, {"key", one.key}, {"passes", passes}};
+}
+
+void print_text(const Case& one, const std::vector<PassCost>& step_cost) {
+  std::vector<Row> rows{{"pass", "items", "repeats", "bytes", "projections"}};
+  std::size_t bytes = 0, projections = 0;
+  for (const PassCost& cost : step_cost) {
+    const std::size_t work = cost.projections ? cost.items * cost.repeats : 0;
+    bytes += cost.bytes, projections += work;
+    rows.push_back({cost.pass, std::to_string(cost.items), std::to_string(cost.repeats),
+                    std::to_string(cost.bytes), std::to_string(work)});
+  }
+  rows.push_back({"in one step", "", "", std::to_string(bytes), std::to_string(projections)});
+  std::cout << one.id << "\nkey " << one.key << "\n\n";
+  print_columns(rows, 1);
+}
+
+int run(const Case& one, bool json) {
+  continue_in_right_program(one.choice);
+  if (const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
+      !reasons.empty()) {
+    std::cerr << one.id << " is unsupported:\n";
+    for (const std::string& reason : reasons) std::cerr << "  " << reason << '\n';
+    return kNothing;
+  }
+  const std::unique_ptr<Solver> solver = one.choice.entry->make(*one.scene, one.choice.params);
+  solver->load(one.scene->start);
+  if (json)
+    std::cout << to_text(to_json(one, solver->step_cost()), 2) << '\n';
+  else
+    print_text(one, solver->step_cost());
+  return kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto which = std::make_shared<CaseOptions>();
+  const auto json = std::make_shared<bool>(false);
+  which->bind(app);
+  app.add_flag("--json", *json, "Print JSON");
+  return [which, json] { return run(which->make(), *json); };
+}
+
+}  // namespace
+}  // namespace taut::verb::planning
+
+TAUT_VERB(plan) = {
+    .name = "plan",
+    .group = VerbGroup::one_case,
+    .summary = "Shows the passes of one step, what they visit and what they hold in memory",
+    .example = "taut plan ball jakobsen:iterations=1,substeps=15",
+    .bind = taut::verb::planning::bind};

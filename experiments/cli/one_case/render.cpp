@@ -1,0 +1,232 @@
+#include <iostream>
+
+#include "core/io/positions/positions.hpp"
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/film/recorded_runs.hpp"
+#include "experiments/render/image/video.hpp"
+#include "experiments/render/picture/figure.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::verb::render {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  RunRequest what;
+  std::vector<std::string> at;
+  std::string duration, dt, view = "three-quarter", colour = "strain", exported, out;
+  std::string size, quality;
+  double range = 0;
+  bool sheet = false, video = false, dark = false, json = false;
+};
+
+std::pair<int, int> parse_size(const std::string& text) {
+  int width = 0, height = 0;
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &end) != 2 || width < 320 ||
+      height < 240 || width > 7680 || height > 4320 || width % 2 != 0 || height % 2 != 0)
+    throw InputError("--size '" + text + "': WIDTHxHEIGHT, even, 320x240 to 7680x4320");
+  return {width, height};
+}
+
+RenderQuality parse_quality(const std::string& name) {
+  if (name == "draft") return RenderQuality::draft();
+  if (name == "video") return RenderQuality::video();
+  return RenderQuality::still();
+}
+
+SceneRendererOptions look_of(const Options& options, const std::string& quality, int width,
+                             int height) {
+  SceneRendererOptions look;
+  look.width = width, look.height = height;
+  look.theme = options.dark ? Theme::dark() : Theme::paper();
+  look.quality = parse_quality(options.quality.empty() ? quality : options.quality);
+  look.view = parse_view(options.view);
+  look.colour_by = parse_colour_by(options.colour);
+  look.range = options.range / ColourScale{look.colour_by}.shown();
+  return look;
+}
+
+using Files = std::vector<std::string>;
+
+/// Files of several moments get the time into their names: ball-t0.50.png.
+Files draw_stills(const Options& options, const RunSet& set, const std::vector<double>& times,
+                  const fs::path& out) {
+  const auto [width, height] = parse_size(options.size.empty() ? "1920x1080" : options.size);
+  const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
+  SceneRendererOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
+  look.frame = FitRegion::beside_inset();
+  look.from = times.front(), look.to = times.back();
+  const SceneRenderer renderer(set.scene, set.runs, look);
+  const Countdown countdown("still");
+  Files files;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    fs::path file = out;
+    char suffix[32];
+    std::snprintf(suffix, sizeof suffix, "-t%.2f", times[k]);
+    if (times.size() > 1)
+      file.replace_filename(out.stem().string() + suffix + out.extension().string());
+    write_png(file, compose(renderer, layout, times[k]));
+    countdown(k + 1, times.size());
+    files.push_back(file.string());
+  }
+  return files;
+}
+
+Files draw_sheet(const Options& options, const RunSet& set, const std::vector<double>& times,
+                 const fs::path& out) {
+  const auto [width, height] = parse_size(options.size.empty() ? "480x400" : options.size);
+  SceneRendererOptions look = look_of(options, "video", width, height);
+  look.from = times.front(), look.to = times.back();
+  const SceneRenderer renderer(set.scene, set.runs, look);
+  write_png(out, compose_sheet(renderer, times));
+  return {out.string()};
+}
+
+/// Without ffmpeg: a picture of the last frame.
+Files draw_video(const Options& options, const RunSet& set, const fs::path& out) {
+  const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
+  const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
+  SceneRendererOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
+  look.frame = FitRegion::beside_inset();
+  const SceneRenderer renderer(set.scene, set.runs, look);
+  const double dt = set.scene.dt;
+  const int stride = std::max(1, static_cast<int>(1 / (30 * dt) + 0.5));
+  const int frames = set.scene.steps / stride + 1;
+  VideoWriter video(out, {width, height, frame_rate(stride * dt), 22});
+  const Countdown countdown("frame");
+  for (int k = 0; k < frames && video.write(compose(renderer, layout, k * stride * dt)); ++k)
+    countdown(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(frames));
+  const std::string why = video.finish();
+  if (why.empty()) return {out.string()};
+  std::cerr << out.string() << ": " << why << "; a picture of its end instead\n";
+  fs::path poster = out;
+  write_png(poster.replace_extension(".png"), compose(renderer, layout, set.scene.duration()));
+  return {poster.string()};
+}
+
+Files export_frames(const RunSet& set, const fs::path& folder) {
+  const std::size_t stride = std::max(1, static_cast<int>(1 / (30 * set.scene.dt) + 0.5));
+  make_folder(folder);
+  for (std::size_t k = 0; k < set.runs.size(); ++k) {
+    const std::string& solver = set.runs[k].trajectory.header.solver;
+    const std::string prefix =
+        set.scene.name + "_" + std::to_string(k + 1) + "_" + solver.substr(0, solver.find(':'));
+    const auto writer = create_positions(folder / (prefix + ".obj"), set.scene.mesh);
+    const auto& frames = set.runs[k].trajectory.frames;
+    const Countdown countdown("file");
+    for (std::size_t at = 0; at < frames.size(); at += stride) {
+      writer->append(frames[at].t, frames[at].state.x);
+      countdown(at / stride + 1, (frames.size() + stride - 1) / stride);
+    }
+  }
+  return {folder.string()};
+}
+
+fs::path output(const Options& options, const std::string& scene) {
+  if (!options.out.empty()) return options.out;
+  if (!options.exported.empty()) return scene + "-obj";
+  return scene + (options.video ? ".mp4" : options.sheet ? "-sheet.png" : ".png");
+}
+
+/// What is wrong with the name of the output is said before anything is simulated.
+void check_output(const Options& options) {
+  if (options.video + options.sheet + !options.exported.empty() > 1)
+    throw InputError("only one of --video (or -o NAME.mp4), --sheet and --export");
+  if (options.out.empty() || !options.exported.empty()) return;
+  if (fs::is_directory(options.out))
+    throw InputError("-o " + options.out + " is a folder; name the file");
+  const std::string suffix = options.video ? ".mp4" : ".png";
+  if (!options.out.ends_with(suffix))
+    throw InputError("-o " + options.out + ": what is drawn here ends in " + suffix);
+}
+
+int run(Options options) {
+  if (options.out.ends_with(".mp4")) options.video = true;
+  check_output(options);
+  const std::size_t panels = options.what.solvers.size() + options.what.files.size();
+  if (panels == 0 || panels > 4)
+    throw InputError(
+        "one to four --solver or --trajectory, for example --solver jakobsen --solver bullet");
+  check_solvers(options.what.solvers);
+  if (!options.dt.empty()) options.what.overrides.push_back("time.dt=\"" + options.dt + "\"");
+  if (!options.duration.empty())
+    options.what.overrides.push_back("time.duration=\"" + options.duration + "\"");
+  std::vector<double> times;
+  for (const std::string& at : options.at) times.push_back(parse_number(at));
+  std::ranges::sort(times);
+  if (!times.empty() && times.front() < 0) throw InputError("--at: times are not negative");
+  const bool moving = options.video || !options.exported.empty();
+  if (!times.empty() && !moving && options.duration.empty())  // nothing later will be seen
+    options.what.overrides.push_back("time.duration=" + std::to_string(times.back() + 1e-4));
+  parse_view(options.view), parse_colour_by(options.colour);
+  if (!options.size.empty()) parse_size(options.size);
+  const RunSet set =
+      record_runs(options.what, [](const std::string& text) { std::cerr << text << '\n'; });
+  if (!times.empty() && times.back() > set.scene.duration() + set.scene.dt)
+    throw InputError("--at " + options.at.back() + " is after the end: see --duration");
+  const fs::path out = output(options, set.scene.name);
+  const auto done = [&](const Files& files) {
+    print_files(files, options.json);
+    return kPass;
+  };
+  if (!options.exported.empty()) return done(export_frames(set, out));
+  if (options.video) return done(draw_video(options, set, out));
+  const double end = set.scene.duration();
+  if (times.empty() && options.sheet)
+    times = {0, end / 8, end / 4, end / 2, end};
+  else if (times.empty())
+    times = {end};
+  return done(options.sheet ? draw_sheet(options, set, times, out)
+                            : draw_stills(options, set, times, out));
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  app.add_option("SCENE", o->what.scene, "Name of a shipped scene, or a path")->required();
+  app.add_option("--solver", o->what.solvers, "NAME or NAME:key=value,...; one to four of them")
+      ->allow_extra_args(false);
+  app.add_option("--trajectory", o->what.files,
+                 "A motion of this scene kept by `taut case --trajectory`, in a panel of its own")
+      ->allow_extra_args(false);
+  app.add_option("--at", o->at, "Moments to draw [s]; default: the end")->allow_extra_args(false);
+  app.add_flag("--sheet", o->sheet, "One picture, a row for each moment");
+  app.add_flag("--video", o->video, "H.264 video in real time (so does -o NAME.mp4)");
+  app.add_option("--view", o->view,
+                 "three-quarter, front, back, left, right, top, or AZIMUTH,ELEVATION in degrees");
+  app.add_option("--colour", o->colour, "strain, penetration or speed");
+  app.add_option("--range", o->range, "End of the colour bar, in its unit (%, mm, m/s)")
+      ->check(above_zero());
+  app.add_option("--export", o->exported, "obj: a Wavefront file per frame into the folder -o")
+      ->check(CLI::IsMember({"obj"}));
+  app.add_option("--duration", o->duration, "Simulated time [s]");
+  app.add_option("--dt", o->dt, "Time step [s], a number or a fraction such as 1/120");
+  app.add_option("--set", o->what.overrides, "Replace a key of the scene: 'cloth.grid=[65, 65]'")
+      ->allow_extra_args(false);
+  app.add_option("--size", o->size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
+  app.add_option("--quality", o->quality, "draft, video or still")
+      ->check(CLI::IsMember({"draft", "video", "still"}));
+  app.add_flag("--dark", o->dark, "The dark background of the report");
+  app.add_option("-o,--out", o->out, "File (.png, .mp4) or, for --export, folder");
+  add_json(app, o->json, "The names of the files");
+  return [o] { return run(*o); };
+}
+
+}  // namespace
+}  // namespace taut::verb::render
+
+TAUT_VERB(render) = {
+    .name = "render",
+    .group = VerbGroup::one_case,
+    .summary = "Pictures and videos of solvers side by side",
+    .example =
+        "taut render ball --solver jakobsen --solver bullet:substeps=5 --at 0.6\n"
+        "  taut render flag --solver jakobsen --solver bullet:substeps=5 --video --duration 4\n"
+        "  taut render ball --trajectory run.traj --solver bullet:substeps=5 --sheet",
+    .bind = taut::verb::render::bind};

@@ -1,0 +1,387 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "core/io/text_file.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/cluster/attempt.hpp"
+#include "experiments/cluster/job_script.hpp"
+#include "experiments/cluster/manifest.hpp"
+#include "experiments/cluster/merge.hpp"
+#include "experiments/cluster/status.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/study/campaign.hpp"
+#include "experiments/study/session.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
+
+namespace taut::verb::cluster {
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace taut::cluster;
+
+std::function<int()> bind(CLI::App& app) {
+  app.require_subcommand(1);
+  return [] { return kUsage; };  // one of its verbs is what runs
+}
+
+// submit
+
+struct Submit {
+  std::string study, preset, folder, on, node_file;
+  std::vector<std::string> logins;
+  int shards = 0;
+  double hours = 0;
+  Limits limits;
+  double megabytes = static_cast<double>(Limits{}.bytes >> 20);
+  bool dry_run = false, json = false;
+};
+
+/// The lines of `nodes`: what --sshlogin and --node-file say; "" if neither does.
+std::string nodes_of(const Submit& o) {
+  std::string nodes = o.node_file.empty() ? "" : read_text(o.node_file);
+  for (const std::string& login : o.logins) nodes += login + '\n';
+  if (o.on == "slurm" && !nodes.empty())
+    throw InputError("--sshlogin and --node-file are for GNU parallel; Slurm knows its nodes");
+  return nodes;
+}
+
+void share_out_as_asked(Manifest& manifest, const Submit& o) {
+  const int cases = static_cast<int>(manifest.cases.size());
+  if (o.shards > cases)
+    throw InputError("--shards " + std::to_string(o.shards) + ": the study has only " +
+                     std::to_string(cases) + " cases");
+  manifest.shards = o.shards > 0 ? o.shards : shards_for(manifest, o.hours > 0 ? o.hours : 1);
+  share_out(manifest);
+}
+
+void start(const fs::path& folder, Scheduler on) {
+  const bool slurm = on == Scheduler::slurm;
+  const std::string program = slurm ? "sbatch" : "parallel";
+  if (!on_path(program))
+    throw InputError(program + " is not installed here; the folder is written: start " +
+                     (folder / "job.sh").string() + " where it is");
+  if (!std::getenv("TAUT")) setenv("TAUT", this_program().c_str(), 1);
+  Process job(
+      slurm ? std::vector<std::string>{program, "job.sh"} : std::vector<std::string>{"./job.sh"},
+      {.output = ProcessOptions::Stream::inherited,
+       .errors = ProcessOptions::Stream::inherited,
+       .folder = folder});
+  const std::optional<ProcessEnd> end = job.wait();
+  if (!end || !end->good())
+    throw InputError(program + " refused or failed; the folder is written: " + folder.string());
+}
+
+int submit(const Submit& o) {
+  const Study study = load_study(o.study, o.preset);
+  require_preset(study, o.preset);
+  const std::string nodes = nodes_of(o);
+  const Scheduler on = o.on == "slurm" ? Scheduler::slurm : Scheduler::parallel;
+  const fs::path folder =
+      o.folder.empty() ? results_folder() / "cluster" / study.name : fs::path(o.folder);
+  if (fs::exists(folder))
+    throw InputError(folder.string() + " is already there: `taut cluster status " +
+                     folder.string() + "`, or name another with --folder");
+  fs::path there = folder.parent_path();  // what exists already of the folder's path
+  while (!there.empty() && !fs::exists(there)) there = there.parent_path();
+  make_folder(folder / "log");
+  Manifest manifest;
+  try {
+    manifest = plan(study, {o.limits.seconds, static_cast<std::size_t>(o.megabytes) << 20}, folder);
+    if (manifest.cases.empty()) throw InputError("this study has no case");
+    share_out_as_asked(manifest, o);
+    write_durably(folder / "study.toml", read_text(study.file));
+    write_durably(folder / "README", readme(manifest, on));
+    if (!nodes.empty()) write_durably(folder / "nodes", nodes);
+    write_durably(folder / "job.sh", job_script(manifest, on));
+    fs::permissions(folder / "job.sh", fs::perms::owner_exec | fs::perms::group_exec,
+                    fs::perm_options::add);
+    write_durably(folder / "manifest.jsonl", manifest_text(manifest));
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    for (fs::path made = folder.parent_path(); made != there; made = made.parent_path())
+      fs::remove(made, ignored);
+    throw;
+  }
+  if (o.json)
+    std::cout << to_text(Json{{"folder", folder.string()},
+                              {"cases", manifest.cases.size()},
+                              {"shards", manifest.shards},
+                              {"minutes", shard_minutes(manifest)},
+                              {"digest", manifest.digest}},
+                         1)
+              << '\n';
+  else
+    std::cout << folder.string() << ": " << manifest.cases.size() << " cases in " << manifest.shards
+              << " shards of at most " << shard_minutes(manifest) << " minutes\n";
+  if (!o.dry_run) start(folder, on);
+  return kPass;
+}
+
+std::function<int()> bind_submit(CLI::App& app) {
+  const auto o = std::make_shared<Submit>();
+  app.add_option("STUDY", o->study, "Name or path of a study")->required();
+  app.add_option("--on", o->on, "Who starts the shards: slurm or parallel")
+      ->required()
+      ->check(known("scheduler", {"slurm", "parallel"}));
+  auto* shards = app.add_option("--shards", o->shards, "Parts of about equal work")
+                     ->check(CLI::Range(1, kMostShards));
+  app.add_option("--hours", o->hours, "As few shards as end within that time (default: 1)")
+      ->check(above_zero())
+      ->excludes(shards);
+  add_preset(app, o->preset);
+  app.add_option("--folder", o->folder,
+                 "A new folder that all nodes see (default: " +
+                     (results_folder() / "cluster/STUDY").string() + ")");
+  app.add_option("--sshlogin", o->logins, "A node for GNU parallel, as [N/][user@]host; repeat it")
+      ->delimiter(',');
+  app.add_option("--node-file", o->node_file, "A file with a node on each line")
+      ->check(CLI::ExistingFile);
+  app.add_option("--timeout", o->limits.seconds, "CPU time limit of a case [s] (default: 120)")
+      ->check(above_zero());
+  app.add_option("--memory", o->megabytes, "Memory limit of a case [MB] (default: 2048)")
+      ->check(CLI::Range(64.0, 1e9));
+  app.add_flag("--dry-run", o->dry_run, "Write the folder and start nothing");
+  add_json(app, o->json, "Folder and sizes");
+  return [o] { return submit(*o); };
+}
+
+// run
+
+struct Run {
+  std::string folder, only;
+  int shard = 0, jobs = 1;
+};
+
+int run(const Run& o) {
+  const Manifest manifest = read_manifest(o.folder);
+  const std::vector<Case> cases = taut::cluster::cases_of(manifest, o.shard, o.folder);
+  Store store(shard_folder(o.folder, o.shard));
+  store.prepare();
+  const Session session(store, "taut cluster run --shard " + std::to_string(o.shard), cases, {});
+  Attempt attempt(store.root(), session.folder());
+  store.pack_into(session.folder().filename().string());
+  Progress progress;
+  const CampaignProgress campaign =
+      run_cases(cases, store, session,
+                {.jobs = o.jobs,
+                 .limits = manifest.limits,
+                 .only_failed = o.only == "failed",
+                 .progress = [&](const CampaignProgress& t, const Record* record) {
+                   attempt.progress(t);
+                   progress.show(t, record);
+                 }});
+  attempt.end(campaign.interrupted ? "interrupted" : "all cases");
+  progress.finish(campaign);
+  if (campaign.conflicts > 0)
+    std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
+              << (store.root() / "conflicts").string() << '\n';
+  if (campaign.interrupted) return kInterrupted;
+  return campaign.conflicts > 0 ? kConflict : kPass;
+}
+
+std::function<int()> bind_run(CLI::App& app) {
+  const auto o = std::make_shared<Run>();
+  app.add_option("DIR", o->folder, "The folder of `taut cluster submit`")->required();
+  app.add_option("--shard", o->shard, "Which part, from 1 on")->required();
+  app.add_option("--only", o->only, "failed: run stored failures again, nothing else")
+      ->check(CLI::IsMember({"failed"}));
+  app.add_option("-j,--jobs", o->jobs, "Cases at a time (default: 1)")->check(CLI::Range(1, 1024));
+  return [o] { return run(*o); };
+}
+
+// status
+
+constexpr std::size_t kShown = 10;  ///< of a list for people
+
+std::string clock_text(double seconds) {
+  const auto minutes = static_cast<long>(seconds / 60);
+  return minutes < 1    ? "less than a minute"
+         : minutes < 90 ? std::to_string(minutes) + " minutes"
+                        : std::to_string((minutes + 30) / 60) + " hours";
+}
+
+std::string commands_of(const std::vector<int>& shards, const fs::path& folder) {
+  std::string commas, spaces;
+  for (const int shard : shards) {
+    commas += (commas.empty() ? "" : ",") + std::to_string(shard);
+    spaces += " " + std::to_string(shard);
+  }
+  const bool slurm = read_text(folder / "job.sh").find("#SBATCH") != std::string::npos;
+  return "cd " + shell_word(folder.string()) + " && " +
+         (slurm ? "sbatch --array=" + commas + " job.sh" : "./job.sh" + spaces);
+}
+
+Json to_json(const FolderStatus& all, const fs::path& folder) {
+  Json json{{"cases", all.cases}, {"done", all.done}, {"seconds", nullptr}};
+  if (const auto seconds = all.seconds()) json["seconds"] = *seconds;
+  for (const ShardStatus& one : all.shards) {
+    json["shards"].push_back({{"shard", one.shard},
+                              {"state", taut::cluster::to_string(one.state)},
+                              {"cases", one.cases},
+                              {"done", one.done},
+                              {"host", one.host}});
+  }
+  json["failed"] = Json::array();
+  for (const FailedCase& one : all.failed)
+    json["failed"].push_back(
+        {{"shard", one.shard}, {"id", one.id}, {"status", describe(one.status)}});
+  json["start"] = all.to_start();
+  json["command"] = all.to_start().empty() ? "" : commands_of(all.to_start(), folder);
+  return json;
+}
+
+void print(const FolderStatus& all, const fs::path& folder) {
+  std::cout << all.done << "/" << all.cases << " cases";
+  if (const auto seconds = all.seconds()) std::cout << ", left: " << clock_text(*seconds);
+  std::cout << '\n';
+  for (const ShardStatus& one : all.shards) {
+    if (one.state == ShardStatus::State::done) continue;
+    std::cout << "shard " << one.shard << ": " << taut::cluster::to_string(one.state) << ", "
+              << one.done << "/" << one.cases << (one.host.empty() ? "" : ", on " + one.host)
+              << '\n';
+  }
+  for (std::size_t i = 0; i < std::min(kShown, all.failed.size()); ++i)
+    std::cout << "failed: " << all.failed[i].id << " (shard " << all.failed[i].shard
+              << "): " << describe(all.failed[i].status) << '\n';
+  if (all.failed.size() > kShown)
+    std::cout << "failed: " << all.failed.size() - kShown << " more (--json names all)\n";
+  if (!all.failed.empty())
+    std::cout << "failures again: taut cluster run " << shell_word(folder.string()) << " --shard "
+              << all.failed.front().shard << " --only failed\n";
+  if (!all.to_start().empty())
+    std::cout << "start again: " << commands_of(all.to_start(), folder) << '\n';
+}
+
+int status(const std::string& folder, bool json) {
+  const FolderStatus all = status_of(read_manifest(folder), folder);
+  if (json)
+    std::cout << to_text(to_json(all, folder), 1) << '\n';
+  else
+    print(all, folder);
+  return all.complete() ? kPass : kIncomplete;
+}
+
+std::function<int()> bind_status(CLI::App& app) {
+  const auto folder = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
+  app.add_option("DIR", *folder, "The folder of `taut cluster submit`")->required();
+  add_json(app, *json, "Every shard and every failed case");
+  return [folder, json] { return status(*folder, *json); };
+}
+
+// merge
+
+struct MergeOptions {
+  std::vector<std::string> folders;
+  std::string out;
+  bool allow_missing = false, json = false;
+};
+
+void print_list(const std::string& word, const std::vector<std::string>& lines) {
+  for (std::size_t i = 0; i < std::min(kShown, lines.size()); ++i)
+    std::cerr << word << ": " << lines[i] << '\n';
+  if (lines.size() > kShown)
+    std::cerr << word << ": " << lines.size() - kShown << " more (--json names all)\n";
+}
+
+int merge(const MergeOptions& o) {
+  const Merge merge({o.folders.begin(), o.folders.end()});
+  Store store(o.out);
+  const MergePlan plan = merge.look(store);
+  std::vector<std::string> missing;
+  for (const ManifestEntry& one : plan.missing)
+    missing.push_back(one.id + " (shard " + std::to_string(one.shard) + ")");
+  const bool may = plan.mergeable() && (missing.empty() || o.allow_missing) && !plan.cases.empty();
+  if (may) {
+    store.prepare();
+    merge.copy(plan, store, Countdown("merging"));
+    if (!missing.empty()) mark_missing(store.root(), plan.name, plan.missing);
+  }
+  print_list("foreign", plan.foreign);
+  print_list("conflict", plan.conflicts);
+  print_list("missing", missing);
+  if (o.json)
+    std::cout << to_text(Json{{"cases", plan.cases.size()},
+                              {"there", plan.cases.size() - missing.size()},
+                              {"merged", may},
+                              {"missing", missing},
+                              {"foreign", plan.foreign},
+                              {"conflicts", plan.conflicts},
+                              {"store", store.digest()}},
+                         1)
+              << '\n';
+  else
+    std::cout << plan.cases.size() - missing.size() << "/" << plan.cases.size() << " cases"
+              << (may ? "" : "; nothing was merged") << "\nstore " << store.digest() << '\n';
+  if (!plan.foreign.empty()) return kUsage;
+  if (!plan.conflicts.empty()) return kConflict;
+  if (plan.cases.empty()) return kNothing;
+  return missing.empty() ? kPass : kIncomplete;
+}
+
+std::function<int()> bind_merge(CLI::App& app) {
+  const auto o = std::make_shared<MergeOptions>();
+  app.add_option("DIR", o->folders,
+                 "Folders of `taut cluster submit`, or results folders of `taut run --shard`")
+      ->required();
+  add_results(app, o->out);
+  app.add_flag("--allow-missing", o->allow_missing,
+               "Merge although planned cases are missing; reports say so");
+  add_json(app, o->json, "What is there, what is missing, foreign or in conflict");
+  return [o] { return merge(*o); };
+}
+
+}  // namespace
+}  // namespace taut::verb::cluster
+
+TAUT_VERB(cluster) = {.name = "cluster",
+                      .group = VerbGroup::studies,
+                      .summary = "Runs a study on many machines: submit, status, merge",
+                      .example =
+                          "taut cluster submit iterations --on slurm --shards 8\n"
+                          "  taut cluster status results/cluster/iterations\n"
+                          "  taut cluster merge results/cluster/iterations",
+                      .bind = taut::verb::cluster::bind};
+
+TAUT_VERB(cluster_submit) = {
+    .name = "cluster submit",
+    .group = VerbGroup::studies,
+    .summary = "Writes a folder with all that the nodes need, and starts its shards",
+    .example =
+        "taut cluster submit iterations --on slurm --hours 2\n  taut cluster submit "
+        "my/study.toml --on parallel --sshlogin a,b --shards 8 --dry-run",
+    .bind = taut::verb::cluster::bind_submit};
+
+TAUT_VERB(cluster_run) = {
+    .name = "cluster run",
+    .group = VerbGroup::studies,
+    .summary = "Runs one shard, or goes on with it: what the job scripts call",
+    .example = "taut cluster run results/cluster/iterations --shard 3",
+    .bind = taut::verb::cluster::bind_run};
+
+TAUT_VERB(cluster_status) = {
+    .name = "cluster status",
+    .group = VerbGroup::studies,
+    .summary = "Done, running, failed and lost shards, and the command that starts them again",
+    .example = "taut cluster status results/cluster/iterations",
+    .bind = taut::verb::cluster::bind_status};
+
+TAUT_VERB(cluster_merge) = {
+    .name = "cluster merge",
+    .group = VerbGroup::studies,
+    .summary = "Unites results, if none is missing, foreign or in conflict; else says which",
+    .example =
+        "taut cluster merge results/cluster/iterations\n"
+        "  taut cluster merge results/shard1 results/shard2 --out results/runs",
+    .bind = taut::verb::cluster::bind_merge};

@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "core/io/text_file.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/metrics/metric.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/study/campaign.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/timing/bench.hpp"
+
+namespace taut::verb::exporting {
+
+namespace {
+
+struct Options {
+  std::string study, preset, results = default_results(), out;
+};
+
+/// Numbers as they are, text safe for a spreadsheet.
+std::string cell(const std::string& text) {
+  return whole<double>(text) ? text : report::csv_field(text);
+}
+
+/// The value that a case has of a scene key, as typed in the study: the last assignment holds.
+std::string axis_value(const CaseSpec& spec, const std::string& key) {
+  std::string value;
+  for (const std::string& text : spec.overrides)
+    if (text.starts_with(key + "=")) value = text.substr(key.size() + 1);
+  if (value.size() > 1 && value.front() == '"' && value.back() == '"')
+    value = value.substr(1, value.size() - 2);
+  return value;
+}
+
+/// What `taut bench STUDY` measured on one host, on this one if it did so here.
+struct Costs {
+  std::string host;
+  std::map<std::string, BenchedCase> of;  ///< by the key of the case
+};
+
+Costs stored_costs(const Options& options, const Study& study) {
+  Costs costs;
+  const std::vector<std::filesystem::path> files = bench_files(options.results, study.name);
+  if (files.empty()) return costs;
+  const std::filesystem::path& file = files.front();
+  BenchSession session = bench_from_json(read_text(file), file.string());
+  costs.host = session.host;
+  for (SceneBench& scene : session.scenes)
+    for (BenchedCase& c : scene.cases)
+      if (c.timing.failure.empty()) costs.of[c.record.key] = std::move(c);
+  return costs;
+}
+
+/// One line a case; the names of the columns are the first.
+class TidyTable {
+ public:
+  TidyTable(const StudyRecords& known, Costs costs) : costs_(std::move(costs)) {
+    std::set<std::string> params;
+    for (const Case& one : known.cases)
+      for (const ParamSpec& spec : one.choice.entry->params) params.insert(std::string(spec.name));
+    params_.assign(params.begin(), params.end());
+    for (const StudyAxis& axis : known.study.axes)
+      if (axis.of_scene()) axes_.push_back(axis.name);
+    values_ = value_names();
+    for (const Record& record : known.records) records_[record.key] = &record;
+  }
+
+  std::string text(const std::vector<Case>& cases) {
+    Cells head{"scene", "solver"};
+    append(head, params_), append(head, axes_);
+    append(head, {"dt", "steps", "vertices", "links", "status", "reason", "step"});
+    append(head, values_);
+    if (!costs_.of.empty())
+      append(head, {"cpu.host", "cpu.per_second", "cpu.per_second.low", "cpu.per_second.high",
+                    "memory.peak"});
+    append(head, {"case", "key"});
+    std::string out = line(head);
+    for (const Case& one : cases) out += line(row(one));
+    return out;
+  }
+
+ private:
+  using Cells = std::vector<std::string>;
+  static void append(Cells& row, const Cells& more) {
+    row.insert(row.end(), more.begin(), more.end());
+  }
+  static std::string line(const Cells& cells) {
+    std::string text;
+    for (const std::string& one : cells) text += (text.empty() ? "" : ",") + cell(one);
+    return text + "\n";
+  }
+
+  Cells row(const Case& one) const {
+    const auto at = records_.find(one.key);
+    const Record* record = at == records_.end() ? nullptr : at->second;
+    const auto specs = one.choice.params.specs();
+    Cells cells{one.scene->name, std::string(one.choice.entry->name)};
+    for (const std::string& name : params_) {
+      const bool has = std::ranges::find(specs, name, &ParamSpec::name) != specs.end();
+      cells.push_back(has ? std::string(one.choice.params.value(name)) : "");
+    }
+    for (const std::string& name : axes_) cells.push_back(axis_value(one.spec, name));
+    const Status status = record ? record->status : Status{};
+    append(cells, {report::exact(one.scene->dt), std::to_string(one.scene->steps),
+                   std::to_string(one.scene->mesh.size()), std::to_string(one.scene->links.size()),
+                   record ? std::string(to_string(status.kind)) : "not run", status.reason,
+                   status.step < 0 ? "" : std::to_string(status.step)});
+    for (const std::string& name : values_) {
+      const bool has = record && record->values.contains(name);
+      cells.push_back(has ? report::exact(record->values.at(name)) : "");
+    }
+    const auto cost = costs_.of.find(one.key);
+    if (cost != costs_.of.end()) {
+      const Interval cpu = cost->second.cost();
+      append(cells, {costs_.host, report::exact(cpu.mid), report::exact(cpu.low),
+                     report::exact(cpu.high), std::to_string(cost->second.timing.peak_bytes)});
+    } else if (!costs_.of.empty()) {
+      cells.resize(cells.size() + 5);
+    }
+    append(cells, {one.id, one.key});
+    return cells;
+  }
+
+  Costs costs_;
+  std::map<std::string, const Record*> records_;
+  std::vector<std::string> params_, axes_, values_;
+};
+
+int run(const Options& options) {
+  const Study study = load_study(options.study, options.preset);
+  const StudyRecords known = collect(study, Store(options.results));
+  if (known.records.empty())
+    throw InputError("none of the " + std::to_string(known.cases.size()) + " cases of study '" +
+                     study.name + "' is in " + options.results +
+                     " as this build would run them; taut run makes them");
+  const std::string text = TidyTable(known, stored_costs(options, study)).text(known.cases);
+  if (options.out.empty()) {
+    std::cout << text;
+  } else {
+    write_durably(options.out, text);
+    std::cout << options.out << '\n';
+  }
+  const std::size_t missing = known.cases.size() - known.records.size();
+  if (missing > 0) progress() << missing << " cases were not run\n";
+  return missing > 0 ? kIncomplete : kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
+  app.add_option("--preset", options->preset, "The preset under which it was run");
+  app.add_option("--results", options->results,
+                 "Results folder (default: " + options->results + ")");
+  app.add_option("-o,--out", options->out, "File (default: standard output)");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::exporting
+
+TAUT_VERB(export) = {.name = "export",
+                     .group = VerbGroup::studies,
+                     .summary = "Writes a study as a tidy CSV: a row a case, SI units, costs",
+                     .example = R"(taut export iterations --preset quick -o x.csv
+Python:
+  import pandas
+  cases = pandas.read_csv("x.csv").query("status == 'ok'")
+  print(cases.pivot_table("stretch.rms", ["scene", "iterations"], "solver"))
+R:
+  cases <- read.csv("x.csv", check.names = FALSE)
+  ok <- subset(cases, status == "ok")
+  print(aggregate(ok["stretch.rms"], ok[c("scene", "solver", "iterations")], mean))
+Exit: 0 every case is there; 3 some were not run (their status says so))",
+                     .bind = taut::verb::exporting::bind};

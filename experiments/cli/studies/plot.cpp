@@ -1,0 +1,212 @@
+#include "experiments/report/plot/plot.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/io/text_file.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::verb::plot {
+
+namespace {
+
+using report::PlotSpec;
+
+struct Options {
+  std::string study, preset, kind, x, y, title, results = default_results(), out;
+  bool json = false;
+};
+
+/// A plot's `slope`, the exponent of a theory; nothing if it names none.
+std::optional<double> exponent(const std::string& text) {
+  if (text.empty()) return {};
+  const std::optional<double> value = whole<double>(text);
+  if (!value || !std::isfinite(*value))
+    throw InputError("slope = " + text + " in [[plot]]: expected a number");
+  return value;
+}
+
+/// What the command line asks for; without --kind, --x and --y the pictures that the study asks
+/// for.
+std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
+  if (!options.kind.empty() || !options.x.empty() || !options.y.empty())
+    return {{.kind = options.kind.empty() ? "work-precision" : options.kind,
+             .x = options.x,
+             .y = options.y,
+             .title = options.title}};
+  std::vector<PlotSpec> specs;
+  for (const Plot& plot : study.plots) {
+    const auto option = [&](const char* name) {
+      const auto at = plot.options.find(name);
+      return at == plot.options.end() ? std::string() : at->second;
+    };
+    specs.push_back({.kind = plot.kind,
+                     .x = option("x"),
+                     .y = option("y"),
+                     .along = option("along"),
+                     .title = option("title"),
+                     .file = option("file"),
+                     .slope = exponent(option("slope"))});
+  }
+  if (specs.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
+  return specs;
+}
+
+/// Throws InputError with every kind and value that there is not; of a study's own with its place.
+void check(const std::vector<PlotSpec>& specs, const Options& options, const Study& study,
+           const report::Records& records) {
+  const bool own = options.kind.empty() && options.x.empty() && options.y.empty();
+  std::vector<Diagnostic> wrong;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const auto collect = [&](const char* key, const auto& look) {
+      try {
+        look();
+      } catch (const InputError& error) {
+        Diagnostic d = error.diagnostics().front();
+        if (own) {
+          const SourceLocation& place = study.plots[i].places.at(key);
+          d.file = study.file.string(), d.line = place.line, d.column = place.column;
+        } else {
+          d.message = std::string("--") + key + ": " + d.message;
+        }
+        wrong.push_back(d);
+      }
+    };
+    collect("kind", [&] { report::find_plot_kind(specs[i].kind); });
+    for (const auto& [key, name] : {std::pair("x", specs[i].x), std::pair("y", specs[i].y)})
+      if (!name.empty()) collect(key, [&] { report::check_value_name(name, records); });
+  }
+  if (!wrong.empty()) throw InputError(wrong);
+}
+
+/// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
+/// and on standard error.
+std::string hold_other(const PlotSpec& spec, report::Records& records, const std::string& scene) {
+  const std::string held = spec.x == "dt" ? "iterations" : "dt";
+  const report::Slice slice = report::hold(records, held, held == "dt" ? 1.0 / 64 : 8);
+  const std::size_t left_out = records.size() - slice.records.size();
+  std::vector<Record> kept;
+  for (const Record* r : slice.records) kept.push_back(*r);
+  records = std::move(kept);
+  if (left_out == 0) return "";
+  const std::string at = report::quantity(held).text(slice.value, 3);
+  const std::string setting = held == "dt" ? "dt = " + at : at + " sweeps";
+  progress() << scene << ", " << spec.y << " over " << spec.x << ": " << setting << "; " << left_out
+             << " cases at other values are not drawn\n";
+  return ", " + setting;
+}
+
+/// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
+report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const std::string& scene,
+                       const Store& store, const std::filesystem::path& out) {
+  const report::PlotKind& kind = report::find_plot_kind(spec.kind);
+  if (spec.x.empty()) spec.x = kind.x;
+  if (spec.y.empty()) spec.y = kind.y;
+  report::Records records = study.records;
+  std::erase_if(records, [&](const Record* r) { return r->scene != scene; });
+  if (spec.kind == "scaling") spec.slope = 1;
+  const std::string held = spec.kind == "stability" ? "" : hold_other(spec, records, scene);
+  std::vector<report::TimeSeries> series;
+  if (spec.kind == "series") series = report::stored_series(records, spec.y, store);
+  if (const auto slope = study.slopes.find(scene);
+      slope != study.slopes.end() && spec.kind == "error-iterations" && spec.x == "iterations" &&
+      !spec.slope && spec.y.starts_with("stretch."))
+    spec.slope = slope->second;
+  spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
+  if (const std::string unequal = report::unequal_work(records); !unequal.empty())
+    spec.title += "; unequal work: " + unequal;
+  spec.file = report::slug(
+      scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
+  return report::make_plot(spec, records, series, out);
+}
+
+int run(const Options& options) {
+  if (!options.kind.empty()) report::find_plot_kind(options.kind);
+  const Study study = load_study(options.study, options.preset);
+  const Store store(options.results);
+  const report::ReportInput input = report::stored_results({study}, store);
+  const report::StudyResult& result = input.studies.front();
+  if (result.records.empty())
+    throw InputError("none of the " + std::to_string(result.planned) + " cases of study '" +
+                     study.name + "' is in " + options.results +
+                     " as this build would run them; taut run makes them");
+  const std::filesystem::path out =
+      options.out.empty() ? std::filesystem::path(options.results) / "figures" /
+                                (study.name + (study.preset.empty() ? "" : "-" + study.preset))
+                          : std::filesystem::path(options.out);
+  const std::vector<PlotSpec> specs = wanted(options, study);
+  check(specs, options, study, result.records);
+  make_folder(out);  // what cannot be written is said once, not for every scene
+  std::vector<std::string> files;
+  try {
+    for (PlotSpec spec : specs) {
+      if (spec.kind == "profile") {
+        if (!input.bench) throw InputError("no cost was measured: taut bench " + study.name);
+        spec.title = spec.title.empty() ? "How often each solver is near the cheapest" : spec.title;
+        const report::PlotFiles plot = report::make_profile_plot(spec, *input.bench, out);
+        for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
+        continue;
+      }
+      for (const report::SceneInfo& scene : input.scenes) try {
+          const report::PlotFiles plot = draw(spec, result, scene.name, store, out);
+          for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
+        } catch (const InputError& error) {
+          std::cerr << scene.name << ": " << error.what() << '\n';
+        }
+    }
+  } catch (const report::PlotError& error) {
+    std::cerr << error.what() << '\n';
+    return kEnvironment;
+  }
+  print_files(files, options.json);
+  return files.empty() ? kNothing : kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  std::string kinds;
+  std::vector<std::string> names;
+  for (const report::PlotKind& kind : report::plot_kinds())
+    names.emplace_back(kind.name), kinds += (kinds.empty() ? "" : ", ") + names.back();
+  app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
+  app.add_option("--preset", options->preset, "The preset under which it was run");
+  app.add_option("--kind", options->kind,
+                 "One of: " + kinds + " (default: what the study asks for)")
+      ->check(known("kind of plot", names));
+  app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
+  app.add_option("--y", options->y, "Value on y, such as stretch.rms");
+  app.add_option("--title", options->title, "Title above the figure");
+  app.add_option("--results", options->results,
+                 "Results folder (default: " + options->results + ")");
+  app.add_option(
+      "--out", options->out,
+      "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
+  add_json(app, options->json, "The names of the files");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::plot
+
+TAUT_VERB(plot) = {.name = "plot",
+                   .group = VerbGroup::studies,
+                   .summary = "Draws the figures of a study: SVG, PDF, gnuplot script and CSV",
+                   .example =
+                       "taut plot iterations --preset quick\n  taut plot time-steps --kind "
+                       "stability --out figures\n  taut plot trade --kind profile\n  taut plot "
+                       "iterations --x projections "
+                       "--y stretch.max",
+                   .bind = taut::verb::plot::bind};

@@ -1,0 +1,219 @@
+#include "experiments/report/report.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <set>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/case/fingerprint.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/film/film.hpp"
+#include "experiments/report/findings.hpp"
+#include "experiments/report/model/model.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/study/main_job.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
+
+namespace taut::verb::reporting {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> studies, films;
+  std::string preset, results = default_results(), out = "report.html";
+  bool no_media = false, json = false;
+};
+
+bool is_results_folder(const std::string& name) {
+  return std::filesystem::is_directory(std::filesystem::path(name) / "store");
+}
+
+std::string command_line(const Options& options) {
+  std::string run = "./taut run";
+  if (options.studies.empty())
+    return run + (options.preset.empty() ? "" : " --preset " + options.preset);
+  for (const std::string& study : options.studies) run += " " + shell_word(study);
+  if (!options.preset.empty()) run += " --preset " + options.preset;
+  std::string report = "./taut report";
+  for (const std::string& study : options.studies) report += " " + shell_word(study);
+  if (!options.preset.empty()) report += " --preset " + options.preset;
+  for (const std::string& scene : options.films) report += " --film " + shell_word(scene);
+  return run + " && " + report;
+}
+
+/// Every solver with what it cannot do on the shipped scenes at its default settings.
+std::vector<report::SolverInfo> introductions() {
+  std::vector<report::SolverInfo> all;
+  for (const SolverEntry* entry : solvers())
+    all.push_back(
+        {std::string(entry->name), std::string(entry->summary), std::string(entry->source), {}});
+  for (const std::string& name : shipped("scenes")) {
+    const Scene scene = load_scene(find_scene(name));
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (const std::string& reason :
+           solvers()[i]->unsupported(scene, parse_solver(all[i].name).params)) {
+        auto& reasons = all[i].unsupported;
+        auto at = std::ranges::find(reasons, reason, [](const auto& r) { return r.first; });
+        if (at == reasons.end()) at = reasons.insert(reasons.end(), {reason, {}});
+        at->second.push_back(name);
+      }
+  }
+  return all;
+}
+
+/// "20261121T205040Z" as people write it: "2026-11-21 20:50 UTC".
+std::string readable(const std::string& stamp) {
+  return stamp.substr(0, 4) + "-" + stamp.substr(4, 2) + "-" + stamp.substr(6, 2) + " " +
+         stamp.substr(9, 2) + ":" + stamp.substr(11, 2) + " UTC";
+}
+
+/// `taut report A B [STUDY...]`: what differs, and what B has.
+int compare_folders(const Options& options) {
+  if (options.studies.size() < 2 || !is_results_folder(options.studies[1]))
+    throw InputError("report " + options.studies[0] +
+                     ": one results folder; --results shows it, a second one is compared with it");
+  if (!options.json) test_writable(options.out);
+  const Store a(options.studies[0]), b(options.studies[1]);
+  std::vector<std::string> names(options.studies.begin() + 2, options.studies.end());
+  std::string preset = options.preset;
+  if (names.empty()) {
+    const MainJob job = main_job();
+    names = job.studies;
+    if (preset.empty()) preset = job.preset;
+  }
+  std::vector<Study> studies;
+  for (const std::string& name : names) studies.push_back(load_study(name, preset));
+  report::ReportInput input = report::stored_anywhere(studies, b);
+  input.differences = report::stored_differences(a, b);
+  if (input.differences->pairs.empty())
+    throw InputError("no case is in both " + options.studies[0] + " and " + options.studies[1]);
+  input.question =
+      "What differs between A, " + options.studies[0] + ", and B, " + options.studies[1] + "?";
+  input.title = "B, " + options.studies[1];
+  input.command = "./taut report " + options.studies[0] + " " + options.studies[1];
+  input.solvers = introductions();
+  input.provenance = {{"program", program_digest().substr(0, 10)},
+                      {"made", readable(utc_stamp())},
+                      {"toolchain", std::string(toolchain())}};
+  if (options.json) {
+    std::cout << report::make_model(input, 1) << '\n';
+    return kPass;
+  }
+  write_file(options.out, report::make_report(input));
+  std::cout << options.out << '\n';
+  return kPass;
+}
+
+int run(Options options) {
+  if (!options.studies.empty() && is_results_folder(options.studies[0]))
+    return compare_folders(options);
+  const std::string command = command_line(options);
+  std::vector<std::string> maps = options.studies;
+  if (options.studies.empty()) {
+    const MainJob job = main_job();
+    options.studies = job.studies;
+    maps = job.maps;
+    if (options.films.empty()) options.films = shipped("scenes");
+    if (options.preset.empty()) options.preset = job.preset;
+  }
+  if (!options.json) test_writable(options.out);
+  std::vector<Study> studies;
+  for (const std::string& name : options.studies)
+    studies.push_back(load_study(name, options.preset));
+  const Store store(options.results);
+  report::ReportInput input = report::stored_results(studies, store);
+  std::vector<Study> map_studies;
+  for (const std::string& name : maps) map_studies.push_back(load_study(name, options.preset));
+  report::add_stored_maps(input, map_studies, store);
+  input.command = command;
+  input.solvers = introductions();
+  const std::string program = program_digest();
+  if (studies.size() == 1) input.question = studies.front().question;
+  input.provenance = {{"program", program.substr(0, 10)},
+                      {"made", readable(utc_stamp())},
+                      {"toolchain", std::string(toolchain())},
+                      {"preset", options.preset}};
+  if (options.preset.empty()) input.provenance.pop_back();
+  const auto left_out = [&](const char* file, const InputError& error) {
+    input.left_out.emplace_back((std::filesystem::path(options.results) / file).string(),
+                                error.what());
+    std::cerr << "left out: " << error.what() << '\n';
+  };
+  try {
+    input.truths = report::stored_truths(options.results, program);
+  } catch (const InputError& error) {
+    left_out("verify.json", error);
+  }
+  try {
+    input.regressions = report::stored_regressions(options.results, program);
+  } catch (const InputError& error) {
+    left_out("check.json", error);
+  }
+  try {
+    input.required = report::stored_requirements(options.results, program);
+  } catch (const InputError& error) {
+    left_out("require", error);
+  }
+  try {
+    input.frontiers = report::stored_frontiers(options.results, program);
+  } catch (const InputError& error) {
+    left_out("frontiers", error);
+  }
+  if (options.json) {
+    std::cout << report::make_model(input, 1) << '\n';
+    return kPass;
+  }
+  if (!options.no_media) {
+    std::set<std::string> scenes(options.films.begin(), options.films.end());
+    for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);
+    std::size_t filmed = 0;
+    const Countdown countdown("filmed scene");
+    film_scenes(input, options.films, [&](const std::string& news) {
+      progress() << news << '\n';
+      countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());
+    });
+  }
+  write_file(options.out, report::make_report(input));
+  std::cout << options.out << '\n';
+  return kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("STUDY", options->studies,
+                 "Names or paths of studies; none: the main job, preset quick. After two results "
+                 "folders A and B: what differs");
+  app.add_option("--preset", options->preset, "The preset under which the studies were run");
+  app.add_option("--results", options->results,
+                 "Results folder (default: " + options->results + ")");
+  app.add_option("--film", options->films,
+                 "Also films this scene (name or path), which no study ran; none and no STUDY: all "
+                 "shipped scenes")
+      ->allow_extra_args(false);
+  app.add_flag("--no-media", options->no_media, "Without pictures and videos");
+  add_json(app, options->json,
+           "The model of the page (experiments/report/model/MODEL.md), without pictures");
+  app.add_option("-o,--out", options->out, "The page (default: report.html)");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::reporting
+
+TAUT_VERB(report) = {
+    .name = "report",
+    .group = VerbGroup::studies,
+    .summary = "Writes the comparison of stored results as one HTML page",
+    .example =
+        "taut report\n  taut report iterations --preset quick -o hang.html\n  taut "
+        "report iterations --json | jq .claims\n  taut report results/before results/after",
+    .bind = taut::verb::reporting::bind};

@@ -1,0 +1,290 @@
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/command_line/columns.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/plot/plot.hpp"
+#include "experiments/study/campaign.hpp"
+#include "experiments/study/main_job.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
+#include "experiments/timing/statistics.hpp"
+
+namespace taut::verb::run {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> studies, values;
+  std::string preset, shard, only, out;
+  int jobs = 1;
+  double seconds = Limits{}.seconds;
+  double megabytes = static_cast<double>(Limits{}.bytes >> 20);
+  bool no_report = false, json = false;
+};
+
+std::string command_line(const Options& options) {
+  std::string text = "taut run";
+  for (const std::string& study : options.studies) text += " " + shell_word(study);
+  if (!options.preset.empty()) text += " --preset " + options.preset;
+  if (!options.shard.empty()) text += " --shard " + options.shard;
+  if (!options.only.empty()) text += " --only " + options.only;
+  return text;
+}
+
+/// What no figure could draw, said before anything runs.
+void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
+  std::vector<std::string> known = report::quantity_names();
+  known.emplace_back("setting");
+  for (const StudyAxis& axis : study.axes) known.push_back(axis.name);
+  const auto report = [&](std::size_t i, const char* key, const std::string& text) {
+    const SourceLocation& place = study.plots[i].places.at(key);
+    wrong.push_back({study.file, place.line, place.column, text});
+  };
+  for (std::size_t i = 0; i < study.plots.size(); ++i) {
+    try {
+      report::find_plot_kind(study.plots[i].kind);
+    } catch (const InputError& error) {
+      report(i, "kind", error.diagnostics().front().text());
+    }
+    for (const char* axis : {"x", "y", "along"})
+      if (const auto at = study.plots[i].options.find(axis);
+          at != study.plots[i].options.end() && std::ranges::count(known, at->second) == 0)
+        report(i, axis,
+               "unknown value '" + at->second + "' for " + axis + suggestion(at->second, known) +
+                   " (`taut list metrics`)");
+  }
+}
+
+std::vector<Study> load_studies(const Options& options) {
+  std::vector<Study> studies;
+  std::vector<Diagnostic> wrong;
+  for (const std::string& name : options.studies) try {
+      Study study = load_study(name, options.preset);
+      judge_plots(study, wrong);
+      require_preset(study, options.preset);
+      studies.push_back(std::move(study));
+    } catch (const InputError& error) {
+      for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);
+    }
+  if (!wrong.empty()) throw InputError(wrong);
+  return studies;
+}
+
+std::vector<Case> all_cases(const std::vector<Study>& studies) {
+  std::vector<Case> cases;
+  std::vector<Diagnostic> wrong;
+  for (const Study& study : studies) try {
+      for (Case& one : cases_of(study)) cases.push_back(std::move(one));
+    } catch (const InputError& error) {
+      for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);
+    }
+  if (!wrong.empty()) throw InputError(wrong);
+  std::stable_sort(cases.begin(), cases.end(),
+                   [](const Case& a, const Case& b) { return a.key < b.key; });
+  const auto same = [](const Case& a, const Case& b) { return a.key == b.key; };
+  cases.erase(std::unique(cases.begin(), cases.end(), same), cases.end());
+  return cases;
+}
+
+int exit_code(const CampaignProgress& campaign) {
+  if (campaign.interrupted) return kInterrupted;
+  if (campaign.conflicts > 0) return kConflict;
+  return kPass;
+}
+
+/// What accuracy costs: exclusive, so after everything else has ended. A machine too noisy to judge
+/// still gives numbers; the report shows how noisy. Then truths and baselines: what the report says
+/// besides the studies. It says which one failed, too, so the run goes on.
+int finish_main_job(const MainJob& job, const Options& options) {
+  const std::string jobs = std::to_string(options.jobs);
+  invoke("bench", {job.bench, "--preset", job.preset, "--seconds", "0.015", "--out", options.out},
+         Output::discarded);
+  progress() << "holding solvers to closed forms and published numbers\n";
+  invoke("verify", {"-j", jobs, "--out", options.out + "/verify.json"}, Output::discarded);
+  progress() << "comparing with the committed baselines\n";
+  if (invoke("check", {"--record", "-j", jobs, "--out", options.out}) == kInterrupted)
+    throw Interrupted();
+  std::vector<std::string> arguments{"--results", options.out};  // none named: the main job's
+  if (options.preset != job.preset) arguments.insert(arguments.end(), {"--preset", options.preset});
+  return invoke("report", arguments, options.json ? Output::discarded : Output::shown);
+}
+
+Json to_json(const CampaignProgress& campaign, const Options& options, const Store& store) {
+  Json all{{"results", options.out}, {"store", store.digest()},   {"cases", campaign.cases},
+           {"ran", campaign.ran},    {"stored", campaign.reused}, {"statuses", Json::object()}};
+  for (const auto& [kind, count] : campaign.by_status) all["statuses"][to_string(kind)] = count;
+  return all;
+}
+
+/// What tells the cases of one scene apart: "jakobsen:iterations=4 dt=1/120".
+std::string setting_of(const Case& one, const Study& study) {
+  std::string text = one.choice.brief();
+  for (const std::string& change : one.spec.overrides)
+    if (std::ranges::find(study.settings, change) == study.settings.end()) text += " " + change;
+  return text;
+}
+
+std::string cell(const Record& record, const std::string& value) {
+  if (!completed(record.status)) return std::string(to_string(record.status.kind));
+  return number_text(record.value(value)) +
+         (record.status.kind == Status::Kind::unsettled ? " ~" : "");
+}
+
+/// The cases of a study by setting and scene.
+using ByCell = std::map<std::pair<std::string, std::string>, Record>;
+
+/// A metric's value with three digits: a line per setting, a column per scene, both in the order of
+/// the study. A failure, and an extreme, prints its status, a value without a meaning "-", one of
+/// an unsettled case a "~".
+void print_table(const Study& study, const std::vector<Case>& cases, const ByCell& records,
+                 const std::string& value) {
+  std::vector<Row> rows{{value}};
+  for (const Case& one : cases)
+    if (std::ranges::find(rows[0], one.scene->name) == rows[0].end())
+      rows[0].push_back(one.scene->name);
+  for (const Case& one : cases) {
+    Row row{setting_of(one, study)};
+    if (std::ranges::any_of(rows, [&](const Row& r) { return r[0] == row[0]; })) continue;
+    for (std::size_t i = 1; i < rows[0].size(); ++i) {
+      const auto at = records.find({row[0], rows[0][i]});
+      row.push_back(at == records.end() ? "" : cell(at->second, value));
+    }
+    rows.push_back(std::move(row));
+  }
+  print_columns(rows, 1);
+  std::cout << '\n';
+}
+
+/// The values that were asked for, of every study.
+void print_tables(const std::vector<Study>& studies, const Options& options, const Store& store) {
+  Json all = Json::array();
+  for (const Study& study : studies) {
+    ByCell records;
+    const std::vector<Case> cases = cases_of(study);
+    for (const Case& one : cases)
+      if (auto record = store.find(one)) records[{setting_of(one, study), record->scene}] = *record;
+    if (!options.json)
+      for (const std::string& value : options.values) print_table(study, cases, records, value);
+    for (const auto& [where, record] : records) {
+      all.push_back({{"setting", where.first},
+                     {"scene", where.second},
+                     {"status", to_string(record.status.kind)}});
+      for (const std::string& value : options.values)
+        if (record.values.contains(value))
+          all.back()["values"][value] = record.value(value);  // NaN becomes null
+    }
+  }
+  if (options.json) std::cout << to_text(all, 1) << '\n';
+}
+
+void print_unequal_work(const std::vector<Study>& studies, const Store& store) {
+  for (const Study& study : studies)
+    if (const std::string unequal = report::unequal_work(collect(study, store).records);
+        !unequal.empty())
+      progress() << study.name << ": unequal work: " << unequal << '\n';
+}
+
+void print_next(const Options& options, bool bare) {
+  std::string which;
+  for (const std::string& study : options.studies)
+    if (!bare) which += " " + shell_word(study);
+  const std::string first = shell_word(options.studies.front());
+  const std::string more = options.preset.empty() ? "" : " --preset " + options.preset;
+  const std::string in =
+      options.out == default_results() ? "" : " --results " + shell_word(options.out);
+  progress() << "next: "
+             << (bare && !options.no_report ? "open report.html"
+                                            : "taut report" + which + more + in)
+             << "\n      taut plot " << first << more << in << "\n      taut export " << first
+             << more << in << " -o table.csv\n";
+}
+
+int run(Options options) {
+  const bool bare = options.studies.empty();
+  const MainJob job = bare ? main_job() : MainJob{};
+  if (bare) {
+    options.studies = job.studies;
+    options.studies.insert(options.studies.end(), job.maps.begin(), job.maps.end());
+    if (options.preset.empty()) options.preset = job.preset;
+  }
+  const Shard shard = Shard::parse(options.shard);
+  const std::vector<Study> studies = load_studies(options);
+  const std::vector<Case> cases = all_cases(studies);
+  if (cases.empty()) {
+    std::cerr << "these studies have no case: their exclusions leave out all\n";
+    return kNothing;
+  }
+  const Store store(options.out);
+  store.prepare();
+  const CampaignProgress campaign =
+      run_missing(cases, store, command_line(options),
+                  {.jobs = options.jobs,
+                   .limits = {options.seconds, static_cast<std::size_t>(options.megabytes) << 20},
+                   .shard = shard,
+                   .only_failed = options.only == "failed"});
+  if (campaign.conflicts > 0)
+    std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
+              << (store.root() / "conflicts").string() << '\n';
+  if (campaign.interrupted)
+    std::cerr << "interrupted; the same command goes on where this one stopped\n";
+  progress() << "store " << store.digest() << '\n';
+  if (const int code = exit_code(campaign); code != kPass) return code;
+  if (campaign.cases == 0 && options.only == "failed")
+    progress() << "no stored failure to run again\n";
+  if (bare && !options.no_report)
+    if (const int code = finish_main_job(job, options); code != kPass) return code;
+  if (!options.values.empty())
+    print_tables(studies, options, store);
+  else if (options.json)
+    std::cout << to_text(to_json(campaign, options, store), 1) << '\n';
+  else if (!bare || options.no_report)
+    std::cout << options.out << '\n';
+  print_unequal_work(studies, store);
+  print_next(options, bare);
+  return kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("STUDY", options->studies,
+                 "Names or paths of studies; none: the main job, preset quick, with its report");
+  add_preset(app, options->preset);
+  add_jobs(app, options->jobs);
+  app.add_option("--shard", options->shard,
+                 "Only part i of n of the cases, as i/n (default: a Slurm array's, else all)");
+  app.add_option("--only", options->only, "failed: run stored failures again, nothing else")
+      ->check(CLI::IsMember({"failed"}));
+  add_results(app, options->out);
+  app.add_option("--timeout", options->seconds,
+                 "CPU time limit of a case [s] (default: 120); wall time: five times that")
+      ->check(above_zero());
+  app.add_option("--memory", options->megabytes, "Memory limit of a case [MB] (default: 2048)")
+      ->check(CLI::Range(64.0, 1e9));
+  app.add_option("--table", options->values,
+                 "Then print this value of a metric, settings by scenes; repeat it for each")
+      ->allow_extra_args(false)
+      ->check(metric_value());
+  app.add_flag("--no-report", options->no_report, "Run the main job without its report");
+  add_json(app, options->json, "How the cases ended, or the tables,");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::run
+
+TAUT_VERB(run) = {.name = "run",
+                  .group = VerbGroup::studies,
+                  .summary = "Runs studies, one process per case; resumes what was interrupted",
+                  .example =
+                      "taut run\n  taut run iterations --preset quick -j 2\n"
+                      "  taut run default-setting --table stretch.rms --table energy.drift\n"
+                      "  taut run my/study.toml --shard 1/4 --out results/shard1",
+                  .bind = taut::verb::run::bind};

@@ -1,0 +1,107 @@
+#include <iostream>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/fingerprint.hpp"
+#include "experiments/command_line/baseline_study.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut::verb::baseline {
+
+namespace {
+
+struct Options : BaselineOptions {
+  std::string study, why;
+  bool json = false;
+};
+
+/// A baseline is made of results of all its cases.
+bool complete(const BaselineStudy& study) {
+  for (const std::string& id : study.not_run)
+    std::cout << study.name << ": " << id << ": was not run\n";
+  return study.not_run.empty();
+}
+
+int early_exit(const BaselineStudy& study) {
+  if (study.interrupted) return kInterrupted;
+  if (study.conflict) return kConflict;
+  return complete(study) ? kPass : kIncomplete;
+}
+
+int diff(const Options& options) {
+  const BaselineStudy study = baseline_study(options.study, options, false);
+  if (const int code = early_exit(study); code != kPass) return code;
+  const Comparison comparison = study.compare();
+  if (options.json) {
+    Json all = Json::array();
+    for (const Change& f : comparison.findings)
+      all.push_back({{"case", f.id}, {"solver", f.solver}, {"change", f.text}});
+    std::cout << to_text(all, 1) << '\n';
+  } else {
+    print_findings(study, comparison);
+  }
+  return comparison.findings.empty() ? kPass : kRegression;
+}
+
+/// Appends the reason; the file says in the order of time why the baseline is what it is.
+void note_reason(const BaselineStudy& study, const std::string& why, const Comparison& changes) {
+  const std::filesystem::path file = study.folder / "why.md";
+  std::string text = std::filesystem::exists(file) ? read_text(file)
+                                                   : "# Why the baseline of " + study.name +
+                                                         " is what it is, oldest first\n\n";
+  std::set<std::string> rows;
+  for (const Change& finding : changes.findings) rows.insert(finding.id);
+  text += "- " + why + " (" +
+          std::to_string(study.before.empty() ? study.now.size() : rows.size()) + " cases)\n";
+  write_durably(study.folder / kToolchainFile, std::string(toolchain()) + "\n");
+  write_durably(file, text);
+}
+
+int update(Options options) {
+  if (options.why.find_first_not_of(" \t\n") == std::string::npos)
+    throw InputError("--why must say in a sentence why the baseline moves");
+  options.repeat = true;
+  const BaselineStudy study = baseline_study(options.study, options, false);
+  if (const int code = early_exit(study); code != kPass) return code;
+  const Comparison changes = study.compare();
+  if (changes.findings.empty()) {
+    std::cout << study.name << ": " << changes.cases << " cases are as the baseline says; nothing "
+              << "was written\n";
+    return kPass;
+  }
+  if (!study.before.empty()) print_findings(study, changes);
+  write_baseline(study.folder, updated(study.before, study.now, study.tolerances));
+  note_reason(study, options.why, changes);
+  std::cout << study.name << ": " << study.now.size() << " cases in " << study.folder.string()
+            << '\n';
+  return kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.require_subcommand(1);
+  CLI::App* updating = app.add_subcommand("update", "Takes what is different as the new baseline");
+  updating->add_option("--why", options->why, "The reason, kept beside the baseline")->required();
+  CLI::App* differing =
+      app.add_subcommand("diff", "Shows what an update would change (exit 1: something)");
+  for (CLI::App* sub : {updating, differing}) {
+    sub->add_option("STUDY", options->study, "Name or path")->required();
+    options->bind(*sub);
+  }
+  add_json(*differing, options->json, "What differs");
+  return [options, updating] { return updating->parsed() ? update(*options) : diff(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::baseline
+
+TAUT_VERB(baseline) = {.name = "baseline",
+                       .group = VerbGroup::trust,
+                       .summary = "Updates a committed baseline, or shows how it differs",
+                       .example =
+                           "taut baseline update regression --why \"contacts are continuous\"\n"
+                           "  taut baseline diff regression",
+                       .bind = taut::verb::baseline::bind};

@@ -1,0 +1,156 @@
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "experiments/case/fingerprint.hpp"
+#include "experiments/command_line/colour.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/study/store.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
+
+namespace taut::verb::doctor {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Check {
+  std::string name, value;
+  bool good = true;
+};
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Seconds of CPU time for a fixed piece of arithmetic, about 5 ms.
+double fixed_work() {
+  const double start = thread_seconds();
+  volatile double sink = 1;
+  for (int i = 0; i < 1'000'000; ++i) sink = sink * 1.0000001 + 1e-9;
+  return thread_seconds() - start;
+}
+
+/// Half the spread between quartiles of the time of identical code, over its median.
+double noise() {
+  std::vector<double> times(21);
+  for (double& time : times) time = fixed_work();
+  std::sort(times.begin(), times.end());
+  return (times[15] - times[5]) / 2 / times[10];
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%", 100 * share);
+  return text;
+}
+
+std::string first_line(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+std::string cpu_model() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+Check writable(const fs::path& results) {
+  fs::path there = fs::absolute(results);
+  while (!fs::exists(there)) there = there.parent_path();
+  const bool good = access(there.c_str(), W_OK) == 0;
+  return {"results folder", results.string() + (good ? ", writable" : ", not writable"), good};
+}
+
+Check arithmetic() {
+  // Extended precision or contraction would give another remainder.
+  volatile double a = 1 + DBL_EPSILON, b = 1 - DBL_EPSILON;
+  const double product = a * b - 1;
+  const bool exact = FLT_EVAL_METHOD == 0 && product == 0;
+  return {"arithmetic", exact ? "IEEE 754 double, not contracted" : "extended or contracted",
+          exact};
+}
+
+std::vector<Check> examine() {
+  utsname system{};
+  uname(&system);
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  double load = 0;
+  getloadavg(&load, 1);
+  const double spread = noise();
+  const std::string governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  std::vector<Check> all{
+      {"toolchain", std::string(toolchain())},
+      {"system", std::string(system.sysname) + " " + system.release + " " + system.machine},
+      {"processor", cpu_model() + ", " + std::to_string(cores) + " cores"},
+      arithmetic(),
+      {"scenes and studies", data_folder().string(), !shipped("scenes").empty()},
+      writable(default_results())};
+  for (const char* program : {"taut", "taut-f32"}) {
+    const bool there = access(sibling_program(program).c_str(), X_OK) == 0;
+    all.push_back({program, there ? "beside this program" : "missing beside this program", there});
+  }
+  for (const char* program : {"gnuplot", "ffmpeg"})
+    all.push_back({program, on_path(program) ? "found" : "missing: its pictures are left out",
+                   on_path(program)});
+  all.push_back({"load",
+                 std::to_string(load).substr(0, 4) + " on " + std::to_string(cores) + " cores",
+                 load < 0.5 * cores});
+  if (!governor.empty()) all.push_back({"clock", governor, governor == "performance"});
+  all.push_back({"same code, twice", percent(spread) + " apart", spread < 0.02});
+  return all;
+}
+
+int run(bool as_json) {
+  const std::vector<Check> checks = examine();
+  bool trusted = true;
+  for (const Check& f : checks)
+    if (f.name == "load" || f.name == "clock" || f.name == "same code, twice")
+      trusted = trusted && f.good;
+  const char* verdict = trusted ? "timing can be trusted here"
+                                : "timing is for display only here: the machine is not quiet";
+  if (as_json) {
+    Json all = Json::array();
+    for (const Check& f : checks)
+      all.push_back({{"name", f.name}, {"value", f.value}, {"good", f.good}});
+    std::cout << to_text(Json{{"findings", all}, {"timing_trusted", trusted}}, 2) << '\n';
+    return kPass;
+  }
+  for (const Check& f : checks)
+    std::cout << (f.good ? "  " : coloured("! ", Colour::yellow)) << std::left << std::setw(20)
+              << f.name << f.value << '\n';
+  std::cout << verdict << '\n';
+  return kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto json = std::make_shared<bool>(false);
+  app.add_flag("--json", *json, "Print JSON");
+  return [json] { return run(*json); };
+}
+
+}  // namespace
+}  // namespace taut::verb::doctor
+
+TAUT_VERB(doctor) = {.name = "doctor",
+                     .group = VerbGroup::trust,
+                     .summary = "Versions, precision, cores, load: what can be trusted here?",
+                     .example = "taut doctor",
+                     .bind = taut::verb::doctor::bind};

@@ -1,0 +1,298 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/baseline/claims_baseline.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/command_line/colour.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/verb.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/truths/truth.hpp"
+#include "experiments/truths/vasilovici/claims.hpp"
+
+namespace taut::verb::verify {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> names, solvers;
+  int section = 0, jobs = 2;
+  bool json = false, verbose = false, claims = false, update = false;
+  std::string out, baselines;
+
+  /// Whether every truth that a claim rests on is checked, for every solver.
+  bool of_all_claims() const { return names.empty() && solvers.empty() && section == 0; }
+};
+
+struct Outcome {
+  const TruthEntry* truth = nullptr;
+  std::vector<Finding> findings;
+  double seconds = 0;
+};
+
+std::vector<const TruthEntry*> choose(const Options& options) {
+  for (const std::string& solver : options.solvers)
+    if (solver != "reference") parse_solver(solver);
+  std::vector<const TruthEntry*> chosen;
+  for (const TruthEntry* truth : truths()) {
+    if (options.claims &&
+        std::ranges::none_of(vasilovici_claims(), [&](const VasiloviciClaim& claim) {
+          return claim.truth == truth->name;
+        }))
+      continue;
+    const bool named = options.names.empty() || std::ranges::count(options.names, truth->name) > 0;
+    if (named && (options.section == 0 || truth->section == options.section))
+      chosen.push_back(truth);
+  }
+  std::ranges::sort(chosen, {}, [](const TruthEntry* t) { return std::pair(t->section, t->row); });
+  return chosen;
+}
+
+/// Checks the truths on `jobs` threads; outcomes stay in the order of the truths.
+std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const Options& options) {
+  std::vector<Outcome> outcomes(chosen.size());
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::size_t done = 0;
+  const Countdown countdown("truth");
+  const auto work = [&] {
+    for (std::size_t i = next++; i < chosen.size(); i = next++) {
+      const auto start = std::chrono::steady_clock::now();
+      Findings findings(options.solvers);
+      chosen[i]->check(findings);
+      outcomes[i] = {
+          chosen[i], findings.all(),
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+      const std::lock_guard lock(mutex);
+      countdown(++done, chosen.size());
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int j = 1; j < options.jobs; ++j) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  return outcomes;
+}
+
+std::vector<JudgedClaim> judged(const std::vector<Outcome>& outcomes) {
+  return judge_claims([&](std::string_view truth) -> const std::vector<Finding>* {
+    for (const Outcome& outcome : outcomes)
+      if (outcome.truth->name == truth) return &outcome.findings;
+    return nullptr;
+  });
+}
+
+Json to_json(const std::vector<Outcome>& outcomes) {
+  Json list = Json::array();
+  for (const auto& [truth, findings, seconds] : outcomes) {
+    Json rows = Json::array();
+    for (const Finding& f : findings)
+      rows.push_back({{"subject", f.subject},
+                      {"quantity", f.quantity},
+                      {"unit", f.unit},
+                      {"measured", f.measured},
+                      {"expected", f.expected},
+                      {"tolerance", f.tolerance},
+                      {"uncertainty", f.uncertainty},
+                      {"verdict", to_string(f.verdict)},
+                      {"why", f.why}});
+    list.push_back({{"name", truth->name},
+                    {"section", truth->section},
+                    {"section_title", section_title(truth->section)},
+                    {"row", truth->row},
+                    {"statement", truth->statement},
+                    {"source", truth->source},
+                    {"findings", rows}});
+  }
+  Json claims = Json::array();
+  for (const auto& [section, claim, verdict, figure] : judged(outcomes))
+    claims.push_back(
+        {{"section", section}, {"claim", claim}, {"verdict", verdict}, {"figure", figure}});
+  return {{"schema", "taut-truths-1"},
+          {"program", program_digest()},
+          {"truths", list},
+          {"claims", claims}};
+}
+
+std::string value(double v) {
+  std::ostringstream text;
+  text.precision(std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3);
+  text << v;
+  return text.str();
+}
+
+std::string line(const Finding& f) {
+  static constexpr Colour kColours[] = {Colour::green, Colour::yellow, Colour::yellow, Colour::red};
+  std::string text =
+      coloured(to_string(f.verdict), kColours[static_cast<int>(f.verdict)]) + "  " + f.subject;
+  if (f.verdict == TruthVerdict::not_claimed) return text + ": " + f.why;
+  text += ": " + f.quantity + " " + value(f.measured);
+  if (f.uncertainty > 0) text += " +- " + value(f.uncertainty);
+  if (f.unit != "1") text += " " + f.unit;
+  if (f.expected == 0)
+    text += " (at most " + value(f.tolerance) + ")";
+  else
+    text += " (" + value(f.expected) + " +- " + value(f.tolerance) + ")";
+  return f.why.empty() ? text : text + ": " + f.why;
+}
+
+/// For each subject its worst finding only, unless `all`.
+std::vector<Finding> worst_by_subject(const std::vector<Finding>& findings) {
+  const auto badness = [](const Finding& f) {
+    const double off = std::abs(f.measured - f.expected);
+    const double share = f.tolerance > 0 ? off / f.tolerance : off;
+    return std::pair(f.verdict, std::isnan(share) ? 1e300 : share);
+  };
+  std::vector<Finding> worst;
+  for (const Finding& f : findings) {
+    const auto same = std::find_if(worst.begin(), worst.end(),
+                                   [&](const Finding& w) { return w.subject == f.subject; });
+    if (same == worst.end())
+      worst.push_back(f);
+    else if (badness(f) > badness(*same))
+      *same = f;
+  }
+  return worst;
+}
+
+void print_table(const std::vector<Outcome>& outcomes, bool verbose) {
+  int section = 0;
+  for (const auto& [truth, findings, seconds] : outcomes) {
+    if (truth->section != section) {
+      section = truth->section;
+      std::cout << '\n' << section << "  " << section_title(section) << '\n';
+    }
+    std::cout << "  " << truth->section << '.' << truth->row << ' ' << truth->name << ": "
+              << truth->statement;
+    if (verbose) std::cout << " [" << truth->source << "; " << value(seconds) << " s]";
+    std::cout << '\n';
+    for (const Finding& f : verbose ? findings : worst_by_subject(findings))
+      std::cout << "      " << line(f) << '\n';
+  }
+}
+
+int summary(const std::vector<Outcome>& outcomes) {
+  std::size_t counts[4] = {}, broken_truths = 0, findings = 0;
+  for (const Outcome& outcome : outcomes) {
+    bool broken = false;
+    for (const Finding& f : outcome.findings) {
+      ++counts[static_cast<std::size_t>(f.verdict)], ++findings;
+      broken = broken || f.verdict == TruthVerdict::broken;
+    }
+    broken_truths += broken;
+  }
+  std::cerr << outcomes.size() << " truths, " << findings << " numbers: " << counts[0]
+            << " passed, " << counts[1] << " deviate as explained, " << counts[2]
+            << " not claimed, " << counts[3] << " broken";
+  if (broken_truths > 0) std::cerr << " in " << broken_truths << " truths";
+  std::cerr << '\n';
+  if (counts[3] > 0) return kRegression;
+  return counts[0] + counts[1] > 0 ? kPass : kNothing;
+}
+
+void print_claims(const std::vector<JudgedClaim>& claims) {
+  for (const auto& [section, claim, verdict, figure] : claims)
+    std::cout << section << "  " << claim << "\n      "
+              << coloured(verdict, verdict == "overturned" ? Colour::red : Colour::green)
+              << (figure.empty() ? "" : ": " + figure) << '\n';
+}
+
+/// Holds the verdicts of claims to those that were kept, or keeps them.
+int compare_with_baseline(const std::vector<JudgedClaim>& claims, const Options& options) {
+  const std::filesystem::path file = std::filesystem::path(options.baselines) / "claims.jsonl";
+  if (options.update) {
+    make_folder(file.parent_path());
+    write_durably(file, to_json_lines(claims));
+    progress() << file.string() << '\n';
+    return kPass;
+  }
+  if (!std::filesystem::exists(file)) {
+    std::cerr << "claims: no baseline " << file.string() << '\n';
+    return options.claims ? kNothing : kPass;
+  }
+  const std::vector<std::string> changes = compare_claims(read_claims(file), claims);
+  for (const std::string& change : changes) std::cerr << change << '\n';
+  std::cerr << claims.size() << " claims of Vasilovici's report: "
+            << (changes.empty() ? "every verdict is as it was"
+                                : std::to_string(changes.size()) + " changed")
+            << '\n';
+  return changes.empty() ? kPass : kRegression;
+}
+
+int run(const Options& options) {
+  if (options.update && !(options.claims && options.of_all_claims()))
+    throw InputError("--update keeps the verdicts of all claims: taut verify --claims --update");
+  const std::vector<Outcome> outcomes = check(choose(options), options);
+  const std::string json = to_text(to_json(outcomes), 1);
+  if (!options.out.empty()) write_file(options.out, json + "\n");
+  if (options.json)
+    std::cout << json << '\n';
+  else if (options.claims)
+    print_claims(judged(outcomes));
+  else
+    print_table(outcomes, options.verbose);
+  const int code = summary(outcomes);
+  if (!options.of_all_claims()) return code;
+  const int claims = compare_with_baseline(judged(outcomes), options);
+  return code == kPass ? claims : code;
+}
+
+int list() {
+  for (const TruthEntry* truth : choose({}))
+    std::cout << truth->section << '.' << truth->row << '\t' << truth->name << '\t'
+              << truth->statement << '\n';
+  return kPass;
+}
+
+std::function<int()> bind(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  const auto only_list = std::make_shared<bool>(false);
+  std::vector<std::string> names;
+  for (const TruthEntry* truth : truths()) names.emplace_back(truth->name);
+  app.add_option("TRUTH", options->names, "Truths to check by name; all if none is given")
+      ->check(known("truth", std::move(names)));
+  app.add_option("--solver", options->solvers,
+                 "Only what binds these solvers (\"reference\": the references)");
+  app.add_option("--section", options->section, "Only one section of the truths")
+      ->check(CLI::Range(1, 10));
+  app.add_option("-j,--jobs", options->jobs,
+                 "Threads (default: " + std::to_string(options->jobs) + ")")
+      ->check(CLI::Range(1, 64));
+  app.add_option("-o,--out", options->out, "Also write the findings as JSON to this file");
+  app.add_flag("--json", options->json, "Findings as JSON instead of a table");
+  app.add_flag("--claims", options->claims,
+               "Only what holds the claims of Vasilovici's report, and their verdicts");
+  add_baselines(app, options->baselines);
+  app.add_flag("--update", options->update, "With --claims: keep their verdicts as the baseline");
+  app.add_flag("--verbose", options->verbose, "Every number, with sources and times");
+  app.add_flag("--list", *only_list, "Only name the truths");
+  return [options, only_list] { return *only_list ? list() : run(*options); };
+}
+
+}  // namespace
+}  // namespace taut::verb::verify
+
+TAUT_VERB(verify) = {.name = "verify",
+                     .group = VerbGroup::trust,
+                     .summary = "Holds solvers and metrics to closed forms and published numbers",
+                     .example =
+                         "taut verify --section 4 --solver jakobsen\n"
+                         "  taut verify hanging-chain-sweeps --verbose\n"
+                         "  taut verify --claims\n"
+                         "Exit: 0 no truth is broken, no verdict of a claim changed; 1 one is or "
+                         "did; 4 nothing was held to anything",
+                     .bind = taut::verb::verify::bind};

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <compare>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/case/record.hpp"
+
+// How people name a solver and its settings.
+
+namespace taut::report {
+
+/// Records that live elsewhere, in the order of the study.
+struct Records : std::vector<const Record*> {
+  Records() = default;
+  Records(std::span<const Record> all) {
+    for (const Record& r : all) push_back(&r);
+  }
+  Records(const std::vector<Record>& all) : Records(std::span(all)) {}
+};
+
+/// What its entry says, or its name in words: "bullet-deformable" -> "Bullet deformable".
+std::string solver_title(std::string_view solver);
+
+/// The parameters that decide accuracy and cost, as the entry says; of a solver that this program
+/// does not have substeps and sweeps.
+std::vector<std::string> accuracy_parameters(const std::string& solver);
+
+/// Accelerators that this case uses and that a solver with these parameters lacks ("tethers").
+std::vector<std::string> extras(const Record&, const std::map<std::string, std::string>& others);
+
+/// Work of a step; -1 where the solver has no such setting.
+struct Work {
+  int substeps = -1, sweeps = -1;
+  auto operator<=>(const Work&) const = default;
+  std::string text() const;  ///< "1 × 16": substeps × sweeps
+};
+Work work_of(const Record&);
+
+/// "1 × 16, order=mesh": the work of "jakobsen:substeps=1,iterations=16,...", and what else is not
+/// the default. Of a solver that this program does not have: what follows its name.
+std::string brief_settings(const std::string& solver);
+
+/// "Jakobsen 5 × 1 to 64, Bullet 1 × 1 to 64" (substeps × sweeps), if no such work is common to all
+/// solvers that have sweeps; "": some is.
+std::string unequal_work(const Records&);
+
+/// Labels of records by those accuracy parameters that take several values among their solver's.
+class SettingLabels {
+ public:
+  explicit SettingLabels(const Records&);
+  /// "2 × 8, coloured"; "" if nothing varies.
+  std::string of(const Record&) const;
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> seen_;  ///< solver, name
+};
+
+}  // namespace taut::report
