@@ -18,12 +18,11 @@ namespace taut {
 
 /// One pass of a step: what it works on, how often, and what it holds.
 struct PassCost {
-  std::string pass;         ///< "verlet", "structural", "wind", ...
-  std::size_t items = 0;    ///< particles, links, faces, contacts that one application visits
-  std::size_t repeats = 1;  ///< applications in one step: sweeps times substeps
-  std::size_t bytes = 0;    ///< memory that exists because of this pass
-  bool projections =
-      false;  ///< items are constraint projections, the work unit of every comparison
+  std::string pass;          ///< "verlet", "structural", "wind", ...
+  std::size_t items = 0;     ///< particles, links, faces, contacts that one application visits
+  std::size_t repeats = 1;   ///< applications in one step: sweeps times substeps
+  std::size_t bytes = 0;     ///< memory that exists because of this pass
+  bool projections = false;  ///< items are projections, the unit of work of every comparison
 };
 
 /// Advances one cloth. Built from a Scene; owns no clock, draws no unseeded random numbers, does no

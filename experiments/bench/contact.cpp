@@ -158,8 +158,10 @@ Interval ContactRow::ratio(int sweeps) const {
 std::vector<ContactRow> bench_contact(const ContactBenchOptions& options) {
   std::vector<Subject> subjects = subjects_of(options.side);
   for (Subject& subject : subjects) subject.calibrate(options.seconds);
-  for (int round = 0; round < options.rounds; ++round)
+  for (int round = 0; round < options.rounds; ++round) {
     for (Subject& subject : subjects) subject.sample();
+    options.progress(static_cast<std::size_t>(round) + 1, static_cast<std::size_t>(options.rounds));
+  }
   std::vector<ContactRow> rows;
   for (Subject& subject : subjects) rows.push_back(subject.take());
   return rows;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct ContactBenchOptions {
   int side = 128;  ///< vertices along a side
   int rounds = 11;
   double seconds = 0.01;  ///< of one sample
+  std::function<void(std::size_t done, std::size_t all)> progress = [](auto, auto) {};  ///< rounds
 };
 
 /// The scenes `plane`, `ball`, `box` and `crumple` with structural links alone, run until the cloth

@@ -255,6 +255,7 @@ KernelBench bench_kernels(const KernelBenchOptions& options) {
       kernels[i].row.samples.push_back((forth[i].projection + back[i].projection) / 2);
       kernels[i].row.fixed.push_back((forth[i].fixed + back[i].fixed) / 2);
     }
+    options.progress(static_cast<std::size_t>(round) + 1, static_cast<std::size_t>(options.rounds));
   }
   KernelBench bench{
       .side = options.side,

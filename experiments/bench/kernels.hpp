@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ struct KernelBenchOptions {
   int rounds = 11;
   double seconds = 0.005;  ///< of one sample
   bool bullet = true;
+  std::function<void(std::size_t done, std::size_t all)> progress = [](auto, auto) {};  ///< rounds
 };
 
 /// All kernels interleaved: each round times every one of them in alternating order (ABBA). A

@@ -27,10 +27,9 @@ struct Status {
     interrupted
   };
   Kind kind = Kind::ok;
-  std::string
-      reason;  ///< "nonfinite", "energy", "box", "stretch", "SIGSEGV", what is not supported, ...
-  int step = -1;    ///< where it happened; -1: not known or not applicable
-  int vertex = -1;  ///< the first vertex concerned; -1: not known or not applicable
+  std::string reason;  ///< "nonfinite", "energy", "box", "SIGSEGV", what is not supported, ...
+  int step = -1;       ///< where it happened; -1: not known or not applicable
+  int vertex = -1;     ///< the first vertex concerned; -1: not known or not applicable
 
   bool is_result() const { return kind <= Kind::unsupported; }
 };

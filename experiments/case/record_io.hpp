@@ -29,7 +29,7 @@ Record record_of(const JsonReader&);
 /// Whether the text is a case's address, 64 hexadecimal digits: no other becomes part of a path.
 bool is_key(std::string_view);
 
-/// SHA-256 of what was computed: status, values, step costs, effective settings and final state.
+/// SHA-256 of what was computed: status, values, step costs, resolved settings and final state.
 /// Not of how the case was called (spec, id, scene name): the same key must always give the same.
 std::string result_digest(const Record&);
 

@@ -26,8 +26,7 @@ struct RunOptions {
 
 /// What became of a case: the record and what is too big for it.
 struct CaseRun {
-  Record
-      record;  ///< key and id are empty; run_case of a Case (experiments/case/case.hpp) sets them
+  Record record;  ///< key and id are empty: run_case of a Case (case.hpp) sets them
   Series series;
   State last;  ///< the last stable boundary: the final state, or the last before an explosion
 };
@@ -35,7 +34,7 @@ struct CaseRun {
 /// Runs one case in this process, step by step: load, then for every step `step` and `store`, with
 /// the detector of divergence and every metric at every boundary. A run that explodes ends there
 /// with values NaN. A scene that the solver cannot represent gives `unsupported` and no run; a
-/// SolverFailure the status that it names and the last sound step. Numerical failure never throws;
+/// SolverFailure the status that it names and the last stable step. Numerical failure never throws;
 /// what make() throws (InputError, bad_alloc) passes through.
 CaseRun run_case(const Scene&, const SolverChoice&, const RunOptions& = {});
 

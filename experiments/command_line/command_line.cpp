@@ -53,11 +53,15 @@ struct Verb {
   std::function<int()> run;
 };
 
-/// Adds the verb's options and --quiet to its parser; gives what to do once they are parsed.
+/// Adds the verb's options and --quiet to its parser and those within it; gives what to do once
+/// they are parsed.
 std::function<int()> bind(const VerbEntry& entry, CLI::App& app) {
   std::function<int()> run = entry.bind(app);
   const auto quiet = std::make_shared<bool>(false);
-  app.add_flag("--quiet", *quiet, "Print nothing but errors; the exit code says how it went");
+  std::vector<CLI::App*> parsers = app.get_subcommands({});  // of `baseline`: update and diff
+  parsers.push_back(&app);
+  for (CLI::App* parser : parsers)
+    parser->add_flag("--quiet", *quiet, "Print nothing but errors; the exit code says how it went");
   return [run = std::move(run), quiet] {
     std::optional<Silence> silence;
     if (*quiet) silence.emplace(), show_progress(false);

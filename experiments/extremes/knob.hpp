@@ -23,12 +23,11 @@ struct Knob {
 /// Its knobs: time step, sweeps, stiffness, mass ratio, resolution, speed of a collider, size (both
 /// ways), distance from the origin, wind; each from where it is easy to where it is absurd.
 /// Theories:
-///   time step, stiffness, mass ratio   of springs (linear_stability)
-///   wind       c h/sigma < 2: explicit drag of a face across the wind (truth wind-face); h:
-///   substep distance   in float g h^2 is less than half a unit in the last place (truth
-///   float-gravity) speed      a plate of thickness D is jumped by tests at step boundaries beyond
-///   D/h (truth
-///              tunnelling); contact=discrete alone
+///   time step, stiffness, mass ratio: linear_stability, of springs
+///   wind: c h/sigma < 2, explicit drag of a face across the wind; h: substep (truth wind-face)
+///   distance: in float, g h^2 above half a unit in the last place (truth float-gravity)
+///   speed: D/h, beyond which tests at step boundaries miss a plate of thickness D (truth
+///          tunnelling); contact=discrete alone
 /// Throws InputError: no such solver.
 std::vector<Knob> knobs_of(const std::string& solver);
 

@@ -29,8 +29,7 @@ struct Seen {
 ///                       of the range, in the last second (popping.max), or status `unsettled`
 ///   asymmetric          a mirror-symmetric scene ends over a tenth of its size from its mirror
 ///                       image
-///   loses energy        a passive scene lost over half of what its swing can set free
-///   (energy.mean)
+///   loses energy        a passive scene lost over half of that (energy.mean)
 /// `start`: the run at the start of the range; nullptr: this is it.
 std::vector<std::string> symptoms(const Seen&, const Seen* start);
 

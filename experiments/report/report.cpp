@@ -6,6 +6,7 @@
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/model/model.hpp"
 #include "experiments/report/page.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::report {
 
@@ -29,10 +30,20 @@ std::string_view page_file(std::string_view name) {
   return at->text;
 }
 
+/// The headlines and how sure they are, a line each: what there is to read without JavaScript.
+std::string headlines(const std::string& model) {
+  std::string text;
+  for (const Json& claim : parse_json(model).value("claims", Json::array()))
+    if (claim["kind"] == "headline")
+      text +=
+          claim["sentence"].get<std::string>() + " (" + claim["sure"].get<std::string>() + ")\n";
+  return escape_html(text);
+}
+
 }  // namespace
 
 std::string make_report(const ReportInput& input) {
-  const std::string model = for_script(make_model(input));
+  const std::string json = make_model(input), model = for_script(json), answer = headlines(json);
   const std::string title = escape_html(report_title(input));
   const std::string_view page = page_file("index.html");
   std::string html;
@@ -41,7 +52,10 @@ std::string make_report(const ReportInput& input) {
     html += page.substr(at, open - at);
     if (open == std::string_view::npos) break;
     const std::string_view name = page.substr(open + 2, close - open - 2);
-    html += name == "model" ? model : name == "title" ? title : page_file(name);
+    html += name == "model"       ? model
+            : name == "title"     ? title
+            : name == "headlines" ? answer
+                                  : page_file(name);
     at = close + 2;
   }
   return html;

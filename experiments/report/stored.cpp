@@ -152,7 +152,7 @@ std::map<std::string, std::vector<BenchedCase>> all_timed(const Store& store, do
       const BenchSession session = bench_from_json(read_text(entry.path()), entry.path().string());
       std::vector<BenchedCase>& here = all[session.host + ", " + session.machine];
       for (const SceneBench& scene : session.scenes) {
-        noise = std::max(noise, strayed(scene.control));
+        noise = std::max(noise, spread(scene.control));
         here.insert(here.end(), scene.cases.begin(), scene.cases.end());
       }
     }

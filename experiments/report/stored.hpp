@@ -27,7 +27,7 @@ std::vector<TimeSeries> stored_series(const Records&, const std::string& value, 
 /// in scenes that have any; nullopt: none. Throws InputError if the file is damaged.
 std::optional<BenchSession> stored_bench(const std::filesystem::path& file);
 
-/// Adds the maps among these studies (two sweeps and a plot of kind "stability") of which the store
+/// Adds the maps among these studies (two axes and a plot of kind "stability") of which the store
 /// has something; what the input holds of a study is not read again.
 void add_stored_maps(ReportInput&, const std::vector<Study>&, const Store&);
 

@@ -79,8 +79,8 @@ class Store {
 
   /// Keys of all entries, sorted.
   std::vector<std::string> keys() const;
-  /// SHA-256 over the keys and results of all sound entries that are results: two stores that know
-  /// the same have the same.
+  /// SHA-256 over the keys and results of all undamaged entries that are results: two stores that
+  /// know the same have the same.
   std::string digest() const;
   /// Keys of which this store was given another result, too: in conflicts/ and in pack files.
   std::vector<std::string> conflicts() const;

@@ -32,6 +32,18 @@ std::string line(const BenchedCase& c, const std::string& metric) {
          " ms CPU per simulated s";
 }
 
+/// What the certainty speaks of: the lead over the runner-up, or whether the budget holds.
+std::string verdict(const Answer& answer, const SceneBench& bench) {
+  const std::string sure = answer.certainty == Certainty::clear ? "clearly " : "likely ";
+  if (answer.target.budget) return sure + "within the budget";
+  if (answer.certainty == Certainty::unopposed) return "nothing else timed reaches it";
+  const Record& rival = bench.cases[*answer.runner_up].record;
+  const std::string rest =
+      rival.solver == bench.cases[*answer.best].record.solver ? "the next setting" : rival.solver;
+  if (answer.certainty == Certainty::a_tie) return "no cheaper than " + rest + " that can be told";
+  return sure + "cheaper than " + rest;
+}
+
 /// What a solver that did not reach the target came nearest to.
 std::string nearest(const SolverAnswer& solver, const SceneBench& bench, const Answer& answer,
                     const std::string& metric) {
@@ -101,8 +113,7 @@ std::string text(const Target& target, const std::string& metric) {
 std::string text(const Answer& answer, const SceneBench& bench, const std::string& metric) {
   std::string out = text(answer.target, metric) + ": ";
   if (answer.best)
-    out += line(bench.cases[*answer.best], metric) + "; " +
-           std::string(to_string(answer.certainty)) + "\n";
+    out += line(bench.cases[*answer.best], metric) + "; " + verdict(answer, bench) + "\n";
   else
     out += "not reached\n";
   for (const SolverAnswer& solver : answer.solvers) {

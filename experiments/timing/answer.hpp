@@ -40,8 +40,9 @@ Answer answer(const SceneBench&, const Target&, const std::string& metric,
 /// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms per frame of 1/60 s".
 std::string text(const Target&, const std::string& metric);
 
-/// The answer in lines, the first without indentation: who, for what error and cost, how sure; then
-/// a line for every other solver.
+/// The answer in lines, the first without indentation: who, for what error and cost, and how sure
+/// of what ("clearly within the budget", "likely cheaper than bullet"); then a line for every other
+/// solver.
 std::string text(const Answer&, const SceneBench&, const std::string& metric);
 
 /// Whom to time: the best by quick cost of every solver that meets the target, at most `most`, then

@@ -34,7 +34,7 @@ void measure(ScalingLine& line, const std::vector<const Case*>& cases, double li
                              std::to_string(std::lround(limit)) + " s");
       continue;
     }
-    Measured measured = measure(*one);
+    Measured measured = measure(*one, expected);
     seconds = std::max(measured.seconds, seconds);
     vertices = size;
     if (!measured.benched.stable())

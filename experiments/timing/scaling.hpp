@@ -21,12 +21,13 @@ struct ScalingLine {
   std::optional<PowerLaw> memory;    ///< bytes of the passes of a step over vertices
 };
 
-/// Measures a case: its record, its samples, and how long both took [s].
+/// Measures a case that is expected to take so long [s] (0: nobody knows): its record, its samples,
+/// and how long both took [s].
 struct Measured {
   BenchedCase benched;
   double seconds = 0;
 };
-using Measure = std::function<Measured(const Case&)>;
+using Measure = std::function<Measured(const Case&, double expected)>;
 
 /// Cases grouped by solver setting and measured by rising size. A case that, going by the one
 /// before it and the ratio of their sizes, would take more than `limit` seconds is skipped, and so

@@ -15,6 +15,8 @@ def assemble(model, change=lambda name, text: text):
         name = match.group(1)
         if name == "model":
             return json.dumps(model).replace("<", "\\u003c")
+        if name == "headlines":
+            return html.escape("".join(f"{c['sentence']} ({c['sure']})\n" for c in model["claims"] if c["kind"] == "headline"))
         if name == "title":
             return html.escape(model["meta"].get("question") or model["meta"]["title"])
         return change(name, pathlib.Path(D3 if name == "d3.min.js" else PAGE / name).read_text(encoding="utf-8"))

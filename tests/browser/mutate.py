@@ -92,7 +92,10 @@ DAMAGES = [
     ("text.js", "document.createElement('span');\n  Object.assign(box, {className: 'long', tabIndex: 0, textContent: child});", "document.createElement('span');\n  box.innerHTML = child;", "hostile", "hostile texts do not make the page long"),
     ("text.js", "node.append(...", "node.insertAdjacentHTML('beforeend', children.filter((c) => typeof c === 'string').join('')); node.append(...", "hostile", "markup in a name stays text"),
     ("page.css", "color: var(--ink); overflow-wrap: anywhere;", "color: var(--ink);", "hostile", "hostile texts, 390 px: no sideways"),
-    ("index.html", "JavaScript is off", "Welcome", "without_script", "without JavaScript"),
+    ("index.html", "JavaScript is off", "Welcome", "without_script", "without JavaScript it says"),
+    ("index.html", "{{headlines}}", "", "without_script", "without JavaScript the headlines"),
+    ("index.html", 'href="#main"', 'href="#case"', "keyboard", "the first Tab and Enter"),
+    ("page.js", "type: 'button', className: 'switch',", "type: 'button', className: 'switch', tabIndex: -1,", "keyboard", "Tab reaches every control"),
 ]
 
 

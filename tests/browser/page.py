@@ -295,6 +295,23 @@ def cases(checks):
     checks.true(float(small["dt"]) == 5e-5, "a small number is read right", small["dt"])
 
 
+def keyboard(checks):
+    """The first Tab offers to skip to the results; Tab reaches every control that is shown."""
+    page = checks.open(sample.make())
+    page.press("Tab")
+    skip = page.run("document.activeElement.className")
+    page.press("Enter")
+    checks.true(skip == "skip" and page.run("document.activeElement.id") == "main", "the first Tab and Enter skip to the results", skip)
+    page.run("document.activeElement.blur(); window.reached = new Set(); addEventListener('focusin', (e) => reached.add(e.target))")
+    controls = VISIBLE + "('a[href], button:not([disabled]), input, select, summary, [tabindex=\"0\"]').filter(e => e.tabIndex >= 0)"
+    for _ in range(2 * page.run(controls + ".length")):
+        for kind in ("keyDown", "keyUp"):
+            page.call("Input.dispatchKeyEvent", type=kind, key="Tab", windowsVirtualKeyCode=9)
+    page.settle()
+    checks.true(page.run("reached.size") > 30, "Tab goes on")
+    checks.empty(page.run(controls + ".filter(e => !reached.has(e)).map(e => e.outerHTML.slice(0, 90))"), "Tab reaches every control")
+
+
 def films(checks):
     """Play and pause by click and keys; arrows step after a click; the cursor follows."""
     model = sample.make()
@@ -369,10 +386,12 @@ def layout(checks):
     page.screenshot(os.path.join(checks.out, "page-dark.png"))
     checks.empty(page.run(accessibility.RULES), "accessibility: the serious rules, written out")
     if script := accessibility.axe_core():
-        for at in ("", f"case={model['cases'][0]['key']}"):
-            page = checks.open(model, at)
-            page.run(script + ";0")
-            checks.empty(page.run(accessibility.AXE), f"axe-core finds no serious violation {at and 'in a case'}")
+        for theme in ("light", "dark"):
+            page.media("", prefers_color_scheme=theme)
+            for at in ("", f"case={model['cases'][0]['key']}"):
+                page = checks.open(model, at)
+                page.run(script + ";0")
+                checks.empty(page.run(accessibility.AXE), f"axe-core finds no serious violation, {theme} {at and 'in a case'}")
     else:
         print("axe-core itself: not on this machine (npm install -g axe-core, or set AXE_CORE)")
     page.media("")
@@ -432,10 +451,13 @@ def without_script(checks):
     tree = page.call("Accessibility.getFullAXTree")["nodes"]
     page.call("Emulation.setScriptExecutionDisabled", value=False)
     text = " ".join(n.get("name", {}).get("value", "") for n in tree if n.get("role", {}).get("value") in ("StaticText", "heading"))
+    heads = [c for c in sample.make()["claims"] if c["kind"] == "headline"]
+    lacking = [c["sentence"] for c in heads if f"{c['sentence']} ({c['sure']})" not in text]
+    checks.empty(lacking or [] if heads else ["the sample has no headline"], "without JavaScript the headlines are there")
     checks.true("JavaScript is off" in text and "Which solver stretches less?" in text and "taut report --json" in text, "without JavaScript it says what is missing", text[:300])
 
 
-ALL = {f.__name__: f for f in (sections, claims, charts, maps, switches, cases, films, layout, prints, hostile, without_script)}
+ALL = {f.__name__: f for f in (sections, claims, charts, maps, switches, cases, keyboard, films, layout, prints, hostile, without_script)}
 
 
 def main(out, names):

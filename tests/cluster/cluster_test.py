@@ -83,6 +83,36 @@ class Submit(Cluster):
         self.assertIn("a single case may take 10 minutes", self.submit("--hours", 0.1, folder="e", expect=2).err)
         self.assertFalse((self.folder / "e").exists())
 
+    def test_the_scheduler_is_called_in_the_folder(self):
+        """With programs of their names that note what they are told; Slurm and GNU parallel themselves: schedulers_test.py."""
+        (self.folder / "bin").mkdir()
+        for name in ("sbatch", "parallel"):
+            (self.folder / "bin" / name).write_text(f'#!/bin/bash\necho "$PWD $TAUT $*" >{self.folder}/told\nexit $ANSWER\n')
+            (self.folder / "bin" / name).chmod(0o755)
+        (self.folder / "hosts").write_text("2/near\nfar\n")
+        options = "--jobs 100% --termseq TERM,20000,KILL,25"
+        resumed = f"--joblog joblog --resume --resume-failed {BINARIES}/taut cluster run . --shard {{}} -j 1 ::: 1 2\n"
+        for on, words, told in [
+                ("slurm", [], "job.sh\n"), ("parallel", [], f"{options} {resumed}"),
+                ("parallel", ["--node-file", "hosts", "--sshlogin", "a,4/b"],
+                 f"{options} --sshloginfile ./nodes --workdir {self.folder}/c {resumed}")]:
+            words = ["cluster", "submit", self.study(rest=self.MANY), "--on", on, "--shards", 2, "--folder", "c", *words]
+            environment = {**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}", "ANSWER": "0"}
+            environment.pop("TAUT", None)
+            self.taut(*words, "--dry-run", env=environment)
+            self.assertFalse((self.folder / "told").exists())
+            shutil.rmtree(self.folder / "c")
+            self.taut(*words, env=environment)
+            self.assertEqual((self.folder / "told").read_text(), f"{self.folder}/c {BINARIES}/taut {told}")
+            if "hosts" in words:
+                self.assertEqual((self.folder / "c/nodes").read_text(), "2/near\nfar\na\n4/b\n")
+            for program, here in [("refused or failed", {"ANSWER": "1"}), ("is not installed here", {"PATH": str(self.folder)})]:
+                shutil.rmtree(self.folder / "c")
+                self.assertIn(program, self.taut(*words, env={**environment, **here}, expect=2).err)
+                self.assertTrue((self.folder / "c/manifest.jsonl").exists(), "the folder is whole: it can be started elsewhere")
+            shutil.rmtree(self.folder / "c")
+            (self.folder / "told").unlink()
+
     def test_bad_input_writes_nothing(self):
         study = self.study(rest=self.MANY)
         for options, said in [(["--shards", 13], "the study has only 12 cases"), (["--shards", 0], "--shards"),
@@ -249,10 +279,10 @@ class Bench(Cluster):
 class Starts(Cluster):
     """Two starts of one shard, starts that die, disks that are full."""
 
-    def slow(self):
+    def slow(self, cases=12, on="parallel"):
         study = self.study(solvers=["faulty:mode=slow"], rest='set = ["time.duration=2.5"]\n'
-                           "axes.variant = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]\n")
-        self.submit("--shards", 1, study=study, program="taut-faulty")
+                           f"axes.variant = {list(range(cases))}\n")
+        self.submit("--shards", 1, study=study, program="taut-faulty", on=on)
 
     def begin(self, **more):
         process = self.start("cluster", "run", "c", "--shard", 1, program="taut-faulty", env=QUICK, **more)
@@ -279,7 +309,10 @@ class Starts(Cluster):
         self.wait_for(self.packed)
         second = self.shard(1, program="taut-faulty", expect=2)
         self.assertIn("is being run on", second.err)
-        self.assertEqual(self.status(expect=3, program="taut-faulty")["shards"][0]["state"], "running")
+        status = self.status(expect=3, program="taut-faulty")
+        self.assertEqual(status["shards"][0]["state"], "running")
+        self.assertGreater(status["seconds"], 0, "it runs, so the end can be foreseen")
+        self.assertLess(status["seconds"], 120, "of some twenty")
         first.communicate(timeout=60)
         self.assertEqual(first.returncode, 0)
         self.assertEqual(self.merge("c", "--out", "m")["store"], self.single())
@@ -309,7 +342,7 @@ class Starts(Cluster):
         self.assertEqual(self.merge("c", "--out", "m")["store"], self.single())
 
     def test_terminated_and_started_again(self):
-        self.slow()
+        self.slow(cases=6)
         first = self.begin()
         self.wait_for(self.packed)
         first.send_signal(signal.SIGTERM)
@@ -321,22 +354,65 @@ class Starts(Cluster):
         self.assertEqual(self.merge("c", "--out", "m")["store"], self.single())
         self.assertLess(time.monotonic() - begun, 30)
 
+    def vanished(self, words, place, inner="", **more):
+        """A case loses its folder and is killed, as by an out-of-memory killer: what the run says then."""
+        process = self.start(*words, program="taut-faulty", **more)
+        self.addCleanup(process.kill)
+        self.wait_for(lambda: list(place.glob(inner + "*/heartbeat")))
+        folder = next(place.glob(inner + "*/heartbeat")).resolve().parent
+        shutil.rmtree(folder)
+        for entry in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+            try:
+                if str(folder).encode() in entry.read_bytes().split(b"\0"):
+                    os.kill(int(entry.parent.name), signal.SIGKILL)
+            except OSError:  # another process, which has ended
+                pass
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 2, err)
+        return err
+
     def test_a_case_whose_folder_vanishes_is_no_result(self):
-        self.slow()
+        self.slow(cases=2)
         scratch = self.folder / "scratch"
         scratch.mkdir()
-        process = self.start("cluster", "run", "c", "--shard", 1, program="taut-faulty", env={**QUICK, "TMPDIR": str(scratch)})
-        self.addCleanup(process.kill)
-        self.wait_for(lambda: list(scratch.glob("taut.*/*/heartbeat")))
-        for case in scratch.glob("taut.*/*"):
-            shutil.rmtree(case, ignore_errors=True)
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 2)
-        self.assertIn("vanished while its case was running", err)
-        status = self.status(expect=3, program="taut-faulty")
-        self.assertEqual(status["failed"], [], "what nobody saw end is stored as nothing")
+        with self.subTest("in packs"):
+            said = self.vanished(["cluster", "run", "c", "--shard", 1], scratch, env={**QUICK, "TMPDIR": str(scratch)}, inner="*/")
+            self.assertIn("vanished while its case was running", said)
+            status = self.status(expect=3, program="taut-faulty")
+            self.assertEqual((status["done"], status["failed"]), (0, []), "what nobody saw end is stored as nothing")
+        with self.subTest("in folders"):
+            said = self.vanished(["run", "./study.toml", "--out", "whole", "-j", 1], self.folder / "whole/tmp")
+            self.assertIn("vanished while its case was running", said)
+            self.assertEqual(self.entries("whole"), [])
         self.shard(1, program="taut-faulty")
         self.assertEqual(self.merge("c", "--out", "m")["store"], self.single())
+
+    def job(self):
+        """The job script of shard 1 as a task of Slurm's, with a scontrol that only notes what it is told."""
+        (self.folder / "bin").mkdir()
+        (self.folder / "bin/scontrol").write_text(f'#!/bin/bash\necho "$*" >{self.folder}/told\n')
+        (self.folder / "bin/scontrol").chmod(0o755)
+        job = subprocess.Popen(["bash", "job.sh"], cwd=self.folder / "c", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                               env={**QUICK, "PATH": f"{self.folder}/bin:{os.environ['PATH']}", "SLURM_ARRAY_JOB_ID": "7",
+                                    "SLURM_ARRAY_TASK_ID": "1", "TAUT": str(BINARIES / "taut-faulty")})
+        self.addCleanup(job.communicate)
+        self.addCleanup(job.kill)
+        self.wait_for(self.packed)
+        return job
+
+    def test_a_task_that_is_preempted_stops_and_one_out_of_time_queues_itself_again(self):
+        for signal_sent, code, told in [(signal.SIGTERM, 130, None), (signal.SIGUSR1, 0, "requeue 7_1\n")]:
+            with self.subTest(signal_sent.name):
+                self.slow(cases=4, on="slurm")
+                job = self.job()
+                job.send_signal(signal_sent)
+                self.assertEqual(job.wait(timeout=20), code)
+                self.assertEqual((self.folder / "told").read_text() if (self.folder / "told").exists() else None, told)
+                status = self.status(expect=3, program="taut-faulty")
+                self.assertEqual(status["shards"][0]["state"], "stopped", "its beats end: nobody waits for it")
+                self.assertIn(status["done"], (1, 2, 3))
+            for made in ("c", "bin"):
+                shutil.rmtree(self.folder / made)
 
     def test_clocks_that_differ_by_hours(self):
         self.slow()

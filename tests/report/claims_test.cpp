@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/model/model.hpp"
 #include "experiments/system/json.hpp"
@@ -73,6 +74,19 @@ class Reader {
           << solver << " never ran that";
   }
 
+  /// ", time step 15.6 ms": of the cases quoted on these scenes.
+  void time_steps(const Names& scenes) const {
+    std::set<double> steps;
+    for (const std::string& scene : scenes)
+      for (const std::string& solver : raw_.solvers)
+        if (const Record* r = quoted(scene, solver)) steps.insert(r->dt);
+    const auto m = matches(text_, pattern(", time steps? #\u00A0ms( to #\u00A0ms)?[,:]"));
+    ASSERT_EQ(m.size(), 1U);
+    EXPECT_PRED2(near, number_in(m[0][1]) / 1e3, *steps.begin());
+    EXPECT_EQ(m[0][2].empty(), steps.size() == 1);
+    EXPECT_PRED2(near, number_in(m[0][m[0][2].empty() ? 1 : 3]) / 1e3, *steps.rbegin());
+  }
+
   const Record* quoted(const std::string& scene, const std::string& solver) const {
     return raw_.quoted(scene, solver, works_);
   }
@@ -109,6 +123,7 @@ class Reader {
   void stretch() {
     const std::string means = said("geometric mean over ");
     const Names common = names_in(means.substr(0, means.find(": ")));
+    if (!common.empty()) time_steps(common);
     Scenes named(common.begin(), common.end()), judged;
     std::size_t solvers = 0;
     for (const Names& m : matches(means, pattern("#\u00A0% with ([A-Za-z]+)"))) {
@@ -145,13 +160,24 @@ class Reader {
     EXPECT_EQ(named, Scenes(raw_.scenes.begin(), raw_.scenes.end()));
   }
 
+  /// Over the scenes where everybody has the value [m]; -1: there is none.
+  double deepest_of(const std::string& solver, const std::string& metric) const {
+    double deepest = -1;
+    for (const std::string& scene : raw_.scenes)
+      if (everybody(scene, metric))
+        deepest = std::max(deepest, *Raw::value(quoted(scene, solver), metric));
+    return deepest;
+  }
+
   void depth() {
     const auto colon = text_.find(": "), of = text_.find("deepest of ");
     const Scenes out = left_out();
     std::set<std::string> named(out.begin(), out.end());
-    if (of < colon)
-      for (const std::string& name : names_in(text_.substr(of + 11, colon - of - 11)))
-        named.insert(name);
+    if (of < colon) {
+      const Names common = names_in(text_.substr(of + 11, colon - of - 11));
+      time_steps(common);
+      named.insert(common.begin(), common.end());
+    }
     for (const std::string& scene : raw_.scenes) {
       const bool any = std::ranges::any_of(raw_.solvers, [&](const std::string& solver) {
         return Raw::value(quoted(scene, solver), "penetration.peak").has_value();
@@ -162,10 +188,7 @@ class Reader {
     for (const auto& [place, metric] :
          {std::pair<std::string, std::string>{"vertex", "penetration.peak"}, {"face", "face.peak"}})
       for (const std::string& solver : raw_.solvers) {
-        double deepest = -1;
-        for (const std::string& scene : raw_.scenes)
-          if (everybody(scene, metric))
-            deepest = std::max(deepest, *Raw::value(quoted(scene, solver), metric));
+        const double deepest = deepest_of(solver, metric);
         expected += deepest >= 0;
         for (const Names& m :
              matches(text_, pattern("(: |; )" + label_of(solver) + " [^;]*?#\u00A0mm at a " +
@@ -202,17 +225,22 @@ class Reader {
   }
 
   void step() {
-    int parts = 0;
+    std::map<std::string, std::vector<double>> found;
     for (const Names& clause :
-         matches(text_, "on ([a-z, ]+) \\([^)]* tried, each at ([^)]*)\\) ([^;]*?)(;|\\.$)"))
+         matches(text_, pattern("on ([a-z, ]+) \\(#\u00A0ms to #\u00A0ms tried, each at ([^)]*)\\) "
+                                "([^;]*?)(;|\\.$)")))
       for (const std::string& scene : names_in(clause[1]))
         for (const Names& m : matches(
-                 clause[3], "([A-Z][A-Za-z]+) (none|([0-9.]+)\u00A0ms( \\(the largest tried\\))?)"))
-          largest_step(scene, clause[2], m), ++parts;
-    EXPECT_GT(parts, 0);
+                 clause[5], "([A-Z][A-Za-z]+) (none|([0-9.]+)\u00A0ms( \\(the largest tried\\))?)"))
+          found[m[1]].push_back(largest_step(scene, clause, m));
+    EXPECT_FALSE(found.empty());
+    for (const Names& m : matches(said("; geometric mean over these scenes "),
+                                  pattern("([A-Z][A-Za-z]+) #\u00A0ms")))
+      EXPECT_PRED2(near, number_in(m[2]) / 1e3, geometric_mean(found.at(m[1])));
   }
 
-  void largest_step(const std::string& scene, const std::string& works, const Names& m) const {
+  double largest_step(const std::string& scene, const Names& clause, const Names& m) const {
+    const std::string& works = clause[4];
     std::map<double, bool> good;  // over all cases that every solver with sweeps has
     for (const Record* r : raw_.all) {
       if (r->scene != scene || r->solver != solver_of(m[1]) || !in_all(*r)) continue;
@@ -230,18 +258,31 @@ class Reader {
     EXPECT_EQ(m[2] == "none", largest == 0) << scene << m[1];
     EXPECT_PRED2(near, m[2] == "none" ? 0 : std::stod(m[3]) / 1e3, largest) << scene;
     EXPECT_EQ(!m[4].empty(), !good.empty() && largest == good.rbegin()->first) << scene;
+    EXPECT_PRED2(near, number_in(clause[2]) / 1e3, good.begin()->first) << scene;
+    EXPECT_PRED2(near, number_in(clause[3]) / 1e3, good.rbegin()->first) << scene;
+    return largest;
   }
 
   void failures() {
     std::set<std::string> named;
-    for (const Names& m :
-         matches(said("Cases that failed: "), "([A-Z][A-Za-z]+) (none|\\d+) of (\\d+)")) {
-      int failed = 0, total = 0;
+    std::map<std::string, int> refused;
+    for (const Names& m : matches(said(" Not supported: "), "([A-Z][A-Za-z]+) (\\d+)"))
+      refused[solver_of(m[1])] = std::stoi(m[2]);
+    for (const Names& m : matches(said("Cases that failed: "),
+                                  "([A-Z][A-Za-z]+) (none|\\d+) of (\\d+)( \\([^)]*\\))?")) {
+      int failed = 0, total = 0, unsupported = 0;
+      std::map<std::string, int> kinds, said_kinds;
       for (const Record* r : raw_.all) {
         if (r->solver != solver_of(m[1])) continue;
         ++total;
-        failed += !Raw::good(*r) && r->status.kind != Status::Kind::unsupported;
+        unsupported += r->status.kind == Status::Kind::unsupported;
+        if (Raw::good(*r) || r->status.kind == Status::Kind::unsupported) continue;
+        ++failed, ++kinds[std::string(to_string(r->status.kind))];
       }
+      for (const Names& kind : matches(m[4], "(\\d+) ([a-z]+)"))
+        said_kinds[kind[2]] = std::stoi(kind[1]);
+      EXPECT_EQ(said_kinds, kinds);
+      EXPECT_EQ(refused[solver_of(m[1])], unsupported);
       named.insert(solver_of(m[1]));
       for (const StudyResult& study : input_.studies)
         EXPECT_NE(said(" Counted in the studies ").find(study.name), std::string::npos);
@@ -254,6 +295,7 @@ class Reader {
   /// "Jakobsen 1.2 %; Bullet ended as exploded": `check` reads what follows a name.
   void side_by_side(const std::string& scene,
                     const std::function<void(const Record*, const std::string&)>& check) const {
+    time_steps({scene});
     std::set<std::string> named;
     std::string list = text_.substr(text_.find(": ", text_.find("time step")) + 2);
     list.pop_back();
@@ -308,6 +350,10 @@ class Reader {
       }
       EXPECT_EQ(std::stoul(of[0][1]), d.pairs.size());
       EXPECT_EQ(std::stoi(of[0][2]) + named, std::stoi(of[0][1]));
+      const auto alone = matches(text_, " A alone has (\\d+) cases, B alone (\\d+)");
+      ASSERT_EQ(alone.size(), 1U);
+      EXPECT_EQ(std::stoul(alone[0][1]), d.only_a);
+      EXPECT_EQ(std::stoul(alone[0][2]), d.only_b);
       return;
     }
     const std::map<std::string, std::pair<std::string, double>> metrics{
@@ -319,13 +365,15 @@ class Reader {
     const auto& [metric, scale] = metrics.at(id);
     int both = 0, less = 0, more = 0;
     double largest = 0;
+    const Record* where = nullptr;
     for (const auto& [one, other] : d.pairs) {
       const auto a = Raw::value(&one, metric), b = Raw::value(&other, metric);
       if (!a || !b) continue;
       ++both;
       if (*b < *a) ++less;
       if (*b > *a) ++more;
-      if (*a != *b) largest = std::max(largest, std::abs(*b - *a) / std::max(*a, *b));
+      const double change = *a == *b ? 0 : std::abs(*b - *a) / std::max(*a, *b);
+      if (change > largest) largest = change, where = &other;
     }
     const auto same = matches(text_, ", (\\d+) cases? [a-z ]*: the same to the bit");
     if (less + more == 0) {
@@ -335,23 +383,37 @@ class Reader {
     }
     const auto m = matches(
         text_, pattern(", (\\d+) cases? that completed in both: less in B in (\\d+), more in "
-                       "(\\d+); [^:]*: #[^,]* in A, #"));
+                       "(\\d+); the largest change is that of ([a-z]+), ([A-Za-z]+) ([^:]*): #"
+                       "[^,]* in A, #"));
     ASSERT_EQ(m.size(), 1U);
     EXPECT_EQ(std::stoi(m[0][1]), both);
     EXPECT_EQ(std::stoi(m[0][2]), less);
     EXPECT_EQ(std::stoi(m[0][3]), more);
-    const double a = number_in(m[0][4]) / scale, b = number_in(m[0][5]) / scale;
+    EXPECT_EQ(m[0][4], where->scene);
+    EXPECT_EQ(solver_of(m[0][5]), where->solver);
+    EXPECT_EQ(m[0][6], brief_settings(where->spec.solver));
+    const double a = number_in(m[0][7]) / scale, b = number_in(m[0][8]) / scale;
     EXPECT_NEAR(std::abs(b - a) / std::max({a, b, 1e-300}), largest, 0.02);
   }
 
   /// One number for one thing: what a tile's bar says stands in the headline.
-  static void tile(const Claim& claim, const std::vector<Claim>& all) {
+  void tile(const Claim& claim, const std::vector<Claim>& all) const {
     const auto headline =
         std::ranges::find_if(all, [&](const Claim& c) { return "tile-" + c.id == claim.id; });
     ASSERT_NE(headline, all.end());
     EXPECT_FALSE(claim.bars().empty());
-    for (const Bar& bar : claim.bars())
+    for (const Bar& bar : claim.bars()) {
       EXPECT_NE(headline->sentence.find(bar.text), std::string::npos) << bar.text;
+      EXPECT_EQ(label_of(bar.solver), bar.label);
+      if (!bar.value) continue;
+      const auto number = matches(bar.text, pattern("^#\u00A0(%|mm|ms)"));
+      ASSERT_EQ(number.size(), 1U) << bar.text;
+      EXPECT_PRED2(near, number_in(number[0][1]) / (number[0][2] == "%" ? 100 : 1e3), *bar.value);
+      if (claim.id == "tile-depth") {
+        EXPECT_EQ(*bar.value, std::max(deepest_of(bar.solver, "penetration.peak"),
+                                       deepest_of(bar.solver, "face.peak")));
+      }
+    }
   }
 
   const ReportInput& input_;

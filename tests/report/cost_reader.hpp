@@ -61,6 +61,7 @@ class CostReader {
   void same_work(const std::string& other) const {
     const std::string first = first_beside(other);
     std::map<std::string, Ratio> ratios;
+    std::set<std::string> works, named;
     for (const SceneBench& scene : input_.bench->scenes) {
       std::vector<Ratio> here;
       for (const auto& [substeps, sweeps] :
@@ -73,12 +74,16 @@ class CostReader {
           if (c.record.solver == first) ours = &c;
           if (c.record.solver == other) theirs = &c;
         }
-        if (ours && theirs && ours->record.dt == theirs->record.dt)
-          here.push_back(ratio_of(*ours, *theirs));
+        if (!ours || !theirs || ours->record.dt != theirs->record.dt) continue;
+        here.push_back(ratio_of(*ours, *theirs));
+        works.insert(std::to_string(substeps) + " × " + std::to_string(sweeps));
       }
       if (!here.empty()) ratios[scene.scene] = mean_of(here);
     }
     EXPECT_EQ(directions(first, other, ratios).size(), ratios.size());
+    for (const Names& m : matches(text_.substr(0, text_.find("): ")), "\\d+ × \\d+"))
+      named.insert(m[0]);
+    EXPECT_EQ(named, works);
   }
 
   /// "on hang 2.1 ms, 1/10 of without; on ball 3 ms, the same as without".

@@ -1,15 +1,17 @@
 // What the model draws, counts and names, held against the raw records of made-up reports.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
-#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/settings.hpp"
 #include "experiments/report/model/model.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
+#include "tests/report/raw_records.hpp"
 
 namespace taut::report {
 namespace {
@@ -27,19 +29,59 @@ struct Made {
   std::map<std::string, Json> cases;
 };
 
-constexpr unsigned kSets = 10;
+/// Made-up reports, made once.
+const std::vector<Made>& sets() {
+  static const std::vector<Made> all = [] {
+    std::vector<Made> made;
+    for (unsigned seed = 0; seed < 20; ++seed) made.emplace_back(seed);
+    return made;
+  }();
+  return all;
+}
+
+/// What a listed case has of a quantity: a setting, a measured value or its cost; null: none.
+Json value_in(const Json& one, const std::string& metric) {
+  for (const char* field : {"dt", "steps", "projections"})
+    if (metric == field) return one[field];
+  if (one["parameters"].contains(metric))
+    return std::stod(one["parameters"][metric].get<std::string>());
+  if (one.contains("cost") && one["cost"].contains(metric)) return one["cost"][metric]["mid"];
+  return one["values"].value(metric, Json());
+}
 
 TEST(Drawn, APointIsOfItsSolverMarkedAsItEndedAndInsideItsInterval) {
   std::size_t points = 0, intervals = 0;
-  for (unsigned seed = 0; seed < kSets; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    const Made made(seed);
-    for (const Json& chart : made.model.value("charts", Json::array()))
+  for (const Made& made : sets()) {
+    for (const Json& chart : made.model.value("charts", Json::array())) {
+      for (const char* axis : {"x", "y"}) {
+        const Quantity q = quantity(chart[axis]["metric"].get<std::string>());
+        EXPECT_EQ(chart[axis]["scale"], q.scale) << q.name;
+        EXPECT_EQ(chart[axis]["unit"], q.unit) << q.name;
+      }
       for (const Json& series : chart["series"]) {
         const std::string solver = series["solver"];
+        double before = 0;
         EXPECT_TRUE(series["label"].get<std::string>().starts_with(solver_title(solver)));
         for (const Json& p : series.value("points", Json::array())) {
-          EXPECT_EQ(made.cases.at(p["case"])["solver"], solver);
+          const Json& one = made.cases.at(p["case"]);
+          EXPECT_EQ(one["solver"], solver);
+          EXPECT_EQ(one["scene"], chart["scene"]);
+          const Json x = value_in(one, chart["x"]["metric"]);
+          EXPECT_TRUE(p["x"] == x || (p["failed"] && x.is_null()))
+              << chart["id"];  // failed in time
+          if (!p["failed"]) {
+            EXPECT_EQ(p["y"], value_in(one, chart["y"]["metric"])) << chart["id"];
+          }
+          if (chart.contains("held")) {
+            const std::string held = chart["held"];
+            const bool step = held.starts_with("time step ");
+            const Quantity q = quantity(step ? "dt" : "iterations");
+            const double its = value_in(one, q.name);
+            EXPECT_EQ(held, step ? "time step " + q.text(its, 3) : q.text(its, 3) + " " + q.title);
+          }
+          if (p["x"].is_null()) continue;
+          EXPECT_LE(before, p["x"]) << "not in the order of " << chart["x"]["metric"];
+          before = p["x"];
           EXPECT_EQ(p["zero"], !p["y"].is_null() && p["y"] == 0);
           EXPECT_EQ(p["failed"], fails(p["status"]));
           ++points;
@@ -49,15 +91,14 @@ TEST(Drawn, APointIsOfItsSolverMarkedAsItEndedAndInsideItsInterval) {
           ++intervals;
         }
       }
+    }
   }
   EXPECT_GT(points, 300U);
   EXPECT_GT(intervals, 10U);
 }
 
 TEST(Drawn, CountsOfStatusesAreOfAllCases) {
-  for (unsigned seed = 0; seed < kSets; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    const Made made(seed);
+  for (const Made& made : sets()) {
     for (const Json& map : made.model.value("maps", Json::array())) {
       std::map<std::string, int> counts;
       for (const Json& cell : map["cells"]) ++counts[cell["status"]];
@@ -69,11 +110,15 @@ TEST(Drawn, CountsOfStatusesAreOfAllCases) {
       for (const Record& r : study.records)
         if (keys.insert(r.key).second)
           ++ended[r.scene][r.solver][std::string(to_string(r.status.kind))];
-    for (const Json& scene : made.model["scenes"])
-      if (scene["studied"]) {
-        EXPECT_EQ((scene["statuses"].get<std::map<std::string, std::map<std::string, int>>>()),
-                  ended.at(scene["id"]));
-      }
+    for (const Json& scene : made.model["scenes"]) {
+      EXPECT_EQ((scene["statuses"].get<std::map<std::string, std::map<std::string, int>>>()),
+                ended.at(scene["id"]));
+      int cases = 0;
+      for (const auto& [solver, statuses] : ended.at(scene["id"]))
+        for (const auto& [status, n] : statuses) cases += n;
+      const Json& facts = scene["facts"];
+      EXPECT_EQ(facts.back(), (Json{{"name", "cases"}, {"value", std::to_string(cases)}}));
+    }
     for (const Json& status : made.model["statuses"])
       EXPECT_EQ(status["failed"], fails(status["id"]));
     for (const Json& claim : made.model["claims"])
@@ -91,8 +136,7 @@ TEST(Drawn, CountsOfStatusesAreOfAllCases) {
 
 TEST(Drawn, ABasisNamesTheWindowOfItsMetricAndOrderedIntervals) {
   std::size_t intervals = 0;
-  for (unsigned seed = 0; seed < kSets; ++seed) {
-    const Made made(seed);
+  for (const Made& made : sets()) {
     for (const auto& [name, metric] : made.model["metrics"].items())
       EXPECT_EQ(metric["scale"], quantity(name).scale) << name;
     for (const Json& claim : made.model["claims"])
@@ -100,6 +144,18 @@ TEST(Drawn, ABasisNamesTheWindowOfItsMetricAndOrderedIntervals) {
         const std::string window = quantity(basis["metric"].get<std::string>()).window;
         EXPECT_EQ(basis["window"], window.empty() ? "whole run" : window) << basis["metric"];
         for (const Json& value : basis["values"]) {
+          const std::string label = value["label"];
+          EXPECT_TRUE(claim["about"] == "differences" ||
+                      label.starts_with(solver_title(value["solver"].get<std::string>())))
+              << claim["id"] << ": " << value;
+          if (value.contains("case")) {
+            const Json& one = made.cases.at(value["case"]);
+            EXPECT_EQ(one["solver"], value["solver"]) << claim["id"];
+            EXPECT_EQ(one["scene"], value["scene"]) << claim["id"];
+            if (!value["value"].is_null()) {
+              EXPECT_EQ(value_in(one, basis["metric"]), value["value"]) << claim["id"];
+            }
+          }
           if (!value.contains("low")) continue;
           EXPECT_LE(value["low"], value["value"]);
           EXPECT_LE(value["value"], value["high"]);
@@ -112,24 +168,167 @@ TEST(Drawn, ABasisNamesTheWindowOfItsMetricAndOrderedIntervals) {
 
 TEST(Drawn, ACaseHasItsSettingsItsCommandAndItsCost) {
   std::size_t timed = 0;
-  for (unsigned seed = 0; seed < kSets; ++seed) {
-    const Made made(seed);
+  for (const Made& made : sets()) {
     std::set<Json> colours;
     for (const Json& solver : made.model["solvers"]) colours.insert(solver["colour"]);
     EXPECT_EQ(colours.size(), made.model["solvers"].size()) << "two solvers look alike";
+    std::map<std::string, const Record*> raw;
+    for (const StudyResult& study : made.input.studies)
+      for (const Record& r : study.records) raw[r.id] = &r;
     for (const auto& [key, one] : made.cases) {
+      if (const auto at = raw.find(one["id"]); at != raw.end())
+        for (const auto& [name, value] : at->second->values)
+          if (std::isfinite(value)) {
+            EXPECT_EQ(one["values"][name], value) << name;
+          }
       const std::string command = one["command"], settings = one["settings"];
       EXPECT_NE(command.find(settings), std::string::npos);
       for (const Json& text : one.value("overrides", Json::array()))
         EXPECT_NE(command.find(text.get<std::string>().substr(0, 7)), std::string::npos) << command;
       if (!one.contains("cost")) continue;
-      const double second = one["cost"]["cpu.per_second"]["mid"];
-      EXPECT_NEAR(one["cost"]["cpu.per_step"]["mid"].get<double>(),
-                  second * one["dt"].get<double>(), 1e-9 * second);
+      for (const char* end : {"low", "mid", "high"}) {
+        const double second = one["cost"]["cpu.per_second"][end];
+        EXPECT_NEAR(one["cost"]["cpu.per_step"][end].get<double>(),
+                    second * one["dt"].get<double>(), 1e-9 * second);
+      }
       ++timed;
     }
   }
   EXPECT_GT(timed, 10U);
+}
+
+TEST(Drawn, ACellOfAMapIsTheCaseOfItsRowAndColumn) {
+  std::size_t seen = 0;
+  for (const Made& made : sets())
+    for (const Json& map : made.model.value("maps", Json::array()))
+      for (const Json& cell : map["cells"]) {
+        const Json& one = made.cases.at(cell["case"]);
+        EXPECT_EQ(one["solver"], map["solver"]);
+        EXPECT_EQ(one["scene"], map["scene"]);
+        EXPECT_EQ(one["status"], cell["status"]);
+        for (const auto& [axis, place] : {std::pair{"x", "column"}, {"y", "row"}}) {
+          const Json& values = map[axis]["values"];
+          EXPECT_TRUE(std::ranges::is_sorted(values.get<std::vector<double>>()));
+          EXPECT_EQ(values[cell[place].get<std::size_t>()], value_in(one, map[axis]["metric"]));
+        }
+        ++seen;
+      }
+  EXPECT_GT(seen, 300U);
+}
+
+TEST(Drawn, OfTwoCasesInOneCellTheWorseIsShown) {
+  std::vector<Record> two(2);
+  for (Record& r : two) {
+    r.scene = "hang", r.solver = "jakobsen", r.dt = 0.01, r.params = {{"iterations", "4"}};
+    for (const Status::Kind kind : {Status::Kind::ok, Status::Kind::crash}) {
+      r.status.kind = kind;
+      const auto maps = make_maps(two, "hang", "dt", "iterations");
+      const bool any = &r == &two[1] || kind != Status::Kind::ok;
+      EXPECT_EQ(maps.at(0).cells.at(0).record->status.kind,
+                any ? Status::Kind::crash : Status::Kind::ok);
+    }
+  }
+}
+
+TEST(Drawn, NoPointBeatsTheFrontAndNoneOfTheFrontBeatsAnother) {
+  std::size_t seen = 0;
+  for (const Made& made : sets())
+    for (const Json& chart : made.model.value("charts", Json::array())) {
+      if (!chart.contains("front")) continue;
+      const Json& front = chart["front"];
+      for (std::size_t i = 1; i < front.size(); ++i, ++seen)
+        EXPECT_TRUE(front[i - 1]["x"] <= front[i]["x"] && front[i - 1]["y"] > front[i]["y"]);
+      for (const Json& series : chart["series"])
+        for (const Json& p : series["points"])
+          EXPECT_TRUE(p["failed"] || p["y"].is_null() || p["x"] <= 0 ||
+                      std::ranges::any_of(front, [&](const Json& f) {
+                        return f["x"] <= p["x"] && f["y"] <= p["y"];
+                      }));
+    }
+  EXPECT_GT(seen, 20U);
+}
+
+TEST(Drawn, TheReferencesOwnErrorIsTheFloorOfItsChart) {
+  ReportInput input = made_up::Maker(0).input();
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records)
+      r.values["reference.rms"] = 0.01, r.values["reference.floor"] = 1e-4;
+  int seen = 0;
+  const Json model = parse_json(make_model(input));
+  for (const Json& chart : model["charts"])
+    if (chart["y"]["metric"] == "reference.rms") {
+      EXPECT_EQ(chart.value("floor", Json{{"y", 0}})["y"], 1e-4);
+      ++seen;
+    }
+  EXPECT_GT(seen, 0);
+}
+
+TEST(Drawn, APanelMarksWhatDiffersUnderItsSolver) {
+  int seen = 0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    ReportInput input = made_up::Maker(seed).input();
+    for (StudyResult& study : input.studies)
+      for (Record& r : study.records)
+        r.resolved_settings = {{"made by", r.solver}, {"gravity", "9.81"}};
+    const Json model = parse_json(make_model(input));
+    for (const Json& scene : model["scenes"]) {
+      if (!scene.contains("fairness")) continue;
+      const Json &columns = scene["fairness"]["columns"], &rows = scene["fairness"]["rows"];
+      EXPECT_EQ(rows[0]["differs"], columns.size() > 1);
+      EXPECT_FALSE(rows[1]["differs"]);
+      for (std::size_t i = 0; i < columns.size(); ++i, ++seen)
+        EXPECT_EQ(rows[0]["values"][i], columns[i]["solver"]);
+    }
+  }
+  EXPECT_GT(seen, 10);
+}
+
+TEST(Drawn, ATableOfCostsSaysWhatItsCasesCostAndABenchWhetherItWasNoisy) {
+  std::size_t cells = 0, noisy = 0;
+  for (const Made& made : sets()) {
+    if (!made.input.bench) continue;
+    for (const Json& table : made.model["tables"])
+      for (const Json& row : table["rows"])
+        for (const Json& cell : row) {
+          if (!cell.contains("low")) continue;
+          const Json& cost = made.cases.at(cell["case"])["cost"]["cpu.per_second"];
+          EXPECT_EQ(cell["low"], cost["low"]);
+          EXPECT_EQ(cell["value"], cost["mid"]);
+          EXPECT_EQ(cell["high"], cost["high"]);
+          ++cells;
+        }
+    for (const Json& scene : made.model["cost"]["scenes"]) {
+      const double low = scene["control"]["low"], high = scene["control"]["high"];
+      EXPECT_EQ(scene["noisy"], std::max(1 / low, high) > 1.05);
+      noisy += scene["noisy"].get<bool>();
+    }
+  }
+  EXPECT_GT(cells, 10U);
+  EXPECT_GT(noisy, 0U);
+}
+
+TEST(Drawn, ChangesBetweenTwoFoldersStandTheLargestFirstAndAreJudgedByTheirSign) {
+  int judged = 0;
+  for (const Made& made : sets())
+    for (const Json& table : made.model.value("tables", Json::array())) {
+      if (table["id"] != "differences-values") continue;
+      double before = 2;
+      for (const Json& row : table["rows"]) {
+        if (row[1] == "status") {
+          EXPECT_EQ(before, 2) << "another end comes before another value";
+          continue;
+        }
+        const double a = reading::number_in(row[2]), b = reading::number_in(row[3]);
+        const double size = std::abs(b - a) / std::max(a, b);
+        EXPECT_LE(size, before + 2e-3) << row;
+        before = size;
+        if (row[5] != "") {
+          EXPECT_EQ(row[5], b < a ? "better" : "worse") << row;
+          ++judged;
+        }
+      }
+    }
+  EXPECT_GT(judged, 20);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What a user gets who names no setting: the table behind it is in core/README.md.
+// What a user gets who names no setting: the table behind it is in
+// results/benchmarks/default-setting.md.
 #include <gtest/gtest.h>
 
 #include "core/io/scene_io.hpp"

@@ -111,6 +111,10 @@ TESTED = {
     "tethers among what both have": ("experiments/report/claims/cost_claims.cpp",
                                      "theirs : ours).empty()", "theirs : ours).size() < 9", CLAIMS,
                                      "Claims.*"),
+    "wrong count of a status": ("experiments/report/claims/physics_claims.cpp", "++failures, ++failed[",
+                                "++failures, failed[\"x\"]++, ++failed[", CLAIMS, "Claims.*"),
+    "largest for mean of stable steps": ("experiments/report/claims/physics_claims.cpp", "geometric_mean(found[i])",
+                                         "found[i].back()", CLAIMS, "Claims.*"),
     "noise ignored": ("experiments/report/claims/claim.cpp", "change <= std::log1p(noise)", "false",
                       CLAIMS, "Claims.*"),
 }

@@ -67,11 +67,30 @@ TEST(Answer, EverySolverIsNamedWithWhatItCostsOrHowNearItCame) {
   EXPECT_NEAR(found.solvers[1].times->mid, 3, 1e-9);
   EXPECT_EQ(found.solvers[2].at, std::nullopt);
   const std::string said = text(found, b, "e");
-  for (const char* part : {"e <= 0.01: jakobsen, e 0.01, 1e+03", "; clear\n", "  bullet: 3",
-                           "  xpbd: not by the settings tried; nearest: xpbd, e 0.02",
-                           "  mass-spring: not by the settings tried; every case failed\n"})
+  for (const char* part :
+       {"e <= 0.01: jakobsen, e 0.01, 1e+03", "; clearly cheaper than bullet\n", "  bullet: 3",
+        "  xpbd: not by the settings tried; nearest: xpbd, e 0.02",
+        "  mass-spring: not by the settings tried; every case failed\n"})
     EXPECT_NE(said.find(part), std::string::npos) << part << " in\n" << said;
   EXPECT_NE(text(answer(b, {1e-9, {}}, "e"), b, "e").find("not reached"), std::string::npos);
+}
+
+TEST(Answer, TheWordsSayOfWhatItIsSure) {
+  const auto said = [](const SceneBench& b, const Target& target) {
+    const std::string all = text(answer(b, target, "e", 0.05), b, "e");
+    return all.substr(0, all.find('\n'));
+  };
+  const BenchedCase a = finalist("jakobsen", 1, 0.01), b = finalist("bullet", 1, 0.02);
+  EXPECT_TRUE(said(bench({a, b}), {{}, 4}).ends_with("; clearly within the budget"));
+  EXPECT_TRUE(said(bench({a, b}), {{}, 1.0001}).ends_with("; likely within the budget"));
+  EXPECT_TRUE(
+      said(bench({a, b}), {0.02, {}}).ends_with("; no cheaper than bullet that can be told"));
+  const BenchedCase slow = finalist("bullet", 3, 0.01), slower = finalist("jakobsen", 4, 0.01);
+  EXPECT_TRUE(said(bench({a, slow}), {0.01, {}}).ends_with("; clearly cheaper than bullet"));
+  EXPECT_TRUE(said(bench({a, slow}, 0.3), {0.01, {}}).ends_with("; likely cheaper than bullet"));
+  EXPECT_TRUE(
+      said(bench({a, slower}), {0.01, {}}).ends_with("; clearly cheaper than the next setting"));
+  EXPECT_TRUE(said(bench({a}), {0.01, {}}).ends_with("; nothing else timed reaches it"));
 }
 
 TEST(Answer, EverySolverSendsItsBestToTheFinal) {

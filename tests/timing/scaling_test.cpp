@@ -20,7 +20,7 @@ std::vector<Case> squares(std::initializer_list<int> sides) {
 }
 
 /// Takes n^1.5 seconds, of which every sample is a thousandth.
-Measured measured(const Case& one) {
+Measured measured(const Case& one, double) {
   const double n = one.scene->mesh.size(), seconds = std::pow(n, 1.5);
   Measured m{{describe(*one.scene, one.choice), {}}, seconds};
   m.benched.record.step_cost = {{"verlet", 1, 1, static_cast<std::size_t>(100 * n), false}};
@@ -45,6 +45,15 @@ TEST(Scaling, WhatWouldTakeTooLongIsSkippedAndSaid) {
   EXPECT_EQ(lines[0].cases.size(), 3u);  // 256 vertices take 4096 s
   ASSERT_EQ(lines[0].skipped.size(), 1u);
   EXPECT_NE(lines[0].skipped[0].find("1024 vertices"), std::string::npos);
+}
+
+TEST(Scaling, ACaseIsExpectedToTakeWhatTheOneBeforeTookInProportionToItsSize) {
+  std::vector<double> expected;
+  measure_scaling(squares({4, 8}), 1e9, [&](const Case& one, double seconds) {
+    expected.push_back(seconds);
+    return measured(one, seconds);
+  });
+  EXPECT_EQ(expected, (std::vector<double>{0, 4 * std::pow(16, 1.5), 0, 4 * std::pow(16, 1.5)}));
 }
 
 TEST(Scaling, TwoSizesAreNoExponent) {

@@ -21,7 +21,7 @@ constexpr std::array kTypes{Type{"char", "int8", 1},     Type{"uchar", "uint8", 
                             Type{"float", "float32", 4}, Type{"double", "float64", 8}};
 
 /// Where a coordinate stands in a vertex, as a column and as a byte; `bytes` 0: it is not there.
-struct Place {
+struct Coordinate {
   std::size_t column = 0, offset = 0, bytes = 0;
 };
 
@@ -32,7 +32,7 @@ class PlyReader {
 
   std::vector<Vec3> read(Rounding& rounding) {
     header();
-    for (const Place& place : places_)
+    for (const Coordinate& place : places_)
       if (place.bytes == 0) fail("its vertices lack one of the properties x, y, z");
     rounding = ascii_                  ? Rounding::decimal
                : places_[0].bytes == 4 ? Rounding::binary32
@@ -150,7 +150,7 @@ class PlyReader {
   bool ascii_ = false, format_known_ = false;
   std::endian order_ = std::endian::little;
   std::optional<std::uint32_t> count_;
-  std::array<Place, 3> places_;
+  std::array<Coordinate, 3> places_;
   std::size_t columns_ = 0, size_ = 0;
 };
 

@@ -46,7 +46,7 @@ inline bool keeps_flat_distances(const Scene& scene) {
 }
 
 /// In which order Gauss-Seidel visits the links. It decides convergence, stability under substeps
-/// and what can run in parallel; core/README.md has the comparison.
+/// and what can run in parallel; results/benchmarks/default-setting.md compares.
 enum class Order {
   mesh,      ///< as the scene lists them
   coloured,  ///< independent groups, tile by tile

@@ -18,8 +18,6 @@ namespace taut {
 /// care.
 class Layout {
  public:
-  static constexpr std::size_t kGrain = 48;  ///< loops over all numbers take so many at a time
-
   /// x y z 0 | x y z 0 | ..., particle i at place rank[i], or at i if there are no ranks; at the
   /// end at least two spare points, which no particle owns, and as many as fill the lanes.
   static Layout packed(std::size_t n, std::vector<std::uint32_t> rank = {}) {

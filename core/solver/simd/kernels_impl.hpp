@@ -1,7 +1,8 @@
 #pragma once
 
-// Included by one file for each instruction set, which says what its lanes are. No function here
-// may be shared between them: everything depends on the lane type, which is private to the file.
+// Included by instruction_set.cpp, which is compiled once for each of them and says what its lanes
+// are. No function here may be shared between them: everything depends on the lane type, which is
+// private to the file.
 
 #include <cstring>
 #include <limits>

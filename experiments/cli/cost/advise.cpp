@@ -269,7 +269,7 @@ void print_searched(const Options& options, const Result& result, double elapsed
                        " s of " + number_text(options.patience) + " s in all");
   for (const std::string& solver : result.cut)
     line("NOT DONE", solver + ": stopped by --patience " + number_text(options.patience));
-  for (const std::string& reason : result.unsupported) line("cannot", reason);
+  for (const std::string& reason : result.unsupported) line("unsupported", reason);
   std::size_t refused = 0;
   for (const Candidate& c : result.tried)
     if (!c.failure.empty() && ++refused <= kMostRefused)

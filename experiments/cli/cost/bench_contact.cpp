@@ -5,6 +5,7 @@
 #include "experiments/bench/contact.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/system/json.hpp"
@@ -124,7 +125,10 @@ std::function<int()> bind(CLI::App& app) {
   return [o] {
     std::vector<Rows> sizes;
     for (const int side : o->sizes) {
-      sizes.push_back(bench_contact({.side = side, .rounds = o->rounds, .seconds = o->seconds}));
+      sizes.push_back(bench_contact({.side = side,
+                                     .rounds = o->rounds,
+                                     .seconds = o->seconds,
+                                     .progress = Countdown("timing round")}));
       if (!o->json) print(sizes.back(), side);
     }
     if (o->json)

@@ -6,6 +6,7 @@
 #include "experiments/bench/kernels.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/json.hpp"
 
@@ -104,7 +105,8 @@ std::function<int()> bind(CLI::App& app) {
       const KernelBench bench = bench_kernels({.side = side,
                                                .rounds = o->rounds,
                                                .seconds = o->seconds,
-                                               .bullet = side <= o->largest_bullet});
+                                               .bullet = side <= o->largest_bullet,
+                                               .progress = Countdown("timing round")});
       o->json ? all.push_back(json_of(bench)) : print(bench);
     }
     if (o->json) std::cout << to_text(all, 1) << '\n';

@@ -15,7 +15,7 @@ namespace taut::verb::scaling {
 
 namespace {
 
-constexpr std::size_t kMemory = std::size_t{8} << 30;  ///< of a case, bytes of address space
+constexpr std::size_t kMemory = std::size_t{8} << 30;  ///< of a case, bytes of private memory
 
 struct Options {
   std::string study = "scaling", preset, out;
@@ -29,9 +29,10 @@ std::string exponent(const std::optional<PowerLaw>& law) {
              : "too few sizes";
 }
 
-Measured measure(const Case& one, const Store& store, const Options& options) {
+Measured measure(const Case& one, double expected, const Store& store, const Options& options) {
   const auto start = std::chrono::steady_clock::now();
-  progress() << one.id << '\n';
+  progress() << one.id << (expected < 1 ? "" : ", about " + number_text(expected, 2) + " s")
+             << '\n';
   BenchedCase benched{*run_stored(one, store, {options.limit * 4, kMemory}), {}};
   Timing& timing = benched.timing;
   const Record& record = benched.record;
@@ -113,7 +114,8 @@ int run(const Options& options) {
   const Store store(options.out);
   store.prepare();
   const std::vector<ScalingLine> lines = measure_scaling(
-      cases, options.limit, [&](const Case& one) { return measure(one, store, options); });
+      cases, options.limit,
+      [&](const Case& one, double expected) { return measure(one, expected, store, options); });
   const auto file = keep(study, lines, options);
   if (options.json) {
     Json all;

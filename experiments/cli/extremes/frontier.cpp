@@ -237,14 +237,15 @@ int check_baseline(const Options& options, const std::vector<KnobFrontier>& foun
   for (const FrontierChange& change : compare_frontiers(before, found)) {
     const bool narrowed = change.kind == FrontierChange::Kind::narrowed;
     if (narrowed) code = kRegression;
-    std::cerr << (narrowed                                       ? "NARROWED "
-                  : change.kind == FrontierChange::Kind::widened ? "widened  "
-                                                                 : "changed  ")
-              << change.solver << ", " << change.knob << ": " << change.text << '\n';
+    (narrowed ? std::cerr : progress())
+        << (narrowed                                       ? "NARROWED "
+            : change.kind == FrontierChange::Kind::widened ? "widened  "
+                                                           : "changed  ")
+        << change.solver << ", " << change.knob << ": " << change.text << '\n';
   }
   for (const KnobFrontier& knob : found) compared += knob.lacks.empty();
-  std::cerr << compared << " frontiers compared with " << file.string() << ": "
-            << (code == kPass ? "none is narrower" : "some are narrower") << '\n';
+  progress() << compared << " frontiers compared with " << file.string() << ": "
+             << (code == kPass ? "none is narrower" : "some are narrower") << '\n';
   return code;
 }
 

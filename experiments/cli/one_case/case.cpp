@@ -111,12 +111,13 @@ std::function<int()> bind(CLI::App& app) {
   options->which.bind(app);
   app.add_flag("--json", options->json, "Print the record as JSON");
   app.add_option("--final-state", options->final_state,
-                 "Write vertex,x,y,z,vx,vy,vz of the last sound state, full precision (CSV)");
+                 "Write vertex,x,y,z,vx,vy,vz of the last stable state, full precision (CSV)");
   app.add_option("--trajectory", options->trajectory,
                  "Write every step's positions: taut's .traj, .npy, .pc2, .mdd, or a file a step, "
                  ".obj or .ply");
   app.add_option("--series", options->series, "Write values over time (CSV)");
-  app.add_flag("--verbose", options->verbose, "Say on stderr how far it is and what is effective");
+  app.add_flag("--verbose", options->verbose,
+               "Say on stderr how far it is and what the solver made of its settings");
   app.add_option("--into", options->into, "Used by taut run")->group("");
   app.add_flag("--frames", options->frames, "Used by taut require")->group("");
   return [options] { return run(*options); };
@@ -130,4 +131,4 @@ TAUT_VERB(case) = {
     .group = VerbGroup::one_case,
     .summary = "Runs one case in this process; a numerical failure is a result (exit 0)",
     .example = "taut case hang jakobsen:iterations=1,substeps=15 --dt 1/120 --final-state hang.csv",
-    .bind = taut::verb::one_case ::bind};
+    .bind = taut::verb::one_case::bind};

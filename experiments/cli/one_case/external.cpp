@@ -8,6 +8,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/colour.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/probe.hpp"
 #include "experiments/external/scene_file.hpp"
@@ -78,7 +79,7 @@ std::function<int()> bind_scene(CLI::App& app) {
 
 /// Downloads Jolt and registers it; if that fails, nothing is registered. Nothing of it is part of
 /// taut or of its set-up.
-int install(const std::string& name) {
+int install(const std::string& name, bool json) {
   namespace fs = std::filesystem;
   constexpr const char* kPackage = "jolt-physics@1.1.0";
   if (name != "jolt") throw InputError("unknown program '" + name + "': there is jolt");
@@ -86,9 +87,9 @@ int install(const std::string& name) {
     if (!on_path(needed))
       throw InputError(std::string(needed) + " is not here (apt install nodejs npm): no jolt");
   const fs::path registered = external::registered_folder(), folder = registered / "jolt";
-  std::cerr << "npm downloads " << kPackage << " (MIT, 13 MB), of which 3 MB stay in "
-            << folder.string() << "; to be rid of it, delete that folder and "
-            << (registered / "jolt.toml").string() << '\n';
+  progress() << "npm downloads " << kPackage << " (MIT, 13 MB), of which 3 MB stay in "
+             << folder.string() << "; to be rid of it, delete that folder and "
+             << (registered / "jolt.toml").string() << '\n';
   const Scratch scratch;
   Process npm({"npm", "install", "--prefix", scratch.path(), "--no-save", "--no-audit", "--no-fund",
                "--ignore-scripts", kPackage},
@@ -109,13 +110,15 @@ int install(const std::string& name) {
   write_file(registered / "jolt.toml",
              "cmd = \"node jolt/jolt.js\"\nfiles = [\"jolt/taut_solver.js\", "
              "\"jolt/node_modules/jolt-physics/dist/jolt-physics.wasm-compat.js\"]\n");
-  return probe({.command = "jolt"});
+  return probe({.command = "jolt", .json = json});
 }
 
 std::function<int()> bind_install(CLI::App& app) {
   const auto name = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
   app.add_option("PROGRAM", *name, "jolt")->required();
-  return [name] { return install(*name); };
+  add_json(app, *json, "Every check of its probe");
+  return [name, json] { return install(*name, *json); };
 }
 
 std::function<int()> bind(CLI::App& app) {

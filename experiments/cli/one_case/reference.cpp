@@ -90,7 +90,7 @@ int run(const Options& options) {
     countdown(i + 1, files.size());
   }
   if (options.json) std::cout << to_text(all, 1) << '\n';
-  std::cerr << written << " references in " << options.out << '\n';
+  progress() << written << " references in " << options.out << '\n';
   return written > 0 || options.all ? kPass : kNothing;
 }
 

@@ -168,7 +168,7 @@ int run(Options options) {
   parse_view(options.view), parse_colour_by(options.colour);
   if (!options.size.empty()) parse_size(options.size);
   const RunSet set =
-      record_runs(options.what, [](const std::string& text) { std::cerr << text << '\n'; });
+      record_runs(options.what, [](const std::string& text) { progress() << text << '\n'; });
   if (!times.empty() && times.back() > set.scene.duration() + set.scene.dt)
     throw InputError("--at " + options.at.back() + " is after the end: see --duration");
   const fs::path out = output(options, set.scene.name);

@@ -13,6 +13,7 @@
 #include "experiments/report/chart/format.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
 #include "experiments/timing/bench.hpp"
 
 namespace taut::verb::exporting {
@@ -21,6 +22,7 @@ namespace {
 
 struct Options {
   std::string study, preset, results = default_results(), out;
+  bool json = false;
 };
 
 /// Numbers as they are, text safe for a spreadsheet.
@@ -71,7 +73,30 @@ class TidyTable {
     for (const Record& record : known.records) records_[record.key] = &record;
   }
 
-  std::string text(const std::vector<Case>& cases) {
+  std::string csv(const std::vector<Case>& cases) const {
+    std::string out = line(head());
+    for (const Case& one : cases) out += line(row(one));
+    return out;
+  }
+  /// A list of objects; a cell without a value is left out.
+  Json json(const std::vector<Case>& cases) const {
+    Json all = Json::array();
+    const Cells names = head();
+    for (const Case& one : cases) {
+      const Cells cells = row(one);
+      Json& object = all.emplace_back(Json::object());
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        if (const auto number = whole<double>(cells[i]); number && names[i] != "key")
+          object[names[i]] = *number;
+        else if (!cells[i].empty())
+          object[names[i]] = cells[i];
+    }
+    return all;
+  }
+
+ private:
+  using Cells = std::vector<std::string>;
+  Cells head() const {
     Cells head{"scene", "solver"};
     append(head, params_), append(head, axes_);
     append(head, {"dt", "steps", "vertices", "links", "status", "reason", "step"});
@@ -80,13 +105,8 @@ class TidyTable {
       append(head, {"cpu.host", "cpu.per_second", "cpu.per_second.low", "cpu.per_second.high",
                     "memory.peak"});
     append(head, {"case", "key"});
-    std::string out = line(head);
-    for (const Case& one : cases) out += line(row(one));
-    return out;
+    return head;
   }
-
- private:
-  using Cells = std::vector<std::string>;
   static void append(Cells& row, const Cells& more) {
     row.insert(row.end(), more.begin(), more.end());
   }
@@ -139,7 +159,9 @@ int run(const Options& options) {
     throw InputError("none of the " + std::to_string(known.cases.size()) + " cases of study '" +
                      study.name + "' is in " + options.results +
                      " as this build would run them; taut run makes them");
-  const std::string text = TidyTable(known, stored_costs(options, study)).text(known.cases);
+  const TidyTable table(known, stored_costs(options, study));
+  const std::string text =
+      options.json ? to_text(table.json(known.cases), 1) + "\n" : table.csv(known.cases);
   if (options.out.empty()) {
     std::cout << text;
   } else {
@@ -158,6 +180,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--results", options->results,
                  "Results folder (default: " + options->results + ")");
   app.add_option("-o,--out", options->out, "File (default: standard output)");
+  add_json(app, options->json, "The same rows");
   return [options] { return run(*options); };
 }
 

@@ -47,11 +47,11 @@ std::function<int()> bind(CLI::App& app) {
   const auto name = std::make_shared<std::string>();
   CLI::App* study = app.add_subcommand("study", "A commented study of one scene and two solvers");
   CLI::App* scene = app.add_subcommand("scene", "A commented scene of a sheet and a ball");
-  for (CLI::App* sub : {study, scene})
-    sub->add_option("NAME", *name, "NAME or path; the file is NAME.toml")->required();
   const auto json = std::make_shared<bool>(false);
-  for (CLI::App* sub : {study, scene})
-    add_json(*sub->fallthrough(), *json, "The name of the file");  // --quiet is the verb's own
+  for (CLI::App* sub : {study, scene}) {
+    sub->add_option("NAME", *name, "NAME or path; the file is NAME.toml")->required();
+    add_json(*sub, *json, "The name of the file");
+  }
   return [name, study, json] {
     return study->parsed() ? write(*name, "study", "run", *json)
                            : write(*name, "scene", "case", *json);

@@ -98,9 +98,7 @@ std::string hold_other(const PlotSpec& spec, report::Records& records, const std
   const std::string held = spec.x == "dt" ? "iterations" : "dt";
   const report::Slice slice = report::hold(records, held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
-  std::vector<Record> kept;
-  for (const Record* r : slice.records) kept.push_back(*r);
-  records = std::move(kept);
+  records = slice.records;
   if (left_out == 0) return "";
   const std::string at = report::quantity(held).text(slice.value, 3);
   const std::string setting = held == "dt" ? "dt = " + at : at + " sweeps";

@@ -186,10 +186,11 @@ void print_tables(const std::vector<Study>& studies, const Options& options, con
 }
 
 void print_unequal_work(const std::vector<Study>& studies, const Store& store) {
-  for (const Study& study : studies)
-    if (const std::string unequal = report::unequal_work(collect(study, store).records);
-        !unequal.empty())
+  for (const Study& study : studies) {
+    const std::vector<Record> records = collect(study, store).records;
+    if (const std::string unequal = report::unequal_work(records); !unequal.empty())
       progress() << study.name << ": unequal work: " << unequal << '\n';
+  }
 }
 
 void print_next(const Options& options, bool bare) {

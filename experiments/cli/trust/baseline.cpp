@@ -5,6 +5,7 @@
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/baseline_study.hpp"
 #include "experiments/command_line/options.hpp"
+#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -21,7 +22,7 @@ struct Options : BaselineOptions {
 /// A baseline is made of results of all its cases.
 bool complete(const BaselineStudy& study) {
   for (const std::string& id : study.not_run)
-    std::cout << study.name << ": " << id << ": was not run\n";
+    std::cerr << study.name << ": " << id << ": was not run\n";
   return study.not_run.empty();
 }
 
@@ -31,18 +32,19 @@ int early_exit(const BaselineStudy& study) {
   return complete(study) ? kPass : kIncomplete;
 }
 
+void print(const BaselineStudy& study, const Comparison& comparison, bool json) {
+  if (!json) return print_findings(study, comparison);
+  Json all = Json::array();
+  for (const Change& f : comparison.findings)
+    all.push_back({{"case", f.id}, {"solver", f.solver}, {"change", f.text}});
+  std::cout << to_text(all, 1) << '\n';
+}
+
 int diff(const Options& options) {
   const BaselineStudy study = baseline_study(options.study, options, false);
   if (const int code = early_exit(study); code != kPass) return code;
   const Comparison comparison = study.compare();
-  if (options.json) {
-    Json all = Json::array();
-    for (const Change& f : comparison.findings)
-      all.push_back({{"case", f.id}, {"solver", f.solver}, {"change", f.text}});
-    std::cout << to_text(all, 1) << '\n';
-  } else {
-    print_findings(study, comparison);
-  }
+  print(study, comparison, options.json);
   return comparison.findings.empty() ? kPass : kRegression;
 }
 
@@ -67,16 +69,16 @@ int update(Options options) {
   const BaselineStudy study = baseline_study(options.study, options, false);
   if (const int code = early_exit(study); code != kPass) return code;
   const Comparison changes = study.compare();
+  if (options.json || !study.before.empty()) print(study, changes, options.json);
+  std::ostream& news = options.json ? progress() : std::cout;
   if (changes.findings.empty()) {
-    std::cout << study.name << ": " << changes.cases << " cases are as the baseline says; nothing "
-              << "was written\n";
+    news << study.name << ": " << changes.cases << " cases are as the baseline says; nothing "
+         << "was written\n";
     return kPass;
   }
-  if (!study.before.empty()) print_findings(study, changes);
   write_baseline(study.folder, updated(study.before, study.now, study.tolerances));
   note_reason(study, options.why, changes);
-  std::cout << study.name << ": " << study.now.size() << " cases in " << study.folder.string()
-            << '\n';
+  news << study.name << ": " << study.now.size() << " cases in " << study.folder.string() << '\n';
   return kPass;
 }
 
@@ -90,8 +92,8 @@ std::function<int()> bind(CLI::App& app) {
   for (CLI::App* sub : {updating, differing}) {
     sub->add_option("STUDY", options->study, "Name or path")->required();
     options->bind(*sub);
+    add_json(*sub, options->json, "What differs");
   }
-  add_json(*differing, options->json, "What differs");
   return [options, updating] { return updating->parsed() ? update(*options) : diff(*options); };
 }
 

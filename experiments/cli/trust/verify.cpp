@@ -195,11 +195,12 @@ int summary(const std::vector<Outcome>& outcomes) {
     }
     broken_truths += broken;
   }
-  std::cerr << outcomes.size() << " truths, " << findings << " numbers: " << counts[0]
-            << " passed, " << counts[1] << " deviate as explained, " << counts[2]
-            << " not claimed, " << counts[3] << " broken";
-  if (broken_truths > 0) std::cerr << " in " << broken_truths << " truths";
-  std::cerr << '\n';
+  std::ostream& news = progress();
+  news << outcomes.size() << " truths, " << findings << " numbers: " << counts[0] << " passed, "
+       << counts[1] << " deviate as explained, " << counts[2] << " not claimed, " << counts[3]
+       << " broken";
+  if (broken_truths > 0) news << " in " << broken_truths << " truths";
+  news << '\n';
   if (counts[3] > 0) return kRegression;
   return counts[0] + counts[1] > 0 ? kPass : kNothing;
 }
@@ -226,10 +227,10 @@ int compare_with_baseline(const std::vector<JudgedClaim>& claims, const Options&
   }
   const std::vector<std::string> changes = compare_claims(read_claims(file), claims);
   for (const std::string& change : changes) std::cerr << change << '\n';
-  std::cerr << claims.size() << " claims of Vasilovici's report: "
-            << (changes.empty() ? "every verdict is as it was"
-                                : std::to_string(changes.size()) + " changed")
-            << '\n';
+  progress() << claims.size() << " claims of Vasilovici's report: "
+             << (changes.empty() ? "every verdict is as it was"
+                                 : std::to_string(changes.size()) + " changed")
+             << '\n';
   return changes.empty() ? kPass : kRegression;
 }
 

@@ -38,7 +38,7 @@ constexpr std::array kTitles{
            "median of samples that alternate between the solvers, one thread's time"},
     Titled{"wall.per_step", "wall time per step", kCost, "median of the same samples"},
     Titled{"memory.peak", "peak memory of the process", {"bytes", "MB", 1e-6}},
-    Titled{"structural", "stiffness of structural springs", {"N/m", "N/m"}},
+    Titled{"structural", "structural links: stiffness in N/m, of xpbd compliance in m/N", kNumber},
     Titled{"omega", "relaxation factor", kNumber},
     Titled{"cloth.weights.0.factor", "mass ratio", kNumber},
 };

@@ -34,7 +34,7 @@ struct Quantity {
 /// As the metric's own file declares it; unknown names are shown as they are.
 Quantity quantity(std::string_view name);
 
-/// What quantity() has a title for, beside the sweeps of a study.
+/// What quantity() has a title for, beside the axes of a study.
 std::vector<std::string> quantity_names();
 
 }  // namespace taut::report

@@ -21,6 +21,7 @@ struct Records : std::vector<const Record*> {
     for (const Record& r : all) push_back(&r);
   }
   Records(const std::vector<Record>& all) : Records(std::span(all)) {}
+  Records(std::vector<Record>&&) = delete;  // would point to what is gone
 };
 
 /// What its entry says, or its name in words: "bullet-deformable" -> "Bullet deformable".

@@ -107,12 +107,8 @@ Claim Claim::tile(std::string heading, std::string what, std::vector<Bar> bars) 
   return {*this, std::move(heading), std::move(what), std::move(bars)};
 }
 
-double strayed(const Interval& control) {
-  return std::expm1(std::max(std::abs(std::log(control.low)), std::abs(std::log(control.high))));
-}
-
 std::optional<Sure> judge_ratio(const Interval& ratio, const Interval& control) {
-  const double noise = strayed(control), change = std::abs(std::log(ratio.mid));
+  const double noise = spread(control), change = std::abs(std::log(ratio.mid));
   if (change <= std::log1p(kTolerance)) return {};
   if (change <= std::log1p(noise)) return Sure::too_noisy;
   if (ratio.contains(1)) return {};

@@ -129,8 +129,6 @@ std::vector<Claim> difference_claims(const ReportInput&);
 /// How sure a ratio is, given the ratio of identical code to itself; nothing: no difference that
 /// can be told.
 std::optional<Sure> judge_ratio(const Interval& ratio, const Interval& control);
-/// How far identical code differed from itself, as a share: 0.03 for an interval 0.98 to 1.03.
-double strayed(const Interval& control);
 /// Geometric mean of independent ratios: their errors add as squares of logarithms.
 Interval geometric_mean(const std::vector<Interval>&);
 double geometric_mean(const std::vector<double>&);

@@ -109,7 +109,7 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
   const auto sure = [&](Sure s) { verdicts.sure = less_sure(verdicts.sure, s); };
   for (const SceneRatio& r : ratios) {
     all.push_back(r.ratio), names.push_back(r.scene);
-    noise = std::max(noise, strayed(r.control));
+    noise = std::max(noise, spread(r.control));
     const auto judged = judge_ratio(r.ratio, r.control);
     if (judged) sure(*judged);
     (!judged                      ? even
@@ -283,7 +283,7 @@ void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
         missed.push_back(scene.scene);
       continue;
     }
-    noise = std::max(noise, strayed(scene.control));
+    noise = std::max(noise, spread(scene.control));
     for (const std::string& knob : used(scene.cases[*with])) knobs.insert(knob);
     const Interval& cost = candidates[*with].cost;
     evidence.look(scene.cases[*with], cost, pair.first_label + " with");

@@ -211,9 +211,9 @@ Json json_of_cost(const BenchSession& session, References& refs, Json& charts, J
         {"scene", bench.scene},
         {"control", json_interval(bench.control,
                                   bench.cases.empty() ? 0 : bench.cases[0].timing.samples.size())},
-        {"noisy", strayed(bench.control) > kAlike - 1},
+        {"noisy", spread(bench.control) > kAlike - 1},
         {"noise", "Timing noise: two runs of identical code differed by up to " +
-                      significant(100 * strayed(bench.control), 2) + "\u00A0%."}};
+                      significant(100 * spread(bench.control), 2) + "\u00A0%."}};
     try {
       const Chart chart = cost_chart(bench, records);
       charts.push_back(json_of(chart, refs));

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""What holds for every verb of the program, by its own list of them: --json, --quiet, colour, progress, manual, completion."""
+
+import json
+import os
+import pathlib
+import pty
+import re
+import subprocess
+
+from command_line import BINARIES, CommandLine, main
+
+TOY = f"python3 {pathlib.Path(__file__).resolve().parents[2]}/experiments/external/sdk/toy.py"
+FEW = ["--rounds", "2", "--seconds", "0.0001"]
+ADVICE = ["advise", "./small.toml", "--error", "1%", "--solver", "jakobsen", *FEW]
+SWEPT = "set = ['time.duration=0.1']\naxes.'cloth.grid' = [[4, 4], [6, 6]]\n"
+
+# What each verb is asked here; N becomes a number that no other question has.
+ASKED = {
+    "run": ["./study.toml"], "plot": ["./study.toml", "--kind", "error-iterations"], "report": ["./study.toml", "--no-media"],
+    "export": ["./study.toml"], "new study": ["aN"], "new scene": ["bN"], "case": ["./small.toml", "jakobsen"], "list": ["solvers"],
+    "plan": ["./small.toml", "bullet"], "reference": ["hang", "-o", "references"],
+    "render": ["./small.toml", "--solver", "jakobsen", "--quality", "draft", "--size", "320x240"],
+    "require": ["./small.toml", "jakobsen", "--patience", "20"], "frontier": ["./small.toml", "jakobsen", "--tolerance", "0.5"],
+    "advise": ADVICE[1:], "bench": ["./study.toml", *FEW], "bench kernels": ["--sizes", "8", *FEW], "bench contact": ["--sizes", "8", *FEW],
+    "bench effects": ["chain", *FEW], "bench scaling": ["./sizes.toml", "--samples", "2"], "doctor": [], "verify": ["free-fall"],
+    "baseline update": ["./study.toml", "--why", "a test"], "baseline diff": ["./study.toml"], "check": ["./study.toml"],
+    "cluster submit": ["./study.toml", "--on", "parallel", "--dry-run", "--shards", "1", "--folder", "cN"], "cluster run": ["c0", "--shard", "1"],
+    "cluster status": ["c0"], "cluster merge": ["c0"], "external probe": [TOY], "external score": ["./small.toml", "end.pc2", "--fps", "64"],
+    "external scene": ["./small.toml", "-o", "scene.json"], "external install": None,  # downloads
+}
+WITHOUT_RESULTS = {"cluster run", "external scene"}  # they fill a folder or write a file, and print nothing
+
+
+class EveryVerb(CommandLine):
+    def verbs(self, *words):
+        """{"bench kernels": its help}: of verbs that have verbs and do nothing by themselves only theirs."""
+        text = self.taut(*words, "--help").out
+        names = re.findall(r"^  ([a-z]+) ", text.split("Example:")[0], re.MULTILINE)
+        found = {} if names and "[SUBCOMMAND]" not in text else {" ".join(words): text}
+        for name in names:
+            found |= self.verbs(*words, name)
+        return found
+
+    def prepare(self):
+        self.study(solvers=["jakobsen", "bullet"], rest="axes.iterations = [1, 4]\n")
+        self.study("sizes.toml", rest=SWEPT)
+        self.taut("run", "./study.toml")
+        self.taut("baseline", "update", "./study.toml", "--why", "to have one")
+        self.taut("cluster", "submit", *(word.replace("N", "0") for word in ASKED["cluster submit"]))
+        self.taut("cluster", "run", "c0", "--shard", "1")
+        self.taut("case", "./small.toml", "jakobsen", "--trajectory", "end.pc2")
+
+    def test_every_verb_that_prints_results_takes_json_and_quiet(self):
+        self.prepare()
+        verbs = self.verbs()
+        self.assertEqual(sorted(verbs), sorted(ASKED), "every verb is asked here")
+        for number, (verb, words) in enumerate(ASKED.items(), 1):
+            with self.subTest(verb):
+                self.assertIn("--quiet", verbs[verb])
+                self.assertEqual("--json" in verbs[verb], verb not in WITHOUT_RESULTS)
+                if words is None:
+                    continue
+                words = [re.sub("N$", str(number), word) for word in [*verb.split(), *words]]
+                if verb not in WITHOUT_RESULTS:
+                    json.loads(self.taut(*words, "--json").out)
+                words = [re.sub(f"(?<=[abc]){number}$", f"{number}q", word) for word in words]
+                quiet = self.taut(*words, "--quiet")
+                self.assertEqual((quiet.out, quiet.err), ("", ""))
+
+    def on_a_terminal(self, *words, **environment):
+        """What the verb writes to stdout where that is a terminal."""
+        ours, theirs = pty.openpty()
+        process = subprocess.Popen([BINARIES / "taut", *words], cwd=self.folder, stdout=theirs, stderr=subprocess.DEVNULL,
+                                   env={k: v for k, v in os.environ.items() if k != "NO_COLOR"} | environment)
+        os.close(theirs)
+        said = b""
+        try:
+            while chunk := os.read(ours, 65536):
+                said += chunk
+        except OSError:  # the other end is closed
+            pass
+        os.close(ours)
+        process.wait(timeout=60)
+        return said.decode()
+
+    def test_colour_on_a_terminal_and_none_in_a_pipe(self):
+        self.prepare()
+        for words in (["verify", "free-fall"], ["check", "./study.toml"], ["external", "probe", TOY]):
+            self.assertIn("\x1b[32m", self.on_a_terminal(*words), words)
+            self.assertNotIn("\x1b", self.on_a_terminal(*words, NO_COLOR="1"), words)
+            self.assertNotIn("\x1b", self.taut(*words).out, words)
+            self.assertNotIn("\x1b", self.on_a_terminal(*words, "--json"), words)
+
+    def test_what_may_take_over_ten_seconds_says_how_long_it_will_last(self):
+        self.prepare()
+        for words, says in (
+                (["bench", "./study.toml", *FEW], r"timing round 1/2  left \d+:\d\d"),
+                (["bench", "kernels", "--sizes", "8", *FEW], r"timing round 1/2  left \d+:\d\d"),
+                (["bench", "contact", "--sizes", "8", *FEW], r"timing round 1/2  left \d+:\d\d"),
+                (["bench", "effects", "chain", *FEW], r"timing round 1/2  left \d+:\d\d"),
+                (ADVICE, r"  [\d.]+ of 120 s  jakobsen"),
+                (["verify", "free-fall", "damping-factor"], r"truth 1/2  left \d+:\d\d"),
+                (["render", "./small.toml", "--solver", "jakobsen", "--video", "--quality", "draft", "--size", "320x240"], r"frame \d+/\d+  left \d+:\d\d")):
+            self.assertRegex(self.taut(*words).err, says, words)
+
+    def test_the_manual_and_the_completion_have_every_verb_and_option(self):
+        manual, completion = self.taut("--man").out, self.taut("--bash-completion").out
+        self.assertNotIn("worker", manual)
+        (self.folder / "taut.bash").write_text(completion)
+        verbs = self.verbs()
+        questions = [[*verb.split(), "--"] for verb in verbs]
+        questions += [["re"], ["bench", "ke"], ["advise", "mov"], ["case", "hang", "jak"], ["baseline", ""], ["new", "st"]]
+        script = "source ./taut.bash\n" + "".join(
+            "COMP_WORDS=(taut %s); COMP_CWORD=%d; _taut; echo ${COMPREPLY[@]}\n" % (" ".join(f"'{w}'" for w in words), len(words))
+            for words in questions)
+        answers = subprocess.run(["bash", "-c", script], cwd=self.folder, text=True, check=True, capture_output=True).stdout.splitlines()
+        offered = {" ".join(words): answer.split() for words, answer in zip(questions, answers)}
+        for verb, text in verbs.items():
+            entry = manual.split(f".B {verb}\n")
+            self.assertEqual(len(entry), 2, f"{verb} is in the manual once")
+            options = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.MULTILINE))
+            lacking = [o for o in options if o.replace("-", "\\-") not in entry[1].split(".B ")[0]]
+            self.assertEqual(lacking, [], f"{verb}: in the manual")
+            self.assertEqual(sorted(options - set(offered[verb + " --"])), [], f"{verb}: offered")
+        self.assertEqual([sorted(offered[words]) for words in ("re", "bench ke", "advise mov", "case hang jak", "baseline ", "new st")],
+                         [["reference", "render", "report", "require"], ["kernels"], ["moving-ball"], ["jakobsen"],
+                          sorted({"update", "diff", *offered["baseline "]}), ["study"]])
+
+
+if __name__ == "__main__":
+    main()
