@@ -20,6 +20,8 @@ class ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
+  std::size_t threads() const { return threads_.size() + 1; }  ///< the caller included
+
   /// A pass over fewer particles is done before another thread has come: with 64 x 64, two threads
   /// are slower than one, with 96 x 96 they are faster (results/benchmarks/threads.md).
   static constexpr std::size_t kWorthSharing = 8192;

@@ -198,6 +198,7 @@ std::vector<std::vector<Vec3>> clouds() {
 }
 
 TEST(NeighbourGrid, AreThoseOfAllPairs) {
+  ThreadPool one_thread(1);
   for (const std::vector<Vec3>& cloud : clouds()) {
     const Points<double> x = points<double>(cloud);
     for (const double reach : {0.02, 0.3, 1.0}) {
@@ -205,7 +206,7 @@ TEST(NeighbourGrid, AreThoseOfAllPairs) {
       for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
         if (!available(simd)) continue;
         Pairs found;
-        NeighbourGrid<double>(cloud.size(), simd)
+        NeighbourGrid<double>(cloud.size(), one_thread, simd)
             .pairs(x, reach,
                    [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
         EXPECT_EQ(found, brute) << reach << ' ' << to_string(simd);
@@ -224,7 +225,8 @@ TEST(NeighbourGrid, MovingPairsAreThoseWithinTheirOwnWay) {
   const float within = 0.1F, reach = within + 0.4F * std::sqrt(3.0F), ignored = 0.8F;
   for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
     if (!available(simd)) continue;
-    NeighbourGrid<float> neighbours(400, simd);
+    ThreadPool one_thread(1);
+    NeighbourGrid<float> neighbours(400, one_thread, simd);
     neighbours.ignore(at_rest, ignored);
     Pairs found, brute;
     neighbours.moving_pairs(x, previous, within, reach, [&](std::uint32_t a, std::uint32_t b) {
@@ -246,18 +248,22 @@ TEST(NeighbourGrid, MovingPairsAreThoseWithinTheirOwnWay) {
   }
 }
 
-TEST(NeighbourGrid, ComeInOneOrderFromEveryInstructionSet) {
-  const Points<float> x = points<float>(anywhere(3000, 2, 6));
+TEST(NeighbourGrid, ComeInOneOrderFromEveryInstructionSetAndAnyThreads) {
+  constexpr std::size_t all = ThreadPool::kWorthSharing + 1000;
+  const Points<float> x = points<float>(anywhere(all, 2, 6));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> first;
-  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
-    if (!available(simd)) continue;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
-    NeighbourGrid<float>(3000, simd).pairs(x, 0.4F, [&](std::uint32_t a, std::uint32_t b) {
-      found.emplace_back(a, b);
-    });
-    if (first.empty()) first = found;
-    EXPECT_EQ(found, first) << to_string(simd);
-  }
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
+    for (const int threads : {1, 2, 3}) {
+      if (!available(simd)) continue;
+      ThreadPool pool(threads);
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+      NeighbourGrid<float>(all, pool, simd).pairs(x, 0.4F, [&](std::uint32_t a, std::uint32_t b) {
+        found.emplace_back(a, b);
+      });
+      if (first.empty()) first = found;
+      EXPECT_GT(found.size(), 10 * all);
+      EXPECT_TRUE(found == first) << to_string(simd) << ", threads " << threads;
+    }
 }
 
 TEST(SelfCollision, CrumpleEndsWithoutSelfIntersectionsByDefault) {

@@ -7,6 +7,7 @@
 
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/simd/kernels.hpp"
+#include "core/solver/thread_pool.hpp"
 
 namespace taut {
 
@@ -26,8 +27,9 @@ namespace taut {
 template <class Real>
 class NeighbourGrid {
  public:
-  explicit NeighbourGrid(std::size_t particles, Simd simd = widest())
-      : particles_(particles),
+  explicit NeighbourGrid(std::size_t particles, ThreadPool& pool, Simd simd = widest())
+      : pool_(pool),
+        particles_(particles),
         buckets_(particles),
         sorted_buckets_(particles),
         find_pairs_(kernels<Real>(simd).find_pairs) {
@@ -35,15 +37,17 @@ class NeighbourGrid {
     starts_.resize(bucket_count_ + 1);
     for (Coordinates* c : {&now_, &moved_, &at_rest_})
       for (auto& array : *c) array.resize(particles + kSearchLanes);
-    blocks_.resize(particles + 10);
-    found_.resize(particles + kAtOnce);
+    parts_.resize(shared() ? pool.threads() : 1);
+    for (Part& part : parts_) part.blocks.resize(particles + 10);
   }
 
   std::size_t size() const { return particles_.size(); }  ///< particles
   std::size_t bytes() const {
-    return (3 * particles_.size() + starts_.size()) * sizeof starts_[0] +
-           9 * now_[0].size() * sizeof(Real) + rest_.size() * sizeof rest_[0] +
-           blocks_.size() * sizeof(SearchBlock) + found_.size() * sizeof(CandidatePair);
+    std::size_t sum = (3 * particles_.size() + starts_.size()) * sizeof starts_[0] +
+                      9 * now_[0].size() * sizeof(Real) + rest_.size() * sizeof rest_[0];
+    for (const Part& part : parts_)
+      sum += part.blocks.size() * sizeof(SearchBlock) + part.found.size() * sizeof(CandidatePair);
+    return sum;
   }
 
   /// From now on ignores pairs that are less than `within` [m] apart at rest.
@@ -69,7 +73,12 @@ class NeighbourGrid {
   }
 
  private:
-  static constexpr std::size_t kAtOnce = 1024;
+  /// What a thread needs to search for the neighbours of some of the particles.
+  struct Part {
+    std::vector<SearchBlock> blocks;
+    std::vector<CandidatePair> found;
+    std::size_t count = 0;  ///< of these
+  };
   using Coordinates = std::array<std::vector<Real>, 3>;
 
   static constexpr Real kCells = 1000000;
@@ -90,16 +99,46 @@ class NeighbourGrid {
                                  .layer = layer_,
                                  .within = within,
                                  .ignored = ignored_,
-                                 .moving = previous != nullptr,
-                                 .blocks = blocks_.data(),
-                                 .found = found_.data(),
-                                 .room = found_.size()};
+                                 .moving = previous != nullptr};
     point_to(now_, search.now), point_to(moved_, search.moved), point_to(at_rest_, search.rest);
-    for (std::uint32_t next = 0; next < search.particles;) {
-      const std::size_t count = find_pairs_(search, next);
-      for (std::size_t f = 0; f < count; ++f)
-        visit(particles_[found_[f].a], particles_[found_[f].b]);
+    pool_.run(
+        parts_.size(),
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t n = begin; n < end; ++n) find_part(search, n);
+        },
+        shared());
+    for (const Part& part : parts_)
+      for (std::size_t f = 0; f < part.count; ++f)
+        visit(particles_[part.found[f].a], particles_[part.found[f].b]);
+  }
+
+  /// The pairs of the n-th part of the particles: parts one after the other give the order of one.
+  void find_part(NeighbourSearch<Real> search, std::size_t n) {
+    Part& part = parts_[n];
+    const auto first = [&](std::size_t k) {
+      return static_cast<std::uint32_t>(particles_.size() * k / parts_.size());
+    };
+    part.count = 0, search.blocks = part.blocks.data();
+    for (std::uint32_t next = first(n); next < first(n + 1);) {
+      search.found = part.found.data() + part.count, search.room = part.found.size() - part.count;
+      const std::size_t count = find_pairs_(search, next, first(n + 1));
+      part.count += count;
+      if (next < first(n + 1))  // no room for what the next one might find
+        part.found.resize(std::max<std::size_t>(1024, 2 * part.found.size()));
     }
+  }
+
+  bool shared() const { return particles_.size() >= ThreadPool::kWorthSharing; }
+
+  /// Calls f(i) for every particle, in any order.
+  template <class F>
+  void for_each(const F& f) {
+    pool_.run(
+        particles_.size(),
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) f(i);
+        },
+        shared());
   }
 
   [[gnu::always_inline]] static void set(Coordinates& to, std::size_t k, const Vec4T<Real>& p) {
@@ -137,21 +176,25 @@ class NeighbourGrid {
   template <class At>
   void sort(const Points<Real>& x, const Points<Real>* previous, Real reach, const At& at) {
     fit_grid(x, reach, at);
+    for_each([&](std::size_t i) { buckets_[i] = bucket_of(at(x, i)); });
     std::uint32_t* const starts = starts_.data();
     std::fill(starts_.begin(), starts_.end(), 0);
-    for (std::size_t i = 0; i < buckets_.size(); ++i) ++starts[buckets_[i] = bucket_of(at(x, i))];
+    for (const std::uint32_t bucket : buckets_) ++starts[bucket];
     std::uint32_t sum = 0;
     for (std::size_t b = 0; b <= bucket_count_; ++b) sum += starts[b], starts[b] = sum;  // ends
-    for (std::size_t i = buckets_.size(); i-- > 0;) {
-      const std::uint32_t bucket = buckets_[i], k = --starts[bucket];
-      particles_[k] = static_cast<std::uint32_t>(i), sorted_buckets_[k] = bucket;
+    for (std::size_t i = buckets_.size(); i-- > 0;)
+      particles_[--starts[buckets_[i]]] = static_cast<std::uint32_t>(i);
+    for_each([&](std::size_t k) {
+      const std::size_t i = particles_[k];
+      sorted_buckets_[k] = buckets_[i];
       const Vec4T<Real> p = at(x, i);
       set(now_, k, p);
       if (previous) set(moved_, k, p - at(*previous, i));
       if (!rest_.empty()) set(at_rest_, k, rest_[i]);
-    }
+    });
   }
 
+  ThreadPool& pool_;
   std::vector<std::uint32_t> particles_;       ///< bucket after bucket
   std::vector<std::uint32_t> buckets_;         ///< of each particle
   std::vector<std::uint32_t> sorted_buckets_;  ///< in the order of particles_
@@ -164,8 +207,7 @@ class NeighbourGrid {
   Real per_metre_ = 1;
   std::vector<std::uint32_t> starts_;  ///< [bucket_count + 1]
   FindPairs<Real> find_pairs_;
-  std::vector<SearchBlock> blocks_;
-  std::vector<CandidatePair> found_;
+  std::vector<Part> parts_;  ///< one for each thread
 };
 
 }  // namespace taut

@@ -204,7 +204,7 @@ ContactPasses<Real> make_contact(const Scene& scene, const ContactSettings& sett
                                  ThreadPool& pool) {
   ContactPasses<Real> passes;
   if (scene.self_collision && settings.self == SelfCollisionMethod::grid)
-    passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene, settings.simd));
+    passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene, settings.simd, pool));
   if (scene.self_collision && settings.self == SelfCollisionMethod::octree)
     passes.sweep.push_back(std::make_unique<OctreePass<Real>>(scene));
   for (const Collider& collider : scene.colliders)

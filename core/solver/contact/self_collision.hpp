@@ -32,10 +32,10 @@ namespace taut {
 template <class Real>
 class SelfCollidePass final : public Pass<Real> {
  public:
-  SelfCollidePass(const Scene& scene, Simd simd)
+  SelfCollidePass(const Scene& scene, Simd simd, ThreadPool& pool)
       : diameter_(static_cast<Real>(2 * scene.self_collision->radius)),
         kernels_(kernels<Real>(simd)),
-        grid_(scene.start.x.size(), simd) {
+        grid_(scene.start.x.size(), pool, simd) {
     find_close_at_rest(scene);
   }
 

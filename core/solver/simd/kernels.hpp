@@ -186,14 +186,15 @@ struct NeighbourSearch {
   Real within, ignored;                   ///< m
   bool moving;                            ///< false: none has moved, and `moved` is not read
   SearchBlock* blocks;                    ///< scratch: [particles + 10]
-  CandidatePair* found;                   ///< [room], at least particles + 11 kSearchLanes
+  CandidatePair* found;                   ///< [room]; particles + 11 kSearchLanes are enough for one
   std::size_t room;
 };
 /// Finds the pairs that are less than `within` and their own way in the step apart and at rest are
 /// not less than `ignored` apart; how many. Goes on from particle `next`, which it moves on, until
-/// all are done or the next one might find more than there is room for.
+/// it is at `end` or might find more than there is room for.
 template <class Real>
-using FindPairs = std::size_t (*)(const NeighbourSearch<Real>&, std::uint32_t& next);
+using FindPairs = std::size_t (*)(const NeighbourSearch<Real>&, std::uint32_t& next,
+                                  std::uint32_t end);
 
 /// The loops that matter, once for each instruction set.
 template <class Real>

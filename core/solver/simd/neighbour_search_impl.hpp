@@ -84,11 +84,12 @@ struct Query {
 
 /// q: a copy, which nothing that is written changes.
 template <class T, bool moving, class Real>
-std::size_t find_pairs(const NeighbourSearch<Real> q, std::uint32_t& next) {
+std::size_t find_pairs(const NeighbourSearch<Real> q, std::uint32_t& next, std::uint32_t last) {
   CandidatePair* found = q.found;
   std::uint32_t k = next;
-  for (bool room = true; room && k < q.particles;) {
-    const std::uint32_t bucket = q.buckets[k], end = q.starts[bucket + 1];
+  for (bool room = true; room && k < last;) {
+    const std::uint32_t bucket = q.buckets[k], of_cell = q.starts[bucket + 1];
+    const std::uint32_t end = of_cell < last ? of_cell : last;
     SearchBlock* blocks_end = q.blocks;
     const std::uint32_t next_end = write_surroundings<T>(q, bucket, blocks_end);
     const std::ptrdiff_t most = next_end - k + kWidth<T> * (blocks_end - q.blocks);
@@ -109,9 +110,10 @@ std::size_t find_pairs(const NeighbourSearch<Real> q, std::uint32_t& next) {
   return static_cast<std::size_t>(found - q.found);
 }
 template <class T, class Real>
-std::size_t find_pairs(const NeighbourSearch<Real>& search, std::uint32_t& next) {
-  return search.moving ? find_pairs<T, true, Real>(search, next)
-                       : find_pairs<T, false, Real>(search, next);
+std::size_t find_pairs(const NeighbourSearch<Real>& search, std::uint32_t& next,
+                       std::uint32_t end) {
+  return search.moving ? find_pairs<T, true, Real>(search, next, end)
+                       : find_pairs<T, false, Real>(search, next, end);
 }
 
 }  // namespace taut
