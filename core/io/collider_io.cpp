@@ -1,8 +1,7 @@
 #include <algorithm>
-#include <numbers>
 #include <set>
 
-#include "core/io/scene_parts.hpp"
+#include "core/io/scene_readers.hpp"
 #include "core/model/angle.hpp"
 #include "core/model/shortest.hpp"
 
@@ -14,8 +13,7 @@ std::vector<Motion::Key> read_path(Section& section) {
   std::vector<Motion::Key> path;
   for (const Value* item : section.tables("path")) {
     Section key(section.diagnostics(), *item, "'path' in " + section.name());
-    for (const char* name : {"t", "displacement"})
-      if (!key.find(name)) key.missing(name);
+    key.need({"t", "displacement"});
     const auto t = key.number("t", Range::within(1e6));
     const Vec3 displacement = key.vec3("displacement", kFar, Vec3::Zero());
     key.finish();
@@ -40,21 +38,18 @@ Motion read_motion(Section& section, const Vec3& pivot) {
 
 Collider read_collider(Section& section) {
   Collider collider;
-  if (!section.find("type")) section.missing("type");
+  section.need({"type"});
   const std::string type = section.choice("type", {"plane", "ball", "box"}, "");
-  const auto needed = [&](const char* key) {
-    if (!section.find(key)) section.missing(key);
-  };
   Vec3 pivot = Vec3::Zero();
   if (type == "plane") {
     collider.shape = Plane{section.direction("normal", Vec3::UnitY()),
                            section.number("offset", Range::within(kFar), 0)};
   } else if (type == "ball") {
-    needed("center"), needed("radius");
+    section.need({"center", "radius"});
     pivot = section.vec3("center", kFar, Vec3::Zero());
     collider.shape = Ball{pivot, section.number("radius", Range::positive(kFar), 1)};
   } else if (type == "box") {
-    needed("center"), needed("half_extents");
+    section.need({"center", "half_extents"});
     pivot = section.vec3("center", kFar, Vec3::Zero());
     const auto half = section.numbers("half_extents", 3, Range::positive(kFar));
     const Vec3 extents = half ? Vec3((*half)[0], (*half)[1], (*half)[2]) : Vec3::Ones();
@@ -98,8 +93,7 @@ Eigen::Quaterniond read_rotation(Section& section) {
     return Eigen::Quaterniond::Identity();
   }
   Section rotation(section.diagnostics(), *value, "'rotation' in " + section.name());
-  for (const char* key : {"axis", "angle"})
-    if (!rotation.find(key)) rotation.missing(key);
+  rotation.need({"axis", "angle"});
   const Vec3 axis = rotation.direction("axis", Vec3::UnitY());
   const double angle = rotation.number("angle", Range::within(360), 0);
   rotation.finish();
@@ -118,7 +112,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene) {
   for (const Value* item : root.tables("pin_motion")) {
     Section section(root.diagnostics(), *item, "[[pin_motion]]");
     PinMotion group;
-    if (!section.find("vertices")) section.missing("vertices");
+    section.need({"vertices"});
     if (built) group.vertices = read_vertices(section, "vertices", scene.mesh);
     group.motion = read_motion(section, Vec3::Zero());
     section.finish();
