@@ -1,11 +1,11 @@
 #include "experiments/bench/effects.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 
 #include "core/io/scene_io.hpp"
+#include "core/model/join.hpp"
 #include "core/model/solver.hpp"
 #include "core/solver/thread_pool.hpp"
 #include "experiments/system/data.hpp"
@@ -37,9 +37,7 @@ std::string effects_of(const Scene& scene) {
   if (scene.wind) all.emplace_back("wind");
   for (const Collider& c : scene.colliders) all.emplace_back(type_name(c.shape));
   if (scene.self_collision) all.emplace_back("itself");
-  std::string text;
-  for (const std::string& one : all) text += (text.empty() ? "" : ", ") + one;
-  return text;
+  return join(all, ", ");
 }
 
 Scene without_effects(Scene scene) {

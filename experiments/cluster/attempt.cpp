@@ -7,6 +7,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 
 constexpr const char* kBeatsFile = "beats";
 constexpr const char* kStates[] = {"claiming", "running", "ended"};
-using Clock = std::chrono::steady_clock;
 
 Beat beat_of(const JsonReader& j) {
   Beat beat;
@@ -86,9 +86,9 @@ std::vector<Beats> not_ended(const fs::path& shard) {
 
 std::vector<Beats> living(const std::vector<Beats>& before) {
   std::vector<Beats> alive;
-  const auto deadline = Clock::now() + patience();
+  const auto deadline = SteadyClock::now() + patience();
   std::vector<Beats> silent = before;
-  while (!silent.empty() && Clock::now() < deadline) {
+  while (!silent.empty() && SteadyClock::now() < deadline) {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     std::erase_if(silent, [&](const Beats& known) {
       Beats now = read(known.session);
@@ -102,7 +102,7 @@ std::vector<Beats> living(const std::vector<Beats>& before) {
 }
 
 Attempt::Attempt(const fs::path& shard, const fs::path& session)
-    : file_(session / kBeatsFile), start_(Clock::now()) {
+    : file_(session / kBeatsFile), start_(SteadyClock::now()) {
   beat();
   std::vector<Beats> others = not_ended(shard);
   std::erase_if(others, [&](const Beats& b) { return b.session == session; });
@@ -110,9 +110,10 @@ Attempt::Attempt(const fs::path& shard, const fs::path& session)
   const auto before_me = [&](const Beats& b) {
     return b.last.state == Beat::State::running || b.session < session;
   };
-  for (const auto until = Clock::now() + patience(); !others.empty() && Clock::now() < until;) {
+  for (const auto until = SteadyClock::now() + patience();
+       !others.empty() && SteadyClock::now() < until;) {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    if (Clock::now() - last_ >= kBeat) beat();
+    if (SteadyClock::now() - last_ >= kBeat) beat();
     for (const Beats& other : others)
       if (const Beats now = read(other.session);
           now.count > other.count && now.last.state != Beat::State::ended && before_me(now)) {
@@ -138,7 +139,7 @@ Attempt::~Attempt() {
 void Attempt::progress(const CampaignProgress& campaign) {
   now_.done = campaign.done(), now_.cases = campaign.cases;
   now_.work = campaign.work, now_.work_done = campaign.work_done;
-  if (Clock::now() - last_ >= kBeat) beat();
+  if (SteadyClock::now() - last_ >= kBeat) beat();
 }
 
 void Attempt::end(const std::string& why) {
@@ -147,8 +148,8 @@ void Attempt::end(const std::string& why) {
 }
 
 void Attempt::beat() {
-  last_ = Clock::now();
-  now_.seconds = std::chrono::duration<double>(last_ - start_).count();
+  last_ = SteadyClock::now();
+  now_.seconds = seconds_between(start_, last_);
   append_line(file_, line_of(now_));
 }
 

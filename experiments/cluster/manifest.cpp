@@ -1,7 +1,6 @@
 #include "experiments/cluster/manifest.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <queue>
 #include <set>

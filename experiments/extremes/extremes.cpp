@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/model/join.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/extremes/symptom.hpp"
@@ -11,12 +12,6 @@
 namespace taut {
 
 namespace {
-
-std::string joined(const std::vector<std::string>& all) {
-  std::string text;
-  for (const std::string& one : all) text += (text.empty() ? "" : ", ") + one;
-  return text;
-}
 
 /// To its end.
 bool ran(const Record& record) {
@@ -60,7 +55,7 @@ class KnobSearch {
     }
     start_ = look(first, *record, store_);
     known_ = symptoms(*start_, nullptr);
-    found_.at_start = joined(known_);
+    found_.at_start = join(known_, ", ");
     tell_theory();
     const CaseFrontier result =
         find_frontier(question, store_, session, options,
@@ -76,7 +71,7 @@ class KnobSearch {
   std::string judge(const Case& one, const Record& record) const {
     std::vector<std::string> wrong = symptoms(look(one, record, store_), &*start_);
     std::erase_if(wrong, [&](const std::string& name) { return std::ranges::count(known_, name); });
-    return joined(wrong);
+    return join(wrong, ", ");
   }
 
   void tell_theory() {
@@ -165,71 +160,10 @@ Extremes find_extremes(const std::string& solver, const Store& store, const Sess
   return all;
 }
 
-std::vector<FrontierChange> compare_frontiers(const std::vector<KnobFrontier>& before,
-                                              const std::vector<KnobFrontier>& now) {
-  using Kind = FrontierChange::Kind;
-  std::vector<FrontierChange> changes;
-  const auto same = [](const KnobFrontier& a, const KnobFrontier& b) {
-    return a.solver == b.solver && a.knob == b.knob;
-  };
-  const auto add = [&](Kind kind, const KnobFrontier& of, std::string text) {
-    changes.push_back({kind, of.solver, of.knob, std::move(text)});
-  };
-  const auto find = [&](const std::vector<KnobFrontier>& in, const KnobFrontier& one) {
-    const auto at = std::ranges::find_if(in, [&](const KnobFrontier& f) { return same(f, one); });
-    return at == in.end() ? nullptr : &*at;
-  };
-  for (const KnobFrontier& was : before)
-    if (std::ranges::any_of(now, [&](const auto& f) { return f.solver == was.solver; }) &&
-        !find(now, was))
-      add(Kind::narrowed, was, "is no longer asked");
-  for (const KnobFrontier& is : now) {
-    const KnobFrontier* was = find(before, is);
-    if (!was) {
-      add(Kind::otherwise, is, "is new");
-      continue;
-    }
-    if (was->lacks != is.lacks) {
-      add(is.lacks.empty() ? Kind::widened : Kind::narrowed, is,
-          is.lacks.empty() ? "has an answer now" : "has none now: " + is.lacks);
-      continue;
-    }
-    if (!is.lacks.empty()) continue;
-    if (was->from != is.from || was->to != is.to) {
-      add(Kind::narrowed, is, "is asked of another range");
-      continue;
-    }
-    // Harder is larger; without an end nothing is bad, without a beginning nothing is good.
-    const auto hard = [&](double setting) { return is.downwards ? 1 / setting : setting; };
-    const std::string ends = shortest(was->bad) + " -> " + shortest(is.bad);
-    if (std::isnan(is.good) != std::isnan(was->good))
-      add(std::isnan(is.good) ? Kind::narrowed : Kind::widened, is, "fails from " + ends);
-    else if (!std::isnan(is.bad) && hard(is.bad) <= hard(was->good))
-      add(Kind::narrowed, is, "fails from " + ends + " (" + is.symptom + ")");
-    else if (!std::isnan(was->bad) && hard(is.good) >= hard(was->bad))
-      add(Kind::widened, is, "fails from " + ends);
-    else if (was->symptom != is.symptom || was->at_start != is.at_start)
-      add(Kind::otherwise, is,
-          "shows '" + is.symptom + "', at its start '" + is.at_start + "'; it was '" +
-              was->symptom + "' and '" + was->at_start + "'");
-  }
-  return changes;
-}
-
-std::string to_json_lines(const std::vector<KnobFrontier>& knobs) {
-  std::string text;
-  for (const KnobFrontier& knob : knobs) text += to_text(json_of(knob)) + "\n";
-  return text;
-}
-
 std::string to_json(const std::vector<KnobFrontier>& knobs, std::string_view program) {
   Json all{{"schema", kSchema}, {"program", program}, {"knobs", Json::array()}};
   for (const KnobFrontier& knob : knobs) all["knobs"].push_back(json_of(knob));
   return to_text(all, 1) + "\n";
-}
-
-std::vector<KnobFrontier> read_knobs(const std::filesystem::path& file) {
-  return read_json_lines(file, knob_of);
 }
 
 std::optional<std::vector<KnobFrontier>> read_frontiers(const std::filesystem::path& file,

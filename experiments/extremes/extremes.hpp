@@ -43,31 +43,12 @@ Extremes find_extremes(const std::string& solver, const Store&, const Session&,
                        const CampaignOptions&,
                        const std::function<void(std::size_t done, std::size_t all)>& progress);
 
-/// One line of JSON each: a baseline. It is read back by read_knobs(), which throws InputError with
-/// file and line.
-std::string to_json_lines(const std::vector<KnobFrontier>&);
-std::vector<KnobFrontier> read_knobs(const std::filesystem::path&);
-
 /// One JSON text with what this program found: what `taut frontier --all` prints and leaves below
 /// kFrontiersFolder for the report.
 std::string to_json(const std::vector<KnobFrontier>&, std::string_view program);
 /// Nothing if another program wrote the file. Throws InputError if it is damaged.
 std::optional<std::vector<KnobFrontier>> read_frontiers(const std::filesystem::path& file,
                                                         std::string_view program);
-
-/// What differs between frontiers that were kept and those found now.
-struct FrontierChange {
-  enum class Kind {
-    narrowed,  ///< a setting that was good is bad now
-    widened,   ///< a setting that was bad is good now
-    otherwise  ///< the symptom, or what is asked, is another
-  };
-  Kind kind = Kind::otherwise;
-  std::string solver, knob, text;
-};
-/// Of the solvers in `now`. What one of the two lacks is `narrowed`.
-std::vector<FrontierChange> compare_frontiers(const std::vector<KnobFrontier>& before,
-                                              const std::vector<KnobFrontier>& now);
 
 /// Where `taut frontier --all` leaves what it found in a results folder, for the report.
 inline constexpr std::string_view kFrontiersFolder = "frontiers";

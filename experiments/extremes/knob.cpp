@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/model/shortest.hpp"
-
 namespace taut {
 
 namespace {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <mutex>
 #include <optional>
 #include <thread>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/film/recorded_runs.hpp"
 #include "experiments/render/picture/media.hpp"
@@ -82,9 +82,7 @@ Film other_film(const report::Rivals& rivals, const std::string& name) {
         rival.cases, [&](const Record* r) { return report::work_of(*r) == rival.work; });
     if (quoted == rival.cases.end() || film.request.solvers.size() == kMostPanels) continue;
     const SolverChoice choice = parse_solver((*quoted)->spec.solver);
-    std::string why;
-    for (const std::string& reason : choice.entry->unsupported(scene, choice.params))
-      why += (why.empty() ? "" : "; ") + reason;
+    const std::string why = join(choice.entry->unsupported(scene, choice.params), "; ");
     if (why.empty())
       film.add((*quoted)->spec.solver, rival.label, "");
     else

@@ -15,6 +15,12 @@ struct Interval {
   bool contains(double value) const { return low <= value && value <= high; }
 };
 
+/// As JSON: [low, mid, high]. Json is nlohmann's, which finds this by itself.
+template <class Json>
+void to_json(Json& json, const Interval& i) {
+  json = {i.low, i.mid, i.high};
+}
+
 /// A number with so many significant digits ("-": NaN), and "2.3 (2.1 to 2.5)" in a unit.
 std::string number_text(double value, int digits = 3);
 std::string interval_text(const Interval&, double unit = 1);

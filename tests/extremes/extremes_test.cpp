@@ -139,56 +139,17 @@ KnobFrontier kept(double good, double bad, bool downwards = false) {
 
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
-FrontierChange::Kind only_change(const KnobFrontier& before, const KnobFrontier& now) {
-  const auto changes = compare_frontiers({before}, {now});
-  EXPECT_EQ(changes.size(), 1u);
-  return changes.empty() ? FrontierChange::Kind::otherwise : changes.front().kind;
-}
-
-TEST(FrontierBaseline, ANarrowerFrontierIsTold) {
-  using enum FrontierChange::Kind;
-  EXPECT_TRUE(compare_frontiers({kept(0.1, 0.102)}, {kept(0.1, 0.102)}).empty());
-  EXPECT_TRUE(compare_frontiers({kept(0.1, 0.102)}, {kept(0.101, 0.103)}).empty())
-      << "brackets meet";
-  EXPECT_EQ(only_change(kept(0.1, 0.102), kept(0.09, 0.092)), narrowed);
-  EXPECT_EQ(only_change(kept(0.09, 0.092), kept(0.1, 0.102)), widened);
-  EXPECT_EQ(only_change(kept(0.1, 0.102, true), kept(0.11, 0.108, true)), narrowed);
-  EXPECT_EQ(only_change(kept(0.11, 0.108, true), kept(0.1, 0.098, true)), widened);
-  EXPECT_EQ(only_change(kept(1, kNone), kept(0.5, 0.51)), narrowed);
-  EXPECT_EQ(only_change(kept(0.5, 0.51), kept(1, kNone)), widened);
-  EXPECT_EQ(only_change(kept(0.5, 0.51), kept(kNone, 0.01)), narrowed);
-  KnobFrontier other = kept(0.1, 0.102), gone = other;
-  other.symptom = "jitters";
-  EXPECT_EQ(only_change(kept(0.1, 0.102), other), otherwise);
-  gone.lacks = "it has none";
-  EXPECT_EQ(only_change(kept(0.1, 0.102), gone), narrowed);
-  EXPECT_EQ(only_change(gone, kept(0.1, 0.102)), widened);
-  KnobFrontier easier = kept(0.1, 0.102);
-  easier.to = 0.5;
-  EXPECT_EQ(only_change(kept(0.1, 0.102), easier), narrowed) << "asked less";
-  KnobFrontier renamed = kept(0.1, 0.102);
-  renamed.knob = "another";
-  EXPECT_EQ(compare_frontiers({kept(0.1, 0.102)}, {renamed}).front().kind, narrowed);
-  renamed.solver = "bullet";
-  EXPECT_EQ(only_change(kept(0.1, 0.102), renamed), otherwise) << "of another solver: not asked";
-}
-
-TEST(FrontierBaseline, IsReadBackAndDamageIsNamedByLine) {
+TEST(Frontiers, AreReadBackOfTheProgramThatFoundThemAndDamageIsNamed) {
   const Scratch scratch;
-  const auto file = scratch.path() / "frontiers.jsonl";
+  const auto file = scratch.path() / "frontiers.json";
   const std::vector<KnobFrontier> all{kept(0.1, 0.102), kept(0.1, kNone, true)};
-  write_file(file, to_json_lines(all));
-  EXPECT_EQ(to_json_lines(read_knobs(file)), read_text(file));
-  write_file(file, read_text(file) + "{}\n");
-  try {
-    read_knobs(file);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.diagnostics().front().line, 3);
-  }
   write_file(file, to_json(all, "program"));
-  EXPECT_EQ(read_frontiers(file, "program")->size(), 2u);
+  const auto read = read_frontiers(file, "program");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(to_json(*read, "program"), read_text(file));
   EXPECT_FALSE(read_frontiers(file, "another"));
+  write_file(file, "{}\n");
+  EXPECT_THROW(read_frontiers(file, "program"), InputError);
 }
 
 }  // namespace

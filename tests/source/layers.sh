@@ -36,7 +36,7 @@ experiments/report/claims | experiments/(case|timing|report/(chart|claims))/|exp
 experiments/report/plot  | (core/model|experiments/(system|extremes|timing|report/(chart|plot)))/
 experiments/report/model | (core/model|experiments/(system|case|timing|baseline|truths|report/(chart|claims|model)))/|experiments/report/input
 experiments/bench        | (core/(model|io|solver|reference)|experiments/(system|timing|bench))/
-experiments/film         | (core/(model|io)|experiments/(system|case|render|report|film))/
+experiments/film         | (core/(model|io)|experiments/(system|case|study|render|report|film))/
 '
 # what is included | files that may include it
 owners='

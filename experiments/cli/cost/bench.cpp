@@ -9,7 +9,6 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/system/data.hpp"
 #include "experiments/timing/answer.hpp"
 
 namespace taut::verb::bench {

@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -175,14 +175,12 @@ int run(const Options& options) {
 
 std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  std::string kinds;
   std::vector<std::string> names;
-  for (const report::PlotKind& kind : report::plot_kinds())
-    names.emplace_back(kind.name), kinds += (kinds.empty() ? "" : ", ") + names.back();
+  for (const report::PlotKind& kind : report::plot_kinds()) names.emplace_back(kind.name);
   app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
   app.add_option("--preset", options->preset, "The preset under which it was run");
   app.add_option("--kind", options->kind,
-                 "One of: " + kinds + " (default: what the study asks for)")
+                 "One of: " + join(names, ", ") + " (default: what the study asks for)")
       ->check(known("kind of plot", names));
   app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
   app.add_option("--y", options->y, "Value on y, such as stretch.rms");

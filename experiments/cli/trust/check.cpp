@@ -11,6 +11,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/extremes/extremes.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -30,7 +31,8 @@ std::vector<std::string> studies_with_baseline(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(folder, none))
-    if (entry.is_directory()) names.push_back(entry.path().filename());
+    if (entry.is_directory() && entry.path().filename() != kFrontiersFolder)
+      names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   return names;
 }
