@@ -51,7 +51,7 @@ std::string nearest(const SolverAnswer& solver, const SceneBench& bench, const A
   const Target any = answer.target.error ? Target{{}, kAny} : Target{kAny, {}};
   const auto at = best_for(any, bench.candidates(metric), solver.solver);
   const std::string missed = bench.searched_to_the_end(solver.solver)
-                                 ? "never, to the end of its knobs"
+                                 ? "never, to the end of its accuracy parameters"
                                  : "not by the settings tried";
   return missed + (at ? "; nearest: " + line(bench.cases[*at], metric) : "; every case failed");
 }

@@ -159,7 +159,8 @@ std::string to_json(const BenchSession& session) {
                               {"remark", timing.remark}});
     for (const std::string& solver : solvers_of(scene))
       for (const KnobRange& range : scene.knob_ranges(solver))
-        one["knobs"][solver][range.knob] = {{"largest", range.largest}, {"end", range.end}};
+        one["accuracy_parameters"][solver][range.knob] = {{"largest", range.largest},
+                                                          {"end", range.end}};
     all["scenes"].push_back(std::move(one));
   }
   return to_text(all, 1) + "\n";

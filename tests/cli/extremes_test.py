@@ -31,8 +31,8 @@ class AllFrontiers(CommandLine):
 
     def test_every_knob_has_its_frontier_and_a_narrower_one_is_red(self):
         self.assertIn("xpbd: the study runs this solver, which has no baseline", self.all("--check", expect=4).err)
-        found = json.loads(self.all("--json", "--update").out)["knobs"]
-        self.assertEqual([knob["knob"] for knob in found], KNOBS)
+        found = json.loads(self.all("--json", "--update").out)["parameters"]
+        self.assertEqual([knob["parameter"] for knob in found], KNOBS)
         answered = [knob for knob in found if not knob["lacks"]]
         self.assertGreaterEqual(len(answered), 8)
         for knob in answered:
@@ -41,7 +41,7 @@ class AllFrontiers(CommandLine):
                 continue
             self.assertTrue(set(knob["symptom"].split(", ")) <= SYMPTOMS, knob)
             gap = max(knob["good"], knob["bad"]) / min(knob["good"], knob["bad"]) - 1
-            whole = knob["knob"] in ("sweeps", "resolution") and abs(knob["good"] - knob["bad"]) == 1
+            whole = knob["parameter"] in ("sweeps", "resolution") and abs(knob["good"] - knob["bad"]) == 1
             self.assertTrue(gap < 0.021 or whole, knob)
         # The case beyond a frontier shows what is said of it.
         beyond = next(knob for knob in answered if "overstretches" in knob["symptom"])["beyond"]

@@ -2,13 +2,13 @@
 #include <iostream>
 #include <memory>
 
-#include "experiments/bench/effects.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/timing/bench/effects.hpp"
 
 namespace taut::verb::effects {
 

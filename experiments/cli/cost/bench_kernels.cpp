@@ -3,12 +3,12 @@
 #include <memory>
 
 #include "core/solver/simd/kernels.hpp"
-#include "experiments/bench/kernels.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/timing/bench/kernels.hpp"
 
 namespace taut::verb::kernels {
 

@@ -18,9 +18,9 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/extremes/extremes.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/plot/plot.hpp"
+#include "experiments/study/extremes/extremes.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/statistics.hpp"
@@ -153,7 +153,7 @@ std::string theory_text(const KnobFrontier& knob) {
 /// A row a knob, three columns a solver; the theory of a single one.
 void print_all(const std::vector<KnobFrontier>& found, std::size_t solvers) {
   const std::size_t knobs = found.size() / solvers;
-  Row head{"knob"}, names{""};
+  Row head{"parameter"}, names{""};
   for (std::size_t s = 0; s < solvers; ++s) {
     head.insert(head.end(), {"good up to", "bad from", "what goes wrong"});
     names.insert(names.end(), {found[s * knobs].solver, "", ""});
@@ -241,7 +241,7 @@ int run_all(const Options& options) {
   const Session session(store, "taut frontier --all", {}, {});
   std::vector<KnobFrontier> found;
   for (const std::string& solver : solvers) {
-    const Countdown countdown("knob of " + solver);
+    const Countdown countdown("parameter of " + solver);
     const Extremes extremes =
         find_extremes(solver, store, session, {.jobs = options.jobs, .frames = true},
                       [&](std::size_t done, std::size_t all) { countdown(done, all); });
@@ -302,9 +302,10 @@ std::function<int()> bind(CLI::App& app) {
   options->which.bind(app);
   for (const char* name : {"SCENE", "SOLVER"}) app.get_option(name)->required(false);
   auto* all =
-      app.add_option("--all", options->all,
-                     "One or two solvers: every knob of theirs and of a small standard scene, with "
-                     "what goes wrong first, as a table and a picture; a minute or so")
+      app.add_option(
+             "--all", options->all,
+             "One or two solvers: every parameter of theirs and of a small standard scene, with "
+             "what goes wrong first, as a table and a picture; a minute or so")
           ->expected(1, 2)
           ->excludes("SCENE")
           ->excludes("SOLVER");

@@ -14,7 +14,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/film/film.hpp"
+#include "experiments/render/film/film.hpp"
 #include "experiments/report/findings.hpp"
 #include "experiments/report/model/model.hpp"
 #include "experiments/report/stored.hpp"

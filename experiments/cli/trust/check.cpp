@@ -11,8 +11,8 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/extremes/extremes.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/study/extremes/extremes.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
