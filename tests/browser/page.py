@@ -132,7 +132,7 @@ def claims(checks):
     page.run("new Promise(done => setTimeout(done, 600))")
     checks.true(not page.run(hidden), "the pointer shows it")
     bars = page.run("[...document.querySelectorAll('#claim-tile li')].map(li => li.innerText.replace(/\\s+/g, ' '))")
-    checks.true(bars == ["Jakobsen 0.6 %", "Bullet no value failed"], "a tile shows each solver's number, a failure too", bars)
+    checks.true(bars == ["Jakobsen 0.6 %", "Bullet no value"], "a tile shows each solver's number, a failure too", bars)
 
 
 def charts(checks):
@@ -145,13 +145,13 @@ def charts(checks):
     points = [p for s in spec["series"] for p in s["points"]]
     checks.true(len(labels) == len(points), "each point is drawn, a failed one too", f"{len(labels)} of {len(points)}")
     lacking = [f"{p['case']}: {label}" for p, label in zip(points, labels) if p["case"] not in label or "status: " + p["status"] not in label or
-               (not p["failed"] and (abs(float(label.split("stretch: ")[1].split("\u00a0")[0]) / 100 / p["y"] - 1) > 1e-3 or "95 %: " not in label))]
-    checks.empty(lacking, "each says value, interval, status and case")
+               (not p["failed"] and abs(float(label.split("stretch: ")[1].split("\u00a0")[0]) / 100 / p["y"] - 1) > 1e-3)]
+    checks.empty(lacking, "each says value, status and case")
+    costs = page.run("[...document.querySelectorAll('#chart-hang-cost .point')].map(p => p.getAttribute('aria-label'))")
+    checks.empty([label for label in costs if "95 %: " not in label], "each cost says its interval")
     place = page.run(f"""(c => [c.querySelector('.glyph').textContent, c.querySelector('.glyph').getBoundingClientRect().bottom,
         Math.min(...[...c.querySelectorAll('.dot')].map(d => d.getBoundingClientRect().top))])({chart})""")
     checks.true(place[0] == "×" and place[1] < place[2], "a failed case is an × above all points", place)
-    bars = page.run(f"[...{chart}.querySelectorAll('.error')].map(e => (e.getAttribute('d').match(/V/g) || []).length)")
-    checks.true(bars == [6, 5], "intervals have bars", bars)
     floor = page.run(f"(c => ['.floor', '.axis.x'].map(s => c.querySelector(s).getBoundingClientRect().top))({chart})")
     checks.true(floor[0] < floor[1] - 4, "the reference's own error lies in the picture", floor)
     zeros = page.run("document.querySelectorAll('#chart-hang-penetration .zero').length")
@@ -159,7 +159,7 @@ def charts(checks):
     key = page.run("document.querySelector('#chart-hang-penetration .key').innerText")
     checks.true("above the plot: exploded" in key and "on the axis: exactly zero" in key, "the key says what × and triangle are", key)
     cost = page.run("document.querySelector('#chart-hang-cost .error').getAttribute('d')")
-    checks.true(cost.count("H") == 6, "the cost has bars, too", cost)
+    checks.true(cost.count("H") == 6, "the cost has bars", cost)
     flat = page.run("document.querySelector('#chart-hang-zeros').innerText")
     checks.true("Every value is exactly zero (6 cases)" in flat, "a chart of zeros only says so", flat)
     stops = page.run(f"[...{chart}.querySelectorAll('.point')].filter(p => p.tabIndex === 0).length")

@@ -64,9 +64,8 @@ function thin(texts, obstacles = []) {
 }
 
 function pointLines(spec, series, point) {
-  const {x, y} = spec, spread = interval(point.low, point.high, y), costs = interval(point.x_low, point.x_high, x);
-  const value = point.y === null || point.y === undefined ? 'no value' :
-    `${shown(point.y, y, 4)}${spread && ` (95 %: ${spread})`}`;
+  const {x, y} = spec, costs = interval(point.x_low, point.x_high, x);
+  const value = point.y === null || point.y === undefined ? 'no value' : shown(point.y, y, 4);
   return [`${series.label}${point.name ? `, ${point.name}` : ''}`, `${y.title}: ${value}`,
           `${x.title}: ${shown(point.x, x, 4)}${costs && ` (95 %: ${costs})`}`,
           ...caseLines(point.status, undefined, point.case)];
@@ -94,7 +93,7 @@ function swatch(series) {
 
 /** Whether the reference's own error is drawn: unless it lies far below all points. */
 const floorShown = ({floor, series}) => floor.y > d3.min(series.flatMap((s) => s.points)
-    .flatMap((p) => p.failed ? [] : [p.y, p.low]).filter((v) => v > 0)) / 30;
+    .map((p) => p.failed ? 0 : p.y).filter((v) => v > 0)) / 30;
 
 /** The key: series, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
 function chartKey(spec, kind) {
@@ -166,8 +165,7 @@ function chartFigure(spec) {
   watchWidth(plot, again);
   drawn.add({plot, draw, zoom, svg});
   return el('figure', {className: 'card chart', id: `chart-${spec.id}`}, el('figcaption', {}, heading, bar, note), key,
-            el('div', {className: 'y-title'}, titled(spec.y)), plot, el('div', {className: 'x-title'}, titled(spec.x)),
-            claimList(all(spec.claims, claims)));
+            el('div', {className: 'y-title'}, titled(spec.y)), plot, el('div', {className: 'x-title'}, titled(spec.x)));
 }
 
 function drawChart(svg, spec, view, width) {
@@ -177,7 +175,7 @@ function drawChart(svg, spec, view, width) {
   const floor = view.kind === 'log' && flat.some((p) => p.zero) ? 12 : 0;
   const [yLow, yHigh] = [box.height - box.bottom - floor, box.top + strip];
   const numbers = (list, scale) => list.filter((v) => typeof v === 'number').map((v) => v * scale);
-  const measured = flat.filter((p) => !p.failed).flatMap((p) => [p.y, p.low, p.high]);
+  const measured = flat.filter((p) => !p.failed).map((p) => p.y);
   if (spec.floor && floorShown(spec)) measured.push(spec.floor.y);
   const up = numbers(measured, y.scale);
   const across = numbers(flat.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale);
@@ -225,7 +223,7 @@ function drawChart(svg, spec, view, width) {
     const lines = area.append('g').attr('data-s', solver.order).style('stroke', colour).style('fill', 'none');
     if (s.join) lines.append('path').attr('class', 'line').attr('stroke-dasharray', dashOf(s)).attr('d', line(s.points));
     lines.append('path').attr('class', 'error')
-        .attr('d', s.points.filter(usable).map((p) => errorBar(p, px, py, view.kind)).join(''));
+        .attr('d', s.points.filter(usable).map((p) => errorBar(p, px, py)).join(''));
     const group = svg.append('g').attr('data-s', solver.order).style('color', colour);
     s.points.forEach((p, i) => {
       const floored = p.zero && view.kind === 'log';
@@ -240,18 +238,12 @@ function drawChart(svg, spec, view, width) {
   nameBest(svg, spec);
 }
 
-/** Vertical and horizontal bars over the 95 % intervals, with caps. */
-function errorBar(p, px, py, kind) {
-  const cx = px(p.x), cy = py(p.y), cap = 3;
-  let d = '';
-  if (typeof p.low === 'number' && typeof p.high === 'number') {
-    const low = kind === 'log' && p.low <= 0 ? py(p.y) + 400 : py(p.low), high = py(p.high);
-    d += `M${cx},${low}V${high}M${cx - cap},${low}h${2 * cap}M${cx - cap},${high}h${2 * cap}`;
-  }
-  if (typeof p.x_low === 'number' && typeof p.x_high === 'number')
-    d += `M${px(p.x_low)},${cy}H${px(p.x_high)}` +
+/** A bar over the 95 % interval of x, with caps. */
+function errorBar(p, px, py) {
+  const cy = py(p.y), cap = 3;
+  if (typeof p.x_low !== 'number' || typeof p.x_high !== 'number') return '';
+  return `M${px(p.x_low)},${cy}H${px(p.x_high)}` +
          [p.x_low, p.x_high].map((v) => `M${px(v)},${cy - cap}v${2 * cap}`).join('');
-  return d;
 }
 
 function drawPoint(group, {spec, series, point, place, order, cx, cy, floored}) {
