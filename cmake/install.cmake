@@ -22,7 +22,7 @@ target_link_libraries(taut_model INTERFACE $<INSTALL_INTERFACE:taut::solver>)
 target_link_libraries(taut_metrics INTERFACE $<INSTALL_INTERFACE:taut::case>)
 
 # core/model/scene.hpp becomes <taut/model/scene.hpp>, also where headers include each other.
-set(headers core/io/mesh_io.hpp core/io/scene_io.hpp experiments/metrics/metric.hpp experiments/metrics/summary.hpp
+set(headers core/io/mesh_io.hpp core/io/scene_io.hpp experiments/metrics/metric.hpp
             experiments/case/digest.hpp experiments/case/record.hpp experiments/case/record_io.hpp
             experiments/case/run_case.hpp experiments/case/trajectory.hpp)
 file(GLOB model CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} core/model/*.hpp)

@@ -13,9 +13,9 @@ namespace taut {
 
 double estimated_work(const Case& one) {
   double sweeps = 1;
-  for (const ParamSpec& spec : one.choice.entry->params)
-    if (spec.name == "iterations" || spec.name == "substeps")
-      sweeps *= std::max(1, one.choice.params.integer(spec.name));
+  const AccuracyKnobs& knobs = one.choice.entry->knobs;
+  for (const std::string_view parameter : {knobs.substeps, knobs.sweeps})
+    if (!parameter.empty()) sweeps *= std::max(1, one.choice.params.integer(parameter));
   return one.scene->steps *
          (20.0 * one.scene->mesh.size() + static_cast<double>(one.scene->links.size()) * sweeps);
 }

@@ -5,7 +5,7 @@
 
 #include "core/model/solver.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/report/model/model.hpp"
+#include "experiments/report/report.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"

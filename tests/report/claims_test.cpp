@@ -8,7 +8,7 @@
 
 #include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
-#include "experiments/report/model/model.hpp"
+#include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/cost_reader.hpp"
 #include "tests/report/made_up.hpp"
@@ -480,20 +480,21 @@ TEST(Claims, NoneContradictsAChartOfTheModel) {
 }
 
 TEST(Claims, NoneIsMadeWithoutItsBasis) {
-  EXPECT_THROW(Claim("x", ClaimKind::note, "all", "Better.", Sure::clear, {}), std::logic_error);
-  EXPECT_THROW(Claim("x", ClaimKind::note, "all", "Better.", Sure::clear,
+  EXPECT_THROW(Claim("x", ClaimKind::note, "all", "Better.", Certainty::clear, {}),
+               std::logic_error);
+  EXPECT_THROW(Claim("x", ClaimKind::note, "all", "Better.", Certainty::clear,
                      {Evidence("stretch.rms", "looked at nothing")}),
                std::logic_error);
 }
 
 TEST(Claims, ADifferenceExceedsTheToleranceAndTheNoise) {
   const Interval quiet{0.99, 1, 1.01}, noisy{0.7, 1, 1.4};
-  EXPECT_EQ(judge_ratio({0.45, 0.5, 0.55}, quiet), Sure::clear);
-  EXPECT_EQ(judge_ratio({0.45, 0.5, 0.55}, noisy), Sure::likely);
-  EXPECT_EQ(judge_ratio({0.70, 0.8, 0.90}, noisy), Sure::too_noisy);
-  EXPECT_EQ(judge_ratio({0.90, 0.94, 0.98}, quiet), Sure::likely);
-  EXPECT_EQ(judge_ratio({0.97, 0.98, 0.99}, quiet), std::nullopt);
-  EXPECT_EQ(judge_ratio({0.50, 0.8, 1.20}, quiet), std::nullopt);
+  EXPECT_EQ(judge({0.45, 0.5, 0.55}, quiet), Certainty::clear);
+  EXPECT_EQ(judge({0.45, 0.5, 0.55}, noisy), Certainty::likely);
+  EXPECT_EQ(judge({0.70, 0.8, 0.90}, noisy), Certainty::too_noisy);
+  EXPECT_EQ(judge({0.90, 0.94, 0.98}, quiet), Certainty::likely);
+  EXPECT_EQ(judge({0.97, 0.98, 0.99}, quiet), Certainty::none);
+  EXPECT_EQ(judge({0.50, 0.8, 1.20}, quiet), Certainty::none);
 }
 
 }  // namespace

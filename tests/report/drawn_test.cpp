@@ -8,7 +8,7 @@
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/settings.hpp"
-#include "experiments/report/model/model.hpp"
+#include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
 #include "tests/report/raw_records.hpp"
@@ -55,8 +55,8 @@ TEST(Drawn, APointIsOfItsSolverMarkedAsItEndedAndInsideItsInterval) {
     for (const Json& chart : made.model.value("charts", Json::array())) {
       for (const char* axis : {"x", "y"}) {
         const Quantity q = quantity(chart[axis]["metric"].get<std::string>());
-        EXPECT_EQ(chart[axis]["scale"], q.scale) << q.name;
-        EXPECT_EQ(chart[axis]["unit"], q.unit) << q.name;
+        EXPECT_EQ(chart[axis]["scale"], q.unit.scale) << q.name;
+        EXPECT_EQ(chart[axis]["unit"], q.unit.shown) << q.name;
       }
       for (const Json& series : chart["series"]) {
         const std::string solver = series["solver"];
@@ -138,11 +138,12 @@ TEST(Drawn, ABasisNamesTheWindowOfItsMetricAndOrderedIntervals) {
   std::size_t intervals = 0;
   for (const Made& made : sets()) {
     for (const auto& [name, metric] : made.model["metrics"].items())
-      EXPECT_EQ(metric["scale"], quantity(name).scale) << name;
+      EXPECT_EQ(metric["scale"], quantity(name).unit.scale) << name;
     for (const Json& claim : made.model["claims"])
       for (const Json& basis : claim["basis"]) {
-        const std::string window = quantity(basis["metric"].get<std::string>()).window;
-        EXPECT_EQ(basis["window"], window.empty() ? "whole run" : window) << basis["metric"];
+        const Window window = quantity(basis["metric"].get<std::string>()).window;
+        EXPECT_EQ(basis["window"], window == Window::none ? "whole run" : to_string(window))
+            << basis["metric"];
         for (const Json& value : basis["values"]) {
           const std::string label = value["label"];
           EXPECT_TRUE(claim["about"] == "differences" ||

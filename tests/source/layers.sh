@@ -17,7 +17,7 @@ core/solver/contact      | core/(model/|solver/((simd|layout|contact)/|thread_po
 core/reference           | core/(model|reference)/
 bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
-experiments/metrics      | (core/model|experiments/metrics)/
+experiments/metrics      | core/model/(crossings|index|scene|triangle)\.hpp|experiments/metrics/
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(system|case|external))/|taut_solver.hpp)
 experiments/study        | (core/(model|io|reference)|experiments/(system|metrics|case|study))/
@@ -30,11 +30,11 @@ experiments/truths       | (core/(model|reference)|experiments/(metrics|case|tru
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/(model|io)|experiments/(system|case|render))/
-experiments/report       | (core/(model|io)|experiments/(system|metrics|case|study|timing|baseline|extremes|truths|report))/
+experiments/report       | (core/model|experiments/(system|metrics|case|study|timing|baseline|extremes|truths|report))/
 experiments/report/chart | (core/model|experiments/(metrics|case|timing|report/chart))/|experiments/report/input
-experiments/report/claims | experiments/(case|timing|report/(chart|claims))/|experiments/report/input
+experiments/report/claims | experiments/(system|metrics|case|timing|report/(chart|claims))/|experiments/report/input
 experiments/report/plot  | (core/model|experiments/(system|extremes|timing|report/(chart|plot)))/
-experiments/report/model | (core/model|experiments/(system|case|timing|baseline|truths|report/(chart|claims|model)))/|experiments/report/input
+experiments/report/model | (core/model|experiments/(system|metrics|case|timing|baseline|truths|report/(chart|claims|model)))/|experiments/report/input
 experiments/bench        | (core/(model|io|solver|reference)|experiments/(system|timing|bench))/
 experiments/film         | (core/(model|io)|experiments/(system|case|render|report|film))/
 '
@@ -106,6 +106,7 @@ self_test() {
 core/model/planted.cpp|"core/solver/layout/particles.hpp"
 core/solver/planted.hpp|"experiments/case/record.hpp"
 bullet_ref/planted.cpp|"core/solver/layout/particles.hpp"
+experiments/metrics/planted.cpp|"core/model/solver.hpp"
 experiments/metrics/planted.cpp|"core/solver/layout/particles.hpp"
 experiments/case/planted.cpp|"bullet_ref/read_back.hpp"
 experiments/external/planted.cpp|"core/solver/layout/particles.hpp"

@@ -88,10 +88,9 @@ TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
   for (unsigned bench = 0; bench < 100; ++bench) {
     NoisyMachine machine(bench);
     const Samples control = interleave(machine, 1, 1, 20), pair = interleave(machine, 1, 1, 20);
-    const Difference j = compare_costs(interleaved_ratio(pair.a, pair.b),
-                                       interleaved_ratio(control.a, control.b), 0.05);
-    declared += j == Difference::faster || j == Difference::slower;
-    noisy += j == Difference::too_noisy;
+    declared += is_difference(
+        judge(interleaved_ratio(pair.a, pair.b), interleaved_ratio(control.a, control.b)));
+    noisy += spread(interleaved_ratio(control.a, control.b)) > kTolerance;
   }
   EXPECT_EQ(declared, 0);
   EXPECT_LT(noisy, 30);  // most of these machines are still good enough to judge
@@ -99,25 +98,23 @@ TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
 
 /// A bench of one code against itself from samples that a busy machine gave: four neighbours of one
 /// session, two as the control, two as the pair, the second of which costs `factor` times as much.
-Difference recorded_bench(std::size_t first, double factor) {
+Certainty recorded_bench(std::size_t first, double factor) {
   const auto samples = [](std::size_t row, double cost) {
     std::vector<double> out;
     for (const int value : kRecorded[row]) out.push_back(cost * value);
     return out;
   };
-  return compare_costs(interleaved_ratio(samples(first + 2, factor), samples(first + 3, 1)),
-                       interleaved_ratio(samples(first, 1), samples(first + 1, 1)), 0.05);
+  return judge(interleaved_ratio(samples(first + 2, factor), samples(first + 3, 1)),
+               interleaved_ratio(samples(first, 1), samples(first + 1, 1)));
 }
 
 TEST(Statistics, RecordedSamplesOfOneCodeAreNeverADifferenceButATwofoldCostIs) {
-  int benches = 0, declared = 0, seen = 0;
+  int benches = 0, clear = 0, declared = 0, seen = 0;
   for (std::size_t first = 0; first + 3 < std::size(kRecorded); ++first) {
     ++benches;
-    const auto is_difference = [](Difference j) {
-      return j == Difference::faster || j == Difference::slower;
-    };
+    clear += recorded_bench(first, 1) == Certainty::clear;
     declared += is_difference(recorded_bench(first, 1));
-    seen += recorded_bench(first, 2) == Difference::slower;
+    seen += recorded_bench(first, 2) == Certainty::clear;
   }
   EXPECT_GE(benches, 100);
   EXPECT_EQ(declared, 0);
@@ -129,10 +126,10 @@ TEST(Statistics, ATwentyPercentChangeIsSeenDespiteTheNoise) {
   for (unsigned bench = 0; bench < 100; ++bench) {
     NoisyMachine machine(bench);
     const Samples control = interleave(machine, 1, 1, 20), pair = interleave(machine, 1.2, 1, 20);
-    const Difference j = compare_costs(interleaved_ratio(pair.a, pair.b),
-                                       interleaved_ratio(control.a, control.b), 0.05);
-    slower += j == Difference::slower;
-    faster += j == Difference::faster;
+    const Interval ratio = interleaved_ratio(pair.a, pair.b);
+    const bool told = is_difference(judge(ratio, interleaved_ratio(control.a, control.b)));
+    slower += told && ratio.mid > 1;
+    faster += told && ratio.mid < 1;
   }
   EXPECT_GE(slower, 70);
   EXPECT_EQ(faster, 0);

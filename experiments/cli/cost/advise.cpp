@@ -27,7 +27,7 @@ constexpr std::size_t kMostFinalists = 5;  ///< timed against each other
 constexpr std::size_t kMostRefused = 4;    ///< printed; --json has all
 
 struct Options {
-  std::string scene, metric = "stretch.rms", error, out;
+  std::string scene, metric = kErrorMetric, error, out;
   double budget = 0;  ///< ms per frame; 0: not given
   std::vector<std::string> solvers, settings;
   double patience = 120;
@@ -227,7 +227,7 @@ std::string command(const Options& options, const Result& result) {
   };
   solver(*result.answer.best);
   if (result.answer.runner_up) solver(*result.answer.runner_up);
-  return text + (options.metric == "stretch.rms" ? "" : " --metric " + options.metric);
+  return text + (options.metric == kErrorMetric ? "" : " --metric " + options.metric);
 }
 
 void line(const char* what, const std::string& text) {
@@ -278,13 +278,11 @@ void print_searched(const Options& options, const Result& result, double elapsed
     line("", "and " + std::to_string(refused - kMostRefused) + " more; --json names all");
 }
 
-Json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
-
 Json json_of(const BenchedCase& c, const std::string& metric) {
   return {{"setting", parse_solver(c.record.spec.solver).brief()},
           {"solver", c.record.solver},
           {"error", c.record.value(metric)},
-          {"cpu_seconds_per_second", json_of(c.cost())},
+          {"cpu_seconds_per_second", c.cost()},
           {"peak_bytes", c.timing.peak_bytes},
           {"case", c.record.id}};
 }
@@ -309,16 +307,16 @@ void print_json(const Options& options, const Result& result, double elapsed) {
                             {"refused", c.failure.empty() ? Json() : Json(c.failure)}});
   if (const Answer& answer = result.answer; answer.best) {
     all["best"] = json_of(result.best(), options.metric);
-    all["best"]["cpu_seconds_per_second"] = json_of(result.cost);
+    all["best"]["cpu_seconds_per_second"] = result.cost;
     all["certainty"] = to_string(answer.certainty);
-    all["control"] = json_of(result.bench.control);
+    all["control"] = result.bench.control;
     all["verified"] = {{"same_bits", result.same_bits},
-                       {"cpu_seconds_per_second", json_of(result.again)},
+                       {"cpu_seconds_per_second", result.again},
                        {"inside_interval", result.confirmed()}};
     all["command"] = command(options, result);
     if (answer.runner_up)
       all["runner_up"] = json_of(result.bench.cases[*answer.runner_up], options.metric);
-    if (answer.ratio) all["ratio"] = json_of(*answer.ratio);
+    if (answer.ratio) all["ratio"] = *answer.ratio;
   }
   std::cout << to_text(all, 1) << '\n';
 }

@@ -81,12 +81,11 @@ Json json_of(const KernelBench& bench) {
                     {"flops", row.flops},
                     {"bytes", row.bytes},
                     {"fixed_sweeps", row.fixed}});
-  const auto interval = [](const Interval& i) { return Json{i.low, i.mid, i.high}; };
   return {{"side", bench.side},
           {"instructions", to_string(widest())},
           {"rows", rows},
-          {"two_threads", interval(bench.two_cores.threads)},
-          {"unrelated_sheets", interval(bench.two_cores.unrelated)}};
+          {"two_threads", bench.two_cores.threads},
+          {"unrelated_sheets", bench.two_cores.unrelated}};
 }
 
 std::function<int()> bind(CLI::App& app) {

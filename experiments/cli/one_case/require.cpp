@@ -128,9 +128,7 @@ void print_text(const Requirement& found, const Store& store, const std::string&
             << " s\n";
 }
 
-Json json_of(const std::optional<Interval>& i) {
-  return i ? Json{i->low, i->mid, i->high} : Json();
-}
+Json json_of(const std::optional<Interval>& i) { return i ? Json(*i) : Json(); }
 
 Json json_of(const ModelTrial& trial) {
   return {{"change", trial.change},
@@ -156,7 +154,7 @@ Json json_of(const Requirement& found, const Store& store, const std::string& pi
            {"bytes", full_bytes(found, store)},
            {"effects", Json::array()},
            {"smallest", nullptr},
-           {"control", json_of(std::optional(found.control))},
+           {"control", found.control},
            {"cases", found.cases},
            {"ran", found.ran},
            {"seconds", seconds},

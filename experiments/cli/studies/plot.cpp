@@ -95,7 +95,7 @@ void check(const std::vector<PlotSpec>& specs, const Options& options, const Stu
 /// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
 /// and on standard error.
 std::string hold_other(const PlotSpec& spec, report::Records& records, const std::string& scene) {
-  const std::string held = spec.x == "dt" ? "iterations" : "dt";
+  const std::string held = spec.x == "dt" ? report::kSweeps : "dt";
   const report::Slice slice = report::hold(records, held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
   records = slice.records;
@@ -120,7 +120,7 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
   std::vector<report::TimeSeries> series;
   if (spec.kind == "series") series = report::stored_series(records, spec.y, store);
   if (const auto slope = study.slopes.find(scene);
-      slope != study.slopes.end() && spec.kind == "error-iterations" && spec.x == "iterations" &&
+      slope != study.slopes.end() && spec.kind == "error-iterations" && spec.x == report::kSweeps &&
       !spec.slope && spec.y.starts_with("stretch."))
     spec.slope = slope->second;
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;

@@ -76,10 +76,8 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
 }
 
 Unit unit_of(const std::string& value) {
-  for (const MetricEntry* metric : metrics())
-    for (const ValueSpec& spec : metric->values)
-      if (spec.name == value) return spec.unit;
-  return kNumber;
+  const ValueSpec* spec = find_value(value).second;
+  return spec ? spec->unit : kNumber;
 }
 
 /// "better in 3, worse in 1": of an error; "" of what has neither.
