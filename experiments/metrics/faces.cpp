@@ -12,7 +12,7 @@ class Faces final : public Metric {
       {"face.max", kErrorLength,
        "largest depth of a point of a face below the surface of a ball or box, thickness not "
        "counted, in the last second",
-       true},
+       true, Window::last_second, "largest penetration of faces"},
       {"face.peak", kErrorLength, "the same over the run", false, Window::run,
        "peak penetration of faces"},
       {"face.geometry", kLength,

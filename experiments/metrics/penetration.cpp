@@ -25,7 +25,7 @@ class Penetration final : public Metric {
       {"penetration.max", kErrorLength,
        "largest depth of a free vertex below a collider's surface, thickness not counted, in the "
        "last second",
-       true},
+       true, Window::last_second, "largest penetration of vertices"},
       {"penetration.peak", kErrorLength, "the same over the run", false, Window::run,
        "peak penetration of vertices"},
       {"penetration.mean", kErrorLength,

@@ -104,6 +104,12 @@ Answer answer(const SceneBench& bench, const Target& target, const std::string& 
   return answer;
 }
 
+Interval cost_expected_again(const SceneBench& bench, std::size_t at) {
+  const double stray = 1 + spread(bench.control);
+  const Interval cost = bench.cases[at].cost();
+  return {cost.low / stray, cost.mid, cost.high * stray};
+}
+
 std::string text(const Target& target, const std::string& metric) {
   if (target.error) return metric + " <= " + number_text(*target.error);
   return "least " + metric + " within " + number_text(1e3 * kFrame * *target.budget) +

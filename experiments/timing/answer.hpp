@@ -37,6 +37,10 @@ struct Answer {
 Answer answer(const SceneBench&, const Target&, const std::string& metric,
               double tolerance = kTolerance);
 
+/// Where the cost of a case is to be expected in another session [CPU s per simulated s]: its
+/// interval, wider by how far identical code strayed from itself in this one.
+Interval cost_expected_again(const SceneBench&, std::size_t at);
+
 /// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms per frame of 1/60 s".
 std::string text(const Target&, const std::string& metric);
 

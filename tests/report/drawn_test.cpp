@@ -97,6 +97,31 @@ TEST(Drawn, APointIsOfItsSolverMarkedAsItEndedAndInsideItsInterval) {
   EXPECT_GT(intervals, 10U);
 }
 
+TEST(Drawn, NoClaimContradictsAChart) {
+  std::size_t compared = 0;
+  for (const Made& made : sets()) {
+    std::map<std::pair<std::string, std::string>, Json> drawn;  // (case, metric) -> y
+    for (const Json& chart : made.model.value("charts", Json::array()))
+      for (const Json& series : chart["series"])
+        for (const Json& p : series["points"]) {
+          EXPECT_EQ(p["status"], made.cases.at(p["case"])["status"]);
+          EXPECT_EQ(p["failed"].get<bool>(), p["y"].is_null());
+          drawn[{p["case"], chart["y"]["metric"]}] = p["y"];
+        }
+    for (const Json& claim : made.model["claims"])
+      for (const Json& basis : claim["basis"])
+        for (const Json& value : basis["values"]) {
+          if (!value.contains("case")) continue;  // of another results folder
+          EXPECT_EQ(value["status"], made.cases.at(value["case"])["status"]) << claim["id"];
+          const auto at = drawn.find({value["case"], basis["metric"]});
+          if (at == drawn.end()) continue;
+          ++compared;
+          EXPECT_EQ(at->second, value["value"]) << claim["sentence"];
+        }
+  }
+  EXPECT_GT(compared, 100U);
+}
+
 TEST(Drawn, CountsOfStatusesAreOfAllCases) {
   for (const Made& made : sets()) {
     for (const Json& map : made.model.value("maps", Json::array())) {
@@ -209,11 +234,26 @@ TEST(Drawn, ACellOfAMapIsTheCaseOfItsRowAndColumn) {
         for (const auto& [axis, place] : {std::pair{"x", "column"}, {"y", "row"}}) {
           const Json& values = map[axis]["values"];
           EXPECT_TRUE(std::ranges::is_sorted(values.get<std::vector<double>>()));
-          EXPECT_EQ(values[cell[place].get<std::size_t>()], value_in(one, map[axis]["metric"]));
+          EXPECT_EQ(values.at(cell[place].get<std::size_t>()), value_in(one, map[axis]["metric"]));
         }
         ++seen;
       }
   EXPECT_GT(seen, 300U);
+}
+
+TEST(Drawn, AChartSaysTheWindowOfItsValueAndContactIsOfTheWholeRun) {
+  int contact = 0;
+  for (const Made& made : sets())
+    for (const Json& chart : made.model.value("charts", Json::array())) {
+      const std::string window = quantity(chart["y"]["metric"].get<std::string>()).window;
+      const std::string caption = chart["caption"];
+      EXPECT_TRUE(!caption.starts_with("Last second.") || window == "last second") << chart["id"];
+      EXPECT_TRUE(!caption.ends_with("whole run.") || window == "whole run") << chart["id"];
+      if (chart["kind"] != "contact") continue;
+      EXPECT_NE(window, "last second") << chart["title"] << ": what has left by then is not seen";
+      ++contact;
+    }
+  EXPECT_GT(contact, 50);
 }
 
 TEST(Drawn, OfTwoCasesInOneCellTheWorseIsShown) {
@@ -291,7 +331,7 @@ TEST(Drawn, ATableOfCostsSaysWhatItsCasesCostAndABenchWhetherItWasNoisy) {
       for (const Json& row : table["rows"])
         for (const Json& cell : row) {
           if (!cell.contains("low")) continue;
-          const Json& cost = made.cases.at(cell["case"])["cost"]["cpu.per_second"];
+          const Json& cost = made.cases.at(cell["case"]).at("cost").at("cpu.per_second");
           EXPECT_EQ(cell["low"], cost["low"]);
           EXPECT_EQ(cell["value"], cost["mid"]);
           EXPECT_EQ(cell["high"], cost["high"]);

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 namespace taut {
 namespace {
 
@@ -91,6 +94,38 @@ TEST(Answer, TheWordsSayOfWhatItIsSure) {
   EXPECT_TRUE(
       said(bench({a, slower}), {0.01, {}}).ends_with("; clearly cheaper than the next setting"));
   EXPECT_TRUE(said(bench({a}), {0.01, {}}).ends_with("; nothing else timed reaches it"));
+}
+
+/// Times of a case whose cost is 1, in a session of so many rounds on a machine with noise: every
+/// sample strays by about `sigma`, one in ten is interrupted and takes up to twice as long.
+std::vector<double> session(int rounds, double sigma, std::mt19937_64& random) {
+  const auto uniform = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
+  std::vector<double> samples;
+  for (int i = 0; i < 2 * rounds; ++i) {
+    double normal = -6;  // of twelve uniform numbers the sum has variance 1
+    for (int k = 0; k < 12; ++k) normal += uniform();
+    samples.push_back(std::exp(sigma * normal) * (uniform() < 0.1 ? 1 + uniform() : 1));
+  }
+  return samples;
+}
+
+TEST(Answer, ASecondSessionLiesInsideTheIntervalInNineOfTenRuns) {
+  std::mt19937_64 random(1);
+  for (const int rounds : {2, 8})  // as few as advise takes, and as many as it wants
+    for (const double sigma : {0.01, 0.1}) {
+      constexpr int kRuns = 500;
+      int inside = 0, inside_its_own = 0;
+      for (int run = 0; run < kRuns; ++run) {
+        SceneBench b = bench({finalist("a", 1, 0.01)});
+        b.cases[0].timing.samples = session(rounds, sigma, random);
+        b.control = interleaved_ratio(b.cases[0].timing.samples, session(rounds, sigma, random));
+        const double again = median(session(rounds, sigma, random));
+        inside += cost_expected_again(b, 0).contains(again);
+        inside_its_own += b.cases[0].cost().contains(again);
+      }
+      EXPECT_GE(inside, 0.9 * kRuns) << rounds << " rounds, " << sigma;
+      EXPECT_LT(inside_its_own, 0.9 * kRuns) << "the control is not needed: " << rounds;
+    }
 }
 
 TEST(Answer, EverySolverSendsItsBestToTheFinal) {

@@ -68,7 +68,7 @@ struct Result {
   std::vector<std::string> cut;          ///< solvers whose search --patience ended
   SceneBench bench;
   Answer answer;
-  Interval cost;  ///< of the best, widened by how far the same code strays here
+  Interval cost;  ///< of the best, as it is expected in a second session
   bool same_bits = false;
   Interval again;  ///< cost of the best in a second session
 
@@ -202,9 +202,7 @@ class Advisor {
     const Record& best = result_.best().record;
     result_.same_bits = run_again(make(best.spec.solver), store_).digest == best.digest;
     result_.again = time({best}, rounds).cases.front().cost();
-    const double stray = 1 + spread(result_.bench.control);
-    result_.cost = result_.best().cost();
-    result_.cost.low /= stray, result_.cost.high *= stray;
+    result_.cost = cost_expected_again(result_.bench, *answer.best);
     if (answer.certainty == Certainty::clear && !(result_.cut.empty() && result_.confirmed()))
       answer.certainty = Certainty::likely;
   }

@@ -40,7 +40,7 @@ function scaleOf(kind, values, range) {
   return d3.scaleLinear().domain([low === 0 ? 0 : low - air, high + air]).range(range);
 }
 
-/** Ticks that can be read: the values of a swept setting, or 1, 2 and 5 of each power of ten as far as they fit. */
+/** Ticks that can be read: the values of a swept setting, or 1, 2 and 5 of each power of ten as far as they fit; of many powers every second. */
 function ticksOf(scale, axis, kind, wanted) {
   const [low, high] = scale.domain(), inside = (v) => v >= low && v <= high;
   if (axis.values) return axis.values.map((v) => v * axis.scale).filter(inside);
@@ -48,7 +48,8 @@ function ticksOf(scale, axis, kind, wanted) {
   const decades = Math.log10(high / low);
   if (decades < 0.7) return d3.ticks(low, high, wanted);
   const factors = decades > 0.7 * wanted ? [1] : decades > 1.6 ? [1, 3] : [1, 2, 5];
-  return d3.range(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)) + 1)
+  const by = Math.ceil(decades / (2 * wanted)), first = by * Math.floor(Math.log10(low) / by);
+  return d3.range(first, Math.ceil(Math.log10(high)) + 1, by)
       .flatMap((power) => factors.map((f) => f * 10 ** power)).filter(inside);
 }
 
@@ -85,7 +86,7 @@ function swatch(series) {
   const svg = d3.create('svg').attr('class', 'swatch').attr('viewBox', '0 0 30 12').attr('aria-hidden', 'true');
   svg.append('line').attr('x2', 30).attr('y1', 6).attr('y2', 6).attr('stroke-width', 2)
       .style('stroke', series.colour ?? solverColour(series.solver))
-      .attr('stroke-dasharray', series.dash ?? dashOf(series));
+      .attr('stroke-dasharray', series.dash ?? dashOf(series)).attr('class', series.className);
   if (series.solver)
     svg.append('path').attr('transform', 'translate(15,6)').attr('d', markerPath(solverOf(series.solver).marker, 45))
         .style('fill', solverColour(series.solver));
@@ -106,7 +107,7 @@ function chartKey(spec, kind) {
     spec.series.map((s) => entry(swatch(s), short(s.label, 60), solverOf(s.solver).order)),
     spec.theory && entry(grey('4 3'), spec.theory.text),
     spec.floor && entry(floorShown(spec) ? grey('1 3') : '', spec.floor.text + (floorShown(spec) ? '' : ': below the plot')),
-    spec.front && entry(grey(''), 'no setting is better in both'),
+    spec.front && entry(swatch({className: 'front', colour: 'var(--stair)', dash: ''}), 'no setting is better in both'),
     failed.map((s) => entry(el('b', {}, s.glyph), `above the plot: ${s.title}`)),
     kind === 'log' && points.some((p) => p.zero) && entry(el('b', {}, '▲'), 'on the axis: exactly zero'),
     kind === 'log' && points.some((p) => p.y < 0) && entry(el('b', {}, '!'),
