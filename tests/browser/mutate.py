@@ -96,7 +96,7 @@ DAMAGES = [
     ("page.css", "color: var(--ink); overflow-wrap: anywhere;", "color: var(--ink);", "hostile", "hostile texts, 390 px: no sideways"),
     ("index.html", "JavaScript is off", "Welcome", "without_script", "without JavaScript it says"),
     ("index.html", "{{headlines}}", "", "without_script", "without JavaScript the headlines"),
-    ("page.js", "\nstart();\n", "\nlet sum = 0;\nfor (let i = 0; i < 4e9; ++i) sum += Math.sqrt(i);\nstart();\n", "drawn", "it is drawn within two seconds"),
+    ("page.js", "\nstart();\n", "\nlet sum = 0;\nfor (let i = 0; i < 3e8; ++i) sum += Math.sqrt(i);\nstart();\n", "drawn", "it is drawn within two seconds"),
     ("index.html", "</html>", "</html>" + 8_000_000 * " ", "drawn", "it is smaller than 8 MB"),
     ("sections.js", "claimsAbout(['note'], ['all', 'only', 'failures'])", "[]", "drawn", "every claim is on the page"),
     ("page.js", "\nstart();\n", "\nstart();\nfetch('https://example.org/x');\n", "drawn", "the report: no"),
