@@ -89,6 +89,7 @@ DAMAGES = [
     ("film.js", "'aria-label': `Time of the film of ${short(scene.title)} [s]`,", "", "layout", "accessibility: the serious rules"),
     ("scene.js", "box.hidden = false; sceneView.build(i);", "", "prints", "all scenes are printed"),
     ("page.css", ".basis, .tile .basis { position: static; visibility: visible; opacity: 1;", ".basis, .tile .basis { position: static;", "prints", "with the basis of every claim"),
+    ("page.css", "  td { overflow-wrap: anywhere; }\n", "", "prints", "paper: nothing is cut at the edge"),
     ("page.js", "part.open = true;", "", "prints", "and all that is folded"),
     ("page.js", "if (sceneView.boxes.length) sceneView.showOne();", "", "prints", "afterwards one scene again"),
     ("text.js", "document.createElement('span');\n  Object.assign(box, {className: 'long', tabIndex: 0, textContent: child});", "document.createElement('span');\n  box.innerHTML = child;", "hostile", "hostile texts do not make the page long"),

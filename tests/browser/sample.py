@@ -178,7 +178,8 @@ def make():
     model["cost"] = {"machine": "a machine", "claims": ["costs"], "tables": ["levels-hang"], "scenes": [
         {"scene": s, "control": control, "noisy": s == "ball", "noise": "Two runs of identical code differed by up to 4 %.", "charts": [f"{s}-cost"],
          "tables": [f"levels-{s}"] if s == "ball" else []} for s in ("hang", "ball")]}
-    rows = [{"section": "One", "statement": "a link returns", "source": "Jakobsen", "subject": s, "expected": "0.1 m", "measured": "0.1 m",
+    rows = [{"section": "One", "statement": "a link returns", "source": "Jakobsen", "subject": f"{s}:iterations=64,projection=exact,precision=double",
+             "expected": "0.1 m (at t=0.123456789012345)", "measured": "error-at-the-end=0.100000000000001",
              "verdict": v, **({"why": "no square root"} if v == "deviates" else {})} for s, v in (("jakobsen", "passed"), ("bullet", "deviates"))]
     model["truths"] = {"truths": 1, "findings": 2, "verdicts": {"passed": 1, "deviates": 1}, "rows": rows}
     model["regressions"] = {"cases": 3, "values": 30, "rows": [{"study": "regression", "case": "hang", "change": "0.012 -> 0.013"}]}
