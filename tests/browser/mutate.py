@@ -76,7 +76,6 @@ DAMAGES = [
     ("text.js", "if (typeof value === 'number') return Number.isFinite(value) ? String(value) : '';", "value = String(value);", "cases", "a negative number stays"),
     ("film.js", "if (!touched || time >= lead.duration - lead.frame) seek(0);", "", "films", "a click plays it from its beginning"),
     ("film.js", "if (!videos[0].paused) return pause();", "", "films", "another one stops it"),
-    ("film.js", "box.focus({preventScroll: true}); toggle();", "toggle();", "films", "space plays"),
     ("film.js", "ArrowRight: () => step(1)", "ArrowUp: () => step(1)", "films", "after a click the right arrow"),
     ("film.js", "time = Math.max(0, Math.min(lead.duration, t));\n    videos.forEach(place);", "time = Math.max(0, Math.min(lead.duration, t));", "films", "the film is where the clock is"),
     ("film.js", "ArrowLeft: () => step(-1), ", "", "films", "the left one steps back"),
