@@ -63,6 +63,66 @@ TEST(Statistics, TheIntervalIsSeededAndShrinksWithSamples) {
   EXPECT_TRUE(narrow.contains(narrow.mid));
 }
 
+// The median of a resample of n (odd) samples is at most the k-th smallest iff at least half of its
+// draws are, of which each is with probability k/n: the ends of the interval are known order
+// statistics.
+TEST(Statistics, TheIntervalEndsAtTheOrderStatisticsOfTheBinomialLaw) {
+  const auto at_most = [](int n, int k) {  // P(median <= k-th smallest)
+    double p = 0;
+    for (int j = (n + 1) / 2; j <= n; ++j)
+      p += std::exp(std::lgamma(n + 1) - std::lgamma(j + 1) - std::lgamma(n - j + 1) +
+                    j * std::log(1.0 * k / n) +
+                    (k < n   ? (n - j) * std::log1p(-1.0 * k / n)
+                     : j < n ? -1e9
+                             : 0));
+    return p;
+  };
+  for (const int n : {3, 9, 15, 25, 61})
+    for (const double confidence : {0.5, 0.8, 0.9, 0.95, 0.99}) {
+      std::vector<double> samples;
+      for (int i = 0; i < n; ++i) samples.push_back(i * 37 % n + 1);  // 1 ... n in no order
+      const double tail = (1 - confidence) / 2, doubt = 4 * std::sqrt(tail * (1 - tail) / 2000);
+      const auto end = [&](double q) {
+        int k = 1;
+        while (at_most(n, k) < q) ++k;
+        return k;
+      };
+      const Interval is = bootstrap_median(samples, confidence, 7);
+      EXPECT_GE(is.low, end(std::max(0.0, tail - doubt))) << n << ' ' << confidence;
+      EXPECT_LE(is.low, end(tail + doubt)) << n << ' ' << confidence;
+      EXPECT_GE(is.high, end(1 - tail - doubt)) << n << ' ' << confidence;
+      EXPECT_LE(is.high, end(std::min(1 - 1e-9, 1 - tail + doubt))) << n << ' ' << confidence;
+      EXPECT_EQ(is.mid, (n + 1) / 2);
+    }
+  const Interval one = bootstrap_median(std::vector{4.0});
+  EXPECT_EQ(one.low, 4);
+  EXPECT_EQ(one.high, 4);
+}
+
+TEST(Statistics, ARatioIsThatOfTheBlocksAndItsWordsFollowFromItsEnds) {
+  // three blocks of ratio 2, 3 and 8, whatever the machine's speed in each
+  const Interval ratio = interleaved_ratio(std::vector{2.0, 4.0, 20.0, 40.0, 1.5, 0.5},
+                                           std::vector{1.0, 2.0, 8.0, 12.0, 0.2, 0.05});
+  EXPECT_NEAR(ratio.mid, 3, 1e-12);
+  EXPECT_NEAR(ratio.low, 2, 1e-12);
+  EXPECT_NEAR(ratio.high, 8, 1e-12);
+  EXPECT_NEAR(spread({0.9, 1, 1.05}), 1 / 0.9 - 1, 1e-12);
+  EXPECT_NEAR(spread({0.98, 1, 1.05}), 0.05, 1e-12);
+  const Interval quiet{0.99, 1, 1.01};
+  EXPECT_EQ(compare_costs({1.02, 1.06, 1.2}, quiet, 0.05), Difference::slower);
+  EXPECT_EQ(compare_costs({1.02, 1.04, 1.2}, quiet, 0.05), Difference::none)
+      << "within the tolerance";
+  EXPECT_EQ(compare_costs({0.99, 1.06, 1.2}, quiet, 0.05), Difference::none) << "1 is within";
+  EXPECT_EQ(compare_costs({1, 1.06, 1.2}, quiet, 0.05), Difference::none);
+  EXPECT_EQ(compare_costs({0.8, 1 / 1.06, 0.99}, quiet, 0.05), Difference::faster);
+  EXPECT_EQ(compare_costs({0.8, 1 / 1.04, 0.99}, quiet, 0.05), Difference::none);
+  EXPECT_EQ(compare_costs({1.5, 2, 3}, {0.94, 1, 1}, 0.05), Difference::too_noisy);
+  EXPECT_EQ(compare_costs({1.5, 2, 3}, {0.96, 1, 1.045}, 0.05), Difference::slower);
+  EXPECT_EQ(number_text(0.0123456), "0.0123");
+  EXPECT_EQ(number_text(std::nan("")), "-");
+  EXPECT_EQ(interval_text({0.002, 0.0031, 0.004}, 1e-3), "3.1 (2 to 4)");
+}
+
 // What 95 % means: the interval misses the true median in about one of twenty samples, on each side
 // alike. The noise is skewed, as that of timings is.
 TEST(Statistics, TheIntervalHoldsTheTrueMedianAsOftenAsItSays) {
