@@ -105,6 +105,24 @@ TEST(Knobs, StartWhereTheyAreEasyAndMakeCases) {
   EXPECT_THROW(knobs_of("nobody"), InputError);
 }
 
+// Where a search begins it has changed nothing yet: the scene is the standard one, the solver the
+// one that was asked about.
+TEST(Knobs, BeginAtWhatTheStandardSceneHas) {
+  for (const std::string solver : {"jakobsen", "bullet:iterations=4", "mass-spring", "xpbd"})
+    for (const Knob& knob : knobs_of(solver)) {
+      if (!knob.lacks.empty() || knob.name == "sweeps") continue;  // these begin with many
+      const FrontierQuestion& question = knob.question;
+      const Case base = make_case(question.base),
+                 start = make_case(question.at(question.range.from));
+      EXPECT_EQ(content(*start.scene), content(*base.scene)) << solver << ": " << knob.name;
+      EXPECT_EQ(start.choice.canonical(), base.choice.canonical()) << solver << ": " << knob.name;
+      const Case end = make_case(question.at(question.range.to));
+      EXPECT_TRUE(content(*end.scene) != content(*base.scene) ||
+                  end.choice.canonical() != base.choice.canonical())
+          << solver << ": " << knob.name;
+    }
+}
+
 TEST(Knobs, TheoriesAreClosedForms) {
   for (const Knob& knob : knobs_of("jakobsen:substeps=1,contact=discrete")) {
     if (knob.name == "wind") {
