@@ -21,6 +21,7 @@ is the long run. --planted plants the errors of a file in the same format instea
 85 %; --goal is the share below which the run fails, by more than chance: two standard deviations of a sample of this size.
 """
 import argparse
+import bisect
 import concurrent.futures
 import contextlib
 import hashlib
@@ -261,14 +262,14 @@ class Coverage:
 
     def __init__(self, build, checks, pool):
         self.build, self.lines, self.lock = build, {}, threading.Lock()
-        self.address = {program: self.addresses(program) for program in build.link_command}
+        self.functions = {program: self.functions_of(program) for program in build.link_command}
         layers = hashlib.sha256(b"".join((build.folder / target).read_bytes() for target in build.own)).digest()
         kept, of, known = build.folder / "executed.pickle", None, {}
         with contextlib.suppress(OSError, EOFError):
             with open(kept, "rb") as file:
                 of, self.runs, known = pickle.load(file)
         if of != layers:
-            # Address behind the start of the code, where the layers come first -> a bit for each check.
+            # (function, offset) of a block -> a bit for each check.
             self.runs, known = {program: {} for program in build.link_command}, {}
         self.bit, new = {}, []
         unused = itertools.count(1 + max((bit for _, bit, _, _ in known.values()), default=-1))
@@ -277,34 +278,38 @@ class Coverage:
             if source != check.source:
                 self.bit[check] = next(unused)
                 new.append(check)
-        list(pool.map(self.measure, new))
-        for check in new:
-            known[check.name] = check.source, self.bit[check], check.seconds, check.green
-        with open(kept, "wb") as file:
-            pickle.dump((layers, self.runs, known), file)
+        for first in range(0, len(new), 100):  # kept now and then: an interruption costs little
+            some = new[first:first + 100]
+            list(pool.map(self.measure, some))
+            known |= {check.name: (check.source, self.bit[check], check.seconds, check.green) for check in some}
+            with open(kept, "wb") as file:
+                pickle.dump((layers, self.runs, known), file)
 
-    def addresses(self, program):
-        """symbol -> the places that it has in the program"""
-        found = {}
+    def functions_of(self, program):
+        """Places of functions, ascending; their names; where the program begins."""
+        names, begin = {}, 0
         for line in subprocess.run(["nm", self.build.program(program)], check=True, text=True,
                                    capture_output=True).stdout.splitlines():
             words = line.split()
-            if len(words) == 3:
-                found.setdefault(words[2], []).append(int(words[0], 16))
-        start = found["_start"][0]
-        return {symbol: [place - start for place in places] for symbol, places in found.items()}
+            if len(words) == 3 and words[1] in "tTwW":
+                names.setdefault(int(words[0], 16), []).append(words[2])
+            if words[-1] == "__executable_start":
+                begin = int(words[0], 16)
+        return sorted(names), names, begin
 
     def measure(self, check):
         with tempfile.TemporaryDirectory() as where:
             red, check.seconds = run([check], self.build.program(check.program), where, TAUT_EXECUTED=f"{where}/executed")
             check.green = red is None
             marked = pathlib.Path(f"{where}/executed.{pathlib.Path(check.program).name}")
-            start = self.address[check.program]["__executable_start"][0]
-            blocks = [match.start() + start for match in re.finditer(rb"\x01", marked.read_bytes())] if marked.exists() else []
+            places, names, begin = self.functions[check.program]
+            blocks = [match.start() + begin for match in re.finditer(rb"\x01", marked.read_bytes())] if marked.exists() else []
         with self.lock:
             runs = self.runs[check.program]
             for block in blocks:
-                runs[block] = runs.get(block, 0) | 1 << self.bit[check]
+                place = places[bisect.bisect_right(places, block) - 1]
+                for name in names[place]:
+                    runs[name, block - place] = runs.get((name, block - place), 0) | 1 << self.bit[check]
 
     def blocks(self, target):
         """file -> line -> (function, offset) of each block with code of this line, of an object"""
@@ -348,10 +353,9 @@ class Coverage:
             bits = 0
             for target in targets:
                 for line, blocks in self.blocks(target).get(file, {}).items():
-                    for function, offset in blocks if of_line(line) else ():
-                        for program, runs in self.runs.items():
-                            for address in self.address[program].get(function, ()):
-                                bits |= runs.get(address + offset, 0)
+                    for block in blocks if of_line(line) else ():
+                        for runs in self.runs.values():
+                            bits |= runs.get(block, 0)
             return bits
         return running(lambda line: line == number) or running(lambda line: True)
 
