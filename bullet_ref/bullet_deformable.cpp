@@ -24,7 +24,7 @@ namespace {
 constexpr ParamSpec kParams[] = {
     ParamSpec::real(
         "stiffness", "N/m", "1000", 1e-6, 1e9,
-        "spring constant of every link: the accuracy knob, for the scene's links are rigid"),
+        "spring constant of every link: the accuracy parameter, for the scene's links are rigid"),
     ParamSpec::choice("implicit", "true", "true|false",
                       "backward Euler, or explicit springs (stable below k h^2/m of about 0.3)"),
     ParamSpec::integer("newton", "1", 1, 1000,

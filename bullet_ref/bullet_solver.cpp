@@ -75,7 +75,7 @@ Scene BulletSolver::held_scene(RestLength rest_length) const {
 
 namespace bullet_ref {
 
-void require_cells(const btSoftBodyArray& bodies) {
+void require_cells(const btAlignedObjectArray<btSoftBody*>& bodies) {
   constexpr btScalar kFarthest = 1e6;  // m: with the least voxel 3e8 cells of three voxels
   const auto near = [&](const btVector3& x) {
     return std::abs(x.x()) <= kFarthest && std::abs(x.y()) <= kFarthest &&

@@ -56,7 +56,7 @@ namespace bullet_ref {
 /// Throws SolverFailure "exploded (box)" if a vertex is so far out that the number of its cell in
 /// the colliders' distance fields overflows an int: Bullet would then read memory that is not its
 /// own.
-void require_cells(const btSoftBodyArray&);
+void require_cells(const btAlignedObjectArray<btSoftBody*>&);
 
 /// A world of Bullet's that checks where it moves vertices before it looks for their contacts
 /// there.

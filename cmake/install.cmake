@@ -22,11 +22,12 @@ target_link_libraries(taut_model INTERFACE $<INSTALL_INTERFACE:taut::solver>)
 target_link_libraries(taut_metrics INTERFACE $<INSTALL_INTERFACE:taut::case>)
 
 # core/model/scene.hpp becomes <taut/model/scene.hpp>, also where headers include each other.
-set(headers core/io/mesh_io.hpp core/io/scene_io.hpp experiments/metrics/metric.hpp experiments/metrics/summary.hpp
+set(headers core/io/mesh_io.hpp core/io/scene_io.hpp experiments/metrics/metric.hpp
             experiments/case/digest.hpp experiments/case/record.hpp experiments/case/record_io.hpp
             experiments/case/run_case.hpp experiments/case/trajectory.hpp)
 file(GLOB model CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} core/model/*.hpp)
 install(CODE "
+  file(REMOVE_RECURSE \"${PROJECT_BINARY_DIR}/include/taut\")  # with what has another name now
   foreach(header IN ITEMS ${model} ${headers})
     file(READ \"${PROJECT_SOURCE_DIR}/\${header}\" text)
     string(REGEX REPLACE \"(#include \\\")(core|experiments)/\" \"\\\\1taut/\" text \"\${text}\")

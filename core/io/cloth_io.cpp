@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/io/mesh_io.hpp"
-#include "core/io/scene_parts.hpp"
+#include "core/io/scene_readers.hpp"
 #include "core/model/angle.hpp"
 #include "core/model/index.hpp"
 #include "core/model/shortest.hpp"
@@ -17,7 +17,7 @@ namespace {
 constexpr int kMaxVertices = 1 << 24;
 
 std::optional<Grid> read_grid(Section& cloth) {
-  if (!cloth.find("grid")) cloth.missing("grid");
+  cloth.need({"grid"});
   const auto counts = cloth.numbers("grid", 2, {1, kMaxVertices});
   if (!counts) return std::nullopt;
   for (const double count : *counts)
@@ -39,7 +39,7 @@ std::optional<Grid> read_grid(Section& cloth) {
 
 /// Sides of the sheet [m]; a side along which there is only one vertex may be zero.
 bool read_size(Section& cloth, SheetShape& shape) {
-  if (!cloth.find("size")) cloth.missing("size");
+  cloth.need({"size"});
   const auto size = cloth.numbers("size", 2, Range::non_negative(kFar));
   if (!size) return false;
   shape.width = (*size)[0];
@@ -187,8 +187,7 @@ void stretch_start(Section& cloth, Scene& scene) {
 void read_weights(Section& cloth, Scene& scene) {
   for (const Value* entry : cloth.tables("weights")) {
     Section weight(cloth.diagnostics(), *entry, "'weights' in [cloth]");
-    for (const char* key : {"vertices", "factor"})
-      if (!weight.find(key)) weight.missing(key);
+    weight.need({"vertices", "factor"});
     const double factor = weight.number("factor", {1e-9, 1e9}, 1);
     for (const int vertex : read_vertices(weight, "vertices", scene.mesh))
       scene.mesh.mass[to_index(vertex)] *= factor;
@@ -200,8 +199,7 @@ void read_weights(Section& cloth, Scene& scene) {
 void read_placed(Section& cloth, Scene& scene) {
   for (const Value* entry : cloth.tables("placed")) {
     Section placed(cloth.diagnostics(), *entry, "'placed' in [cloth]");
-    for (const char* key : {"vertex", "at"})
-      if (!placed.find(key)) placed.missing(key);
+    placed.need({"vertex", "at"});
     const Value* vertex = placed.find("vertex");
     const auto target = placed.vec3("at", kFar);
     placed.finish();
@@ -265,9 +263,9 @@ const std::vector<Part> kParts{{"top", 0, -1, 0, 0},          {"bottom", 0, -1, 
                                {"top-left", 0, 0, 0, 0},      {"top-right", -1, -1, 0, 0},
                                {"bottom-left", 0, 0, -1, -1}, {"bottom-right", -1, -1, -1, -1}};
 
-class Selector {
+class VertexReader {
  public:
-  Selector(Section& section, std::string key, const Mesh& mesh)
+  VertexReader(Section& section, std::string key, const Mesh& mesh)
       : section_(section), key_(std::move(key)), mesh_(mesh) {}
 
   void add(const Value& value) {
@@ -337,8 +335,7 @@ class Selector {
 
   void add_box(const Value& value) {
     Section box(section_.diagnostics(), value, "a box of '" + key_ + "' in " + section_.name());
-    for (const char* corner : {"min", "max"})
-      if (!box.find(corner)) box.missing(corner);
+    box.need({"min", "max"});
     const auto low = box.vec3("min", kFar), high = box.vec3("max", kFar);
     box.finish();
     if (!low || !high) return;
@@ -362,12 +359,12 @@ class Selector {
 std::vector<int> read_vertices(Section& section, const std::string& key, const Mesh& mesh) {
   const Value* value = section.find(key);
   if (!value) return {};
-  Selector selector(section, key, mesh);
+  VertexReader reader(section, key, mesh);
   if (value->is_array())
-    for (const Value& item : value->items) selector.add(item);
+    for (const Value& item : value->items) reader.add(item);
   else
-    selector.add(*value);
-  return selector.take();
+    reader.add(*value);
+  return reader.take();
 }
 
 }  // namespace taut

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/io/scene_parts.hpp"
+#include "core/io/scene_readers.hpp"
 #include "core/io/section.hpp"
 #include "core/model/crossings.hpp"
 #include "core/model/printable.hpp"
@@ -54,7 +54,7 @@ Wind read_wind(Section& section) {
 }
 
 SelfCollision read_self_collision(Section& section, ContactRules& rules) {
-  if (!section.find("radius")) section.missing("radius");
+  section.need({"radius"});
   SelfCollision self;
   self.radius = section.number("radius", Range::positive(kFar), 1);
   rules.overlap = section.boolean("overlap", false);
@@ -193,7 +193,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   scene.name = printable(path.stem().string());
   scene.summary = root.string("summary").value_or("");
 
-  if (!root.find("cloth")) root.missing("cloth");
+  root.need({"cloth"});
   Section links(diagnostics, part(root, "links"), "[links]");
   const LinkChoice choice = read_links(links);
   Section cloth(diagnostics, part(root, "cloth"), "[cloth]");

@@ -71,6 +71,11 @@ void Section::missing(const std::string& key) {
   diagnostics_.report(table_.place, "missing key '" + key + "' in " + name_);
 }
 
+void Section::need(std::initializer_list<const char*> keys) {
+  for (const char* key : keys)
+    if (!find(key)) missing(key);
+}
+
 void Section::report(const std::string& key, const std::string& message) {
   diagnostics_.report(place(key), "'" + key + "' in " + name_ + " " + message);
 }

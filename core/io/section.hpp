@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
@@ -62,6 +63,8 @@ class Section {
   /// Where the key stands, or the section if it is absent.
   SourceLocation place(const std::string& key) const;
   void missing(const std::string& key);
+  /// Reports those of the keys that are absent.
+  void need(std::initializer_list<const char*> keys);
   void report(const std::string& key, const std::string& message);
 
   std::optional<double> number(const std::string& key, const Range&);

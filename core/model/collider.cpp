@@ -1,7 +1,6 @@
 #include "core/model/collider.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace taut {
 

@@ -4,17 +4,12 @@
 #include <numeric>
 #include <utility>
 
+#include "core/model/join.hpp"
 #include "core/model/printable.hpp"
 
 namespace taut {
 
 namespace {
-
-std::string join(const std::vector<Diagnostic>& diagnostics) {
-  std::string all;
-  for (const Diagnostic& d : diagnostics) all += (all.empty() ? "" : "\n") + d.text();
-  return all;
-}
 
 /// Insertions, deletions, substitutions and swaps of neighbours (optimal string alignment
 /// distance).
@@ -47,7 +42,8 @@ std::string Diagnostic::text() const {
 }
 
 InputError::InputError(std::vector<Diagnostic> diagnostics)
-    : std::runtime_error(join(diagnostics)), diagnostics_(std::move(diagnostics)) {}
+    : std::runtime_error(join(diagnostics, "\n", &Diagnostic::text)),
+      diagnostics_(std::move(diagnostics)) {}
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& candidates) {
   constexpr std::size_t kMost = 200;  // no name is longer, and the distance takes the product

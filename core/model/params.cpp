@@ -2,7 +2,6 @@
 
 #include <cassert>
 #include <charconv>
-#include <cmath>
 #include <cstdlib>
 
 #include "core/model/input_error.hpp"

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <queue>
 #include <utility>
 
-#include "core/model/index.hpp"
+#include "core/model/adjacency.hpp"
 
 namespace taut::reference {
 
@@ -21,50 +20,23 @@ using Triplet = Eigen::Triplet<double>;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 1e-9;
 
-struct Paths {
-  std::vector<double> length;  ///< [n] m from the source
-  std::vector<int> before;     ///< [n] the vertex before; -1 at the source
-};
-
-using Neighbours = std::vector<std::vector<std::pair<int, double>>>;
-
-/// Dijkstra over the links.
-Paths shortest_paths(const Neighbours& next, int source) {
-  Paths p{std::vector<double>(next.size(), kFar), std::vector<int>(next.size(), -1)};
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  p.length[to_index(source)] = 0;
-  open.emplace(0.0, source);
-  while (!open.empty()) {
-    const auto [d, i] = open.top();
-    open.pop();
-    if (d > p.length[to_index(i)]) continue;
-    for (const auto& [j, l] : next[to_index(i)])
-      if (d + l < p.length[to_index(j)]) {
-        p.length[to_index(j)] = d + l;
-        p.before[to_index(j)] = i;
-        open.emplace(d + l, j);
-      }
-  }
-  return p;
-}
-
 /// The rest position of every vertex [m] if straight lines decide it: a vertex on a shortest path
 /// between two fixed vertices that is as long as their distance is fixed; a vertex that is as far
 /// below a fixed one as their shortest path is long cannot hang lower. Nothing if that leaves a
 /// vertex open or a link with the wrong length (relative tolerance 1e-9).
 std::optional<std::vector<Vec3>> hanging_straight(const Scene& scene) {
   const std::size_t n = scene.start.x.size();
-  Neighbours next(n);
-  for (const Link& l : scene.links) {
-    next[to_index(l.a)].emplace_back(l.b, l.rest);
-    next[to_index(l.b)].emplace_back(l.a, l.rest);
-  }
+  const Adjacency neighbours(scene.links, scene.mesh.size());
+  const auto paths_from = [&](int source) {
+    return shortest_ways(neighbours, {&source, 1}, [&](int, const Adjacency::End& end) {
+      return scene.links[to_index(end.link)].rest;
+    });
+  };
   std::vector<Vec3> x = scene.start.x;
   std::vector<bool> fixed(n, false);
-  std::vector<Paths> from;
+  std::vector<Ways<double>> from;
   for (const int pin : scene.pins) fixed[to_index(pin)] = true;
-  for (const int pin : scene.pins) from.push_back(shortest_paths(next, pin));
+  for (const int pin : scene.pins) from.push_back(paths_from(pin));
   for (std::size_t p = 0; p < scene.pins.size(); ++p)
     for (std::size_t q = 0; q < p; ++q) {
       const int a = scene.pins[p], b = scene.pins[q];
@@ -83,7 +55,7 @@ std::optional<std::vector<Vec3>> hanging_straight(const Scene& scene) {
   std::vector<Vec3> place = x;
   for (std::size_t f = 0; f < n; ++f) {
     if (!fixed[f]) continue;
-    const Paths paths = shortest_paths(next, static_cast<int>(f));
+    const Ways<double> paths = paths_from(static_cast<int>(f));
     for (std::size_t i = 0; i < n; ++i) {
       const double depth = down.dot(x[f]) + paths.length[i];
       if (fixed[i] || !(depth < lowest[i])) continue;

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "core/model/index.hpp"
+#include "core/model/join.hpp"
 #include "core/model/solver.hpp"
 #include "core/solver/wind.hpp"
 
@@ -186,10 +187,10 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 }
 
 ResolvedSettings resolved_settings(const Scene&, const Params& params) {
-  std::string springs;
-  for (const Family family : kFamilies)
-    springs += (springs.empty() ? "" : ", ") + std::string(to_string(family)) + " " +
-               std::string(params.value(to_string(family))) + " N/m";
+  const std::string springs = join(kFamilies, ", ", [&](Family family) {
+    const std::string name(to_string(family));
+    return name + " " + std::string(params.value(name)) + " N/m";
+  });
   return {{"precision", std::string(params.choice("precision"))},
           {"links", "Hooke springs: " + springs},
           {"work unit", "spring evaluations, not projections"}};

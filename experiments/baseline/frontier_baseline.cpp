@@ -21,8 +21,7 @@ std::vector<std::string> texts(Section& section, const char* key) {
 }
 
 FrontierQuestion question_of(Section& section) {
-  for (const char* key : {"scene", "solver", "of", "from", "to"})
-    if (!section.find(key)) section.missing(key);
+  section.need({"scene", "solver", "of", "from", "to"});
   FrontierQuestion question;
   question.base = {section.string("scene").value_or(""), texts(section, "set"),
                    section.string("solver").value_or("")};

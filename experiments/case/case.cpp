@@ -17,12 +17,6 @@ std::string brief(std::string text) {
   return text;
 }
 
-void name_it(Record& record, const Case& one) {
-  record.spec = one.spec;
-  record.key = one.key;
-  record.id = one.id;
-}
-
 }  // namespace
 
 const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
@@ -59,19 +53,6 @@ Case CaseMaker::make(const CaseSpec& spec) {
   for (const std::string& text : spec.overrides) one.id += ' ' + brief(text);
   one.id += ' ' + one.choice.brief();
   return one;
-}
-
-CaseRun run_case(const Case& one, const RunOptions& options) {
-  CaseRun run = run_case(*one.scene, one.choice, options);
-  name_it(run.record, one);
-  return run;
-}
-
-Record unfinished(const Case& one, const Status& status) {
-  Record record = describe(*one.scene, one.choice);
-  name_it(record, one);
-  record.status = status;
-  return record;
 }
 
 }  // namespace taut

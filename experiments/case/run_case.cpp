@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/model/join.hpp"
+#include "experiments/case/case.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/divergence.hpp"
 
@@ -91,8 +93,7 @@ namespace {
 void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions& options,
                CaseRun& run, std::unique_ptr<Solver>& solver, int& step) {
   Record& record = run.record;
-  for (const std::string& reason : choice.entry->unsupported(scene, choice.params))
-    record.status.reason += (record.status.reason.empty() ? "" : "; ") + reason;
+  record.status.reason = join(choice.entry->unsupported(scene, choice.params), "; ");
   if (!record.status.reason.empty()) {
     record.status.kind = Status::Kind::unsupported;
     return;
@@ -132,6 +133,12 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
   record.digest = digest(run.last);
 }
 
+void name_it(Record& record, const Case& one) {
+  record.spec = one.spec;
+  record.key = one.key;
+  record.id = one.id;
+}
+
 }  // namespace
 
 CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOptions& options) {
@@ -146,6 +153,19 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
     run.record.log = failure.log;
   }
   return run;
+}
+
+CaseRun run_case(const Case& one, const RunOptions& options) {
+  CaseRun run = run_case(*one.scene, one.choice, options);
+  name_it(run.record, one);
+  return run;
+}
+
+Record unfinished(const Case& one, const Status& status) {
+  Record record = describe(*one.scene, one.choice);
+  name_it(record, one);
+  record.status = status;
+  return record;
 }
 
 }  // namespace taut

@@ -2,7 +2,8 @@
 
 #include <fstream>
 #include <iostream>
-#include <iterator>
+#include <map>
+#include <set>
 
 #include "core/model/printable.hpp"
 #include "experiments/baseline/frontier_baseline.hpp"
@@ -10,7 +11,6 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/study/store.hpp"
-#include "experiments/system/data.hpp"
 
 namespace taut {
 

@@ -1,5 +1,6 @@
 #include "experiments/command_line/manual.hpp"
 
+#include "core/model/join.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/system/data.hpp"
 
@@ -40,12 +41,6 @@ void add_verb(std::string& out, const CLI::App& verb, const std::string& before)
   for (const CLI::App* inner : verb.get_subcommands({})) add_verb(out, *inner, name + " ");
 }
 
-std::string join(const std::vector<std::string>& words) {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : " ") + word;
-  return all;
-}
-
 /// What may follow a verb: its verbs, its options, and names that its positions take.
 std::string words_after(const CLI::App& verb) {
   std::vector<std::string> words;
@@ -53,12 +48,12 @@ std::string words_after(const CLI::App& verb) {
   for (const CLI::Option* option : visible_options(verb)) {
     for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
     const std::string position = option->get_name(true, false);
-    if (position == "STUDY" || position == "WHAT") words.push_back(join(shipped("studies")));
-    if (position == "SCENE" || position == "WHAT") words.push_back(join(shipped("scenes")));
+    if (position == "STUDY" || position == "WHAT") words.push_back(join(shipped("studies"), " "));
+    if (position == "SCENE" || position == "WHAT") words.push_back(join(shipped("scenes"), " "));
     if (position == "SOLVER" || option->check_lname("solver"))
       for (const SolverEntry* entry : solvers()) words.emplace_back(entry->name);
   }
-  return join(words);
+  return join(words, " ");
 }
 
 void add_completion(std::string& out, const CLI::App& verb, const std::string& before) {
@@ -92,7 +87,7 @@ std::string bash_completion(const CLI::App& app) {
     verbs.push_back(verb->get_name());
     add_completion(cases, *verb, "");
   }
-  return "_taut() {\n  local words='" + join(verbs) +
+  return "_taut() {\n  local words='" + join(verbs, " ") +
          "'\n  ((COMP_CWORD == 1)) || case \"${COMP_WORDS[*]:1:COMP_CWORD-1} \" in\n" + cases +
          "    *) words= ;;\n  esac\n"
          "  COMPREPLY=($(compgen -W \"$words\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n}\n"

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
 #include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/metrics/metric.hpp"
@@ -29,11 +30,8 @@ CLI::Validator known(const std::string& what, std::vector<std::string> names) {
   return CLI::Validator(
       [what, names = std::move(names)](std::string& text) {
         if (std::ranges::find(names, text) != names.end()) return std::string();
-        std::string list;
-        if (names.size() < 12)
-          for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
         return "unknown " + what + " '" + text + "'" + suggestion(text, names) +
-               (list.empty() ? "" : " (one of " + list + ")");
+               (names.size() < 12 ? " (one of " + join(names, ", ") + ")" : "");
       },
       "");
 }

@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <iostream>
 
+#include "core/model/join.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/system/clock.hpp"
 
 namespace taut {
 
@@ -23,10 +25,10 @@ std::string clock_text(double seconds) {
 }  // namespace
 
 std::string counts(const CampaignProgress& campaign) {
-  std::string text;
-  for (const auto& [kind, count] : campaign.by_status)
-    text += (text.empty() ? "" : ", ") + std::string(to_string(kind)) + " " + std::to_string(count);
-  return text.empty() ? "no case" : text;
+  if (campaign.by_status.empty()) return "no case";
+  return join(campaign.by_status, ", ", [](const auto& status) {
+    return std::string(to_string(status.first)) + " " + std::to_string(status.second);
+  });
 }
 
 Progress::Progress() : start_(std::chrono::steady_clock::now()), terminal_(isatty(2) == 1) {}
@@ -44,8 +46,7 @@ Countdown::Countdown(std::string what)
 void Countdown::operator()(std::size_t done, std::size_t total) const {
   if (!g_shown || (!terminal_ && done != total && done % std::max<std::size_t>(1, total / 10) != 0))
     return;
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-  const double each = spent.count() / static_cast<double>(done);
+  const double each = seconds_since(start_) / static_cast<double>(done);
   char text[80];
   if (done < total)
     std::snprintf(text, sizeof text, " %zu/%zu  left %s", done, total,
@@ -65,14 +66,14 @@ void Progress::show(const CampaignProgress& campaign, const Record* record) {
     if (record) std::cerr << place << record->id << ": " << describe(record->status) << '\n';
     return;
   }
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  const double elapsed = seconds_since(start_);
   if (record && !record->status.is_result())
     std::cerr << "\r\033[K" << record->id << ": " << describe(record->status) << '\n';
   std::string left = "?";
   if (campaign.work_done > 0)
-    left = clock_text(elapsed.count() * (campaign.work - campaign.work_done) / campaign.work_done);
-  std::cerr << "\r\033[K" << place << counts(campaign) << "  elapsed "
-            << clock_text(elapsed.count()) << "  left " << left << std::flush;
+    left = clock_text(elapsed * (campaign.work - campaign.work_done) / campaign.work_done);
+  std::cerr << "\r\033[K" << place << counts(campaign) << "  elapsed " << clock_text(elapsed)
+            << "  left " << left << std::flush;
 }
 
 void Progress::finish(const CampaignProgress& campaign) {

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/process.hpp"
 
@@ -13,11 +14,7 @@ namespace taut::external {
 
 namespace fs = std::filesystem;
 
-std::string Command::text() const {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : " ") + shell_word(word);
-  return all;
-}
+std::string Command::text() const { return join(words, " ", shell_word); }
 
 Command split_command(const std::string& text, const fs::path& folder) {
   wordexp_t words{};

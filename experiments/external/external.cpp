@@ -49,7 +49,7 @@ Registered read_registered(const fs::path& file) {
   Section section(diagnostics, document.root, "a solver");
   Registered solver;
   const std::string cmd = section.string("cmd").value_or("");
-  if (!section.find("cmd")) section.missing("cmd");
+  section.need({"cmd"});
   const double seconds = section.number("timeout", Range::positive(86400), 30);
   if (const Value* files = section.find("files")) {
     if (!files->is_array()) section.report("files", "'files' must be a list of texts");

@@ -8,6 +8,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/external/command.hpp"
 #include "experiments/external/scene_file.hpp"
@@ -68,12 +69,10 @@ class SpecReader {
   void read_choice() {
     spec_.kind = ParamSpec::Kind::choice;
     const std::vector<std::string> choices = j_.at("choices").texts();
-    std::string all;
-    for (const std::string& choice : choices) {
+    for (const std::string& choice : choices)
       if (choice.empty() || choice.find_first_of("|,'\" ") != choice.npos)
         j_.at("choices").fail("'" + choice + "': a choice has no blank, comma, quote or bar");
-      all += (all.empty() ? "" : "|") + choice;
-    }
+    const std::string all = join(choices, "|");
     const std::string given = j_.at("default").text();
     if (std::ranges::find(choices, given) == choices.end())
       j_.at("default").fail("'" + given + "' is not one of " + all);

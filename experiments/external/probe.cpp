@@ -6,7 +6,6 @@
 
 #include "core/model/index.hpp"
 #include "core/model/mesh.hpp"
-#include "core/model/shortest.hpp"
 #include "experiments/case/digest.hpp"
 
 namespace taut::external {

@@ -11,11 +11,11 @@
 #include "core/model/input_error.hpp"
 #include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
+#include "experiments/system/clock.hpp"
 
 namespace taut::external {
 
 namespace fs = std::filesystem;
-using SteadyClock = std::chrono::steady_clock;
 
 namespace {
 
@@ -46,14 +46,6 @@ bool names_memory(const std::string& log) {
   return false;
 }
 
-std::string last_line(const std::string& log) {
-  std::istringstream in(log);
-  std::string last;
-  for (std::string line; std::getline(in, line);)
-    if (line.find_first_not_of(" \t\r") != line.npos) last = line.substr(0, 300);
-  return last;
-}
-
 }  // namespace
 
 Session::Session(Command command)
@@ -76,62 +68,43 @@ void Session::fail(const std::string& status, const std::string& reason) {
 
 void Session::ended() {
   const auto end = process_.wait(1);
-  const std::string during = " during '" + op_ + "'", said = last_line(log());
+  const std::string during = " during '" + op_ + "'", said = last_line(std::istringstream(log()));
   const std::string why = said.empty() ? "" : ": " + said;
   if (!end) fail("protocol", "closed its standard output" + during);
   if (end->signal == SIGXCPU) fail("timeout", "CPU time");
   if (end->signal == SIGKILL) fail("oom", "killed by the system" + during);
   if (names_memory(log())) fail("oom", "out of memory" + during + why);
-  if (end->signal == 0) fail("crash", "exit code " + std::to_string(end->exit_code) + during + why);
-  const char* name = sigabbrev_np(end->signal);
-  fail("crash",
-       (name ? "SIG" + std::string(name) : "signal " + std::to_string(end->signal)) + during + why);
+  fail("crash", end->text() + during + why);
 }
 
-void Session::more(SteadyClock::time_point deadline) {
-  const std::chrono::duration<double> left = deadline - SteadyClock::now();
-  const std::string some = process_.read_some(std::max(0.0, left.count()));
-  buffer_ += some;
-  if (!some.empty()) return;
+void Session::silent(SteadyClock::time_point deadline) {
   if (SteadyClock::now() < deadline) ended();
-  fail("timeout",
-       "no answer to '" + op_ + "' within " + shortest(command_.seconds) + " s" +
-           (buffer_.empty() ? "" : ", only " + std::to_string(buffer_.size()) + " bytes"));
+  const std::size_t some = process_.unread().size();
+  fail("timeout", "no answer to '" + op_ + "' within " + shortest(command_.seconds) + " s" +
+                      (some == 0 ? "" : ", only " + std::to_string(some) + " bytes"));
 }
-
-namespace {
-SteadyClock::time_point in(double seconds) {
-  return SteadyClock::now() +
-         std::chrono::duration_cast<SteadyClock::duration>(std::chrono::duration<double>(seconds));
-}
-}  // namespace
 
 std::string Session::take_line() {
-  const auto deadline = in(command_.seconds);
-  std::size_t end, seen = 0;
-  while ((end = buffer_.find('\n', seen)) == buffer_.npos) {
-    if (buffer_.size() > kLongestLine)
-      fail("protocol", "answered '" + op_ + "' with more than " + std::to_string(kLongestLine) +
-                           " bytes without a line feed: " + excerpt(buffer_));
-    seen = buffer_.size();
-    more(deadline);
-  }
-  std::string line = buffer_.substr(0, end);
-  buffer_.erase(0, end + 1);
-  return line;
+  const auto deadline = in_seconds(command_.seconds);
+  std::string line;
+  if (process_.read_line(line, command_.seconds, kLongestLine)) return line;
+  if (process_.unread().size() > kLongestLine)
+    fail("protocol", "answered '" + op_ + "' with more than " + std::to_string(kLongestLine) +
+                         " bytes without a line feed: " + excerpt(process_.unread()));
+  silent(deadline);
 }
 
 std::string Session::take(std::size_t bytes) {
-  const auto deadline = in(command_.seconds);
-  while (buffer_.size() < bytes) more(deadline);
-  std::string taken = buffer_.substr(0, bytes);
-  buffer_.erase(0, bytes);
+  const auto deadline = in_seconds(command_.seconds);
+  std::string taken;
+  if (!process_.read_bytes(taken, bytes, command_.seconds)) silent(deadline);
   return taken;
 }
 
 void Session::send(const std::string& line, std::string_view bytes) {
-  if (!buffer_.empty())
-    fail("protocol", "said more than it was asked for, after '" + op_ + "': " + excerpt(buffer_));
+  if (!process_.unread().empty())
+    fail("protocol",
+         "said more than it was asked for, after '" + op_ + "': " + excerpt(process_.unread()));
   for (const std::string_view part : {std::string_view(line), bytes})
     if (!process_.write(part, command_.seconds)) {
       if (process_.poll()) ended();

@@ -45,8 +45,8 @@ class Session {
  private:
   std::string take_line();
   Json answer();
-  /// Waits for more output; throws SolverFailure if there is none.
-  void more(std::chrono::steady_clock::time_point deadline);
+  /// No answer came: it has ended, or its time is up.
+  [[noreturn]] void silent(std::chrono::steady_clock::time_point deadline);
   long children_ticks() const;  ///< CPU time of its children that have ended
   void send(const std::string& line, std::string_view bytes);
   [[noreturn]] void ended();
@@ -54,7 +54,7 @@ class Session {
   Command command_;
   Scratch scratch_;
   Process process_;
-  std::string buffer_, op_;   ///< output not yet taken; what was asked last
+  std::string op_;            ///< what was asked last
   long ticks_at_start_ = -1;  ///< children_ticks() at its first answer; -1: before
 };
 

@@ -1,5 +1,5 @@
 #include "core/model/index.hpp"
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 

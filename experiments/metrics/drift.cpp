@@ -1,4 +1,4 @@
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 

@@ -1,6 +1,6 @@
 #include "core/model/index.hpp"
 #include "core/model/triangle.hpp"
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
@@ -9,12 +9,15 @@ namespace {
 class Faces final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
-      {"face.max", kErrorLength,
-       "largest depth of a point of a face below the surface of a ball or box, thickness not "
-       "counted, in the last second",
-       true},
+      {.name = "face.max",
+       .unit = kErrorLength,
+       .help = "largest depth of a point of a face below the surface of a ball or box, thickness "
+               "not counted, in the last second",
+       .in_series = true,
+       .title = "largest penetration of faces",
+       .kept = true},
       {"face.peak", kErrorLength, "the same over the run", false, Window::run,
-       "peak penetration of faces"},
+       "peak penetration of faces", Role::face_depth},
       {"face.geometry", kLength,
        "the part of a face's depth in a ball that is geometry: how deep it would be if its corners "
        "lay exactly at the scene's thickness, l^2/(4R) for a right triangle with legs l; largest "

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -7,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/model/index.hpp"
 #include "core/model/scene.hpp"
 
 namespace taut {
@@ -46,14 +50,39 @@ constexpr std::string_view to_string(Window w) {
                                   : "";
 }
 
+/// What a report makes of a value beside listing it: its charts, and its place in sentences. In
+/// this order they are shown.
+enum class Role {
+  none,          ///< drawn if somebody asks for it
+  error,         ///< of what a solver is to keep: over sweeps; its mean over scenes is compared
+  vertex_depth,  ///< of a vertex below a surface: over sweeps and time steps; the deepest is said
+  face_depth,    ///< the same of a face
+  passages,      ///< of vertices through colliders: drawn alike; the sum over scenes is said
+  reference_error,  ///< distance from the scene's reference: over sweeps
+  contact_error,    ///< distance from a law of contact: over sweeps and time steps
+};
+
+/// RMS strain that the rounding of a file of positions makes. No metric gives it: a case that plays
+/// such a file says it.
+inline constexpr std::string_view kStrainFloor = "strain.floor";
+
 /// A number that a metric yields.
 struct ValueSpec {
+  /// Below it a value says nothing about the solver: another value of the case, and what it is.
+  struct Floor {
+    std::string_view value, text;
+  };
   std::string_view name;  ///< "stretch.rms"; unique over all metrics
   Unit unit;
   std::string_view help;   ///< its definition, one sentence
   bool in_series = false;  ///< also meaningful at each moment: recorded over time as well
   Window window = Window::last_second;
   std::string_view title = "";  ///< a few words; "": made from the name
+  Role role = Role::none;
+  double negligible = 0;         ///< of an error, SI, > 0: what is less counts as this in means
+  bool shown_over_time = false;  ///< beside the scene's film; needs in_series
+  bool kept = false;             ///< an answer that `taut require` keeps unless asked otherwise
+  Floor floor = {};
 };
 
 /// Watches one run. `observe` sees every step boundary in order, the start included, and must be
@@ -105,10 +134,99 @@ inline std::vector<std::string> value_names() {
   return names;
 }
 
+/// The values that have a role, in the order of roles.
+inline std::vector<const ValueSpec*> values_with_role() {
+  std::vector<const ValueSpec*> values;
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& value : metric->values)
+      if (value.role != Role::none) values.push_back(&value);
+  std::ranges::stable_sort(values, {}, &ValueSpec::role);
+  return values;
+}
+
 /// For MetricEntry::make.
 template <class M>
 std::unique_ptr<Metric> make_metric(const Scene& scene) {
   return M::measures(scene) ? std::make_unique<M>(scene) : nullptr;
+}
+
+/// The part of a run by which it is judged "at the end": the last second of simulated time, or all
+/// of it after the start if it is shorter. Its last moment is the end of the run.
+class LastSecond {
+ public:
+  explicit LastSecond(const Scene& scene)
+      : last_(scene.steps),
+        length_(
+            std::clamp(static_cast<int>(std::lround(1 / scene.dt)), 1, std::max(1, scene.steps))) {}
+
+  bool contains(int step) const { return step > last_ - length_; }
+
+  /// At most kSamples moments, evenly spread and the last one among them: for what is too dear to
+  /// be computed at every step.
+  bool samples(int step) const {
+    return contains(step) && (last_ - step) % std::max(1, length_ / kSamples) == 0 &&
+           (last_ - step) / std::max(1, length_ / kSamples) < kSamples;
+  }
+  static constexpr int kSamples = 10;
+
+ private:
+  int last_;
+  int length_;
+};
+
+/// What is left of a quantity that is known at every step: its mean and its maximum over the last
+/// second, and its maximum over the run. The start is not counted: it is the scene's doing. NaN if
+/// the run did not get that far.
+class Summary {
+ public:
+  void add(int step, bool in_last_second, double value) {
+    if (step == 0) return;
+    peak_ = larger(peak_, value);
+    if (!in_last_second) return;
+    max_ = larger(max_, value);
+    sum_ += value, ++count_;
+  }
+  double mean() const { return count_ > 0 ? sum_ / count_ : kNone; }
+  double max() const { return max_; }
+  double peak() const { return peak_; }
+
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+ private:
+  static double larger(double a, double b) { return a >= b ? a : b; }  // b if a is NaN
+  double sum_ = 0;
+  int count_ = 0;
+  double max_ = kNone, peak_ = kNone;
+};
+
+/// The vertices that a solver moves, ascending.
+inline std::vector<std::size_t> free_vertices(const Scene& scene) {
+  std::vector<std::size_t> free;
+  for (int i = 0; i < scene.mesh.size(); ++i)
+    if (!is_pinned(scene, i)) free.push_back(to_index(i));
+  return free;
+}
+
+/// Mean of |v|^2 over the given vertices [m^2/s^2].
+inline double mean_square_speed(const State& state, const std::vector<std::size_t>& vertices) {
+  double sum = 0;
+  for (const std::size_t i : vertices) sum += state.v[i].squaredNorm();
+  return sum / static_cast<double>(vertices.size());
+}
+
+/// Mean of a quantity of the vertices, weighted by their masses.
+inline Vec3 mean(const std::vector<double>& mass, const std::vector<Vec3>& vectors) {
+  Vec3 sum = Vec3::Zero();
+  double total = 0;
+  for (std::size_t i = 0; i < mass.size(); ++i) sum += mass[i] * vectors[i], total += mass[i];
+  return sum / total;
+}
+
+/// Whether there is a ball or a box: a plane has no other side.
+inline bool has_solid(const Scene& scene) {
+  return std::ranges::any_of(
+      scene.colliders, [](const Collider& c) { return !std::holds_alternative<Plane>(c.shape); });
 }
 
 }  // namespace taut

@@ -1,6 +1,6 @@
 #include <array>
 
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
@@ -22,12 +22,16 @@ struct Depths {
 class Penetration final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
-      {"penetration.max", kErrorLength,
-       "largest depth of a free vertex below a collider's surface, thickness not counted, in the "
-       "last second",
-       true},
+      {.name = "penetration.max",
+       .unit = kErrorLength,
+       .help = "largest depth of a free vertex below a collider's surface, thickness not counted, "
+               "in the last second",
+       .in_series = true,
+       .title = "largest penetration of vertices",
+       .shown_over_time = true,
+       .kept = true},
       {"penetration.peak", kErrorLength, "the same over the run", false, Window::run,
-       "peak penetration of vertices"},
+       "peak penetration of vertices", Role::vertex_depth},
       {"penetration.mean", kErrorLength,
        "mean depth of the vertices that are below a surface, mean over the last second"},
       {"penetration.plane.max", kErrorLength, "penetration.max of planes alone", true},

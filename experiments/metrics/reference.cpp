@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/model/index.hpp"
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
@@ -12,10 +12,14 @@ namespace {
 class Distance final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
-      {"reference.rms", kErrorLength,
-       "distance of the free vertices from the static reference, RMS over vertices and the last "
-       "second",
-       true, Window::last_second, "distance from the reference (RMS)"},
+      {.name = "reference.rms",
+       .unit = kErrorLength,
+       .help = "distance of the free vertices from the static reference, RMS over vertices and "
+               "the last second",
+       .in_series = true,
+       .title = "distance from the reference (RMS)",
+       .role = Role::reference_error,
+       .floor = {"reference.floor", "the reference's own error"}},
       {"reference.max", kErrorLength,
        "largest distance of a free vertex from the static reference, in the last second", true,
        Window::last_second, "largest distance from the reference"},

@@ -1,5 +1,5 @@
 #include "core/model/crossings.hpp"
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
@@ -8,10 +8,14 @@ namespace {
 class SelfIntersection final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
-      {"self.crossings", kErrorCount,
-       "pairs of faces that share no vertex and cross or coincide (nearer than 1 % of the radius: "
-       "layers that lie in one plane cross nowhere), at the end",
-       true, Window::end, "crossing faces"},
+      {.name = "self.crossings",
+       .unit = kErrorCount,
+       .help = "pairs of faces that share no vertex and cross or coincide (nearer than 1 % of the "
+               "radius: layers that lie in one plane cross nowhere), at the end",
+       .in_series = true,
+       .window = Window::end,
+       .title = "crossing faces",
+       .kept = true},
       {"self.crossings.max", kErrorCount, "the same, largest of ten moments of the last second"},
       {"self.crossings.peak", kErrorCount,
        "the same, largest of those and twenty moments of the run", false, Window::run},

@@ -1,4 +1,4 @@
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
@@ -7,10 +7,13 @@ namespace {
 class Settle final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
-      {"settle.time", kTime,
-       "last time at which the RMS speed of the free vertices exceeds 1e-3 sqrt(g L); the duration "
-       "if it still does at the end; L is the diagonal of the rest shape's bounding box",
-       false, Window::run},
+      {.name = "settle.time",
+       .unit = kTime,
+       .help = "last time at which the RMS speed of the free vertices exceeds 1e-3 sqrt(g L); the "
+               "duration if it still does at the end; L is the diagonal of the rest shape's "
+               "bounding box",
+       .window = Window::run,
+       .kept = true},
   };
   static bool measures(const Scene& scene) {
     return !scene.gravity.isZero(0) && !free_vertices(scene).empty();

@@ -1,4 +1,4 @@
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
@@ -21,10 +21,15 @@ class Slip final : public Metric {
        "distance of the centre of mass's acceleration along the plane from what Coulomb's law "
        "makes of the normal force that acted, mean over the last second"},
       {"slip.error.peak", kErrorAcceleration, "the same, largest over the run", false, Window::run},
-      {"slip.distance", kErrorLength,
-       "how far the centre of mass is along the plane from where a block would be that felt the "
-       "same normal forces, at the end",
-       true, Window::end, "distance from Coulomb's law"},
+      {.name = "slip.distance",
+       .unit = kErrorLength,
+       .help = "how far the centre of mass is along the plane from where a block would be that "
+               "felt the same normal forces, at the end",
+       .in_series = true,
+       .window = Window::end,
+       .title = "distance from Coulomb's law",
+       .role = Role::contact_error,
+       .shown_over_time = true},
   };
   /// Nothing but gravity and one plane that does not turn may act on the cloth.
   static bool measures(const Scene& scene) {

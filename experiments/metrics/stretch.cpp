@@ -1,7 +1,7 @@
 #include <array>
 
 #include "core/model/index.hpp"
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
@@ -59,17 +59,34 @@ std::vector<Link> movable_links(const Scene& scene) {
 }
 
 class Stretch final : public Metric {
+  static constexpr ValueSpec::Floor kRounding{kStrainFloor, "rounding of the file of positions"};
+
  public:
   static constexpr ValueSpec kValues[] = {
-      {"stretch.rms", kErrorShare,
-       "strain (d - r)/r of the structural and shear links, RMS over links and the last second",
-       true},
-      {"stretch.max", kErrorShare,
-       "largest stretch of a structural or shear link in the last second", true},
-      {"stretch.p95", kErrorShare,
-       "95th percentile of |strain| of those links, mean of ten moments of the last second"},
-      {"stretch.peak", kErrorShare, "largest stretch of a structural or shear link over the run",
-       false, Window::run},
+      {.name = "stretch.rms",
+       .unit = kErrorShare,
+       .help =
+           "strain (d - r)/r of the structural and shear links, RMS over links and the last second",
+       .in_series = true,
+       .role = Role::error,
+       .negligible = 1e-3,
+       .shown_over_time = true,
+       .floor = kRounding},
+      {.name = "stretch.max",
+       .unit = kErrorShare,
+       .help = "largest stretch of a structural or shear link in the last second",
+       .in_series = true,
+       .kept = true,
+       .floor = kRounding},
+      {.name = "stretch.p95",
+       .unit = kErrorShare,
+       .help = "95th percentile of |strain| of those links, mean of ten moments of the last second",
+       .floor = kRounding},
+      {.name = "stretch.peak",
+       .unit = kErrorShare,
+       .help = "largest stretch of a structural or shear link over the run",
+       .window = Window::run,
+       .floor = kRounding},
       {"compression.max", kErrorShare, "largest shortening of those links in the last second",
        true},
       {"compression.peak", kErrorShare, "largest shortening of those links over the run", false,

@@ -1,5 +1,5 @@
 
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
@@ -117,16 +117,20 @@ class Watch {
 class Tunnelling final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
-      {"tunnelling.count", kErrorCount,
-       "free vertices that end on the other side of a ball or box: in through one side and out "
-       "through the opposite one, even within one substep; their path is straight from substep to "
-       "substep",
-       true, Window::end, "vertices on the other side"},
+      {.name = "tunnelling.count",
+       .unit = kErrorCount,
+       .help = "free vertices that end on the other side of a ball or box: in through one side and "
+               "out through the opposite one, even within one substep; their path is straight from "
+               "substep to substep",
+       .in_series = true,
+       .window = Window::end,
+       .title = "vertices on the other side",
+       .shown_over_time = true},
       {"tunnelling.share", kErrorShare, "the same as a share of the free vertices", false,
        Window::end},
       {"tunnelling.events", kErrorCount,
        "passages through a ball or box over the run, returns included", false, Window::run,
-       "passages through a collider"},
+       "passages through a collider", Role::passages},
   };
   static bool measures(const Scene& scene) {
     return has_solid(scene) && !free_vertices(scene).empty();

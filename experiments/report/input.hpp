@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/case/record.hpp"
-#include "experiments/extremes/extremes.hpp"
+#include "experiments/study/extremes/extremes.hpp"
 #include "experiments/timing/bench.hpp"
 
 namespace taut::report {

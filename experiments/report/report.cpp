@@ -1,16 +1,390 @@
 #include "experiments/report/report.hpp"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
+#include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/model/model.hpp"
-#include "experiments/report/page.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/chart/references.hpp"
+#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/claims/claim.hpp"
+#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/model/parts.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {
 
 namespace {
+
+Json json_of(const Colour& colour) { return {{"light", colour.light}, {"dark", colour.dark}}; }
+
+/// "Jakobsen and Bullet", or what the input says.
+std::string report_title(const ReportInput& input) {
+  if (!input.title.empty()) return input.title;
+  std::vector<std::string> names;
+  for (const Rival& rival : rivals_of(input).all) names.push_back(solver_title(rival.solver));
+  return joined(names);
+}
+
+/// The whole model, part by part.
+class Builder {
+ public:
+  explicit Builder(const ReportInput& input)
+      : input_(input), rivals_(rivals_of(input)), refs_(input) {
+    for (const Claim& claim : difference_claims(input)) claims_.push_back(claim);
+    for (const Claim& claim : physics_claims(rivals_)) claims_.push_back(claim);
+    for (const Claim& claim : cost_claims(input)) claims_.push_back(claim);
+  }
+
+  Json build() {
+    Json scenes = Json::array();
+    for (const QuotedScene& quoted : rivals_.scenes) scenes.push_back(scene(quoted));
+    std::size_t filmed = 0;
+    for (const SceneMedia& media : input_.media)
+      if (!rivals_.quoted(media.scene)) scenes.push_back(filmed_scene(media)), ++filmed;
+    Json cost;
+    if (input_.bench) {
+      cost = json_of_cost(*input_.bench, refs_, charts_, tables_);
+      for (const Claim& claim : claims_)
+        if ((claim.about == "cost" || claim.about == "only") && claim.kind != ClaimKind::tile)
+          cost["claims"].push_back(claim.id);
+    }
+    Json differences;
+    if (input_.differences) {
+      differences = json_of(*input_.differences, refs_, tables_);
+      for (const Claim& claim : claims_)
+        if (claim.about == "differences") differences["claims"].push_back(claim.id);
+    }
+    Json claims;
+    for (const Claim& claim : claims_) claims.push_back(with_film(claim));
+    Json cases;
+    std::map<std::string, const BenchedCase*> timed;
+    if (input_.bench)
+      for (const SceneBench& scene : input_.bench->scenes)
+        for (const BenchedCase& c : scene.cases) timed[c.record.key] = &c;
+    for (const Record* r : refs_.listed()) {
+      const auto its = timed.find(r->key);
+      Json one = json_of_case(*r, its == timed.end() ? nullptr : its->second, refs_);
+      if (const auto film = film_of_.find(refs_.key(*r)); film != film_of_.end())
+        one["film"] = film->second;
+      cases.push_back(std::move(one));
+    }
+    for (const char* name : {kSweeps, kSubsteps, "dt", "t", "projections"}) refs_.use(name);
+    Json model{{"schema", "taut-report/1"},
+               {"meta", meta(cases.size())},
+               {"solvers", solvers()},
+               {"statuses", statuses()},
+               {"metrics", metrics()}};
+    add_if(model, "claims", std::move(claims));
+    add_if(model, "scenes", std::move(scenes));
+    add_if(model, "charts", std::move(charts_));
+    add_if(model, "maps", std::move(maps_));
+    add_if(model, "films", std::move(films_));
+    add_if(model, "limits", json_of_limits(input_, tables_));
+    add_if(model, "tables", std::move(tables_));
+    add_if(model, "cost", std::move(cost));
+    add_if(model, "truths", truths());
+    add_if(model, "regressions", regressions());
+    add_if(model, "differences", std::move(differences));
+    model["method"] = method();
+    add_if(model, "missing", missing());
+    if (maps_left_out_ > 0)
+      model["left_out"].push_back(
+          {{"file", "maps"},
+           {"why", std::to_string(maps_left_out_) + " stability maps; a page has at most " +
+                       std::to_string(kMostCells) + " cells of maps: taut plot STUDY"}});
+    for (const auto& [file, why] : input_.left_out)
+      model["left_out"].push_back({{"file", file}, {"why", why}});
+    add_if(model, "cases", std::move(cases));
+    return model;
+  }
+
+ private:
+  Json meta(std::size_t listed) const {
+    Json one{{"title", report_title(input_)}};
+    add_if(one, "question", input_.question);
+    one["build"] = Json::object();
+    for (const auto& [what, value] : input_.provenance)
+      if (what == "program" || what == "toolchain")
+        one["build"][what] = value;
+      else
+        one[what] = value;
+    if (input_.bench) one["machine"] = input_.bench->machine;
+    add_if(one, "command", input_.command);
+    std::size_t planned = 0;
+    for (const StudyResult& study : input_.studies)
+      planned += std::max(study.planned, study.records.size()) - study.records.size();
+    one["cases"] = refs_.cases().size(), one["planned"] = refs_.cases().size() + planned;
+    if (listed < refs_.cases().size()) one["listed"] = listed;
+    for (const Certainty sure : {Certainty::clear, Certainty::likely, Certainty::too_noisy,
+                                 Certainty::none, Certainty::single_run})
+      one["policy"][std::string(to_string(sure))] = meaning(sure);
+    return one;
+  }
+
+  Json solvers() const {
+    Json all;
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& solver) {
+      if (std::ranges::find(names, solver) == names.end()) names.push_back(solver);
+    };
+    for (const Rival& rival : rivals_.all) add(rival.solver);
+    for (const Record* r : refs_.cases()) add(r->solver);
+    for (const SceneMedia& media : input_.media)
+      for (const auto& [solver, why] : media.refused) add(solver);
+    for (const std::string& solver : names) {
+      const SolverStyle style = solver_style(solver);
+      Json one{{"id", solver},
+               {"title", solver_title(solver)},
+               {"colour", json_of(style.colour)},
+               {"marker", style.shape},
+               {"dash", style.dash}};
+      for (const SolverInfo& info : input_.solvers) {
+        if (info.name != solver) continue;
+        one["summary"] = info.summary, one["source"] = info.source;
+        for (const auto& [reason, scenes] : info.unsupported)
+          one["unsupported"].push_back({{"reason", reason}, {"scenes", scenes}});
+      }
+      std::string settings;
+      for (const Rival& rival : rivals_.all)
+        if (rival.solver == solver)
+          for (const auto& [key, value] : rival.cases.front()->params)
+            if (key != parameter_of(solver, kSweeps) && key != parameter_of(solver, kSubsteps))
+              settings += (settings.empty() ? "" : ", ") + key + "=" + value;
+      one["settings"] = settings;
+      all.push_back(std::move(one));
+    }
+    return all;
+  }
+
+  Json statuses() const {
+    std::set<Status::Kind> kinds{Status::Kind::ok};
+    for (const Record* r : refs_.cases()) kinds.insert(r->status.kind);
+    Json all;
+    for (const Status::Kind kind : kinds) {
+      const StatusStyle style = status_style(kind);
+      const std::string_view name = to_string(kind);
+      all.push_back({{"id", name},
+                     {"title", name},
+                     {"glyph", style.glyph},
+                     {"help", style.help},
+                     {"failed", kind != Status::Kind::ok && kind != Status::Kind::unsettled},
+                     {"colour", json_of(style.colour)},
+                     {"ink", json_of(style.ink)}});
+    }
+    return all;
+  }
+
+  Json metrics() const {
+    Json all = Json::object();
+    for (const auto& [name, q] : refs_.quantities())
+      all[name] = {{"title", q.title},
+                   {"help", q.help},
+                   {"unit", q.unit.shown},
+                   {"scale", q.unit.scale},
+                   {"axis", q.unit.logarithmic ? "log" : "linear"},
+                   {"window", to_string(q.window)},
+                   {"better", q.unit.less_is_better ? "less" : ""}};
+    return all;
+  }
+
+  Json scene(const QuotedScene& quoted) {
+    const std::string& name = quoted.question.scene;
+    Json one{{"id", name}, {"title", solver_title(name)}, {"summary", ""}, {"studied", true}};
+    for (const SceneInfo& info : input_.scenes)
+      if (info.name == name) one["summary"] = info.summary;
+    for (const Claim& claim : claims_)
+      if (claim.about == name) one["claims"].push_back(claim.id);
+    for (const SceneMedia& media : input_.media)
+      if (media.scene == name) add_media(one, media);
+    for (Chart& chart : scene_charts(input_, name)) {
+      one["charts"].push_back(chart.id);
+      charts_.push_back(json_of(chart, refs_));
+    }
+    if (!one.contains("films")) add_series(one, name);
+    std::map<std::string, int> names;
+    for (const StatusMap& map : scene_maps(input_, name)) {
+      if (map.cells.size() > cells_) {
+        ++maps_left_out_;
+        continue;
+      }
+      cells_ -= map.cells.size();
+      std::string id = name + "-" + map.study + "-" + map.solver;
+      if (const int n = names[id]++; n > 0) id += "-" + std::to_string(n + 1);
+      one["maps"].push_back(id);
+      maps_.push_back(json_of(map, id, refs_));
+    }
+    for (const auto& [solver, cases] : rivals_.by_solver)
+      for (const Record* r : cases)
+        if (r->scene == name) {
+          Json& count = one["statuses"][solver][std::string(to_string(r->status.kind))];
+          count = count.is_null() ? 1 : count.get<int>() + 1;
+        }
+    one["facts"] = facts_of(input_, name);
+    std::set<std::pair<std::string, std::string>> refusals;
+    for (const auto& [solver, cases] : rivals_.by_solver)
+      for (const Record* r : cases)
+        if (r->scene == name && r->status.kind == Status::Kind::unsupported)
+          refusals.insert({solver, r->status.reason});
+    for (const auto& [solver, reason] : refusals)
+      one["refusals"].push_back({{"solver", solver}, {"reason", reason}});
+    add_if(one, "fairness", json_of_fairness(quoted, rivals_, refs_));
+    return one;
+  }
+
+  Json filmed_scene(const SceneMedia& media) {
+    Json one{{"id", media.scene},
+             {"title", solver_title(media.scene)},
+             {"summary", media.summary},
+             {"studied", false}};
+    add_media(one, media);
+    for (const auto& [solver, reason] : media.refused)
+      one["refusals"].push_back({{"solver", solver}, {"reason", reason}});
+    return one;
+  }
+
+  void add_media(Json& scene, const SceneMedia& media) {
+    for (Json& film : json_of(media, input_, refs_, budget_)) {
+      if (film.contains("material")) {
+        scene["material"] = film["material"];
+        film.erase("material");
+      }
+      const std::string id = film["id"];
+      scene["films"].push_back(id);
+      std::set<std::string>& cases = film_cases_[media.scene];
+      for (const Json& panel : film["panels"]) {
+        const std::string key = panel.value("case", "");
+        cases.insert(key);
+        if (!key.empty()) film_of_.emplace(key, id);
+      }
+      films_.push_back(std::move(film));
+    }
+  }
+
+  /// Values over time of a scene without a film, whose tracks they would be.
+  void add_series(Json& scene, const std::string& name) {
+    std::map<std::string, Chart> charts;
+    for (const TimeSeries& series : input_.series) {
+      if (series.scene != name) continue;
+      Chart chart{.id = name + "-over-time-" + slug(series.value),
+                  .scene = name,
+                  .kind = "series",
+                  .title = capitalised(quantity(series.value).title) + " over time",
+                  .x = quantity("t"),
+                  .y = quantity(series.value),
+                  .cost = {}};
+      chart.y.unit.logarithmic = false;
+      charts.try_emplace(series.value, std::move(chart)).first->second.series.push_back(series);
+    }
+    for (auto& [value, chart] : charts) {
+      add_floor(chart);
+      scene["charts"].push_back(chart.id);
+      charts_.push_back(json_of(chart, refs_));
+    }
+  }
+
+  /// The claim, and whether a film shows just what it speaks of.
+  Json with_film(const Claim& claim) {
+    Json one = json_of(claim, refs_);
+    std::set<std::string> looked_at, scenes;
+    for (const Json& basis : one["basis"]) {
+      for (const Json& key : basis["cases"]) looked_at.insert(key.get<std::string>());
+      for (const Json& scene : basis["scenes"]) scenes.insert(scene.get<std::string>());
+    }
+    bool filmed = false;
+    for (const std::string& scene : scenes)
+      if (const auto film = film_cases_.find(scene); film != film_cases_.end()) {
+        filmed = true;
+        if (claim.quoted() && std::ranges::includes(looked_at, film->second) &&
+            !one.contains("film"))
+          one["film"] = "film-" + scene;
+      }
+    if (filmed && !one.contains("film") && claim.about != "failures")
+      one["film_note"] = "The films show " + rivals_.work_text() + ".";
+    return one;
+  }
+
+  Json truths() const {
+    if (!input_.truths) return {};
+    const Truths& t = *input_.truths;
+    Json one{{"truths", t.truths}, {"findings", t.findings}, {"verdicts", t.verdicts}};
+    for (const TruthRow& row : t.rows) {
+      Json at{{"section", row.section},
+              {"statement", typeset(row.statement)},
+              {"source", typeset(row.source)},
+              {"subject", row.subject},
+              {"expected", typeset(row.expected)},
+              {"measured", typeset(row.measured)},
+              {"verdict", row.verdict}};
+      add_if(at, "why", typeset(row.why));
+      one["rows"].push_back(std::move(at));
+    }
+    return one;
+  }
+
+  Json regressions() const {
+    if (!input_.regressions) return {};
+    Json one{{"cases", input_.regressions->cases}, {"values", input_.regressions->values}};
+    for (const auto& [study, id, change] : input_.regressions->rows)
+      one["rows"].push_back({{"study", study}, {"case", id}, {"change", change}});
+    return one;
+  }
+
+  Json method() const {
+    Json one{{"studies", Json::array()}};
+    for (const StudyResult& study : input_.studies) {
+      Json at{{"name", study.name},
+              {"question", study.question},
+              {"cases", study.records.size()},
+              {"planned", std::max(study.planned, study.records.size())}};
+      if (const std::string unequal = unequal_work(study.records); !unequal.empty())
+        at["unequal"] = "Unequal work: " + unequal + ".";
+      one["studies"].push_back(std::move(at));
+    }
+    one["claims"] = json_of_vasilovici(input_.truths);
+    for (const auto& [what, value] : input_.provenance)
+      one["facts"].push_back({{"name", what}, {"value", value}});
+    for (const std::string& host : input_.cost_hosts)
+      one["facts"].push_back({{"name", "cost measured on"}, {"value", host}});
+    one["limits"] = caveats(input_);
+    return one;
+  }
+
+  Json missing() const {
+    Json all;
+    if (input_.differences) return all;  // nothing belongs to two folders that one build could make
+    const auto add = [&](const char* section, const char* text, const std::string& command) {
+      all.push_back({{"section", section}, {"text", text}, {"command", command}});
+    };
+    if (!input_.bench)
+      add("cost", "No cost was measured.",
+          "taut bench " + (input_.studies.size() == 1 ? input_.studies.front().name
+                                                      : std::string("trade --preset quick")));
+    if (input_.media.empty())
+      add("films", "No pictures were rendered.",
+          "taut render " + rivals_.scenes.front().question.scene + " --video");
+    if (!input_.truths)
+      add("truths", "Closed forms and published numbers were not evaluated by this build.",
+          "taut verify --out results/runs/verify.json");
+    if (!input_.regressions)
+      add("regressions", "Not compared with the committed baselines by this build.",
+          "taut check --record");
+    return all;
+  }
+
+  const ReportInput& input_;
+  Rivals rivals_;
+  References refs_;
+  std::vector<Claim> claims_;
+  Json charts_, maps_, films_, tables_;
+  std::map<std::string, std::set<std::string>> film_cases_;  ///< by scene
+  std::map<std::string, std::string> film_of_;               ///< by short key of the case
+  std::size_t budget_ = 6'000'000;                           ///< bytes of pictures in a page
+  std::size_t cells_ = kMostCells, maps_left_out_ = 0;
+};
 
 /// JSON inside a script element: no text can close the element or open a comment.
 std::string for_script(const std::string& json) {
@@ -41,6 +415,12 @@ std::string headlines(const std::string& model) {
 }
 
 }  // namespace
+
+std::string make_model(const ReportInput& input, int indent) {
+  if (std::ranges::all_of(input.studies, [](const auto& s) { return s.records.empty(); }))
+    throw InputError("there is no result of this build to report; `taut run` makes some");
+  return to_text(Builder(input).build(), indent);
+}
 
 std::string make_report(const ReportInput& input) {
   const std::string json = make_model(input), model = for_script(json), answer = headlines(json);

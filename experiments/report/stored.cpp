@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/chart/curves.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
@@ -36,9 +36,6 @@ double strain_floor(const Record& r) {
   const double floor = value_of(r, kStrainFloor);
   return std::isfinite(floor) ? floor : 0;
 }
-
-constexpr const char* kShown[] = {"stretch.rms", "penetration.max", "tunnelling.count",
-                                  "slip.distance"};
 
 /// Values over time of the quoted cases of a scene.
 std::vector<TimeSeries> series_of(const QuotedScene& quoted, const Rivals& rivals,
@@ -82,12 +79,14 @@ void complete_quoted(ReportInput& input, const Store& store) {
 
 std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of) {
   std::vector<TimeSeries> all;
-  for (const char* value : kShown) {
-    TimeSeries series = of;
-    series.value = value;
-    series = column(table, std::move(series));
-    if (series.t.size() > 1) all.push_back(std::move(series));
-  }
+  for (const MetricEntry* metric : metrics())
+    for (const ValueSpec& value : metric->values) {
+      if (!value.shown_over_time) continue;
+      TimeSeries series = of;
+      series.value = value.name;
+      series = column(table, std::move(series));
+      if (series.t.size() > 1) all.push_back(std::move(series));
+    }
   return all;
 }
 
@@ -243,7 +242,7 @@ void add_stored_maps(ReportInput& input, const std::vector<Study>& studies, cons
       const auto option = plot->options.find(name);
       return option == plot->options.end() ? std::string(otherwise) : option->second;
     };
-    MapResult map{study.name, study.question, axis("x", "dt"), axis("y", "iterations"), {}};
+    MapResult map{study.name, study.question, axis("x", "dt"), axis("y", kSweeps), {}};
     const auto held = std::ranges::find(input.studies, study.name, &StudyResult::name);
     if (held == input.studies.end())
       each_record(study, store, [&](const Case&, std::optional<Record> record) {

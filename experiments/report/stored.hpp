@@ -17,7 +17,7 @@ namespace taut::report {
 /// cases that are quoted passes and resolved settings. Throws InputError as load_scene() does.
 ReportInput stored_results(const std::vector<Study>&, const Store&);
 
-/// What a scene shows over time, its own quantities and stretch, as far as the table has it.
+/// The values that are shown over time, as far as the table has them.
 std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of);
 
 /// A value over time of those cases of which the store has it, named by what sets them apart.

@@ -141,10 +141,12 @@ std::vector<std::string> default_answers(const Observation& full) {
   const auto& params = full.record.params;  // Bullet's "faces" are about normals
   const bool faces =
       params.contains("contact") && params.contains("faces") && params.at("faces") == "on";
-  for (const char* name :
-       {"stretch.max", "penetration.max", "face.max", "self.crossings", "settle.time"}) {
-    if (name == std::string("face.max") && !faces) continue;
-    if (!std::isnan(value_of({name}, full))) names.emplace_back(name);
+  for (const MetricEntry* metric : metrics()) {
+    const bool of_faces = std::ranges::count(metric->values, Role::face_depth, &ValueSpec::role);
+    for (const ValueSpec& value : metric->values)
+      if (value.kept && (faces || !of_faces) &&
+          !std::isnan(value_of({std::string(value.name)}, full)))
+        names.emplace_back(value.name);
   }
   return names;
 }

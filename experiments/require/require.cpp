@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
-#include <cmath>
 #include <functional>
 #include <numeric>
 #include <tuple>
@@ -11,14 +9,13 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Shares of the patience by which a part of the work has to have ended.
 constexpr double kNoiseBy = 0.65, kTrialsBy = 0.65, kCombinedBy = 0.75, kVerifiedBy = 0.82,
@@ -49,9 +46,8 @@ class Search {
   }
 
  private:
-  Clock::time_point at(double share) const {
-    return start_ + std::chrono::duration_cast<Clock::duration>(
-                        std::chrono::duration<double>(share * options_.patience));
+  SteadyClock::time_point at(double share) const {
+    return after(start_, share * options_.patience);
   }
 
   /// Runs what is not stored yet; by case: nothing if the time was up.
@@ -343,7 +339,7 @@ class Search {
   const Store& store_;
   const Session& session_;
   std::filesystem::path folder_;
-  Clock::time_point start_ = Clock::now();
+  SteadyClock::time_point start_ = SteadyClock::now();
   CaseMaker maker_;
   Observation full_;
   std::vector<Observation> runs_;  ///< the full model under noise

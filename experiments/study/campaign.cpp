@@ -7,22 +7,21 @@
 #include <thread>
 
 #include "core/model/input_error.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/signals.hpp"
 
 namespace taut {
 
 double estimated_work(const Case& one) {
   double sweeps = 1;
-  for (const ParamSpec& spec : one.choice.entry->params)
-    if (spec.name == "iterations" || spec.name == "substeps")
-      sweeps *= std::max(1, one.choice.params.integer(spec.name));
+  const AccuracyKnobs& knobs = one.choice.entry->knobs;
+  for (const std::string_view parameter : {knobs.substeps, knobs.sweeps})
+    if (!parameter.empty()) sweeps *= std::max(1, one.choice.params.integer(parameter));
   return one.scene->steps *
          (20.0 * one.scene->mesh.size() + static_cast<double>(one.scene->links.size()) * sweeps);
 }
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 class Campaign {
  public:
@@ -33,11 +32,12 @@ class Campaign {
     sort_out(cases);
     const GracefulStop signals;
     while (!waiting_.empty() || !running_.empty()) {
-      if (GracefulStop::requested() || Clock::now() >= options_.deadline) break;
+      if (GracefulStop::requested() || SteadyClock::now() >= options_.deadline) break;
       while (!waiting_.empty() && running_.size() < static_cast<std::size_t>(options_.jobs)) {
         const Case& next = *waiting_.front();
         waiting_.pop_front();
-        running_.emplace_back(next, store_.stage(next.key), options_.limits, options_.frames);
+        running_.emplace_back(next, store_.stage(next.key), options_.limits,
+                              options_.frames ? kFrames : 0);
       }
       wait();
       reap();
@@ -81,7 +81,7 @@ class Campaign {
   void wait() {
     std::vector<pollfd> ends;
     for (const IsolatedCase& one : running_) ends.push_back({one.descriptor(), POLLIN, 0});
-    const double left = std::chrono::duration<double>(options_.deadline - Clock::now()).count();
+    const double left = seconds_until(options_.deadline);
     ::poll(ends.data(), ends.size(), static_cast<int>(1e3 * std::clamp(left, 0.001, 0.5)));
   }
 
@@ -116,8 +116,8 @@ class Campaign {
 };
 
 /// Nothing if it has not ended by then.
-std::optional<Record> wait_for(IsolatedCase& running, Clock::time_point deadline) {
-  for (; Clock::now() < deadline; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
+std::optional<Record> wait_for(IsolatedCase& running, SteadyClock::time_point deadline) {
+  for (; SteadyClock::now() < deadline; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
     if (const auto record = running.poll()) return record;
   return std::nullopt;
 }
@@ -125,7 +125,7 @@ std::optional<Record> wait_for(IsolatedCase& running, Clock::time_point deadline
 }  // namespace
 
 std::optional<Record> run_stored(const Case& one, const Store& store, const Limits& limits,
-                                 Clock::time_point deadline) {
+                                 SteadyClock::time_point deadline) {
   if (const auto record = store.find(one)) return record;
   const std::filesystem::path folder = store.stage(one.key);
   std::optional<Record> record;
@@ -144,7 +144,7 @@ std::optional<Record> run_stored(const Case& one, const Store& store, const Limi
 Record run_again(const Case& one, const Store& store, const Limits& limits) {
   const std::filesystem::path folder = store.stage(one.key);
   IsolatedCase running(one, folder, limits);
-  const Record record = *wait_for(running, Clock::time_point::max());
+  const Record record = running.wait();
   std::filesystem::remove_all(folder);
   return record;
 }

@@ -12,10 +12,12 @@
 #include <new>
 #include <optional>
 
+#include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/printable.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/study/store.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
@@ -26,25 +28,23 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kSeriesRows = 120;
-constexpr std::size_t kFileBytes = std::size_t{256}
-                                   << 20;  ///< a case that prints without end fills no disk
+/// A case that prints without end fills no disk; beside its motion, in bytes.
+constexpr std::size_t kFileBytes = std::size_t{256} << 20;
 
-std::string last_line(const fs::path& file) {
-  std::ifstream in(file);
-  std::string line, last;
-  while (std::getline(in, line))
-    if (!line.empty()) last = line.substr(0, 300);
-  return printable(last);
-}
-
-std::vector<std::string> command(const Case& one, const fs::path& folder, bool frames) {
+std::vector<std::string> command(const Case& one, const fs::path& folder, int frames) {
   const auto program_of = one.choice.entry->program;
   const std::string program(program_of ? program_of(one.choice.params) : "");
   std::vector<std::string> words{sibling_program(program), "case",   one.spec.scene,
                                  one.spec.solver,          "--into", fs::absolute(folder)};
   for (const std::string& text : one.spec.overrides) words.insert(words.end(), {"--set", text});
-  if (frames) words.emplace_back("--frames");
+  if (frames > 0) words.insert(words.end(), {"--frames", std::to_string(frames)});
   return words;
+}
+
+/// Of all steps, should they be asked for.
+std::size_t motion_bytes(const Scene& scene, int frames) {
+  const std::size_t frame = sizeof(double) + 3 * sizeof(float) * scene.start.x.size();
+  return frames > 0 ? to_index(scene.steps + 1) * frame : 0;
 }
 
 /// What the case wrote; its address is what this process says, never what the case claims.
@@ -53,11 +53,6 @@ Record record_in(const fs::path& file, const Case& one) {
   if (record.key != one.key)
     throw InputError("case.json: the record belongs to another case: " + record.key);
   return record;
-}
-
-std::string signal_name(int signal) {
-  const char* name = sigabbrev_np(signal);
-  return name ? "SIG" + std::string(name) : "signal " + std::to_string(signal);
 }
 
 }  // namespace
@@ -83,25 +78,24 @@ int Heartbeat::last(const fs::path& path) {
   return step;
 }
 
-IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limits, bool frames)
+IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limits, int frames)
     : case_(one),
       folder_(std::move(folder)),
-      deadline_(std::chrono::steady_clock::now() +
-                std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                    std::chrono::duration<double>(5 * limits.seconds))),
+      deadline_(in_seconds(5 * limits.seconds)),
       bytes_(limits.bytes),
-      process_(command(case_, folder_, frames), {.errors_file = folder_ / "stderr.txt",
-                                                 .limits = {.cpu_seconds = limits.seconds,
-                                                            .memory = limits.bytes,
-                                                            .file_bytes = kFileBytes}}) {}
+      process_(command(case_, folder_, frames),
+               {.errors_file = folder_ / "stderr.txt",
+                .limits = {.cpu_seconds = limits.seconds,
+                           .memory = limits.bytes,
+                           .file_bytes = kFileBytes + motion_bytes(*case_.scene, frames)}}) {}
 
 std::optional<Record> IsolatedCase::poll() {
-  std::optional<ProcessEnd> end = process_.poll();
-  if (!end) {
-    if (std::chrono::steady_clock::now() < deadline_) return {};
-    end = process_.wait(0);
-  }
-  Record record = record_of(end);
+  if (!process_.poll() && SteadyClock::now() < deadline_) return {};
+  return wait();
+}
+
+Record IsolatedCase::wait() {
+  Record record = record_of(process_.wait(std::max(0.0, seconds_until(deadline_))));
   std::error_code ignored;
   fs::remove(folder_ / "heartbeat", ignored);
   if (fs::file_size(folder_ / "stderr.txt", ignored) == 0)
@@ -113,7 +107,7 @@ std::optional<Record> IsolatedCase::poll() {
 Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   using Kind = Status::Kind;
   const int beat = Heartbeat::last(folder_ / "heartbeat"), step = std::max(beat, -1);
-  const std::string said = last_line(folder_ / "stderr.txt");
+  const std::string said = printable(last_line(std::ifstream(folder_ / "stderr.txt")));
   const auto failed = [&](Kind kind, const std::string& reason) {
     return unfinished(case_, {kind, reason, step, -1});
   };
@@ -126,8 +120,7 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
                                   : said);  // on a full disk its words are lost too
   if (end->signal == SIGXCPU) return failed(Kind::timeout, "CPU time");
   if (end->signal == SIGKILL) return failed(Kind::oom, "killed by the system");
-  if (end->signal != 0)
-    return failed(Kind::crash, signal_name(end->signal) + (said.empty() ? "" : ": " + said));
+  if (end->signal != 0) return failed(Kind::crash, end->text() + (said.empty() ? "" : ": " + said));
   switch (end->exit_code) {
     case 0:
       try {
@@ -139,8 +132,7 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
       return failed(Kind::oom, "more than the limit of " + std::to_string(bytes_ >> 20) +
                                    " MB (taut run --memory raises it)");
     default:
-      return failed(Kind::error,
-                    said.empty() ? "exit code " + std::to_string(end->exit_code) : said);
+      return failed(Kind::error, said.empty() ? end->text() : said);
   }
 }
 
@@ -152,7 +144,7 @@ TrajectoryHeader trajectory_header(const Case& one) {
           .triangles = one.scene->mesh.triangles};
 }
 
-int run_into(const Case& one, const fs::path& folder, bool frames) try {
+int run_into(const Case& one, const fs::path& folder, int frames) try {
   std::signal(SIGXFSZ, SIG_DFL);  // a case that prints without end dies of it
   const auto write = [&](auto&& what) {
     try {
@@ -166,9 +158,9 @@ int run_into(const Case& one, const fs::path& folder, bool frames) try {
   std::optional<Heartbeat> heartbeat;
   if (!write([&] { heartbeat.emplace(folder / "heartbeat"); })) return kCannotWrite;
   std::optional<TrajectoryWriter> motion;
-  if (frames && !write([&] { motion.emplace(folder / kFramesFile, trajectory_header(one)); }))
+  if (frames > 0 && !write([&] { motion.emplace(folder / kFramesFile, trajectory_header(one)); }))
     return kCannotWrite;
-  const int steps = one.scene->steps, stride = std::max(1, steps / kFrames);
+  const int steps = one.scene->steps, stride = std::max(1, steps / std::max(1, frames));
   const CaseRun run = run_case(one, {.series_rows = kSeriesRows, .watch = [&](const Snapshot& m) {
                                        heartbeat->beat(m.step);
                                        if (motion && (m.step % stride == 0 || m.step == steps))

@@ -46,14 +46,15 @@ class Heartbeat {
 class IsolatedCase {
  public:
   /// Starts it; its files and what it says go into `folder`. Throws InputError if it cannot start.
-  /// `frames`: its motion too (kFramesFile).
-  IsolatedCase(const Case&, std::filesystem::path folder, const Limits&, bool frames = false);
+  /// Of its motion about so many moments are kept (kFramesFile); 0: none.
+  IsolatedCase(const Case&, std::filesystem::path folder, const Limits&, int frames = 0);
 
   /// Ready for reading when the process has ended.
   int descriptor() const { return process_.descriptor(); }
   /// Its record once it has ended or its time is up (it is killed then); until then nothing.
   /// Throws InputError if it could not write what it found.
   std::optional<Record> poll();
+  Record wait();  ///< the same, when it has ended or its time is up
   const std::filesystem::path& folder() const { return folder_; }
   const Case& of() const { return case_; }
 
@@ -71,7 +72,7 @@ class IsolatedCase {
 TrajectoryHeader trajectory_header(const Case&);
 
 /// The child's side: runs the case in this process and leaves case.json, series.csv, its heartbeat
-/// and, if asked for, its frames in `folder`. Gives the exit code.
-int run_into(const Case&, const std::filesystem::path& folder, bool frames = false);
+/// and, if asked for, so many moments of its motion in `folder`. Gives the exit code.
+int run_into(const Case&, const std::filesystem::path& folder, int frames = 0);
 
 }  // namespace taut

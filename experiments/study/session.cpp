@@ -65,10 +65,8 @@ Session::Session(const Store& store, const std::string& command, const std::vect
                  const Shard& shard)
     : folder_(store.root() / "sessions" / (utc_stamp() + "-" + unique_suffix())) {
   make_folder(folder_);
-  char host[256] = "";
-  gethostname(host, sizeof host - 1);
   const Json session{{"schema", kRecordSchema},  {"command", command},
-                     {"started", utc_stamp()},   {"host", host},
+                     {"started", utc_stamp()},   {"host", host_name()},
                      {"toolchain", toolchain()}, {"shard", shard.index},
                      {"shards", shard.count},    {"cases", cases.size()}};
   std::string manifest;

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "core/io/section.hpp"
+#include "core/model/join.hpp"
 #include "core/model/printable.hpp"
 #include "core/model/shortest.hpp"
 #include "experiments/system/data.hpp"
@@ -28,10 +29,8 @@ std::string text_of(const Value& value, bool toml) {
       return quoted + '"';
     }
     case Value::Kind::array: {
-      std::string items;
-      for (const Value& item : value.items)
-        items += (items.empty() ? "" : ", ") + text_of(item, toml);
-      return "[" + items + "]";
+      const auto text_of_item = [&](const Value& item) { return text_of(item, toml); };
+      return "[" + join(value.items, ", ", text_of_item) + "]";
     }
     case Value::Kind::integer:  // 100000 and not 1e+05
       if (std::abs(value.number) < 1e15) return std::to_string(std::lround(value.number));
@@ -179,8 +178,7 @@ class StudyReader {
     const std::optional<double> from = section.number("from", {}), to = section.number("to", {});
     const std::optional<double> steps = section.number("steps", {2, 1000});
     const bool log = section.choice("scale", {"linear", "log"}, "linear") == "log";
-    for (const char* required : {"from", "to", "steps"})
-      if (!section.find(required)) section.missing(required);
+    section.need({"from", "to", "steps"});
     section.finish();
     if (!from || !to || !steps) return {};
     if (log && !(*from > 0 && *to > 0)) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <ctime>
 
 namespace taut {
@@ -9,6 +11,25 @@ inline double seconds_of(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+using SteadyClock = std::chrono::steady_clock;
+
+inline double seconds_between(SteadyClock::time_point from, SteadyClock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+inline double seconds_since(SteadyClock::time_point start) {
+  return seconds_between(start, SteadyClock::now());
+}
+inline double seconds_until(SteadyClock::time_point end) { return -seconds_since(end); }
+
+/// So many seconds after `start`.
+inline SteadyClock::time_point after(SteadyClock::time_point start, double seconds) {
+  return start + std::chrono::duration_cast<SteadyClock::duration>(
+                     std::chrono::duration<double>(std::max(0.0, seconds)));
+}
+inline SteadyClock::time_point in_seconds(double seconds) {
+  return after(SteadyClock::now(), seconds);
 }
 
 }  // namespace taut

@@ -130,10 +130,14 @@ void make_folder(const fs::path& path) {
   if (error) throw InputError(path.string() + ": cannot create: " + error.message());
 }
 
-std::string unique_suffix() {
+std::string host_name() {
   char host[256] = "host";
   gethostname(host, sizeof host - 1);
-  return std::string(host) + "." + std::to_string(getpid()) + "." + random_digits();
+  return host;
+}
+
+std::string unique_suffix() {
+  return host_name() + "." + std::to_string(getpid()) + "." + random_digits();
 }
 
 std::string utc_stamp() {

@@ -48,6 +48,9 @@ class Scratch {
   EndsWithProgram tie_;
 };
 
+/// Of this machine.
+std::string host_name();
+
 /// "<host>.<pid>.<8 hex digits>": a name that no other process gives.
 std::string unique_suffix();
 

@@ -12,6 +12,14 @@ std::string to_text(const Json& json, int indent) {
 
 Json parse_json(std::string_view text) { return Json::parse(text); }
 
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+void add_if(Json& object, const char* name, Json value) {
+  const bool blank = value.is_string() && value.get_ref<const std::string&>().empty();
+  if (!blank && !value.is_null() && !(value.is_structured() && value.empty()))
+    object[name] = std::move(value);
+}
+
 Json parse_json_of(std::string_view text, const std::string& file, int line) try {
   return Json::parse(text);
 } catch (const Json::exception& error) {

@@ -24,6 +24,11 @@ std::string to_text(const Json&, int indent = -1);
 /// Throws Json::exception.
 Json parse_json(std::string_view);
 
+/// A number, or null if it is none.
+Json json_number(double);
+/// Appends a field unless it is null or empty.
+void add_if(Json& object, const char* name, Json value);
+
 /// A value of a JSON text that a program wrote and this one reads back. Whatever is not there or of
 /// another type is an InputError with file, line and the place within the text ("scenes[0].cases").
 class JsonReader {

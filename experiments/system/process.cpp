@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -21,6 +20,7 @@
 #include <utility>
 
 #include "core/model/input_error.hpp"
+#include "experiments/system/clock.hpp"
 
 namespace taut {
 
@@ -121,19 +121,29 @@ std::vector<char*> environment_with(std::string& mark) {
   return variables;
 }
 
-int milliseconds_until(std::chrono::steady_clock::time_point end, double seconds) {
-  if (seconds < 0) return -1;
-  const std::chrono::duration<double> left = end - std::chrono::steady_clock::now();
-  return std::max(0, static_cast<int>(std::ceil(1e3 * left.count())));
+/// Of so many seconds that end then; no limit (< 0) stays none.
+double left(SteadyClock::time_point end, double seconds) {
+  return seconds < 0 ? -1 : std::max(0.0, seconds_until(end));
 }
 
-std::chrono::steady_clock::time_point in_seconds(double seconds) {
-  return std::chrono::steady_clock::now() +
-         std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-             std::chrono::duration<double>(std::max(0.0, seconds)));
+int milliseconds_until(SteadyClock::time_point end, double seconds) {
+  return seconds < 0 ? -1 : static_cast<int>(std::ceil(1e3 * left(end, seconds)));
 }
 
 }  // namespace
+
+std::string ProcessEnd::text() const {
+  if (signal == 0) return "exit code " + std::to_string(exit_code);
+  const char* name = sigabbrev_np(signal);
+  return name ? "SIG" + std::string(name) : "signal " + std::to_string(signal);
+}
+
+std::string last_line(std::istream&& in) {
+  std::string last;
+  for (std::string line; std::getline(in, line);)
+    if (line.find_first_not_of(" \t\r") != line.npos) last = line.substr(0, 300);
+  return last;
+}
 
 Process::Process(std::vector<std::string> words, const ProcessOptions& options) {
   std::vector<char*> argv;
@@ -233,11 +243,6 @@ bool Process::write(std::string_view bytes, double seconds) {
   return true;
 }
 
-std::string Process::read_some(double seconds) {
-  if (buffer_.empty()) read_more(seconds);
-  return std::exchange(buffer_, {});
-}
-
 bool Process::has_descendants() const {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator("/proc", ignored)) {
@@ -269,18 +274,35 @@ bool Process::read_more(double seconds) {
   }
 }
 
-bool Process::read_line(std::string& line, double seconds) {
-  std::size_t end;
-  while ((end = buffer_.find('\n')) == buffer_.npos)
-    if (!read_more(seconds)) return false;
-  line = buffer_.substr(0, end);
-  buffer_.erase(0, end + 1);
+std::string Process::take(std::size_t bytes) {
+  std::string taken = buffer_.substr(0, bytes);
+  buffer_.erase(0, bytes);
+  return taken;
+}
+
+bool Process::read_line(std::string& line, double seconds, std::size_t most) {
+  const auto end = in_seconds(seconds);
+  std::size_t length, seen = 0;
+  while ((length = buffer_.find('\n', seen)) == buffer_.npos) {
+    seen = buffer_.size();
+    if (seen > most || !read_more(left(end, seconds))) return false;
+  }
+  line = take(length + 1);
+  line.pop_back();
+  return true;
+}
+
+bool Process::read_bytes(std::string& text, std::size_t bytes, double seconds) {
+  const auto end = in_seconds(seconds);
+  while (buffer_.size() < bytes)
+    if (!read_more(left(end, seconds))) return false;
+  text = take(bytes);
   return true;
 }
 
 std::string Process::read_all(double seconds) {
   const auto end = in_seconds(seconds);
-  while (read_more(seconds < 0 ? -1 : milliseconds_until(end, seconds) / 1e3)) {
+  while (read_more(left(end, seconds))) {
   }
   return std::exchange(buffer_, {});
 }

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,7 +35,11 @@ struct ProcessEnd {
   int exit_code = -1;  ///< -1: a signal ended it
   int signal = 0;
   bool good() const { return exit_code == 0; }
+  std::string text() const;  ///< "SIGSEGV" or "exit code 3"
 };
+
+/// The last line of what a program said that is not blank, its first 300 bytes.
+std::string last_line(std::istream&&);
 
 /// A program that this one started, in a session and a process group of its own: Ctrl-C reaches
 /// this process alone. All that it started dies with it, what left the group too (unless that has
@@ -60,12 +65,13 @@ class Process {
   /// it after so many seconds (< 0: no limit).
   bool write(std::string_view bytes, double seconds = -1);
   void close_input();
-  /// A line of its output without the line feed; false: it ended first, or so many seconds passed
-  /// without more of it (< 0: no limit).
-  bool read_line(std::string&, double seconds = -1);
-  /// What has come of its output, waiting so many seconds for some; empty: it ended, or there was
-  /// none.
-  std::string read_some(double seconds);
+  /// A line of its output without the line feed; false: it ended first, so many seconds passed (<
+  /// 0: no limit), or the line is longer than `most` bytes.
+  bool read_line(std::string&, double seconds = -1, std::size_t most = std::string::npos);
+  /// Exactly so many bytes of its output; false: it ended first, or so many seconds passed.
+  bool read_bytes(std::string&, std::size_t bytes, double seconds);
+  /// What has come of its output and was not read.
+  std::string_view unread() const { return buffer_; }
   /// Its output to the end; what came by then if that takes longer than so many seconds (< 0: no
   /// limit).
   std::string read_all(double seconds = -1);
@@ -75,6 +81,7 @@ class Process {
  private:
   /// More output into buffer_; false: there is no more, or none until the time is up.
   bool read_more(double seconds);
+  std::string take(std::size_t bytes);  ///< off buffer_
   ProcessEnd reap();
   void stop();
 

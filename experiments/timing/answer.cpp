@@ -20,12 +20,6 @@ std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates, const
   return order;
 }
 
-Certainty certainty_of_cost(const Interval& ratio, const Interval& control, double tolerance) {
-  if (ratio.low <= 1) return Certainty::a_tie;
-  return compare_costs(ratio, control, tolerance) == Difference::slower ? Certainty::clear
-                                                                        : Certainty::likely;
-}
-
 std::string line(const BenchedCase& c, const std::string& metric) {
   return parse_solver(c.record.spec.solver).brief() + ", " + metric + " " +
          number_text(c.record.value(metric)) + ", " + interval_text(c.cost(), 1e-3) +
@@ -40,7 +34,12 @@ std::string verdict(const Answer& answer, const SceneBench& bench) {
   const Record& rival = bench.cases[*answer.runner_up].record;
   const std::string rest =
       rival.solver == bench.cases[*answer.best].record.solver ? "the next setting" : rival.solver;
-  if (answer.certainty == Certainty::a_tie) return "no cheaper than " + rest + " that can be told";
+  if (answer.certainty == Certainty::too_noisy) return "too noisy to compare with " + rest;
+  if (answer.certainty == Certainty::none)
+    return same_within(answer.tolerance, *answer.ratio)
+               ? "costs the same as " + rest + " within " + number_text(100 * answer.tolerance) +
+                     " %"
+               : "no cheaper than " + rest + " that can be told";
   return sure + "cheaper than " + rest;
 }
 
@@ -51,17 +50,12 @@ std::string nearest(const SolverAnswer& solver, const SceneBench& bench, const A
   const Target any = answer.target.error ? Target{{}, kAny} : Target{kAny, {}};
   const auto at = best_for(any, bench.candidates(metric), solver.solver);
   const std::string missed = bench.searched_to_the_end(solver.solver)
-                                 ? "never, to the end of its knobs"
+                                 ? "never, to the end of its accuracy parameters"
                                  : "not by the settings tried";
   return missed + (at ? "; nearest: " + line(bench.cases[*at], metric) : "; every case failed");
 }
 
 }  // namespace
-
-std::string_view to_string(Certainty certainty) {
-  constexpr std::string_view kNames[] = {"clear", "likely", "a tie", "unopposed"};
-  return kNames[static_cast<std::size_t>(certainty)];
-}
 
 std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Target& target,
                                    std::size_t most) {
@@ -80,7 +74,7 @@ Answer answer(const SceneBench& bench, const Target& target, const std::string& 
               double tolerance) {
   const std::vector<Candidate> candidates = bench.candidates(metric);
   const std::vector<std::size_t> order = ranking(candidates, target);
-  Answer answer{.target = target};
+  Answer answer{.target = target, .tolerance = tolerance};
   for (const std::string& solver : solvers_of(bench))
     answer.solvers.push_back({solver, best_for(target, candidates, solver), {}});
   if (order.empty()) return answer;
@@ -100,8 +94,14 @@ Answer answer(const SceneBench& bench, const Target& target, const std::string& 
     answer.certainty =
         candidates[*answer.best].cost.high <= *target.budget ? Certainty::clear : Certainty::likely;
   else if (answer.ratio)
-    answer.certainty = certainty_of_cost(*answer.ratio, bench.control, tolerance);
+    answer.certainty = judge(*answer.ratio, bench.control, tolerance);
   return answer;
+}
+
+Interval cost_expected_again(const SceneBench& bench, std::size_t at) {
+  const double stray = 1 + spread(bench.control);
+  const Interval cost = bench.cases[at].cost();
+  return {cost.low / stray, cost.mid, cost.high * stray};
 }
 
 std::string text(const Target& target, const std::string& metric) {

@@ -8,16 +8,6 @@
 
 namespace taut {
 
-/// How sure an answer is.
-enum class Certainty {
-  clear,   ///< the ratio to the runner-up is significant and the machine quiet; a budget is met by
-           ///< the whole interval
-  likely,  ///< the interval says so, but this machine strays as much or the margin is small
-  a_tie,   ///< no difference between the two
-  unopposed  ///< nobody else meets the target
-};
-std::string_view to_string(Certainty);
-
 /// How a solver's best setting serves a target.
 struct SolverAnswer {
   std::string solver;
@@ -32,17 +22,24 @@ struct Answer {
   std::optional<std::size_t> best;       ///< index of the case; nothing: none meets the target
   std::optional<std::size_t> runner_up;  ///< the best of another solver, else the next of the same
   std::optional<Interval> ratio;         ///< cost of the runner-up over that of the best
+  /// Of an error, judge() of that ratio; a budget is clear if the whole interval of the cost meets
+  /// it, else likely.
   Certainty certainty = Certainty::unopposed;
+  double tolerance = kTolerance;  ///< the smallest difference that matters
 };
 Answer answer(const SceneBench&, const Target&, const std::string& metric,
               double tolerance = kTolerance);
+
+/// Where the cost of a case is to be expected in another session [CPU s per simulated s]: its
+/// interval, wider by how far identical code strayed from itself in this one.
+Interval cost_expected_again(const SceneBench&, std::size_t at);
 
 /// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms per frame of 1/60 s".
 std::string text(const Target&, const std::string& metric);
 
 /// The answer in lines, the first without indentation: who, for what error and cost, and how sure
-/// of what ("clearly within the budget", "likely cheaper than bullet"); then a line for every other
-/// solver.
+/// of what ("clearly within the budget", "likely cheaper than bullet", "costs the same as bullet
+/// within 5 %"); then a line for every other solver.
 std::string text(const Answer&, const SceneBench&, const std::string& metric);
 
 /// Whom to time: the best by quick cost of every solver that meets the target, at most `most`, then

@@ -24,8 +24,6 @@ Interval scaled(const Interval& i, double factor) {
   return {i.low * factor, i.mid * factor, i.high * factor};
 }
 
-Json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
-
 Interval interval_of(const JsonReader& j) {
   const std::vector<JsonReader> ends = j.items(3);
   return {ends[0].number_or_null(), ends[1].number_or_null(), ends[2].number_or_null()};
@@ -151,7 +149,7 @@ std::string to_json(const BenchSession& session) {
            {"host", session.host},
            {"build", session.build}};
   for (const SceneBench& scene : session.scenes) {
-    Json one{{"scene", scene.scene}, {"control", json_of(scene.control)}};
+    Json one{{"scene", scene.scene}, {"control", scene.control}};
     for (const auto& [record, timing] : scene.cases)
       one["cases"].push_back({{"record", parse_json(to_json(record))},
                               {"cpu_seconds_per_step", timing.samples},
@@ -161,7 +159,8 @@ std::string to_json(const BenchSession& session) {
                               {"remark", timing.remark}});
     for (const std::string& solver : solvers_of(scene))
       for (const KnobRange& range : scene.knob_ranges(solver))
-        one["knobs"][solver][range.knob] = {{"largest", range.largest}, {"end", range.end}};
+        one["accuracy_parameters"][solver][range.knob] = {{"largest", range.largest},
+                                                          {"end", range.end}};
     all["scenes"].push_back(std::move(one));
   }
   return to_text(all, 1) + "\n";
@@ -172,9 +171,7 @@ BenchSession bench_from_json(std::string_view text, const std::string& where) {
 }
 
 BenchSession BenchSession::here(const std::string& study) {
-  char host[256] = "host";
-  gethostname(host, sizeof host - 1);
-  return {study, machine_name(), {}, host, program_digest()};
+  return {study, machine_name(), {}, host_name(), program_digest()};
 }
 
 std::filesystem::path bench_file(const std::filesystem::path& results,

@@ -36,7 +36,8 @@ std::optional<std::size_t> best_for(const Target&, std::span<const Candidate>,
 /// Where a search for a setting ends.
 inline constexpr int kMostSubsteps = 1024, kMostSweeps = 128;
 
-/// The errors and budgets for which a bench answers.
+/// The errors and budgets for which a bench answers, and of what they are unless asked otherwise.
+inline constexpr const char* kErrorMetric = "stretch.rms";
 inline constexpr double kErrorLevels[] = {0.1, 0.01, 0.001, 0.0001};
 inline constexpr double kFrame = 1.0 / 60;  ///< s; budgets are CPU time within it
 inline constexpr double kFrameBudgets[] = {0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3};  ///< s per frame

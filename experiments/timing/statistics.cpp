@@ -71,11 +71,35 @@ double spread(const Interval& control) {
   return std::expm1(std::max(std::abs(std::log(control.low)), std::abs(std::log(control.high))));
 }
 
-Difference compare_costs(const Interval& ratio, const Interval& control, double tolerance) {
-  if (!(spread(control) <= tolerance)) return Difference::too_noisy;
-  if (ratio.contains(1) || !(std::abs(std::log(ratio.mid)) > std::log1p(tolerance)))
-    return Difference::none;
-  return ratio.mid < 1 ? Difference::faster : Difference::slower;
+std::string_view to_string(Certainty certainty) {
+  constexpr std::string_view kWords[] = {"clear",         "likely",     "too noisy",
+                                         "no difference", "single run", "unopposed"};
+  return kWords[static_cast<std::size_t>(certainty)];
 }
+
+std::string_view meaning(Certainty certainty) {
+  constexpr std::string_view kMeanings[] = {
+      "the whole 95 % interval is further from 1 than 5 % and than identical code differed from "
+      "itself, which was less than 5 %",
+      "the 95 % interval excludes 1, and its middle is further from 1 than 5 % and than identical "
+      "code differed from itself",
+      "identical code differed from itself by more than the difference",
+      "the 95 % interval has 1 in it, or its middle is within 5 % of 1",
+      "computed, not timed: the same build gives the same bits on every run, so there is no spread",
+      "nothing else that was timed reaches it"};
+  return kMeanings[static_cast<std::size_t>(certainty)];
+}
+
+Certainty judge(const Interval& ratio, const Interval& control, double tolerance) {
+  const double noise = spread(control), change = std::abs(std::log(ratio.mid));
+  if (change <= std::log1p(tolerance)) return Certainty::none;
+  if (change <= std::log1p(noise)) return Certainty::too_noisy;
+  if (ratio.contains(1)) return Certainty::none;
+  const double nearest = std::abs(std::log(ratio.mid < 1 ? ratio.high : ratio.low));
+  return noise <= tolerance && nearest > std::log1p(tolerance) ? Certainty::clear
+                                                               : Certainty::likely;
+}
+
+bool same_within(double tolerance, const Interval& ratio) { return spread(ratio) <= tolerance; }
 
 }  // namespace taut

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace taut {
@@ -14,6 +15,11 @@ struct Interval {
   double high = 0;
   bool contains(double value) const { return low <= value && value <= high; }
 };
+/// [low, mid, high]: found by the JSON library, wherever an interval becomes JSON.
+template <class Json>
+void to_json(Json& json, const Interval& i) {
+  json = {i.low, i.mid, i.high};
+}
 
 /// A number with so many significant digits ("-": NaN), and "2.3 (2.1 to 2.5)" in a unit.
 std::string number_text(double value, int digits = 3);
@@ -39,14 +45,26 @@ inline constexpr double kTolerance = 0.05;
 /// How far the ratio of a code to itself lies from 1, as a share: 0.03 for 0.98 to 1.03.
 double spread(const Interval& control);
 
-/// What a ratio of costs A / B allows us to say. It is a difference if its interval excludes 1 and
-/// it exceeds the tolerance (0.05: five per cent).
-enum class Difference {
-  none,
-  faster,    ///< A costs less
-  slower,    ///< A costs more
-  too_noisy  ///< the control itself spreads further than the tolerance: nothing can be said
+/// How sure a comparison is; of several the last is the least sure.
+enum class Certainty {
+  clear,       ///< the whole interval is beyond the tolerance and beyond what identical code showed
+  likely,      ///< the interval excludes 1 and its middle is beyond both
+  too_noisy,   ///< identical code differed from itself by more
+  none,        ///< no difference that can be told
+  single_run,  ///< computed, not timed: the same bits on every run, no spread known
+  unopposed    ///< there is nothing to compare with
 };
-Difference compare_costs(const Interval& ratio, const Interval& control, double tolerance);
+/// "clear", "too noisy", "no difference", ...
+std::string_view to_string(Certainty);
+/// What the word means, one sentence.
+std::string_view meaning(Certainty);
+
+/// How sure a ratio of costs is, given the ratio of identical code to itself: `clear` or `likely`
+/// a difference of more than the tolerance, which way the ratio's middle says; `too_noisy`; `none`.
+Certainty judge(const Interval& ratio, const Interval& control, double tolerance = kTolerance);
+/// `clear` or `likely`.
+inline bool is_difference(Certainty c) { return c <= Certainty::likely; }
+/// Whether the whole interval is within the tolerance of 1.
+bool same_within(double tolerance, const Interval& ratio);
 
 }  // namespace taut

@@ -13,15 +13,12 @@
 #include <stdexcept>
 #include <thread>
 
-#include "core/model/input_error.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
 
 namespace {
-
-using Steady = std::chrono::steady_clock;
 
 /// Adds the time of its life to a StepTime.
 class Clock {
@@ -129,15 +126,12 @@ TimingWorker::TimingWorker(const std::filesystem::path& program, const CaseSpec&
 
 std::string TimingWorker::ask(const std::string& request) {
   std::string answer;
-  const double seconds =
-      deadline_
-          ? std::clamp(std::chrono::duration<double>(*deadline_ - Steady::now()).count(), 0.0, 1e6)
-          : -1;
+  const double seconds = deadline_ ? std::clamp(seconds_until(*deadline_), 0.0, 1e6) : -1;
   if (process_.write(request + "\n") && process_.read_line(answer, seconds)) {
     if (answer.starts_with(kRefusal)) throw std::runtime_error(answer.substr(kRefusal.size()));
     return answer;
   }
-  if (deadline_ && Steady::now() >= *deadline_) throw TimeIsUp();
+  if (deadline_ && SteadyClock::now() >= *deadline_) throw TimeIsUp();
   throw std::runtime_error("the timing worker died");
 }
 
@@ -181,7 +175,8 @@ BenchCase start_case(const TimedCase& timed, const BenchOptions& options) {
   BenchCase one;
   one.guard([&] {
     one.worker = std::make_unique<TimingWorker>(program_of(timed.spec), timed.spec);
-    if (options.deadline != Steady::time_point::max()) one.worker->give_up_at(options.deadline);
+    if (options.deadline != SteadyClock::time_point::max())
+      one.worker->give_up_at(options.deadline);
     const int all = std::max(1, timed.steps);
     one.steps = times_within(options.seconds, one.worker->pilot_run(all).cpu, all);
   });
@@ -233,16 +228,16 @@ Bench run_bench(const std::vector<TimedCase>& all, const BenchOptions& options) 
       one.timing.wall.push_back(time.wall);
     });
   };
-  Steady::duration longest{};
+  SteadyClock::duration longest{};
   for (int round = 0; round < options.rounds; ++round) {
-    const Steady::time_point start = Steady::now();
+    const SteadyClock::time_point start = SteadyClock::now();
     if (options.deadline - start < longest + longest / 2) break;
     std::for_each(cases.begin(), cases.end(), sample);
     std::for_each(cases.rbegin(), cases.rend(), sample);
     if (options.progress)
       options.progress(static_cast<std::size_t>(round) + 1,
                        static_cast<std::size_t>(options.rounds));
-    longest = std::max(longest, Steady::now() - start);
+    longest = std::max(longest, SteadyClock::now() - start);
   }
   Bench bench;
   for (BenchCase& one : cases) {

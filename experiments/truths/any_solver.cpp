@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/model/index.hpp"
-#include "experiments/metrics/summary.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/truths/simulation.hpp"
 
 namespace taut {

@@ -3,7 +3,6 @@
 #include <map>
 
 #include "core/model/index.hpp"
-#include "core/model/input_error.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/truths/simulation.hpp"
 

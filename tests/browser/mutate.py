@@ -11,6 +11,7 @@ import sys
 
 import chromium
 import page
+from checks import Checks
 
 # File, what is replaced, by what, the check, and (the beginning of) what it must say.
 DAMAGES = [
@@ -36,12 +37,11 @@ DAMAGES = [
     ("chart.js", "measured.push(spec.floor.y);", ";", "charts", "the reference's own error"),
     ("chart.js", "const floorShown = ({floor, series}) =>", "const floorShown = ({floor, series}) => false &&", "charts", "the reference's own error"),
     ("chart.js", "if (!p.failed && !floored && !usable(p)) return;", "if (!floored && !usable(p)) return;", "charts", "each point is drawn"),
-    ("chart.js", "...caseLines(point.status, undefined, point.case)]", "]", "charts", "each says value, interval, status and case"),
+    ("chart.js", "...caseLines(point.status, undefined, point.case)]", "]", "charts", "each says value, status and case"),
     ("chart.js", "p.failed ? box.top + 4 + failing.indexOf(s) * box.row", "p.failed ? box.height - 60", "charts", "a failed case is an ×"),
-    ("chart.js", "d += `M${cx},${low}V${high}", "d += `M${cx},${low}L${high}", "charts", "intervals have bars"),
     ("chart.js", "const floored = p.zero && view.kind === 'log';", "const floored = false;", "charts", "exact zeros are triangles"),
     ("chart.js", "'on the axis: exactly zero'", "''", "charts", "the key says"),
-    ("chart.js", "if (typeof p.x_low === 'number'", "if (typeof p.x_lo === 'number'", "charts", "the cost has bars"),
+    ("chart.js", "if (typeof p.x_low !== 'number'", "if (typeof p.x_lo !== 'number'", "charts", "the cost has bars"),
     ("chart.js", "points.every((p) => p.zero)", "false", "charts", "a chart of zeros"),
     ("focus.js", "setAttribute('tabindex', other === item ? 0 : -1)", "setAttribute('tabindex', 0)", "charts", "a chart is one stop"),
     ("focus.js", "node.addEventListener('focus', show);", "", "charts", "the focus shows what it says"),
@@ -52,18 +52,19 @@ DAMAGES = [
     ("state.js", "next.append(key, one)", "next.append(key + 's', one)", "charts", "the case has a permalink"),
     ("chart.js", "view.kind = other();", "", "charts", "the vertical scale can be switched"),
     ("chart.js", "view.transform = d3.event.transform;", "", "charts", "a chart can be enlarged"),
+    ("chart.js", "Math.ceil(decades / (2 * wanted))", "1", "charts", "ticks have room"),
     ("text.js", "if (size >= 1e-4 && size < 1e6)", "if (true)", "charts", "numbers read right"),
     ("map.js", "tabIndex: -1,\n    'data-group': row, style: `--c:var(--c${i});--i:var(--i${i})`}, statusOf(cell.status).glyph)", "tabIndex: -1,\n    'data-group': row})", "maps", "every cell has a glyph"),
     ("map.js", ".reverse()", "", "maps", "rows go up"),
     ("map.js", "[status.title, status.help]", "[status.title]", "maps", "the legend says"),
     ("map.js", "if (known) button.onclick", "if (!known) button.onclick", "maps", "Enter opens its case"),
-    ("state.js", "document.body.classList.toggle('off-'", "document.body.classList.toggle('no-'", "switches", "a solver that is switched off"),
-    ("cases.js", "!isOff(row.entry.solver) &&", "", "switches", "nor cases in the table"),
-    ("focus.js", "state.watch(reset);", "", "switches", "the Tab key still finds"),
-    ("scene.js", "box.hidden = i !== now;", "box.hidden = false;", "switches", "a click shows another"),
-    ("state.js", "step ? 'pushState' : 'replaceState'", "'replaceState'", "switches", "and back brings"),
-    ("cases.js", "if (!dialog.open) dialog.showModal();", "", "switches", "an address shows its scene and its case"),
-    ("page.js", "placeOf(wanted)?.scrollIntoView();", "", "switches", "the address of a section"),
+    ("state.js", "document.body.classList.toggle('off-'", "document.body.classList.toggle('no-'", "switches", "bullet, switched off, has none"),
+    ("cases.js", "!isOff(row.entry.solver) &&", "", "choices", "nor cases in the table"),
+    ("focus.js", "state.watch(reset);", "", "choices", "the Tab key still finds"),
+    ("scene.js", "box.hidden = i !== now;", "box.hidden = false;", "choices", "a click shows another"),
+    ("state.js", "step ? 'pushState' : 'replaceState'", "'replaceState'", "choices", "and back brings"),
+    ("cases.js", "if (!dialog.open) dialog.showModal();", "", "choices", "an address shows its scene and its case"),
+    ("page.js", "placeOf(wanted)?.scrollIntoView()", "0", "choices", "the address of a section"),
     ("cases.js", "column.numeric ? u - v : ", "", "cases", "sorted by number"),
     ("cases.js", "(down ? -1 : 1)", "1", "cases", "a click sorts the other way"),
     ("cases.js", "['-' + name]: 'descending'", "['-' + name]: 'ascending'", "cases", "and says so"),
@@ -74,19 +75,19 @@ DAMAGES = [
     ("text.js", "if (typeof value === 'number') return Number.isFinite(value) ? String(value) : '';", "value = String(value);", "cases", "a negative number stays"),
     ("film.js", "if (!touched || time >= lead.duration - lead.frame) seek(0);", "", "films", "a click plays it from its beginning"),
     ("film.js", "if (!videos[0].paused) return pause();", "", "films", "another one stops it"),
-    ("film.js", "box.focus({preventScroll: true}); toggle();", "toggle();", "films", "space plays"),
     ("film.js", "ArrowRight: () => step(1)", "ArrowUp: () => step(1)", "films", "after a click the right arrow"),
     ("film.js", "time = Math.max(0, Math.min(lead.duration, t));\n    videos.forEach(place);", "time = Math.max(0, Math.min(lead.duration, t));", "films", "the film is where the clock is"),
     ("film.js", "ArrowLeft: () => step(-1), ", "", "films", "the left one steps back"),
     ("film.js", "{' ': toggle, ", "{", "films", "space plays"),
     ("film.js", "shown(s.y[at], quantity)", "shown(s.y[0], quantity)", "films", "the values beside it"),
-    ("page.css", "main { grid-column: 2; min-width: 0;", "main { grid-column: 2; min-width: 1200px;", "layout", "768 px: no sideways scrolling"),
-    ("chart.js", "thin(axisX.selectAll('text').nodes());", "axisX.selectAll('text').attr('dx', '2em');", "layout", "390 px: no text of a chart"),
+    ("page.css", "main { grid-column: 2; min-width: 0;", "main { grid-column: 2; min-width: 1200px;", "layout", "hang, 768 px: no sideways scrolling"),
+    ("chart.js", "thin(axisX.selectAll('text').nodes());", "axisX.selectAll('text').attr('dx', '2em');", "layout", "hang, 390 px: no text of a chart"),
     ("page.css", "--muted: #59616e", "--muted: #a9b1be", "layout", "texts have contrast, light"),
     ("page.css", "--muted: #a3adba", "--muted: #59616e", "layout", "texts have contrast, dark"),
     ("film.js", "'aria-label': `Time of the film of ${short(scene.title)} [s]`,", "", "layout", "accessibility: the serious rules"),
     ("scene.js", "box.hidden = false; sceneView.build(i);", "", "prints", "all scenes are printed"),
     ("page.css", ".basis, .tile .basis { position: static; visibility: visible; opacity: 1;", ".basis, .tile .basis { position: static;", "prints", "with the basis of every claim"),
+    ("page.css", "  td { overflow-wrap: anywhere; }\n", "", "prints", "paper: nothing is cut at the edge"),
     ("page.js", "part.open = true;", "", "prints", "and all that is folded"),
     ("page.js", "if (sceneView.boxes.length) sceneView.showOne();", "", "prints", "afterwards one scene again"),
     ("text.js", "document.createElement('span');\n  Object.assign(box, {className: 'long', tabIndex: 0, textContent: child});", "document.createElement('span');\n  box.innerHTML = child;", "hostile", "hostile texts do not make the page long"),
@@ -94,6 +95,24 @@ DAMAGES = [
     ("page.css", "color: var(--ink); overflow-wrap: anywhere;", "color: var(--ink);", "hostile", "hostile texts, 390 px: no sideways"),
     ("index.html", "JavaScript is off", "Welcome", "without_script", "without JavaScript it says"),
     ("index.html", "{{headlines}}", "", "without_script", "without JavaScript the headlines"),
+    ("page.js", "\nstart();\n", "\nlet sum = 0;\nfor (let i = 0; i < 3e8; ++i) sum += Math.sqrt(i);\nstart();\n", "drawn", "it is drawn within two seconds"),
+    ("index.html", "</html>", "</html>" + 8_000_000 * " ", "drawn", "it is smaller than 8 MB"),
+    ("sections.js", "claimsAbout(['note'], ['all', 'only', 'failures'])", "[]", "drawn", "every claim is on the page"),
+    ("page.js", "\nstart();\n", "\nstart();\nfetch('https://example.org/x');\n", "drawn", "the report: no"),
+    ("scene.js", "box.hidden = i !== now;", "box.hidden = false;", "layout", "ball, 768 px: one scene at a time"),
+    ("page.css", "section + section { margin-top: 40px; }", "section { min-height: 1500px; }", "layout", "hang, 1280 px: the page is below"),
+    ("claim.js", "return fresh.length ? el", "return true ? el", "layout", "hang, 1280 px: nothing that is shown is empty"),
+    ("scene.js", "state.get('scene'))", "state.get('scenes'))", "permalinks", "ball: its address shows it"),
+    ("cases.js", "command(entry.command));", "'');", "permalinks", "ball: its case is open"),
+    ("page.js", "requestAnimationFrame(() => requestAnimationFrame(() => placeOf(wanted)?.scrollIntoView()))", "0", "permalinks", "hang: the address of a chart"),
+    ("state.js", "const isOff = (solver) => state", "const isOff = (solver) => false && state", "permalinks", "the address of a section leads there, its solver"),
+    ("cases.js", "row.entry.status === state.get('ended')", "true", "table", "the table says how many"),
+    ("cases.js", "(down ? -1 : 1)", "1", "table", "two clicks sort"),
+    ("cases.js", "casesCsv(rows)", "casesCsv(model.cases)", "table", "the file holds what is shown"),
+    ("cases.js", "download: 'cases.csv'", "download: 'x.csv'", "table", "a click downloads"),
+    ("text.js", "return Number.isFinite(value) ? String(value) : '';", "return value.toPrecision(4);", "table", "with every digit"),
+    ("map.js", "'data-s': solverOf(map.solver).order},\n            el('figcaption'", "'data-s': 0},\n            el('figcaption'", "switches", "bullet, switched off, has no map"),
+    ("cases.js", "!isOff(row.entry.solver) &&", "", "switches", "bullet, switched off, is not in the table"),
     ("index.html", 'href="#main"', 'href="#case"', "keyboard", "the first Tab and Enter"),
     ("page.js", "type: 'button', className: 'switch',", "type: 'button', className: 'switch', tabIndex: -1,", "keyboard", "Tab reaches every control"),
 ]
@@ -117,7 +136,7 @@ def main(out, word):
                 return text
             used.append(old in text)
             return text.replace(old, new)
-        checks, said = page.Checks(browser, out, change), io.StringIO()
+        checks, said = Checks(browser, out, change), io.StringIO()
         try:
             with contextlib.redirect_stdout(said):
                 page.ALL[check](checks)

@@ -73,13 +73,11 @@ def scene_parts(model, scene):
                     continue
                 point = {"x": sweeps, "y": one["values"].get("stretch.rms"), "status": one["status"], "case": one["key"],
                          "failed": failed, "zero": False, "name": one["brief"]}
-                if not failed:
-                    point.update(low=point["y"] * 0.9, high=point["y"] * 1.1)
                 depth = one["values"].get("penetration.peak")
                 cost = sweeps * 0.001 * (1 if solver == "jakobsen" else 3)
                 one["cost"] = {"cpu.per_second": {"low": cost * 0.9, "mid": cost, "high": cost * 1.2, "n": 9}}
                 lines[0].append(point)
-                lines[1].append({**point, "y": depth, "zero": depth == 0, "low": None, "high": None})
+                lines[1].append({**point, "y": depth, "zero": depth == 0})
                 lines[2].append({**point, "x": cost, "x_low": cost * 0.9, "x_high": cost * 1.2})
         head = {"solver": solver, "label": solver.title(), "variant": 0}
         series.append({**head, "join": True, "points": lines[0]})
@@ -97,8 +95,7 @@ def scene_parts(model, scene):
     model["charts"] += [
         {"id": f"{scene}-convergence", "scene": scene, "title": "Stretch over sweeps", "caption": "Last second.", "kind": "convergence",
          "x": sweeps, "y": AXIS["stretch.rms"], "held": "time step 1/60 s", "series": series,
-         "theory": {"slope": -1, "factor": 0.04, "text": "theory: 1 / sweeps"}, "floor": {"y": 0.001, "text": "reference"},
-         "claims": [f"chart-{scene}"]},
+         "theory": {"slope": -1, "factor": 0.04, "text": "theory: 1 / sweeps"}, "floor": {"y": 0.001, "text": "reference"}},
         {"id": f"{scene}-penetration", "scene": scene, "title": "Penetration over sweeps", "caption": "", "kind": "penetration",
          "x": sweeps, "y": AXIS["penetration.peak"], "series": depths},
         {"id": f"{scene}-cost", "scene": scene, "title": "Stretch over cost", "caption": "", "kind": "cost",
@@ -166,7 +163,7 @@ def make():
     model["scenes"].append({"id": "twist", "title": "Twist", "summary": "A strip, wound up", "studied": False,
                             "refusals": [{"solver": "bullet", "reason": "moving pins"}]})
     tile = {"metric": "stretch.rms", "heading": "Stretch", "bars": [{"solver": "jakobsen", "value": 0.006, "text": "0.6 %"},
-                                                                    {"solver": "bullet", "value": None, "text": "no value", "note": "failed"}]}
+                                                                    {"solver": "bullet", "value": None, "text": "no value"}]}
     model["claims"] += [claim("head", "headline", "all", "At 1 × 8 Jakobsen leaves 1/3 of the stretch of Bullet.", values, strong=["1/3 of the stretch"],
                               film="film-hang" if model["films"] else None),
                         claim("tile", "tile", "all", "At 1 × 8, last second.", values, **tile),
@@ -178,7 +175,8 @@ def make():
     model["cost"] = {"machine": "a machine", "claims": ["costs"], "tables": ["levels-hang"], "scenes": [
         {"scene": s, "control": control, "noisy": s == "ball", "noise": "Two runs of identical code differed by up to 4 %.", "charts": [f"{s}-cost"],
          "tables": [f"levels-{s}"] if s == "ball" else []} for s in ("hang", "ball")]}
-    rows = [{"section": "One", "statement": "a link returns", "source": "Jakobsen", "subject": s, "expected": "0.1 m", "measured": "0.1 m",
+    rows = [{"section": "One", "statement": "a link returns", "source": "Jakobsen", "subject": f"{s}:iterations=64,projection=exact,precision=double",
+             "expected": "0.1 m (at t=0.123456789012345)", "measured": "error-at-the-end=0.100000000000001",
              "verdict": v, **({"why": "no square root"} if v == "deviates" else {})} for s, v in (("jakobsen", "passed"), ("bullet", "deviates"))]
     model["truths"] = {"truths": 1, "findings": 2, "verdicts": {"passed": 1, "deviates": 1}, "rows": rows}
     model["regressions"] = {"cases": 3, "values": 30, "rows": [{"study": "regression", "case": "hang", "change": "0.012 -> 0.013"}]}

@@ -2,6 +2,7 @@
 """Regressions: a baseline passes only against the study that made it, and says what moved."""
 
 import json
+import re
 import shlex
 import xml.etree.ElementTree
 
@@ -74,6 +75,32 @@ class Check(CommandLine):
         self.update("the plant is pulled out")
         self.check(0)
         self.assertEqual(self.files()["bullet.jsonl"], bullet, "only rows that moved are written")
+
+    def test_what_moved_is_counted_judged_and_led_by_the_worst(self):
+        self.update()
+
+        def scale(*factors):
+            def plant(rows):
+                for row, by in zip(rows, factors):
+                    row["values"] |= {name: by * row["values"][name] for name in ("stretch.rms", "energy.kinetic")}
+                return rows
+            return plant
+        self.edit("jakobsen", scale(2, 1.25))  # now it is less: better
+        self.edit("bullet", scale(0.25, 1))    # and here four times as much
+        out = self.check(1).split("allowed")[0]
+        row = r"\./small\.toml +%s +3 cases, +largest change \+300 %% \((\S+) -> (\S+)( \S+)?\)%s\n"
+        self.assertRegex(out, row % ("stretch.rms", "; better in 2, worse in 1"))
+        self.assertRegex(out, row % ("energy.kinetic", ""))
+        before, now = map(float, re.search(row % ("stretch.rms", ".*"), out).groups()[:2])
+        self.assertAlmostEqual(now / before, 4, delta=0.05)
+        self.assertIn("6 moved", out)
+        self.edit("bullet", lambda rows: rows[:1] + [rows[1] | {"status": "exploded (energy)"}])
+        out = self.check(1)
+        self.assertLess(out.index("exploded (energy) -> ok"), out.index("stretch.rms"), "no change of a value is worse than a status")
+        moved = {m["value"]: m for m in json.loads(self.check(1, "--json"))["studies"][0]["moved"]}
+        said = {"cases": 3, "less": 2, "more": 1, "scene": "./small.toml"}
+        self.assertEqual(moved["stretch.rms"] | said | {"less_is_better": True, "unit": "1"}, moved["stretch.rms"])
+        self.assertEqual(moved["energy.kinetic"] | said | {"less_is_better": False}, moved["energy.kinetic"])
 
     def test_a_change_of_status_is_a_regression(self):
         self.update()

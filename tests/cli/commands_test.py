@@ -7,6 +7,7 @@ import json
 import math
 import pathlib
 import re
+import shlex
 import socket
 import struct
 import subprocess
@@ -154,6 +155,27 @@ class Verbs(CommandLine):
         self.assertIn("dt = ", (self.folder / drawn.out.split()[0]).read_text())
         series = self.taut("plot", study, "--kind", "series", "--y", "stretch.rms")
         self.assertIn("Jakobsen 5 × 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
+
+    def test_a_run_ends_with_commands_that_work(self):
+        self.study("a study.toml", rest="axes.iterations = [1, 2]\n" + '[[plot]]\nkind = "error-iterations"\n')
+        said = self.taut("run", "./a study.toml", "--out", "other results").err
+        commands = [shlex.split(line) for line in said.partition("next: ")[2].splitlines()]
+        self.assertEqual([words[:2] for words in commands], [["taut", "report"], ["taut", "plot"], ["taut", "export"]])
+        for words in commands:
+            self.taut(*words[1:])
+        self.assertEqual(len((self.folder / "table.csv").read_text().splitlines()), 3)
+
+    def test_unequal_work_is_said_wherever_it_is_compared(self):
+        plot = '[[plot]]\nkind = "error-iterations"\n'
+        unequal = self.study("unequal.toml", solvers=["jakobsen:substeps=2", "bullet"], rest="axes.iterations = [1, 4]\n" + plot)
+        equal = self.study("equal.toml", solvers=["jakobsen", "bullet:substeps=1", "jakobsen:substeps=1"], rest="axes.iterations = [1, 4]\n" + plot)
+        words = "unequal work: Jakobsen 2 × 1 to 2 × 4, Bullet 1 × 1 to 1 × 4 (substeps × sweeps)"
+        for study, said in ((unequal, self.assertIn), (equal, self.assertNotIn)):
+            said(words if study == unequal else "unequal", self.taut("run", study).err)
+            figure = self.folder / self.taut("plot", study).out.split()[0]
+            said("unequal work", figure.with_suffix(".gp").read_text())
+            method = json.loads(self.taut("report", study, "--no-media", "--json").out)["method"]
+            said("U" + words[1:] if study == unequal else "nequal", method["studies"][0].get("unequal", ""))
 
     def test_targets_that_cannot_be_written_are_refused_before_the_work(self):
         study = self.study()

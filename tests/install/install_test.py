@@ -37,6 +37,11 @@ class Installed(unittest.TestCase):
         cls.fall.write_text('summary = "Nothing holds it"\n[cloth]\ngrid = [3, 3]\nsize = [1, 1]\nmass = 1\n'
                             '[time]\ndt = "1/64"\nduration = 1\n')
 
+    def test_the_manual_and_the_completion_are_where_they_are_looked_for(self):
+        taut = self.prefix / "bin/taut"
+        for option, file in (("--man", "share/man/man1/taut.1"), ("--bash-completion", "share/bash-completion/completions/taut")):
+            self.assertEqual((self.prefix / file).read_text(), call(taut, option))
+
     def build(self, name, *components, source="int main() {}", libraries="", expect=0):
         """Configures and builds a project of one file that finds these components."""
         folder = self.folder / name

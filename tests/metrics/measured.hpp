@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
+#include <random>
 #include <string>
 
 #include "experiments/metrics/metric.hpp"
@@ -46,6 +48,30 @@ Values measure(const Scene& scene, const Motion& motion) {
 
 inline Values measure_at_rest(const Scene& scene, const State& state) {
   return measure(scene, [&](int) { return state; });
+}
+
+/// Numbers at random, the same on every machine.
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : random_(seed) {}
+  double number(double low, double high) {
+    return std::uniform_real_distribution<>(low, high)(random_);
+  }
+  Vec3 vector(double size) {  // braces: from left to right, whatever the compiler
+    return Vec3{std::array{number(-size, size), number(-size, size), number(-size, size)}.data()};
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// Of a point from a surface [m], negative inside.
+inline double signed_distance(const Shape& shape, const Vec3& p) {
+  if (const auto* plane = std::get_if<Plane>(&shape)) return plane->normal.dot(p) - plane->offset;
+  if (const auto* ball = std::get_if<Ball>(&shape)) return (p - ball->center).norm() - ball->radius;
+  const Box& box = std::get<Box>(shape);
+  const Vec3 q = (box.rotation.inverse() * (p - box.center)).cwiseAbs() - box.half_extents;
+  return q.maxCoeff() < 0 ? q.maxCoeff() : q.cwiseMax(0).norm();
 }
 
 inline std::size_t middle(const Scene& s) { return s.mesh.rest.size() / 2; }

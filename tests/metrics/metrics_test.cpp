@@ -30,6 +30,11 @@ TEST(Metrics, HaveUniqueNamesUnitsAndAsManyNumbersNowAsAtTheEnd) {
     for (const ValueSpec& value : entry->values) {
       EXPECT_EQ(++seen[value.name], 1) << value.name;
       EXPECT_FALSE(value.unit.si.empty() || value.help.empty()) << value.name;
+      EXPECT_TRUE(value.role != Role::error || value.negligible > 0) << "no mean of logarithms";
+      EXPECT_TRUE(!value.shown_over_time || value.in_series) << value.name;
+      EXPECT_TRUE(value.floor.value.empty() || value.floor.value == kStrainFloor ||
+                  find_value(value.floor.value).second)
+          << value.name;
     }
   }
 }

@@ -1,6 +1,8 @@
 // The reference solvers against closed forms, and their refusal to answer where there is no answer.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -121,6 +123,72 @@ TEST(StaticEquilibrium, RefusesWhatHasNoUniqueAnswer) {
   EXPECT_FALSE(static_equilibrium(free).unique);
 }
 
+/// Tensions and weights cancel at every free vertex, links that pull have their length, and others
+/// are shorter.
+void expect_balance(const Scene& s, const Equilibrium& e) {
+  ASSERT_TRUE(e.unique) << e.reason;
+  ASSERT_EQ(e.tension.size(), s.links.size());
+  std::vector<Vec3> force;
+  for (const double mass : s.mesh.mass) force.push_back(mass * s.gravity);
+  for (std::size_t j = 0; j < s.links.size(); ++j) {
+    const auto a = static_cast<std::size_t>(s.links[j].a),
+               b = static_cast<std::size_t>(s.links[j].b);
+    const Vec3 along = e.x[b] - e.x[a];
+    EXPECT_NEAR(along.norm(), s.links[j].rest, 1e-12) << j;
+    EXPECT_GE(e.tension[j], 0) << j;
+    force[a] += e.tension[j] * along.normalized(), force[b] -= e.tension[j] * along.normalized();
+  }
+  for (std::size_t i = 0; i < force.size(); ++i)
+    if (std::ranges::count(s.pins, static_cast<int>(i)))
+      EXPECT_EQ((e.x[i] - s.start.x[i]).norm(), 0) << i;
+    else
+      EXPECT_LT(force[i].norm(), 1e-11) << i;
+  EXPECT_LT(e.floor, 1e-12);
+  EXPECT_LT(e.violation, 1e-12);
+  EXPECT_LT(e.unbalanced, 1e-11);
+}
+
+TEST(StaticEquilibrium, OfAnUnevenRopeAndAnUnevenNetBalancesAtEveryVertex) {
+  Scene rope = rods(9, std::vector<Vec3>(10, Vec3::Zero()));
+  for (std::size_t i = 0; i < 10; ++i) {
+    rope.mesh.mass[i] = 0.1 + 0.05 * static_cast<double>(i * 7 % 10);
+    rope.start.x[i] = Vec3(0.6 * static_cast<double>(i), 0.1 * static_cast<double>(i % 3),
+                           0.2 * static_cast<double>(i));
+  }
+  for (Link& l : rope.links) l.rest = 0.8 + 0.03 * (l.a * 5 % 9);
+  rope.pins = {0, 9};
+  rope.gravity = {0.3, -9, 1};
+  expect_balance(rope, static_equilibrium(rope));
+  Scene net = two_corners(5, 0.8);  // a column's weight differs from that of the next one
+  for (std::size_t i = 0; i < net.mesh.mass.size(); ++i)
+    net.mesh.mass[i] *= 1 + 0.1 * static_cast<double>(i % 5);
+  expect_balance(net, static_equilibrium(net));
+}
+
+// Each link is as long as it likes: a plumb line below the pin, and straight between two pins that
+// are just as far apart.
+TEST(StaticEquilibrium, OfAPlumbLineAndATautRopeIsKnownWithoutIteration) {
+  Scene line = rods(5, {{0, 0, 0}, {1, 0, 0}, {1, 0.5, 0}, {2, 0, 0}, {2, 0, 1}, {3, 0, 1}});
+  double depth = 0;
+  for (Link& l : line.links) l.rest = 0.5 + 0.1 * l.a;
+  line.gravity = {0, -3, 4};
+  const Equilibrium hung = static_equilibrium(line);
+  ASSERT_TRUE(hung.unique) << hung.reason;
+  for (std::size_t i = 1; i < 6; ++i) {
+    depth += line.links[i - 1].rest;
+    EXPECT_LT((hung.x[i] - depth * Vec3(0, -0.6, 0.8)).norm(), 1e-14) << i;
+  }
+  EXPECT_LT(hung.floor, 1e-14);
+  line.pins = {0, 4};  // the last vertex hangs from the second pin
+  line.start.x[4] = Vec3(2, 1, 2).normalized() * (0.5 + 0.6 + 0.7 + 0.8);
+  const Equilibrium taut = static_equilibrium(line);
+  ASSERT_TRUE(taut.unique) << taut.reason;
+  for (std::size_t i = 1; i < 4; ++i)
+    EXPECT_NEAR((taut.x[i] - taut.x[i - 1]).norm(), line.links[i - 1].rest, 1e-12);
+  EXPECT_LT((taut.x[2] - Vec3(2, 1, 2).normalized() * 1.1).norm(), 1e-12);
+  EXPECT_LT((taut.x[5] - taut.x[4] - 0.9 * Vec3(0, -0.6, 0.8)).norm(), 1e-12);
+}
+
 TEST(Shake, DoublePendulumConvergesInSecondOrder) {
   const double a = 120 * std::numbers::pi / 180, b = -10 * std::numbers::pi / 180;
   const auto exact = double_pendulum({a, b}, 1);
@@ -138,6 +206,106 @@ TEST(Shake, DoublePendulumConvergesInSecondOrder) {
   const Trajectory t = converged_motion(s, {1}, 1.0 / 256);
   ASSERT_TRUE(t.unique) << t.reason;
   EXPECT_LT((t.states[0].x[2] - exact[1]).norm(), 2 * t.floor[0]);
+}
+
+/// Largest error of the position and of the velocity over half a second, of any vertex.
+template <class Exact>
+std::array<double, 2> errors(const Scene& s, int steps, const Exact& exact) {
+  Shake shake(s, 0.5 / steps);
+  std::array<double, 2> most{};
+  for (int n = 1; n <= steps; ++n) {
+    EXPECT_TRUE(shake.step());
+    EXPECT_NEAR(shake.time(), 0.5 * n / steps, 1e-12);
+    const State is = shake.state(), should = exact(shake.time());
+    for (std::size_t i = 0; i < is.x.size(); ++i) {
+      most[0] = std::max(most[0], (is.x[i] - should.x[i]).norm());
+      most[1] = std::max(most[1], (is.v[i] - should.v[i]).norm());
+    }
+  }
+  return most;
+}
+
+template <class Exact>
+void expect_second_order(const Scene& s, const Exact& exact) {
+  const auto coarse = errors(s, 128, exact), fine = errors(s, 256, exact);
+  for (const std::size_t k : {0u, 1u}) {
+    EXPECT_NEAR(std::log2(coarse[k] / fine[k]), 2, 0.06) << k;
+    EXPECT_LT(fine[k], 2e-3) << k;
+  }
+}
+
+// A level sheet falls as one body: v' = g - (damping + c A/m) v + c A/m wind, each vertex with the
+// share of A that it has of m.
+TEST(Shake, DampingAndWindAreThoseOfAFallingSheet) {
+  for (const double strength : {0.0, 0.9}) {
+    Scene s;
+    s.mesh =
+        make_sheet({.nu = 4, .nv = 4, .width = 1, .height = 1, .v = Vec3::UnitZ(), .mass = 0.2});
+    s.mesh.mass.assign(16, 0);
+    for (const Triangle& t : s.mesh.triangles)  // thirds, as of the wind
+      for (const int corner : t) s.mesh.mass[static_cast<std::size_t>(corner)] += 0.2 / 54;
+    s.start = {s.mesh.rest, std::vector<Vec3>(16, Vec3(0.7, 2, -0.4))};
+    s.links = grid_links(s.mesh, {});
+    s.damping = 1.5;
+    s.wind = Wind{.velocity = {5, 1.2, 3},
+                  .strength = strength};  // a level face feels what is vertical alone
+    const double drag = strength / 0.2;
+    expect_second_order(s, [&](double t) {
+      State exact = s.start;
+      for (std::size_t i = 0; i < 16; ++i) {
+        for (const int axis : {0, 1, 2}) {
+          const double rate = s.damping + (axis == 1 ? drag : 0),
+                       push = axis == 1 ? drag * 1.2 - 9.81 : 0;
+          const double end = push / rate, start = s.start.v[i][axis];
+          exact.v[i][axis] = end + (start - end) * std::exp(-rate * t);
+          exact.x[i][axis] += end * t + (start - end) * -std::expm1(-rate * t) / rate;
+        }
+      }
+      return exact;
+    });
+  }
+}
+
+// Seen from a pin that moves evenly, a pendulum swings as below one that rests.
+TEST(Shake, APinThatMovesEvenlyMovesThePendulumWithIt) {
+  Scene rest = rods(2, {Vec3::Zero(), Vec3(0.6, -0.8, 0), Vec3(0.6, -0.8, 1)}), moving = rest;
+  const Vec3 velocity(1, 0.5, -2);
+  moving.pin_motions = {{{0}, {.velocity = velocity}}};
+  for (Vec3& v : moving.start.v) v = velocity;
+  Shake a(rest, 1.0 / 512), b(moving, 1.0 / 512);
+  for (int n = 1; n <= 256; ++n) {
+    ASSERT_TRUE(a.step() && b.step());
+    const State resting = a.state(), carried = b.state();
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_LT((carried.x[i] - resting.x[i] - n / 512.0 * velocity).norm(), 1e-10);
+      EXPECT_LT((carried.v[i] - resting.v[i] - velocity).norm(), 1e-7);
+    }
+  }
+}
+
+// Half a period, in the plane and out of it, and the converged motion at several moments.
+TEST(Shake, ConvergedMotionIsThatOfThePendulumWithItsVelocityAndItsFloor) {
+  const double a = 1.1, b = 0.4;
+  const Vec3 x1(std::sin(a), -std::cos(a), 0);
+  const Scene s = rods(2, {Vec3::Zero(), x1, x1 + Vec3(std::sin(b), -std::cos(b), 0)});
+  const std::vector<double> times{0.25, 0.5, 0.75};
+  const Trajectory t = converged_motion(s, times, 1.0 / 256);
+  ASSERT_TRUE(t.unique) << t.reason;
+  ASSERT_EQ(t.states.size(), 3u);
+  ASSERT_EQ(t.floor.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto exact = double_pendulum({a, b}, times[k]),
+               before = double_pendulum({a, b}, times[k] - 1e-4),
+               after = double_pendulum({a, b}, times[k] + 1e-4);
+    double worst = 0;
+    for (const std::size_t i : {0u, 1u}) {
+      worst = std::max(worst, (t.states[k].x[i + 1] - exact[i]).norm());
+      EXPECT_LT((t.states[k].v[i + 1] - (after[i] - before[i]) / 2e-4).norm(), 1e-5) << k;
+    }
+    EXPECT_LT(worst, 1e-7) << k;
+    EXPECT_LT(worst, 2 * t.floor[k]) << k;
+    EXPECT_LT(t.floor[k], 1e-5) << k;
+  }
 }
 
 TEST(Shake, RefusesContactAndLockingLinks) {

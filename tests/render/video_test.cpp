@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "experiments/render/picture/media.hpp"
@@ -94,6 +95,16 @@ TEST_F(VideoTest, MediaHasAVideoForEveryMomentTheSameBytesAgain) {
   ASSERT_EQ(media.material.size(), media.rms_strain.size());
   EXPECT_EQ(media.material[0].size(), 4u);
   EXPECT_EQ(media.mp4, render_media(scene, runs, quick()).mp4);
+  // the cloth moves all the time: each frame is another picture
+  std::ofstream(folder_ / "film.mp4", std::ios::binary) << media.mp4;
+  std::istringstream frames(output_of("ffmpeg -v error -i " + (folder_ / "film.mp4").string() +
+                                      " -f framemd5 - | grep -v '^#'"));
+  std::set<std::string> pictures;
+  std::size_t count = 0;
+  for (std::string line; std::getline(frames, line); ++count)
+    pictures.insert(line.substr(line.rfind(',')));
+  EXPECT_EQ(count, media.t.size());
+  EXPECT_EQ(pictures.size(), media.t.size());
 }
 
 TEST_F(VideoTest, WithoutFfmpegThereIsAPoster) {

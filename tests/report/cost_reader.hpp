@@ -118,9 +118,10 @@ class CostReader {
       EXPECT_EQ(m[3] == "without not", without == nullptr);
       if (!without) continue;
       const Ratio ratio = ratio_of(*with, *without);
-      const Sure sure = told(ratio, noise_of(bench(m[1])));
-      EXPECT_EQ(m[3] == "the same as", sure == Sure::none || sure == Sure::too_noisy);
-      EXPECT_EQ(m[3] == "more than", (sure == Sure::clear || sure == Sure::likely) && ratio[1] > 1);
+      const Certainty sure = told(ratio, noise_of(bench(m[1])));
+      EXPECT_EQ(m[3] == "the same as", sure == Certainty::none || sure == Certainty::too_noisy);
+      EXPECT_EQ(m[3] == "more than",
+                (sure == Certainty::clear || sure == Certainty::likely) && ratio[1] > 1);
       if (m[4].empty()) continue;
       EXPECT_PRED2(near, number_in(m[4]) / (m[5].empty() ? 1 : 100), ratio[1]);
     }
@@ -191,13 +192,13 @@ class CostReader {
             std::exp((middle + std::sqrt(above)) / n)};
   }
   /// How sure a difference is, as meaning() says it.
-  static Sure told(const Ratio& ratio, double noise) {
+  static Certainty told(const Ratio& ratio, double noise) {
     const auto& [low, mid, high] = ratio;
     const double change = std::max(mid, 1 / mid) - 1;
-    if (change > 0.05 && change <= noise) return Sure::too_noisy;
-    if (change <= 0.05 || (low <= 1 && 1 <= high)) return Sure::none;
+    if (change > 0.05 && change <= noise) return Certainty::too_noisy;
+    if (change <= 0.05 || (low <= 1 && 1 <= high)) return Certainty::none;
     const double least = (mid < 1 ? 1 / high : low) - 1;
-    return noise <= 0.05 && least > std::max(noise, 0.05) ? Sure::clear : Sure::likely;
+    return noise <= 0.05 && least > std::max(noise, 0.05) ? Certainty::clear : Certainty::likely;
   }
   const SceneBench& bench(const std::string& scene) const {
     return *std::ranges::find(input_.bench->scenes, scene, &SceneBench::scene);
@@ -232,7 +233,7 @@ class CostReader {
     Scenes judged;
     double noise = 0;
     std::vector<Ratio> all;
-    std::set<Sure> sure;
+    std::set<Certainty> sure;
     for (const auto& [scene, ratio] : ratios) {
       noise = std::max(noise, noise_of(bench(scene))), all.push_back(ratio);
       sure.insert(told(ratio, noise_of(bench(scene))));
@@ -255,14 +256,14 @@ class CostReader {
          [&](double change, double stray) { EXPECT_LE(std::abs(change), stray + 1e-9); });
     each(" No difference that can be told on ", [](double, double) {});
     if (ratios.empty()) {
-      EXPECT_EQ(sure_, Sure::single_run);
+      EXPECT_EQ(sure_, Certainty::single_run);
       EXPECT_EQ(text_.find("of the CPU time"), std::string::npos);
       return judged;
     }
     const Ratio mean = mean_of(all);
     sure.insert(told(mean, noise));
-    sure.erase(Sure::none);
-    EXPECT_EQ(sure_, sure.empty() ? Sure::none : *sure.rbegin());
+    sure.erase(Certainty::none);
+    EXPECT_EQ(sure_, sure.empty() ? Certainty::none : *sure.rbegin());
     const auto ends = matches(text_, pattern("95\u00A0% interval #(\u00A0%)? to #(\u00A0%)?;"));
     EXPECT_EQ(ends.size(), 1U);
     const auto number = [](const Names& m, std::size_t at) {
@@ -296,7 +297,7 @@ class CostReader {
 
   const ReportInput& input_;
   const std::string& text_;
-  Sure sure_;
+  Certainty sure_;
 };
 
 }  // namespace taut::report::reading

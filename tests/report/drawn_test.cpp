@@ -8,7 +8,7 @@
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/settings.hpp"
-#include "experiments/report/model/model.hpp"
+#include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
 #include "tests/report/raw_records.hpp"
@@ -55,8 +55,8 @@ TEST(Drawn, APointIsOfItsSolverMarkedAsItEndedAndInsideItsInterval) {
     for (const Json& chart : made.model.value("charts", Json::array())) {
       for (const char* axis : {"x", "y"}) {
         const Quantity q = quantity(chart[axis]["metric"].get<std::string>());
-        EXPECT_EQ(chart[axis]["scale"], q.scale) << q.name;
-        EXPECT_EQ(chart[axis]["unit"], q.unit) << q.name;
+        EXPECT_EQ(chart[axis]["scale"], q.unit.scale) << q.name;
+        EXPECT_EQ(chart[axis]["unit"], q.unit.shown) << q.name;
       }
       for (const Json& series : chart["series"]) {
         const std::string solver = series["solver"];
@@ -95,6 +95,31 @@ TEST(Drawn, APointIsOfItsSolverMarkedAsItEndedAndInsideItsInterval) {
   }
   EXPECT_GT(points, 300U);
   EXPECT_GT(intervals, 10U);
+}
+
+TEST(Drawn, NoClaimContradictsAChart) {
+  std::size_t compared = 0;
+  for (const Made& made : sets()) {
+    std::map<std::pair<std::string, std::string>, Json> drawn;  // (case, metric) -> y
+    for (const Json& chart : made.model.value("charts", Json::array()))
+      for (const Json& series : chart["series"])
+        for (const Json& p : series["points"]) {
+          EXPECT_EQ(p["status"], made.cases.at(p["case"])["status"]);
+          EXPECT_EQ(p["failed"].get<bool>(), p["y"].is_null());
+          drawn[{p["case"], chart["y"]["metric"]}] = p["y"];
+        }
+    for (const Json& claim : made.model["claims"])
+      for (const Json& basis : claim["basis"])
+        for (const Json& value : basis["values"]) {
+          if (!value.contains("case")) continue;  // of another results folder
+          EXPECT_EQ(value["status"], made.cases.at(value["case"])["status"]) << claim["id"];
+          const auto at = drawn.find({value["case"], basis["metric"]});
+          if (at == drawn.end()) continue;
+          ++compared;
+          EXPECT_EQ(at->second, value["value"]) << claim["sentence"];
+        }
+  }
+  EXPECT_GT(compared, 100U);
 }
 
 TEST(Drawn, CountsOfStatusesAreOfAllCases) {
@@ -138,11 +163,12 @@ TEST(Drawn, ABasisNamesTheWindowOfItsMetricAndOrderedIntervals) {
   std::size_t intervals = 0;
   for (const Made& made : sets()) {
     for (const auto& [name, metric] : made.model["metrics"].items())
-      EXPECT_EQ(metric["scale"], quantity(name).scale) << name;
+      EXPECT_EQ(metric["scale"], quantity(name).unit.scale) << name;
     for (const Json& claim : made.model["claims"])
       for (const Json& basis : claim["basis"]) {
-        const std::string window = quantity(basis["metric"].get<std::string>()).window;
-        EXPECT_EQ(basis["window"], window.empty() ? "whole run" : window) << basis["metric"];
+        const Window window = quantity(basis["metric"].get<std::string>()).window;
+        EXPECT_EQ(basis["window"], window == Window::none ? "whole run" : to_string(window))
+            << basis["metric"];
         for (const Json& value : basis["values"]) {
           const std::string label = value["label"];
           EXPECT_TRUE(claim["about"] == "differences" ||
@@ -209,11 +235,28 @@ TEST(Drawn, ACellOfAMapIsTheCaseOfItsRowAndColumn) {
         for (const auto& [axis, place] : {std::pair{"x", "column"}, {"y", "row"}}) {
           const Json& values = map[axis]["values"];
           EXPECT_TRUE(std::ranges::is_sorted(values.get<std::vector<double>>()));
-          EXPECT_EQ(values[cell[place].get<std::size_t>()], value_in(one, map[axis]["metric"]));
+          EXPECT_EQ(values.at(cell[place].get<std::size_t>()), value_in(one, map[axis]["metric"]));
         }
         ++seen;
       }
   EXPECT_GT(seen, 300U);
+}
+
+TEST(Drawn, AChartSaysTheWindowOfItsValueAndContactIsOfTheWholeRun) {
+  int contact = 0;
+  for (const Made& made : sets())
+    for (const Json& chart : made.model.value("charts", Json::array())) {
+      const Window window = quantity(chart["y"]["metric"].get<std::string>()).window;
+      const std::string caption = chart["caption"];
+      EXPECT_TRUE(!caption.starts_with("Last second.") || window == Window::last_second)
+          << chart["id"];
+      EXPECT_TRUE(!caption.ends_with("whole run.") || window == Window::run) << chart["id"];
+      if (chart["kind"] != "contact") continue;
+      EXPECT_FALSE(window == Window::last_second)
+          << chart["title"] << ": what has left by then is not seen";
+      ++contact;
+    }
+  EXPECT_GT(contact, 50);
 }
 
 TEST(Drawn, OfTwoCasesInOneCellTheWorseIsShown) {
@@ -291,7 +334,7 @@ TEST(Drawn, ATableOfCostsSaysWhatItsCasesCostAndABenchWhetherItWasNoisy) {
       for (const Json& row : table["rows"])
         for (const Json& cell : row) {
           if (!cell.contains("low")) continue;
-          const Json& cost = made.cases.at(cell["case"])["cost"]["cpu.per_second"];
+          const Json& cost = made.cases.at(cell["case"]).at("cost").at("cpu.per_second");
           EXPECT_EQ(cell["low"], cost["low"]);
           EXPECT_EQ(cell["value"], cost["mid"]);
           EXPECT_EQ(cell["high"], cost["high"]);

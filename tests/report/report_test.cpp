@@ -10,8 +10,6 @@
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/rivals.hpp"
-#include "experiments/report/model/model.hpp"
-#include "experiments/report/page.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"

@@ -8,7 +8,6 @@
 
 #include "core/io/document.hpp"
 #include "core/io/scene_io.hpp"
-#include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/require/answers.hpp"

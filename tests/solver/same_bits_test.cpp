@@ -7,6 +7,7 @@
 
 #include "core/solver/layout/colour_batches.hpp"
 #include "core/solver/layout/interleaved_sheet.hpp"
+#include "core/solver/simd/kernels_impl.hpp"
 #include "core/solver/thread_pool.hpp"
 #include "tests/support/cloths.hpp"
 

@@ -1,32 +1,38 @@
 #!/usr/bin/env python3
 """Plants random small errors in copies of single files and shows which of them no test notices.
 
-Usage: mutate.py FOLDER [--sample N] [--minutes M] [--seed S] [--layer L]... [--goal SHARE] [--widest N] [--jobs N] [--list]
+Usage: mutate.py BUILD FOLDER [--sample N] [--minutes M] [--seed S] [--layer L]... [--goal SHARE] [--widest N] [--limit SECONDS]
+                        [--planted FILE] [--jobs N] [--list]
 
-1. FOLDER gets a build of its own, unless it has one: file by file, at -O1 and without debug information, so that one
-   error costs one object and a link.
-2. N places are drawn: layers in turn, then an operator (arithmetic, comparison, logic, a constant off by little or by
+1. BUILD is a Ninja build of this tree. The layers are built once more in FOLDER, file by file and at -O1, so that one error
+   costs one object and a link; every block of code calls tests/source/executed.c. All else is taken from BUILD.
+2. Every check runs once, alone; a check is a unit test or a truth of `taut verify`. So it is known which checks run
+   which block, and how long each takes. This is kept in FOLDER until a layer or the test's own file changes.
+3. N places are drawn: layers in turn, then an operator (arithmetic, comparison, logic, a constant off by little or by
    much, a sign, an axis, min for max, a removed statement, swapped arguments), then a place. What does not compile, or
-   compiles to the same object code, is drawn again. The same seed plants the same errors in the same sources.
-3. The objects with these places are compiled once more with gcov's counters, and every check runs once with them: a
-   check is a suite of unit tests or a truth of `taut verify`. So it is known which checks run which line.
+   compiles to the same code, is drawn again. The same seed plants the same errors in the same sources.
 4. For each error the checks that run its line, those in the layer's own folder of tests first, quick ones before slow
-   ones, until one is red. A check also notices if it takes ten times the CPU time that it took before.
+   ones, until one is red or those tried take --limit seconds of CPU. A check also notices if it takes four times the
+   CPU time that it took before.
 
 Survivors are printed as a difference. Those that change no result are listed in equivalent_mutants.txt with the reason,
 and are not drawn. Files on which more than --widest objects depend are left out, and counted: --sample 1000 --widest 999
-is the long run. The aim is 92 % noticed, no layer below 85 %; --goal is the share below which the run fails, by more
-than chance: two standard deviations of a sample of this size. The tests ask for 0.7 until large samples have been run: of
-70 errors that somebody planted by hand all over the tree 48 were noticed (69 %), before tests were strengthened.
+is the long run. --planted plants the errors of a file in the same format instead. The aim is 92 % noticed, no layer below
+85 %; --goal is the share below which the run fails, by more than chance: two standard deviations of a sample of this size.
+The tests ask for 0.7 until a whole sample has been judged: of 70 errors that somebody planted by hand all over the tree 48
+were noticed (69 %), before tests were strengthened.
 """
 import argparse
+import bisect
 import concurrent.futures
 import contextlib
+import hashlib
 import itertools
 import json
 import math
 import os
 import pathlib
+import pickle
 import random
 import re
 import resource
@@ -39,249 +45,259 @@ import tempfile
 import threading
 import time
 
+sys.dont_write_bytecode = True
+from mutation_operators import sites  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EQUIVALENT = pathlib.Path(__file__).with_name("equivalent_mutants.txt")
+EXECUTED = pathlib.Path(__file__).with_name("executed.c")
 UNIT, TRUTH = "tests/taut_tests", "taut"  # the programs whose checks notice
 
-# Layers; the tests of each are in the folder of tests/ with its last name.
-LAYERS = ["core/model", "core/io", "core/solver", "core/reference", "bullet_ref", "experiments/metrics", "experiments/case",
-          "experiments/study", "experiments/timing", "experiments/baseline", "experiments/truths", "experiments/report",
-          "experiments/render"]
+# Layers and their libraries; the tests of each are in the folder of tests/ with its last name.
+LAYERS = {"core/model": "taut_model", "core/io": "taut_io", "core/solver": "taut_solver", "core/reference": "taut_reference",
+          "bullet_ref": "taut_bullet64", **{f"experiments/{name}": f"taut_{name}" for name in (
+              "metrics", "case", "study", "timing", "require", "extremes", "baseline", "truths", "report", "render")}}
 LEFT_OUT = re.compile(r"/(gl|font|shaders)\.[ch]pp$")  # no numbers in them
-NUMBER = r"(?<![\w.'])(\d+\.?\d*(?:e-?\d+)?)(?![\w.'])"
-
-
-def scaled(factor, step):
-    """A literal times `factor`; a whole number that this leaves alone, plus `step`."""
-    def change(match):
-        text = match[1]
-        if text.isdigit():
-            value = int(int(text) * factor)
-            return str(value if value != int(text) else int(text) + step)
-        return repr(float(text) * factor if float(text) else 0.1)
-    return change
-
-
-def exchanged(*couples):
-    table = {a: b for x, y in couples for a, b in ((x, y), (y, x))}
-    return lambda match: match[0].replace(match[1], table[match[1]])
-
-
-# operator: (pattern on code without texts and comments, replacement)
-OPERATORS = {
-    "arithmetic": (r" ([-+*/]) (?=[\w(])", exchanged("+-", "*/")),
-    "assignment": (r" ([-+*/])= ", exchanged("+-", "*/")),
-    "border": (r" (<|>)(=?) ", lambda m: f" {m[1]}{'' if m[2] else '='} "),
-    "direction": (r" ([<>])=? ", exchanged("<>")),
-    "equality": (r" ([=!]=) ", exchanged(("==", "!="))),
-    "logic": (r" (&&|\|\|) ", lambda m: " || " if m[1] == "&&" else " && "),
-    "negation": (r"(?<=\()!(?=\w)", lambda m: ""),
-    "little": (NUMBER, scaled(1.02, 1)),
-    "much": (NUMBER, scaled(10, 1)),
-    "sign": (r"(?<=[(,=] )-(?=[a-z(])|(?<=\()-(?=[a-z(])|(?<=return )-(?=[a-z(])", lambda m: ""),
-    "axis": (r"(?<=[\w\])])\.([xyz])(?=\W)", lambda m: "." + "yzx"["xyz".index(m[1])]),
-    "extreme": (r"\b(min|max)(?=[({])", lambda m: {"min": "max", "max": "min"}[m[1]]),
-    "function": (r"\b(sin|cos|floor|ceil|front|back|begin|end)(?=\()",
-                 exchanged(("sin", "cos"), ("floor", "ceil"), ("front", "back"), ("begin", "end"))),
-    "constant": (r"\b(true|false)\b", lambda m: "false" if m[1] == "true" else "true"),
-    "removed": (r"^ +((?!return|break|continue|const|auto|using|throw|delete|else|case|default)"
-                r"[a-z_][\w.\[\]]*(->|\.|\(| [-+*/]?= |\+\+)[^{}]*;)$", lambda m: ";"),
-    "swapped": (r"(?<=\w\()(\w+), (\w+)(?=\))", lambda m: f"{m[2]}, {m[1]}"),
-}
-NOT_CODE = re.compile(r"^\s*(#|//|assert\(|static_assert|if constexpr|template|using |EXPECT_|ASSERT_|TAUT_)")
-
-
-def code_of(line):
-    """The line with texts and comments blanked out, or "" if there is nothing to plant in it."""
-    if NOT_CODE.match(line):
-        return ""
-    line = re.sub(r'"(\\.|[^"\\])*"', lambda m: '"' + "_" * (len(m[0]) - 2) + '"', line)
-    line = re.sub(r"<[\w:, <>*&]*>", lambda m: "_" * len(m[0]), line)  # template arguments
-    return re.sub(r"//.*", "", line).rstrip()
-
-
-def sites(file):
-    """operator -> every (line number, line with the error) in a file"""
-    found = {}
-    for number, line in enumerate(file.read_text().splitlines()):
-        code = code_of(line)
-        for name, (pattern, change) in OPERATORS.items():
-            for match in re.finditer(pattern, code):
-                planted = line[:match.start()] + change(match) + line[match.end():]
-                if name == "removed":
-                    planted = re.match(" *", line)[0] + ";"
-                if planted != line:
-                    found.setdefault(name, []).append((number, planted))
-    return found
 
 
 class Build:
-    """The objects and programs of a build of this tree."""
+    """The objects of the layers in a folder, and how BUILD links programs with them."""
 
-    def __init__(self, folder):
-        self.folder = folder
+    def __init__(self, ordinary, folder):
+        self.ordinary, self.folder = ordinary, folder
+        self.end = folder / "executed.o"
         if not (folder / "build.ninja").exists():
-            subprocess.run(["cmake", "-G", "Ninja", "-S", ROOT, "-B", folder, "-DCMAKE_BUILD_TYPE=Debug", "-DTAUT_TESTS=ON",
-                            "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g0", "-DTAUT_BATCH_SIZE=1"], check=True, stdout=subprocess.DEVNULL)
-        subprocess.run(["cmake", "--build", folder, "--target", TRUTH, pathlib.Path(UNIT).name], check=True,
-                       stdout=subprocess.DEVNULL)
+            folder.mkdir(parents=True, exist_ok=True)
+            subprocess.run(["cmake", "-G", "Ninja", "-S", ROOT, "-B", folder, "-DCMAKE_BUILD_TYPE=Debug", "-DTAUT_TESTS=OFF",
+                            "-DTAUT_BATCH_SIZE=1", "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1 -gno-column-info -fsanitize-coverage=trace-pc"],
+                           check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(["cc", "-O2", "-c", EXECUTED, "-o", self.end], check=True)
+        for where, targets in (folder, LAYERS.values()), (ordinary, (TRUTH, pathlib.Path(UNIT).name)):
+            subprocess.run(["cmake", "--build", where, "--target", *targets], check=True, stdout=subprocess.DEVNULL)
+        self.own = [word for library in LAYERS.values()
+                    for word in self.ninja(folder, "-t", "query", f"lib{library}.a").split("outputs:")[0].split()
+                    if word.endswith(".o") and "registry" not in word]
         self.command = {}
         for entry in json.loads((folder / "compile_commands.json").read_text()):
             words = shlex.split(re.sub(r" -Werror\b| -MD -MT \S+ -MF \S+", "", entry["command"]))
             self.command[os.path.normpath(words[words.index("-o") + 1])] = words
+        linker = next((f"-fuse-ld={name}" for name in ("lld", "gold") if shutil.which(f"ld.{name}")), "-fuse-ld=bfd")
         self.link_command = {}
         for program in (UNIT, TRUTH):
-            lines = [line for line in self.ninja("-t", "commands", program).splitlines() if f"-o {program} " in line]
-            self.link_command[program] = shlex.split(lines[-1].removeprefix(": && ").split(" && ")[0])
+            lines = [line for line in self.ninja(ordinary, "-t", "commands", program).splitlines() if f"-o {program} " in line]
+            words = shlex.split(lines[-1].removeprefix(": && ").split(" && ")[0])
+            self.link_command[program] = [words[0], linker, "-Wl,--strip-debug", *words[1:], str(self.end)]
+            if not self.link(program, {}, self.program(program)):
+                sys.exit(f"mutate: {program} cannot be linked")
         self.dependents = {}
         current = None
-        for line in self.ninja("-t", "deps").splitlines():
+        for line in self.ninja(folder, "-t", "deps").splitlines():
             if line and not line[0].isspace():
                 current = os.path.normpath(line.split(":")[0])
             elif line.strip():
                 path = os.path.normpath(os.path.join(folder, line.strip()))
                 self.dependents.setdefault(path, set()).add(current)
 
-    def ninja(self, *words):
-        return subprocess.run(["ninja", *words], cwd=self.folder, check=True, text=True, capture_output=True).stdout
+    def program(self, program):
+        """Where the program without any error is."""
+        return self.folder / pathlib.Path(program).name
 
-    def in_program(self, program, target):
-        """Whether the program is linked with this object, in a library or by itself."""
-        words = self.link_command[program]
-        library = re.match(r"CMakeFiles/(\w+)\.dir/", target)
-        return target in words or bool(library) and f"lib{library[1]}.a" in words
+    @staticmethod
+    def ninja(where, *words):
+        return subprocess.run(["ninja", *words], cwd=where, check=True, text=True, capture_output=True).stdout
 
     def objects(self, file):
-        """Those that depend on a source file and stand in one of the programs."""
-        return sorted(target for target in self.dependents.get(str(ROOT / file), ())
-                      if any(self.in_program(program, target) for program in self.link_command))
+        """Those of the layers that depend on a source file."""
+        return sorted(self.dependents.get(str(ROOT / file), set()).intersection(self.own))
 
-    def compile(self, target, out, more=(), changed=None):
-        """The object `out`; False if it does not compile. changed: a folder whose files stand for the tree's."""
+    def compile(self, target, out, changed):
+        """The object `out`, with the files of a folder in the place of the tree's; False if it does not compile."""
         words = list(self.command[target])
         words[words.index("-o") + 1] = str(out)
-        if changed:
-            source = pathlib.Path(words[words.index("-c") + 1])
-            text = source.read_text()
-            for file in changed.rglob("*.[ch]pp"):  # a batch of files includes them by their whole paths
-                name = file.relative_to(changed)
-                text = file.read_text() if source == ROOT / name else text.replace(f'"{ROOT / name}"', f'"{file}"')
-            copy = out.parent / "from" / source.name
-            copy.parent.mkdir(exist_ok=True)
-            copy.write_text(text)
-            words[words.index("-c") + 1] = str(copy)
-            words.insert(words.index(f"-I{ROOT}"), f"-I{changed}")
-            more = [*more, f"-fmacro-prefix-map={copy.parent}={source.parent}", f"-fmacro-prefix-map={changed}={ROOT}"]
-        return subprocess.run(words + list(more), cwd=self.folder, capture_output=True).returncode == 0
+        source = pathlib.Path(words[words.index("-c") + 1])
+        text = source.read_text()
+        for file in changed.rglob("*.[ch]pp"):  # a batch of files includes them by their whole paths
+            name = file.relative_to(changed)
+            text = file.read_text() if source == ROOT / name else text.replace(f'"{ROOT / name}"', f'"{file}"')
+        copy = out.parent / "from" / source.name
+        copy.parent.mkdir(exist_ok=True)
+        copy.write_text(text)
+        words[words.index("-c") + 1] = str(copy)
+        words.insert(words.index(f"-I{ROOT}"), f"-I{changed}")
+        words += [f"-fmacro-prefix-map={copy.parent}={source.parent}", f"-fmacro-prefix-map={changed}={ROOT}"]
+        return subprocess.run(words, cwd=self.folder, capture_output=True).returncode == 0
 
-    def link(self, program, objects, out, more=()):
+    def link(self, program, objects, out):
         """The program with some objects in the place of its own; False if it does not link."""
-        words = [str(objects.get(word, word)) for word in self.link_command[program]]
+        words = list(self.link_command[program])
         words[words.index("-o") + 1] = str(out)
-        # Members of libraries in front of these, which then have nothing left to give.
-        words[1:1] = [str(new) for target, new in objects.items()
-                      if target not in self.link_command[program] and self.in_program(program, target)]
-        return subprocess.run(words + list(more), cwd=self.folder, capture_output=True).returncode == 0
+        # In front of BUILD's libraries, which then have nothing left to give.
+        words[3:3] = [str(objects.get(target, self.folder / target)) for target in self.own]
+        return subprocess.run(words, cwd=self.ordinary, capture_output=True).returncode == 0
+
+
+def code(object_, out):
+    """What an object file holds besides its line numbers."""
+    subprocess.run(["objcopy", "--strip-debug", object_, out], check=True)
+    return out.read_bytes()
 
 
 class Check:
-    """A suite of unit tests, or a truth."""
+    """A unit test, or a truth."""
 
-    def __init__(self, program, name, folder):
-        self.program, self.name, self.folder = program, name, folder
-        self.seconds = 0.0  # CPU time that it takes
-
-    def words(self, program):
-        if self.program == UNIT:
-            return [program, f"--gtest_filter={self.name}.*", "--gtest_brief=1"]
-        return [program, "verify", "-j1", "--quiet", self.name]
+    def __init__(self, program, name, file=None):
+        self.program, self.name = program, name
+        self.folder = file.parent.name if file else "truths"
+        self.source = hashlib.sha256(file.read_bytes()).digest() if file else b""
+        self.seconds, self.green = 0.0, True  # CPU time that it takes
 
 
 def checks_of(build):
-    folder_of = {suite: file.parent.name for file in (ROOT / "tests").glob("*/*_test.cpp")
-                 for suite in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", file.read_text(), re.MULTILINE)}
-    listed = subprocess.run([build.folder / UNIT, "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
+    file_of = {suite: file for file in (ROOT / "tests").glob("*/*_test.cpp")
+               for suite in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", file.read_text(), re.MULTILINE)}
+    listed = subprocess.run([build.program(UNIT), "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
                             text=True, capture_output=True).stdout
-    suites = [line.split("#")[0].strip().rstrip(".") for line in listed.splitlines() if line and not line[0].isspace()]
-    truths = subprocess.run([build.folder / TRUTH, "verify", "--list"], check=True, text=True, capture_output=True).stdout
-    return ([Check(UNIT, suite, folder_of.get(suite.split("/")[-1], "")) for suite in suites if "Running main" not in suite]
-            + [Check(TRUTH, line.split("\t")[1], "truths") for line in truths.splitlines()])
+    checks, suite = [], ""
+    for line in listed.splitlines():
+        name = line.split("#")[0].strip()
+        if line.startswith(" "):
+            checks.append(Check(UNIT, suite + name, file_of.get(suite[:-1].split("/")[-1])))
+        elif name.endswith("."):
+            suite = name
+    truths = subprocess.run([build.program(TRUTH), "verify", "--list"], check=True, text=True, capture_output=True).stdout
+    return checks + [Check(TRUTH, line.split("\t")[1]) for line in truths.splitlines()]
 
 
-def run(check, program, where, seconds=600.0, **environment):
-    """(whether it is green, CPU seconds); red if it takes more CPU time, or hangs"""
+def run(checks, program, where, seconds=600.0, **environment):
+    """(name of a red check or None, CPU seconds) of checks of one program; red if they take more CPU time, or hang"""
     # A folder of its own for what the tests write: several run at the same time.
     environment = {**os.environ, "TMPDIR": f"{where}/", "TEST_TMPDIR": f"{where}/", **environment}
-    process = subprocess.Popen(check.words(program), cwd=where, env=environment, start_new_session=True,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    names = [check.name for check in checks]
+    words = (["--gtest_filter=" + ":".join(names), "--gtest_fail_fast"] if checks[0].program == UNIT else
+             ["verify", "-j1", "--quiet", *names])
+    with open(f"{where}/output", "w+") as output:
+        process = subprocess.Popen([program, *words], cwd=where, env=environment, start_new_session=True,
+                                   stdin=subprocess.DEVNULL, stdout=output, stderr=output)
 
-    def kill():
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-    for limit, most in ((resource.RLIMIT_CPU, math.ceil(seconds)), (resource.RLIMIT_DATA, 8 << 30)):
-        with contextlib.suppress(ProcessLookupError):
-            resource.prlimit(process.pid, limit, (most, most))
-    hangs = threading.Timer(60 + 10 * seconds, kill)
-    hangs.start()
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    hangs.cancel()
-    kill()  # what it left behind
-    return process.returncode == 0, usage.ru_utime + usage.ru_stime
+        def kill():
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+        for limit, most in ((resource.RLIMIT_CPU, math.ceil(seconds)), (resource.RLIMIT_DATA, 8 << 30)):
+            with contextlib.suppress(ProcessLookupError):
+                resource.prlimit(process.pid, limit, (most, most))
+        hangs = threading.Timer(60 + 10 * seconds, kill)
+        hangs.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        hangs.cancel()
+        kill()  # what it left behind
+        output.seek(0)
+        told = re.findall(r"^\[ ( FAILED |RUN     ) \] ([^\s,]+)", output.read(), re.MULTILINE)
+    named = [name for word, name in told if "FAILED" in word] or [name for _, name in reversed(told)] or names
+    return named[0] if process.returncode else None, usage.ru_utime + usage.ru_stime
 
 
 class Coverage:
-    """Which check runs which line of the given objects, and how long each check takes."""
+    """Which check runs which line, and how long each check takes."""
 
-    def __init__(self, build, objects, checks, folder, pool):
-        self.folder, self.lines, self.lock = folder, {}, threading.Lock()
-        (folder / "counted").mkdir(parents=True)
-        self.counted = {target: folder / "counted" / target.replace("/", "_") for target in objects}
-        list(pool.map(lambda t: build.compile(t, self.counted[t], ["--coverage", "-fprofile-update=atomic"]), self.counted))
-        programs = {}
-        for program in build.link_command:
-            programs[program] = folder / pathlib.Path(program).name
-            if not build.link(program, self.counted, programs[program], ["--coverage"]):
-                sys.exit(f"mutate: {program} cannot be linked with counters")
-        def count(check):
-            with tempfile.TemporaryDirectory() as where:
-                green, check.seconds = run(check, programs[check.program], where, GCOV_PREFIX=str(folder / check.name))
-            return green
-        self.idle = {UNIT: Check(UNIT, "None", ""), TRUTH: Check(TRUTH, "--list", "")}
-        for check in self.idle.values():
-            count(check)
-        self.red = [check.name for check, green in zip(checks, pool.map(count, checks)) if not green]
+    def __init__(self, build, checks, pool):
+        self.build, self.lines, self.lock = build, {}, threading.Lock()
+        self.functions = {program: self.functions_of(program) for program in build.link_command}
+        layers = hashlib.sha256(b"".join((build.folder / target).read_bytes() for target in build.own)).digest()
+        kept, of, known = build.folder / "executed.pickle", None, {}
+        with contextlib.suppress(OSError, EOFError):
+            with open(kept, "rb") as file:
+                of, self.runs, known = pickle.load(file)
+        if of != layers:
+            # (function, offset) of a block -> a bit for each check.
+            self.runs, known = {program: {} for program in build.link_command}, {}
+        self.bit, new = {}, []
+        unused = itertools.count(1 + max((bit for _, bit, _, _ in known.values()), default=-1))
+        for check in checks:
+            source, self.bit[check], check.seconds, check.green = known.get(check.name, (None, 0, 0.0, True))
+            if source != check.source:
+                self.bit[check] = next(unused)
+                new.append(check)
+        for first in range(0, len(new), 100):  # kept now and then: an interruption costs little
+            some = new[first:first + 100]
+            list(pool.map(self.measure, some))
+            known |= {check.name: (check.source, self.bit[check], check.seconds, check.green) for check in some}
+            with open(kept, "wb") as file:
+                pickle.dump((layers, self.runs, known), file)
 
-    def counters(self, check, target):
-        counted = self.counted[target].with_suffix(".gcda")
-        return pathlib.Path(f"{self.folder / check.name}{counted}")
+    def functions_of(self, program):
+        """Places of functions, ascending; their names; where the program begins."""
+        names, begin = {}, 0
+        for line in subprocess.run(["nm", self.build.program(program)], check=True, text=True,
+                                   capture_output=True).stdout.splitlines():
+            words = line.split()
+            if len(words) == 3 and words[1] in "tTwW":
+                names.setdefault(int(words[0], 16), []).append(words[2])
+            if words[-1] == "__executable_start":
+                begin = int(words[0], 16)
+        return sorted(names), names, begin
 
-    def executed(self, check, target):
-        """file -> line -> how often, where the check runs this object at all"""
-        key = check.name, target
-        if key not in self.lines:
-            data, idle = self.counters(check, target), self.counters(self.idle[check.program], target)
-            self.lines[key] = {}
-            if data.exists() and not (idle.exists() and idle.read_bytes() == data.read_bytes()):
-                notes = data.with_suffix(".gcno")
-                if not notes.exists():
-                    notes.symlink_to(self.counted[target].with_suffix(".gcno"))
-                report = subprocess.run(["gcov", "--json-format", "--stdout", "-r", "-s", ROOT, data], cwd=data.parent,
-                                        capture_output=True, text=True).stdout
-                for file in json.loads(report)["files"] if report else []:
-                    name = os.path.relpath(os.path.join(ROOT, file["file"]), ROOT)
-                    counts = self.lines[key].setdefault(name, {})
-                    for line in file["lines"]:
-                        counts[line["line_number"]] = counts.get(line["line_number"], 0) + line["count"]
-        return self.lines[key]
+    def measure(self, check):
+        with tempfile.TemporaryDirectory() as where:
+            red, check.seconds = run([check], self.build.program(check.program), where, TAUT_EXECUTED=f"{where}/executed")
+            check.green = red is None
+            marked = pathlib.Path(f"{where}/executed.{pathlib.Path(check.program).name}")
+            places, names, begin = self.functions[check.program]
+            blocks = [match.start() + begin for match in re.finditer(rb"\x01", marked.read_bytes())] if marked.exists() else []
+        with self.lock:
+            runs = self.runs[check.program]
+            for block in blocks:
+                place = places[bisect.bisect_right(places, block) - 1]
+                for name in names[place]:
+                    runs[name, block - place] = runs.get((name, block - place), 0) | 1 << self.bit[check]
 
-    def runs(self, check, targets, file, number):
-        """Whether the check runs a line. What gcov does not list (a constant, the rest of a statement) counts as run."""
-        for target in targets:
-            counts = self.executed(check, target).get(file)
-            if counts is not None and counts.get(number, 1) > 0:
-                return True
-        return False
+    def blocks(self, target):
+        """file -> line -> (function, offset) of each block with code of this line, of an object"""
+        with self.lock:
+            if target in self.lines:
+                return self.lines[target]
+        found, function, line, block, first = {}, "", None, None, []
+        listing = subprocess.run(["objdump", "-d", "-l", "-r", "--no-show-raw-insn", self.build.folder / target], check=True,
+                                 text=True, errors="replace", capture_output=True).stdout
+        called = False
+        for text in listing.splitlines():
+            if place := re.match(r"(/.*):(\d+)( \(discriminator \d+\))?$", text):
+                inside = place[1].startswith(f"{ROOT}/")
+                line = (os.path.relpath(place[1], ROOT), int(place[2])) if inside else None
+            elif text.endswith(">:"):
+                function, line, block, first = text.split("<")[1][:-2], None, None, []
+            elif text.endswith("__sanitizer_cov_trace_pc-0x4"):
+                called = True
+            elif re.match(r" +[0-9a-f]+:\t", text):
+                if called:
+                    called, block = False, (function, int(text.split(":")[0], 16))
+                    if first is not None:  # what stands in front of the first call
+                        for before in first:
+                            found.setdefault(before, set()).add(block)
+                        first = None
+                if line and block is None:
+                    first.append(line)
+                elif line:
+                    found.setdefault(line, set()).add(block)
+        files = {}
+        for (file, number), blocks in found.items():
+            files.setdefault(file, {})[number] = blocks
+        with self.lock:
+            self.lines[target] = files
+        return files
+
+    def checks(self, targets, file, number):
+        """Bits of the checks that run a line. Where it has no code (a constant), or none runs it, as when global objects
+        are made: of those that run anything of the file."""
+        def running(of_line):
+            bits = 0
+            for target in targets:
+                for line, blocks in self.blocks(target).get(file, {}).items():
+                    for block in blocks if of_line(line) else ():
+                        for runs in self.runs.values():
+                            bits |= runs.get(block, 0)
+            return bits
+        return running(lambda line: line == number) or running(lambda line: True)
 
 
 def equivalents():
@@ -300,7 +316,7 @@ class Mutant:
         self.layer, self.file, self.number, self.planted = layer, file, number, planted
         self.was = (ROOT / file).read_text().splitlines()[number - 1]
         self.objects = {}  # target -> the object with the error in it
-        self.by, self.checks, self.seconds = None, 0, 0.0
+        self.by, self.tried, self.running, self.seconds = None, 0, 0, 0.0
 
     def text(self):
         return f"{self.file}:{self.number}\n    - {self.was.strip()}\n    + {self.planted.strip()}"
@@ -314,29 +330,50 @@ class Mutant:
         changed.write_text("\n".join(lines) + "\n")
         for target in build.objects(self.file):
             out = folder / target.replace("/", "_")
-            if not build.compile(target, out, changed=folder / "tree"):
+            if not build.compile(target, out, folder / "tree"):
                 return False
-            if out.read_bytes() != (build.folder / target).read_bytes():
+            if code(out, folder / "new") != code(build.folder / target, folder / "old"):
                 self.objects[target] = out
         return bool(self.objects)
 
-    def judge(self, build, folder, checks, coverage):
-        """Sets by whom it is noticed, and what that took."""
+    def judge(self, build, folder, checks, coverage, limit):
+        """Sets by whom it is noticed, and what that took. False if it does not link."""
         own, programs = self.layer.split("/")[-1], {}
-        for check in sorted(checks, key=lambda c: (c.folder != own, c.seconds)):
-            if not coverage.runs(check, self.objects, self.file, self.number):
-                continue
-            if check.program not in programs:
-                programs[check.program] = folder / pathlib.Path(check.program).name
-                if not build.link(check.program, self.objects, programs[check.program]):
-                    self.by = "the linker"
-                    return
+        bits = coverage.checks(self.objects, self.file, self.number)
+        running = sorted((check for check in checks if bits >> coverage.bit[check] & 1 and check.green),
+                         key=lambda c: (c.folder != own, c.seconds))
+        self.running = len(running)
+        while running and self.seconds < limit:
+            # Quick ones of a program go into one process.
+            batch = [running[0]]
+            for check in running[1:]:
+                if check.program == batch[0].program and sum(c.seconds for c in batch) + check.seconds < 2:
+                    batch.append(check)
+            running = [check for check in running if check not in batch]
+            program = batch[0].program
+            if program not in programs:
+                programs[program] = folder / pathlib.Path(program).name
+                if not build.link(program, self.objects, programs[program]):
+                    return False
             with tempfile.TemporaryDirectory(dir=folder) as where:
-                green, seconds = run(check, programs[check.program], where, max(10.0, 10 * check.seconds))
-            self.checks, self.seconds = self.checks + 1, self.seconds + seconds
-            if not green:
-                self.by = check.name
-                return
+                self.by, seconds = run(batch, programs[program], where, 5 + 4 * sum(check.seconds for check in batch))
+            self.tried, self.seconds = self.tried + len(batch), self.seconds + seconds
+            if self.by:
+                break
+        return True
+
+
+def written(file):
+    """Every mutant that a file states: lines `file | line as it is | line with the error | reason`"""
+    for line in file.read_text().splitlines():
+        if line and not line.startswith("#"):
+            name, was, planted, *_ = (part.strip() for part in line.split(" | "))
+            lines = [text.strip() for text in (ROOT / name).read_text().splitlines()]
+            layer = max((layer for layer in LAYERS if name.startswith(layer)), key=len, default=name)
+            if was not in lines:
+                print(f"{name} no longer contains: {was}", flush=True)
+                continue
+            yield Mutant(layer, name, lines.index(was) + 1, planted)
 
 
 def draw(layers, seed, build, widest):
@@ -368,35 +405,24 @@ def draw(layers, seed, build, widest):
                 yield Mutant(layer, *pool[operator].pop(random_.randrange(len(pool[operator]))))
 
 
-def compiled(mutants, sample, build, folder, pool):
-    """The first `sample` of the mutants that compile; and how many did not, or not to anything else."""
-    good, idle, batch = [], 0, 0
-    while len(good) < sample:
-        more = list(itertools.islice(mutants, sample - len(good)))
-        if not more:
-            break
-        folders = [folder / f"{batch + i}" for i in range(len(more))]
-        batch += len(more)
-        done = list(pool.map(lambda m, f: m.compile(build, f), more, folders))
-        good += [(mutant, where) for mutant, where, fine in zip(more, folders, done) if fine]
-        idle += done.count(False)
-    return good, idle
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--sample", type=int, default=60)
     parser.add_argument("--minutes", type=float, default=1e9, help="judge no more errors after this time")
     parser.add_argument("--seed", type=int, default=int(time.time()))
-    parser.add_argument("--layer", action="append", choices=LAYERS)
+    parser.add_argument("--layer", action="append", choices=list(LAYERS))
     parser.add_argument("--goal", type=float, default=0.92, help="least share noticed")
     parser.add_argument("--widest", type=int, default=4)
+    parser.add_argument("--limit", type=float, default=60, help="CPU seconds of checks for an error")
+    parser.add_argument("--planted", type=pathlib.Path, help="errors to plant, written as in equivalent_mutants.txt")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--list", action="store_true", help="only print what would be planted")
     options = parser.parse_args()
-    build = Build(options.folder.resolve())
-    mutants = draw(options.layer or LAYERS, options.seed, build, options.widest)
+    build = Build(options.build.resolve(), options.folder.resolve())
+    layers = options.layer or list(LAYERS)
+    mutants = written(options.planted) if options.planted else draw(layers, options.seed, build, options.widest)
     if options.list:
         for mutant in itertools.islice(mutants, options.sample):
             print(mutant.text())
@@ -407,35 +433,37 @@ def main():
     def spent():
         cpu = resource.getrusage(resource.RUSAGE_CHILDREN)
         return f"{time.monotonic() - start:.0f} s, {cpu.ru_utime + cpu.ru_stime:.0f} s of CPU"
-    with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        folder = pathlib.Path(scratch)
-        good, idle = compiled(mutants, options.sample, build, folder, pool)
-        print(f"{len(good)} compiled, {idle} did not or made no difference: {spent()}", flush=True)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         checks = checks_of(build)
-        coverage = Coverage(build, sorted({t for mutant, _ in good for t in mutant.objects}), checks, folder / "coverage", pool)
-        print(f"{len(checks)} checks take {sum(c.seconds for c in checks):.0f} s of CPU: {spent()}", flush=True)
-        if coverage.red:
-            sys.exit(f"mutate: red without any error: {', '.join(coverage.red)}")
+        coverage = Coverage(build, checks, pool)
+        print(f"{len(checks)} checks take {sum(c.seconds for c in checks):.0f} s of CPU; red without any error: "
+              f"{[check.name for check in checks if not check.green]}: {spent()}", flush=True)
 
-        def judge(mutant, where):
-            if time.monotonic() - start < 60 * options.minutes:
-                mutant.judge(build, where, checks, coverage)
-                shutil.rmtree(where)
-                how = (f"noticed by {mutant.by}: {mutant.file}:{mutant.number}" if mutant.by else
-                       f"SURVIVED {mutant.checks} checks that run it: {mutant.text()}")
-                print(f"{how}   ({mutant.seconds:.0f} s)", flush=True)
-                return mutant
-            return None
-        judged = [mutant for mutant in pool.map(judge, *zip(*good)) if mutant]
-    for layer in options.layer or LAYERS:
+        def judge(mutant):
+            """Whether it was judged: it compiles to something else than without the error, and there was time."""
+            if time.monotonic() - start > 60 * options.minutes:
+                return False
+            with tempfile.TemporaryDirectory() as where:
+                if not (mutant.compile(build, pathlib.Path(where))
+                        and mutant.judge(build, pathlib.Path(where), checks, coverage, options.limit)):
+                    return False
+            how = f"noticed by {mutant.by}" if mutant.by else f"SURVIVED {mutant.tried} of {mutant.running} checks that run it"
+            print(f"{how}: {mutant.text()}   ({mutant.seconds:.0f} s)", flush=True)
+            return True
+        judged, drawn = [], 0
+        while more := list(itertools.islice(mutants, options.sample - len(judged))):
+            drawn += len(more)
+            judged += [mutant for mutant, done in zip(more, pool.map(judge, more)) if done]
+    for layer in dict.fromkeys(mutant.layer for mutant in judged):
         of_layer = [mutant for mutant in judged if mutant.layer == layer]
         print(f"{layer:22} {sum(m.by is not None for m in of_layer):3} of {len(of_layer):3}")
     if not judged:
-        sys.exit("mutate: no time for a single one")
+        sys.exit("mutate: not a single one was judged")
     noticed = sum(mutant.by is not None for mutant in judged)
     share = noticed / len(judged)
     bar = options.goal - 2 * math.sqrt(options.goal * (1 - options.goal) / len(judged))
-    print(f"noticed: {noticed} of {len(judged)} ({share:.0%}) in {spent()}; the goal is {options.goal:.0%}, a sample of this "
+    print(f"noticed: {noticed} of {len(judged)} ({share:.0%}), {drawn - len(judged)} more did not compile, made no difference "
+          f"or had no time: {spent()}; the goal is {options.goal:.0%}, a sample of this "
           f"size fails below {bar:.0%}")
     return 0 if share >= bar else 1
 

@@ -1,5 +1,5 @@
 // `taut bench effects`: what is timed together.
-#include "experiments/bench/effects.hpp"
+#include "experiments/timing/bench/effects.hpp"
 
 #include <gtest/gtest.h>
 

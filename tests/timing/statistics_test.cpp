@@ -63,6 +63,68 @@ TEST(Statistics, TheIntervalIsSeededAndShrinksWithSamples) {
   EXPECT_TRUE(narrow.contains(narrow.mid));
 }
 
+// The median of a resample of n (odd) samples is at most the k-th smallest iff at least half of its
+// draws are, of which each is with probability k/n: the ends of the interval are known order
+// statistics.
+TEST(Statistics, TheIntervalEndsAtTheOrderStatisticsOfTheBinomialLaw) {
+  const auto at_most = [](int n, int k) {  // P(median <= k-th smallest)
+    double p = 0;
+    for (int j = (n + 1) / 2; j <= n; ++j)
+      p += std::exp(std::lgamma(n + 1) - std::lgamma(j + 1) - std::lgamma(n - j + 1) +
+                    j * std::log(1.0 * k / n) +
+                    (k < n   ? (n - j) * std::log1p(-1.0 * k / n)
+                     : j < n ? -1e9
+                             : 0));
+    return p;
+  };
+  for (const int n : {3, 9, 15, 25, 61})
+    for (const double confidence : {0.5, 0.8, 0.9, 0.95, 0.99}) {
+      std::vector<double> samples;
+      for (int i = 0; i < n; ++i) samples.push_back(i * 37 % n + 1);  // 1 ... n in no order
+      const double tail = (1 - confidence) / 2, doubt = 4 * std::sqrt(tail * (1 - tail) / 2000);
+      const auto end = [&](double q) {
+        int k = 1;
+        while (at_most(n, k) < q) ++k;
+        return k;
+      };
+      const Interval is = bootstrap_median(samples, confidence, 7);
+      EXPECT_GE(is.low, end(std::max(0.0, tail - doubt))) << n << ' ' << confidence;
+      EXPECT_LE(is.low, end(tail + doubt)) << n << ' ' << confidence;
+      EXPECT_GE(is.high, end(1 - tail - doubt)) << n << ' ' << confidence;
+      EXPECT_LE(is.high, end(std::min(1 - 1e-9, 1 - tail + doubt))) << n << ' ' << confidence;
+      EXPECT_EQ(is.mid, (n + 1) / 2);
+    }
+  const Interval one = bootstrap_median(std::vector{4.0});
+  EXPECT_EQ(one.low, 4);
+  EXPECT_EQ(one.high, 4);
+}
+
+TEST(Statistics, ARatioIsThatOfTheBlocksAndItsWordsFollowFromItsEnds) {
+  // three blocks of ratio 2, 3 and 8, whatever the machine's speed in each
+  const Interval ratio = interleaved_ratio(std::vector{2.0, 4.0, 20.0, 40.0, 1.5, 0.5},
+                                           std::vector{1.0, 2.0, 8.0, 12.0, 0.2, 0.05});
+  EXPECT_NEAR(ratio.mid, 3, 1e-12);
+  EXPECT_NEAR(ratio.low, 2, 1e-12);
+  EXPECT_NEAR(ratio.high, 8, 1e-12);
+  EXPECT_NEAR(spread({0.9, 1, 1.05}), 1 / 0.9 - 1, 1e-12);
+  EXPECT_NEAR(spread({0.98, 1, 1.05}), 0.05, 1e-12);
+  const Interval quiet{0.99, 1, 1.01};
+  EXPECT_EQ(judge({1.06, 1.08, 1.2}, quiet, 0.05), Certainty::clear);
+  EXPECT_EQ(judge({1.02, 1.06, 1.2}, quiet, 0.05), Certainty::likely);
+  EXPECT_EQ(judge({1.02, 1.04, 1.2}, quiet, 0.05), Certainty::none) << "within the tolerance";
+  EXPECT_EQ(judge({0.99, 1.06, 1.2}, quiet, 0.05), Certainty::none) << "1 is within";
+  EXPECT_EQ(judge({1, 1.06, 1.2}, quiet, 0.05), Certainty::none);
+  EXPECT_EQ(judge({0.8, 1 / 1.07, 1 / 1.06}, quiet, 0.05), Certainty::clear);
+  EXPECT_EQ(judge({0.8, 1 / 1.06, 0.99}, quiet, 0.05), Certainty::likely);
+  EXPECT_EQ(judge({0.8, 1 / 1.04, 0.99}, quiet, 0.05), Certainty::none);
+  EXPECT_EQ(judge({1.5, 2, 3}, {0.96, 1, 1.045}, 0.05), Certainty::clear);
+  EXPECT_EQ(judge({1.5, 2, 3}, {0.94, 1, 1}, 0.05), Certainty::likely) << "identical code differed";
+  EXPECT_EQ(judge({1.02, 1.06, 1.2}, {0.92, 1, 1}, 0.05), Certainty::too_noisy);
+  EXPECT_EQ(number_text(0.0123456), "0.0123");
+  EXPECT_EQ(number_text(std::nan("")), "-");
+  EXPECT_EQ(interval_text({0.002, 0.0031, 0.004}, 1e-3), "3.1 (2 to 4)");
+}
+
 // What 95 % means: the interval misses the true median in about one of twenty samples, on each side
 // alike. The noise is skewed, as that of timings is.
 TEST(Statistics, TheIntervalHoldsTheTrueMedianAsOftenAsItSays) {
@@ -88,10 +150,9 @@ TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
   for (unsigned bench = 0; bench < 100; ++bench) {
     NoisyMachine machine(bench);
     const Samples control = interleave(machine, 1, 1, 20), pair = interleave(machine, 1, 1, 20);
-    const Difference j = compare_costs(interleaved_ratio(pair.a, pair.b),
-                                       interleaved_ratio(control.a, control.b), 0.05);
-    declared += j == Difference::faster || j == Difference::slower;
-    noisy += j == Difference::too_noisy;
+    declared += is_difference(
+        judge(interleaved_ratio(pair.a, pair.b), interleaved_ratio(control.a, control.b)));
+    noisy += spread(interleaved_ratio(control.a, control.b)) > kTolerance;
   }
   EXPECT_EQ(declared, 0);
   EXPECT_LT(noisy, 30);  // most of these machines are still good enough to judge
@@ -99,25 +160,23 @@ TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
 
 /// A bench of one code against itself from samples that a busy machine gave: four neighbours of one
 /// session, two as the control, two as the pair, the second of which costs `factor` times as much.
-Difference recorded_bench(std::size_t first, double factor) {
+Certainty recorded_bench(std::size_t first, double factor) {
   const auto samples = [](std::size_t row, double cost) {
     std::vector<double> out;
     for (const int value : kRecorded[row]) out.push_back(cost * value);
     return out;
   };
-  return compare_costs(interleaved_ratio(samples(first + 2, factor), samples(first + 3, 1)),
-                       interleaved_ratio(samples(first, 1), samples(first + 1, 1)), 0.05);
+  return judge(interleaved_ratio(samples(first + 2, factor), samples(first + 3, 1)),
+               interleaved_ratio(samples(first, 1), samples(first + 1, 1)));
 }
 
 TEST(Statistics, RecordedSamplesOfOneCodeAreNeverADifferenceButATwofoldCostIs) {
-  int benches = 0, declared = 0, seen = 0;
+  int benches = 0, clear = 0, declared = 0, seen = 0;
   for (std::size_t first = 0; first + 3 < std::size(kRecorded); ++first) {
     ++benches;
-    const auto is_difference = [](Difference j) {
-      return j == Difference::faster || j == Difference::slower;
-    };
+    clear += recorded_bench(first, 1) == Certainty::clear;
     declared += is_difference(recorded_bench(first, 1));
-    seen += recorded_bench(first, 2) == Difference::slower;
+    seen += recorded_bench(first, 2) == Certainty::clear;
   }
   EXPECT_GE(benches, 100);
   EXPECT_EQ(declared, 0);
@@ -129,10 +188,10 @@ TEST(Statistics, ATwentyPercentChangeIsSeenDespiteTheNoise) {
   for (unsigned bench = 0; bench < 100; ++bench) {
     NoisyMachine machine(bench);
     const Samples control = interleave(machine, 1, 1, 20), pair = interleave(machine, 1.2, 1, 20);
-    const Difference j = compare_costs(interleaved_ratio(pair.a, pair.b),
-                                       interleaved_ratio(control.a, control.b), 0.05);
-    slower += j == Difference::slower;
-    faster += j == Difference::faster;
+    const Interval ratio = interleaved_ratio(pair.a, pair.b);
+    const bool told = is_difference(judge(ratio, interleaved_ratio(control.a, control.b)));
+    slower += told && ratio.mid > 1;
+    faster += told && ratio.mid < 1;
   }
   EXPECT_GE(slower, 70);
   EXPECT_EQ(faster, 0);

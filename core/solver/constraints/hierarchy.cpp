@@ -1,10 +1,9 @@
 #include "core/solver/constraints/hierarchy.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
-#include "core/model/index.hpp"
+#include "core/model/adjacency.hpp"
 #include "core/solver/layout/order.hpp"
 
 namespace taut {

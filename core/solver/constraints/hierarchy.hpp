@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/model/scene.hpp"
-#include "core/solver/layout/distance_constraint.hpp"
+#include "core/solver/layout/order.hpp"
 #include "core/solver/layout/particles.hpp"
 
 namespace taut {

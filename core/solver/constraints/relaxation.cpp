@@ -101,6 +101,22 @@ class JacobiPass final : public Pass<Real> {
   std::vector<Real> factor_;
 };
 
+/// One part of a phase: a block of rows of an interleaved sheet, a tile of colour batches.
+template <class Real>
+void project(const InterleavedSheet<Real>& links, const Kernels<Real>& kernels,
+             Projection projection, Real* x, std::size_t phase, std::size_t part) {
+  const SheetSweep<Real>& sweep = links.sweep();
+  const auto& sweeps = sweep.lanes == kWide ? kernels.wide_sheet : kernels.narrow_sheet;
+  const auto [from, to] = links.blocks().of(static_cast<int>(phase), part);
+  sweeps[static_cast<int>(projection)](sweep, x, from, to);
+}
+template <class Real>
+void project(const ColourBatches<Real>& links, const Kernels<Real>& kernels, Projection projection,
+             Real* x, std::size_t phase, std::size_t part) {
+  for (const BatchRun<Real>& run : links.runs(phase, part))
+    kernels.batches[static_cast<int>(projection)](run, x);
+}
+
 /// One Gauss-Seidel sweep over InterleavedSheet or ColourBatches, phase after phase; threads share
 /// the parts of a phase.
 template <class Real, template <class> class Links>
@@ -120,7 +136,7 @@ class ColouredPass final : public Pass<Real> {
           links_.parts(phase),
           [&](std::size_t begin, std::size_t end) {
             for (std::size_t part = begin; part < end; ++part)
-              links_.project(kernels_, projection_, p.x.data(), phase, part);
+              project(links_, kernels_, projection_, p.x.data(), phase, part);
           },
           p.size() >= ThreadPool::kWorthSharing);
   }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/model/scene.hpp"
-#include "core/solver/layout/distance_constraint.hpp"
 #include "core/solver/layout/order.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/simd/kernels.hpp"

@@ -1,10 +1,8 @@
 #include "core/solver/constraints/tethers.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <queue>
 
-#include "core/model/index.hpp"
+#include "core/model/adjacency.hpp"
 #include "core/solver/layout/order.hpp"
 
 namespace taut {
@@ -29,32 +27,6 @@ std::vector<std::vector<int>> pin_groups(const Scene& scene, const Adjacency& ne
   return groups;
 }
 
-struct Way {
-  double length = std::numeric_limits<double>::infinity();
-  int pin = -1;
-};
-
-/// The shortest way along the links from any pin of the group to every vertex (Dijkstra).
-std::vector<Way> ways(const std::vector<int>& group, std::span<const Link> links,
-                      const Adjacency& neighbours, int vertices) {
-  std::vector<Way> way(to_index(vertices));
-  using Item = std::pair<double, int>;
-  std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
-  for (const int pin : group) way[to_index(pin)] = {0, pin}, open.push({0, pin});
-  while (!open.empty()) {
-    const auto [length, v] = open.top();
-    open.pop();
-    if (length > way[to_index(v)].length) continue;
-    for (const auto& [to, link] : neighbours.of(v))
-      if (const double there = length + links[to_index(link)].rest;
-          there < way[to_index(to)].length) {
-        way[to_index(to)] = {there, way[to_index(v)].pin};
-        open.push({there, to});
-      }
-  }
-  return way;
-}
-
 }  // namespace
 
 std::vector<Tether> make_tethers(const Scene& scene) {
@@ -64,12 +36,15 @@ std::vector<Tether> make_tethers(const Scene& scene) {
   const Adjacency neighbours(links, scene.mesh.size());
   std::vector<std::vector<Tether>> candidates(to_index(scene.mesh.size()));
   for (const auto& group : pin_groups(scene, neighbours)) {
-    const std::vector<Way> way = ways(group, links, neighbours, scene.mesh.size());
+    const auto ways = shortest_ways(neighbours, group, [&](int, const Adjacency::End& end) {
+      return links[to_index(end.link)].rest;
+    });
     for (int v = 0; v < scene.mesh.size(); ++v) {
-      const auto& [length, pin] = way[to_index(v)];
+      const int pin = ways.start[to_index(v)];
       if (pin < 0 || std::binary_search(scene.pins.begin(), scene.pins.end(), v)) continue;
       const Vec3 line = scene.mesh.rest[to_index(v)] - scene.mesh.rest[to_index(pin)];
-      candidates[to_index(v)].push_back({v, pin, straight ? line.norm() : length});
+      candidates[to_index(v)].push_back(
+          {v, pin, straight ? line.norm() : ways.length[to_index(v)]});
     }
   }
   std::vector<Tether> tethers;

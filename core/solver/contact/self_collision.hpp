@@ -1,14 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <vector>
 
+#include "core/model/adjacency.hpp"
 #include "core/model/scene.hpp"
 #include "core/solver/contact/neighbour_grid.hpp"
 #include "core/solver/contact/projector.hpp"
-#include "core/solver/layout/order.hpp"
 #include "core/solver/layout/particles.hpp"
 
 namespace taut {

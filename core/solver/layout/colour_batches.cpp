@@ -5,6 +5,8 @@
 #include <map>
 #include <type_traits>
 
+#include "core/model/index.hpp"
+
 namespace taut {
 
 namespace {

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "core/solver/layout/distance_constraint.hpp"
 #include "core/solver/layout/order.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/simd/kernels.hpp"
@@ -30,12 +28,6 @@ class ColourBatches {
   std::span<const BatchRun<Real>> runs(std::size_t phase, std::size_t tile) const {
     const std::size_t t = phase_[phase] + tile;
     return {runs_.data() + tile_[t], runs_.data() + tile_[t + 1]};
-  }
-
-  void project(const Kernels<Real>& kernels, Projection projection, Real* x, std::size_t phase,
-               std::size_t part) const {
-    const auto project = kernels.batches[static_cast<int>(projection)];
-    for (const BatchRun<Real>& run : runs(phase, part)) project(run, x);
   }
 
   /// The links in the order in which the sweep visits them.

@@ -30,6 +30,13 @@ SheetRows rows_of(const SheetSides& grid) {
   return {grid.rows, grid.columns, lanes, vectors, to_index((vectors + padding) * 3 * lanes)};
 }
 
+/// A side that is long enough lies along the lanes, if there are two the first.
+std::optional<SheetSides> sides_of(const Grid& grid) {
+  if (grid.nu >= kFewestColumns) return SheetSides{grid.nu, grid.nv, false};
+  if (grid.nv >= kFewestColumns && grid.nu >= 2) return SheetSides{grid.nv, grid.nu, true};
+  return {};
+}
+
 }  // namespace
 
 std::size_t RowBlocks::count(int parity) const {
@@ -40,13 +47,6 @@ std::size_t RowBlocks::count(int parity) const {
 RowBlocks::Rows RowBlocks::of(int parity, std::size_t block) const {
   const int begin = (2 * static_cast<int>(block) + parity) * kBlockRows;
   return {begin, std::min(begin + kBlockRows, rows)};
-}
-
-/// A side that is long enough lies along the lanes, if there are two the first.
-std::optional<SheetSides> sides_of(const Grid& grid) {
-  if (grid.nu >= kFewestColumns) return SheetSides{grid.nu, grid.nv, false};
-  if (grid.nv >= kFewestColumns && grid.nu >= 2) return SheetSides{grid.nv, grid.nu, true};
-  return {};
 }
 
 std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link> links) {

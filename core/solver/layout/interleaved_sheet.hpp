@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "core/model/mesh.hpp"
-#include "core/solver/layout/distance_constraint.hpp"
-#include "core/solver/layout/order.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/simd/kernels.hpp"
 
@@ -69,12 +67,6 @@ class InterleavedSheet {
   /// Even blocks, then odd ones.
   std::size_t phases() const { return 2; }
   std::size_t parts(std::size_t phase) const { return blocks_.count(static_cast<int>(phase)); }
-  void project(const Kernels<Real>& kernels, Projection projection, Real* x, std::size_t phase,
-               std::size_t part) const {
-    const auto& sweeps = sweep_.lanes == kWide ? kernels.wide_sheet : kernels.narrow_sheet;
-    const auto [from, to] = blocks_.of(static_cast<int>(phase), part);
-    sweeps[static_cast<int>(projection)](sweep_, x, from, to);
-  }
 
   std::size_t bytes() const;
 

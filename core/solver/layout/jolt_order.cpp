@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <queue>
 #include <tuple>
 
+#include "core/model/adjacency.hpp"
 #include "core/solver/layout/order.hpp"
 
 namespace taut {
@@ -101,22 +101,15 @@ class Batches {
 /// m, along links from the nearest vertex that is pinned; infinite without one.
 std::vector<float> ways_to_pins(const Scene& scene, const std::vector<Point>& x,
                                 const Adjacency& neighbours) {
-  std::vector<float> way(x.size(), kInfinity);
-  using Reached = std::pair<float, int>;
-  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
+  std::vector<int> pinned;
   const std::vector<double> w = inverse_masses(scene);
   for (std::size_t v = 0; v < x.size(); ++v)
-    if (w[v] == 0) way[v] = 0, next.emplace(0.0f, static_cast<int>(v));
-  while (!next.empty()) {
-    const int from = next.top().second;
-    next.pop();
-    for (const auto& [v, link] : neighbours.of(from))
-      if (const float there =
-              way[to_index(from)] + std::sqrt(distance2(x[to_index(v)], x[to_index(from)]));
-          there < way[to_index(v)])
-        way[to_index(v)] = there, next.emplace(there, v);
-  }
-  return way;
+    if (w[v] == 0) pinned.push_back(static_cast<int>(v));
+  return shortest_ways(neighbours, pinned,
+                       [&](int v, const Adjacency::End& end) {
+                         return std::sqrt(distance2(x[to_index(end.vertex)], x[to_index(v)]));
+                       })
+      .length;
 }
 
 }  // namespace

@@ -2,9 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cassert>
 #include <numeric>
 #include <random>
+
+#include "core/model/index.hpp"
 
 namespace taut {
 

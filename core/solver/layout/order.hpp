@@ -5,37 +5,41 @@
 #include <span>
 #include <vector>
 
-#include "core/model/index.hpp"
 #include "core/model/scene.hpp"
+#include "core/solver/simd/distance.hpp"
 
 namespace taut {
 
-/// The other ends of each vertex's links, and which links those are.
-class Adjacency {
- public:
-  Adjacency(std::span<const Link> links, int vertices)
-      : first_(to_index(vertices) + 1), ends_(2 * links.size()) {
-    for (const Link& link : links) ++first_[to_index(link.a) + 1], ++first_[to_index(link.b) + 1];
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    std::vector<int> next(first_.begin(), first_.end() - 1);
-    for (int l = 0; l < static_cast<int>(links.size()); ++l) {
-      const Link& link = links[to_index(l)];
-      ends_[to_index(next[to_index(link.a)]++)] = {link.b, l};
-      ends_[to_index(next[to_index(link.b)]++)] = {link.a, l};
-    }
-  }
-
-  struct End {
-    int vertex, link;
-  };
-  std::span<const End> of(int v) const {
-    return {ends_.data() + first_[to_index(v)], ends_.data() + first_[to_index(v) + 1]};
-  }
-
- private:
-  std::vector<int> first_;
-  std::vector<End> ends_;
+/// A link as the sweeps see it: who, how long, and who moves by how much.
+template <class Real>
+struct DistanceConstraint {
+  int a = 0, b = 0;               ///< vertices
+  Real rest = 0;                  ///< m, > 0
+  Real share_a = 0, share_b = 0;  ///< of the correction; see project_distance
 };
+
+/// Whether the link has two ends and at least one of them can move. w: inverse masses [1/kg].
+inline bool moves(const Link& link, std::span<const double> w) {
+  const auto inverse = [&](int v) { return w[static_cast<std::size_t>(v)]; };
+  return link.a != link.b && inverse(link.a) + inverse(link.b) > 0;
+}
+
+/// Those of `links` that move, in the given order. omega: relaxation factor.
+template <class Real>
+std::vector<DistanceConstraint<Real>> make_distance_constraints(std::span<const Link> links,
+                                                                std::span<const double> w,
+                                                                double omega) {
+  std::vector<DistanceConstraint<Real>> constraints;
+  constraints.reserve(links.size());
+  for (const Link& link : links) {
+    const double wa = w[static_cast<std::size_t>(link.a)], wb = w[static_cast<std::size_t>(link.b)];
+    if (!moves(link, w)) continue;
+    constraints.push_back({link.a, link.b, static_cast<Real>(std::max(link.rest, kTinyLength)),
+                           static_cast<Real>(omega * (wa / (wa + wb))),
+                           static_cast<Real>(omega * (wb / (wa + wb)))});
+  }
+  return constraints;
+}
 
 /// Whether no two vertices can be farther apart than they are in the flat sheet: a regular sheet
 /// with shear links. One without is a net: pulled along its diagonals it grows longer, up to the

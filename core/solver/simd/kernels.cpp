@@ -5,17 +5,8 @@
 namespace taut {
 
 std::string_view to_string(Simd simd) {
-  switch (simd) {
-    case Simd::scalar:
-      return "scalar";
-    case Simd::sse2:
-      return "sse2";
-    case Simd::avx2:
-      return "avx2";
-    case Simd::avx512:
-      return "avx512";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"scalar", "sse2", "avx2", "avx512"};
+  return kNames[static_cast<std::size_t>(simd)];
 }
 
 bool available(Simd simd) {

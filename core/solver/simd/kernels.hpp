@@ -186,7 +186,7 @@ struct NeighbourSearch {
   Real within, ignored;                   ///< m
   bool moving;                            ///< false: none has moved, and `moved` is not read
   SearchBlock* blocks;                    ///< scratch: [particles + 10]
-  CandidatePair* found;                   ///< [room]; particles + 11 kSearchLanes are enough for one
+  CandidatePair* found;                   ///< [room]; enough for one: particles + 11 kSearchLanes
   std::size_t room;
 };
 /// Finds the pairs that are less than `within` and their own way in the step apart and at rest are
@@ -242,39 +242,5 @@ const Kernels<Real>& kernels(Simd);
 /// What instruction_set.cpp makes for each.
 template <Simd, class Real>
 const Kernels<Real>& kernels_for();
-
-/// Calls f(i) for [begin, end) so that i and i + lag are far apart: first those with i / lag even,
-/// then the others; lag 0: in order. The sweeps over rows and over vectors both run like this.
-template <class F>
-[[gnu::always_inline]] inline void in_two_passes(int begin, int end, int lag, const F& f) {
-  if (lag == 0) {
-    for (int i = begin; i < end; ++i) f(i);
-    return;
-  }
-  for (int pass = 0; pass < 2; ++pass)
-    for (int start = (begin / (2 * lag)) * 2 * lag + pass * lag; start < end; start += 2 * lag)
-      for (int i = start; i < start + lag; ++i)
-        if (i >= begin && i < end) f(i);
-}
-
-/// Calls f(direction, row) for all links that rows [begin, end) own, in the order of the sweep.
-template <class Real, class F>
-[[gnu::always_inline]] inline void visit_rows(const SheetSweep<Real>& sweep, int begin, int end,
-                                              const F& f) {
-  for (int d = 0; d < sweep.directions; ++d) {
-    const SheetDirection<Real>& direction = sweep.direction[d];
-    const int lag = direction.left > direction.right ? direction.left : direction.right;
-    in_two_passes(begin, end < direction.rows ? end : direction.rows, lag,
-                  [&](int j) { f(direction, j); });
-  }
-}
-
-/// Calls f(k) for the vectors of a row in the order of the sweep.
-template <class Real, class F>
-[[gnu::always_inline]] inline void visit_vectors(const SheetSweep<Real>& sweep,
-                                                 const SheetDirection<Real>& direction,
-                                                 const F& f) {
-  in_two_passes(0, sweep.vectors, direction.left == direction.right ? direction.columns : 0, f);
-}
 
 }  // namespace taut

@@ -5,13 +5,11 @@
 // private to the file.
 
 #include <cstring>
-#include <limits>
 #include <type_traits>
 
 #include "core/solver/simd/distance.hpp"
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/lanes.hpp"
-#include "core/solver/simd/load_particles.hpp"
 #include "core/solver/simd/neighbour_search_impl.hpp"
 #include "core/solver/simd/wind_impl.hpp"
 
@@ -66,6 +64,40 @@ template <class T, int lanes, Projection kind, class Real, class Shares>
                                      x2.z.template rotated<-1>()});
     store_vec3<T, lanes>(a, x1);
   }
+}
+
+/// Calls f(i) for [begin, end) so that i and i + lag are far apart: first those with i / lag even,
+/// then the others; lag 0: in order. The sweeps over rows and over vectors both run like this.
+template <class F>
+[[gnu::always_inline]] inline void in_two_passes(int begin, int end, int lag, const F& f) {
+  if (lag == 0) {
+    for (int i = begin; i < end; ++i) f(i);
+    return;
+  }
+  for (int pass = 0; pass < 2; ++pass)
+    for (int start = (begin / (2 * lag)) * 2 * lag + pass * lag; start < end; start += 2 * lag)
+      for (int i = start; i < start + lag; ++i)
+        if (i >= begin && i < end) f(i);
+}
+
+/// Calls f(direction, row) for all links that rows [begin, end) own, in the order of the sweep.
+template <class Real, class F>
+[[gnu::always_inline]] inline void visit_rows(const SheetSweep<Real>& sweep, int begin, int end,
+                                              const F& f) {
+  for (int d = 0; d < sweep.directions; ++d) {
+    const SheetDirection<Real>& direction = sweep.direction[d];
+    const int lag = direction.left > direction.right ? direction.left : direction.right;
+    in_two_passes(begin, end < direction.rows ? end : direction.rows, lag,
+                  [&](int j) { f(direction, j); });
+  }
+}
+
+/// Calls f(k) for the vectors of a row in the order of the sweep.
+template <class Real, class F>
+[[gnu::always_inline]] inline void visit_vectors(const SheetSweep<Real>& sweep,
+                                                 const SheetDirection<Real>& direction,
+                                                 const F& f) {
+  in_two_passes(0, sweep.vectors, direction.left == direction.right ? direction.columns : 0, f);
 }
 
 /// Rows [begin, end) of a Gauss-Seidel sweep over a regular sheet.
@@ -406,25 +438,27 @@ template <class Real, class Narrow, class Wide, class P>
 constexpr Kernels<Real> make_kernels() {
   constexpr Projection exact = Projection::exact, sqrt_free = Projection::sqrt_free;
   return {
-      verlet<Narrow, Real>,
-      verlet<Wide, Real>,
-      {sweep_sheet<Narrow, kNarrow, exact, Real>, sweep_sheet<Narrow, kNarrow, sqrt_free, Real>},
-      {sweep_sheet<Wide, kWide, exact, Real>, sweep_sheet<Wide, kWide, sqrt_free, Real>},
-      {batches<P, exact, Real>, batches<P, sqrt_free, Real>},
-      {.plane = collide<Narrow, Wide, P, false, Real, PlaneSurface>,
-       .ball = collide<Narrow, Wide, P, false, Real, BallSurface>,
-       .ball_continuous = collide<Narrow, Wide, P, true, Real, BallSurface>,
-       .box = collide<Narrow, Wide, P, false, Real, BoxSurface>,
-       .box_continuous = collide<Narrow, Wide, P, true, Real, BoxSurface>},
-      wind_on_sheet<Narrow, kNarrow, Real>,
-      wind_on_sheet<Wide, kWide, Real>,
-      wind_on_faces<P, Real>,
-      {tethers<Narrow, Wide, P, exact, Real>, tethers<Narrow, Wide, P, sqrt_free, Real>},
-      motion_boxes<Narrow, Wide, P, Real>,
-      largest_motion2<Narrow, Wide, P, Real>,
-      find_pairs<Narrow, Real>,
-      in_registers<Wide, sqrt_free, Real>,
-      load_and_store<P, Real>};
+      .narrow_verlet = verlet<Narrow, Real>,
+      .wide_verlet = verlet<Wide, Real>,
+      .narrow_sheet = {sweep_sheet<Narrow, kNarrow, exact, Real>,
+                       sweep_sheet<Narrow, kNarrow, sqrt_free, Real>},
+      .wide_sheet = {sweep_sheet<Wide, kWide, exact, Real>,
+                     sweep_sheet<Wide, kWide, sqrt_free, Real>},
+      .batches = {batches<P, exact, Real>, batches<P, sqrt_free, Real>},
+      .collide = {.plane = collide<Narrow, Wide, P, false, Real, PlaneSurface>,
+                  .ball = collide<Narrow, Wide, P, false, Real, BallSurface>,
+                  .ball_continuous = collide<Narrow, Wide, P, true, Real, BallSurface>,
+                  .box = collide<Narrow, Wide, P, false, Real, BoxSurface>,
+                  .box_continuous = collide<Narrow, Wide, P, true, Real, BoxSurface>},
+      .narrow_wind = wind_on_sheet<Narrow, kNarrow, Real>,
+      .wide_wind = wind_on_sheet<Wide, kWide, Real>,
+      .wind_on_faces = wind_on_faces<P, Real>,
+      .tethers = {tethers<Narrow, Wide, P, exact, Real>, tethers<Narrow, Wide, P, sqrt_free, Real>},
+      .motion_boxes = motion_boxes<Narrow, Wide, P, Real>,
+      .largest_motion2 = largest_motion2<Narrow, Wide, P, Real>,
+      .find_pairs = find_pairs<Narrow, Real>,
+      .in_registers = in_registers<Wide, sqrt_free, Real>,
+      .load_and_store = load_and_store<P, Real>};
 }
 
 }  // namespace taut

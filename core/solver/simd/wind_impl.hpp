@@ -3,7 +3,7 @@
 // Included by kernels_impl.hpp, once for each instruction set; what is said there holds here.
 
 #include "core/solver/simd/kernels.hpp"
-#include "core/solver/simd/load_particles.hpp"
+#include "core/solver/simd/lanes.hpp"
 
 namespace taut {
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -12,6 +11,7 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
@@ -27,7 +27,7 @@ constexpr std::size_t kMostFinalists = 5;  ///< timed against each other
 constexpr std::size_t kMostRefused = 4;    ///< printed; --json has all
 
 struct Options {
-  std::string scene, metric = "stretch.rms", error, out;
+  std::string scene, metric = kErrorMetric, error, out;
   double budget = 0;  ///< ms per frame; 0: not given
   std::vector<std::string> solvers, settings;
   double patience = 120;
@@ -35,8 +35,6 @@ struct Options {
   double seconds = 0.05, tolerance = kTolerance;
   bool json = false;
 };
-
-using Clock = std::chrono::steady_clock;
 
 /// "0.01" or "1%".
 double error_of(const std::string& text) {
@@ -68,7 +66,7 @@ struct Result {
   std::vector<std::string> cut;          ///< solvers whose search --patience ended
   SceneBench bench;
   Answer answer;
-  Interval cost;  ///< of the best, widened by how far the same code strays here
+  Interval cost;  ///< of the best, as it is expected in a second session
   bool same_bits = false;
   Interval again;  ///< cost of the best in a second session
 
@@ -89,7 +87,7 @@ class Advisor {
     decide();
     return std::move(result_);
   }
-  double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  double elapsed() const { return seconds_since(start_); }
 
  private:
   Case make(const std::string& solver) {
@@ -98,10 +96,7 @@ class Advisor {
     return one;
   }
 
-  Clock::time_point at(double seconds) const {
-    return start_ +
-           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-  }
+  SteadyClock::time_point at(double seconds) const { return after(start_, seconds); }
 
   /// Wall time that timing and verifying the best `most` takes, by their quick costs [s].
   double seconds_of_final(std::size_t most, int rounds) const {
@@ -202,15 +197,13 @@ class Advisor {
     const Record& best = result_.best().record;
     result_.same_bits = run_again(make(best.spec.solver), store_).digest == best.digest;
     result_.again = time({best}, rounds).cases.front().cost();
-    const double stray = 1 + spread(result_.bench.control);
-    result_.cost = result_.best().cost();
-    result_.cost.low /= stray, result_.cost.high *= stray;
+    result_.cost = cost_expected_again(result_.bench, *answer.best);
     if (answer.certainty == Certainty::clear && !(result_.cut.empty() && result_.confirmed()))
       answer.certainty = Certainty::likely;
   }
 
   const Options& options_;
-  Clock::time_point start_ = Clock::now();
+  SteadyClock::time_point start_ = SteadyClock::now();
   Store store_;
   CaseMaker maker_;
   double duration_ = 0, dt_ = 0;  ///< of the scene [s]
@@ -227,7 +220,7 @@ std::string command(const Options& options, const Result& result) {
   };
   solver(*result.answer.best);
   if (result.answer.runner_up) solver(*result.answer.runner_up);
-  return text + (options.metric == "stretch.rms" ? "" : " --metric " + options.metric);
+  return text + (options.metric == kErrorMetric ? "" : " --metric " + options.metric);
 }
 
 void line(const char* what, const std::string& text) {
@@ -278,13 +271,11 @@ void print_searched(const Options& options, const Result& result, double elapsed
     line("", "and " + std::to_string(refused - kMostRefused) + " more; --json names all");
 }
 
-Json json_of(const Interval& i) { return {i.low, i.mid, i.high}; }
-
 Json json_of(const BenchedCase& c, const std::string& metric) {
   return {{"setting", parse_solver(c.record.spec.solver).brief()},
           {"solver", c.record.solver},
           {"error", c.record.value(metric)},
-          {"cpu_seconds_per_second", json_of(c.cost())},
+          {"cpu_seconds_per_second", c.cost()},
           {"peak_bytes", c.timing.peak_bytes},
           {"case", c.record.id}};
 }
@@ -309,16 +300,16 @@ void print_json(const Options& options, const Result& result, double elapsed) {
                             {"refused", c.failure.empty() ? Json() : Json(c.failure)}});
   if (const Answer& answer = result.answer; answer.best) {
     all["best"] = json_of(result.best(), options.metric);
-    all["best"]["cpu_seconds_per_second"] = json_of(result.cost);
+    all["best"]["cpu_seconds_per_second"] = result.cost;
     all["certainty"] = to_string(answer.certainty);
-    all["control"] = json_of(result.bench.control);
+    all["control"] = result.bench.control;
     all["verified"] = {{"same_bits", result.same_bits},
-                       {"cpu_seconds_per_second", json_of(result.again)},
+                       {"cpu_seconds_per_second", result.again},
                        {"inside_interval", result.confirmed()}};
     all["command"] = command(options, result);
     if (answer.runner_up)
       all["runner_up"] = json_of(result.bench.cases[*answer.runner_up], options.metric);
-    if (answer.ratio) all["ratio"] = json_of(*answer.ratio);
+    if (answer.ratio) all["ratio"] = *answer.ratio;
   }
   std::cout << to_text(all, 1) << '\n';
 }

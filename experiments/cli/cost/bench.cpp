@@ -9,7 +9,6 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/system/data.hpp"
 #include "experiments/timing/answer.hpp"
 
 namespace taut::verb::bench {
@@ -19,7 +18,7 @@ namespace {
 struct Options {
   std::vector<std::string> what, solvers, settings;
   std::vector<double> levels{std::begin(kErrorLevels), std::end(kErrorLevels)};
-  std::string preset, metric = "stretch.rms", out;
+  std::string preset, metric = kErrorMetric, out;
   int rounds = 5;
   double seconds = 0.05;
   double tolerance = kTolerance;
@@ -56,14 +55,20 @@ void print_answers(const SceneBench& bench, const Options& options) {
                       options.metric);
 }
 
+/// "clearly cheaper", "likely dearer", "no difference", ...
+std::string verdict(const Interval& ratio, const Interval& control, double tolerance) {
+  const Certainty sure = judge(ratio, control, tolerance);
+  if (sure == Certainty::too_noisy) return "too noisy to judge";
+  if (sure == Certainty::none) return "no difference";
+  return std::string(sure == Certainty::clear ? "clearly " : "likely ") +
+         (ratio.mid < 1 ? "cheaper" : "dearer");
+}
+
 void print_pairs(const SceneBench& bench, double tolerance) {
-  static constexpr const char* kWords[] = {"no difference", "cheaper", "dearer",
-                                           "too noisy to judge"};
   for (std::size_t i = 1; i < bench.cases.size(); ++i)
     if (const auto ratio = bench.ratio(i, 0))
       std::cout << "  " << bench.cases[i].record.id << ": " << interval_text(*ratio) << " x "
-                << bench.cases[0].record.id << ": "
-                << kWords[static_cast<int>(compare_costs(*ratio, bench.control, tolerance))]
+                << bench.cases[0].record.id << ": " << verdict(*ratio, bench.control, tolerance)
                 << '\n';
 }
 

@@ -2,13 +2,13 @@
 #include <memory>
 
 #include "core/reference/fit.hpp"
-#include "experiments/bench/contact.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/timing/bench/contact.hpp"
 
 namespace taut::verb::contact {
 

@@ -1,14 +1,14 @@
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 
-#include "experiments/bench/effects.hpp"
+#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/timing/bench/effects.hpp"
 
 namespace taut::verb::effects {
 
@@ -25,42 +25,34 @@ struct Options {
   bool wall = false, json = false;
 };
 
-std::string text(const Interval& i) {
-  char words[64];
-  std::snprintf(words, sizeof words, "%6.2f [%.2f %.2f]", i.mid, i.low, i.high);
-  return words;
-}
-
 void print(const std::vector<EffectRow>& rows, const Options& options, int side) {
-  std::printf(
-      "\n%s%s; %s ns a vertex and step; times %s, a step and a simulated second, and times "
-      "the same cloth's links alone, with 95 %% intervals\n",
-      options.solver.c_str(),
-      side == 0 ? "" : (", " + std::to_string(side) + " x " + std::to_string(side)).c_str(),
-      options.wall ? "wall" : "CPU", kUnit);
-  std::printf("%-12s %-16s %8s %9s  %-22s %8s  %-20s", "", "", "vertices", "ns", "x hang, a step",
-              "a second", "x links alone");
+  std::cout << '\n' << options.solver;
+  if (side > 0) std::cout << ", " << side << " x " << side;
+  std::cout << "; ns a vertex and step, " << (options.wall ? "wall" : "CPU")
+            << " time; times hang's, a step and a simulated second, and times the same cloth's "
+               "links alone, 95 %\n";
+  std::vector<Row> table{
+      {"scene", "effects", "vertices", "ns", "x hang, a step", "a second", "x links alone"}};
+  const double half = options.copies / 2.0;
   if (options.copies > 0)
-    std::printf("  %d on two threads / %g of one", options.copies, options.copies / 2.0);
-  std::printf("\n");
+    table[0].push_back(std::to_string(options.copies) + " on two threads / " + number_text(half) +
+                       " of one");
   const EffectRow& unit = rows.front();
   for (const EffectRow& row : rows) {
-    std::printf("%-12s %-16s %8zu ", row.scene.c_str(), row.effects.c_str(), row.vertices);
-    if (!row.refused.empty()) {
-      std::printf("not timed: %s\n", row.refused.c_str());
-      continue;
+    Row& line = table.emplace_back(Row{row.scene, row.effects, std::to_string(row.vertices)});
+    if (row.refused.empty()) {
+      const Interval times = row.times(unit);
+      line.insert(line.end(),
+                  {number_text(row.cost().mid), interval_text(times),
+                   number_text(times.mid * unit.dt / row.dt), interval_text(row.times_bare())});
+      if (options.copies > 0) line.push_back(interval_text(row.times_one(), half));
     }
-    const Interval times = row.times(unit);
-    std::printf("%9.1f  %-22s %8.2f  %-20s", row.cost().mid, text(times).c_str(),
-                times.mid * unit.dt / row.dt, text(row.times_bare()).c_str());
-    if (options.copies > 0) {
-      const double half = options.copies / 2.0;
-      const auto [low, mid, high] = row.times_one();
-      std::printf("  %s", text({low / half, mid / half, high / half}).c_str());
-    }
-    std::printf("\n");
+    line.resize(table[0].size(), "-");
   }
-  std::fflush(stdout);
+  print_columns(table, 2);
+  for (const EffectRow& row : rows)
+    if (!row.refused.empty()) std::cout << row.scene << " not timed: " << row.refused << '\n';
+  std::cout << std::flush;
 }
 
 Json json_of(const std::vector<EffectRow>& rows, int side) {
@@ -86,9 +78,7 @@ std::function<int()> bind(CLI::App& app) {
                  "Sheets of so many vertices along each side; 0: as they are (default: 0)")
       ->delimiter(',')
       ->check(CLI::Range(0, 1024));
-  app.add_option("--rounds", o->rounds, "Rounds in alternating order (ABBA) (default: 11)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--seconds", o->seconds, "Of one sample (default: 0.01)")->check(above_zero());
+  add_samples(app, o->rounds, o->seconds);
   app.add_flag("--wall", o->wall, "Wall time instead of CPU time: for threads=2");
   app.add_option("--copies", o->copies,
                  "Also so many sheets of each scene at once on two threads (implies --wall)")

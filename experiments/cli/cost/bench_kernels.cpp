@@ -3,12 +3,12 @@
 #include <memory>
 
 #include "core/solver/simd/kernels.hpp"
-#include "experiments/bench/kernels.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/timing/bench/kernels.hpp"
 
 namespace taut::verb::kernels {
 
@@ -81,12 +81,11 @@ Json json_of(const KernelBench& bench) {
                     {"flops", row.flops},
                     {"bytes", row.bytes},
                     {"fixed_sweeps", row.fixed}});
-  const auto interval = [](const Interval& i) { return Json{i.low, i.mid, i.high}; };
   return {{"side", bench.side},
           {"instructions", to_string(widest())},
           {"rows", rows},
-          {"two_threads", interval(bench.two_cores.threads)},
-          {"unrelated_sheets", interval(bench.two_cores.unrelated)}};
+          {"two_threads", bench.two_cores.threads},
+          {"unrelated_sheets", bench.two_cores.unrelated}};
 }
 
 std::function<int()> bind(CLI::App& app) {

@@ -1,13 +1,12 @@
-#include <chrono>
 #include <iostream>
 #include <memory>
 
-#include "core/model/input_error.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/scaling.hpp"
 
@@ -30,7 +29,7 @@ std::string exponent(const std::optional<PowerLaw>& law) {
 }
 
 Measured measure(const Case& one, double expected, const Store& store, const Options& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = SteadyClock::now();
   progress() << one.id << (expected < 1 ? "" : ", about " + number_text(expected, 2) + " s")
              << '\n';
   BenchedCase benched{*run_stored(one, store, {options.limit * 4, kMemory}), {}};
@@ -49,8 +48,7 @@ Measured measure(const Case& one, double expected, const Store& store, const Opt
     } catch (const std::runtime_error& error) {
       timing.failure = error.what();
     }
-  const auto end = std::chrono::steady_clock::now();
-  return {std::move(benched), std::chrono::duration<double>(end - start).count()};
+  return {std::move(benched), seconds_since(start)};
 }
 
 void print(const ScalingLine& line) {

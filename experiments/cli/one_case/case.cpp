@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -6,13 +5,13 @@
 #include <optional>
 
 #include "core/io/positions/positions.hpp"
-#include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/command_line/case_options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/isolate.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::verb::one_case {
@@ -21,7 +20,8 @@ namespace {
 
 struct Options {
   CaseOptions which;
-  bool json = false, verbose = false, frames = false;
+  bool json = false, verbose = false;
+  int frames = 0;
   std::string final_state, trajectory, series, into;
 };
 
@@ -61,7 +61,7 @@ class SlowRun {
  public:
   explicit SlowRun(int steps) : steps_(steps) {}
   void at(int step) {
-    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+    const double spent = seconds_since(start_);
     if (step == 0 || spent < next_) return;
     next_ = spent + 10;
     const double left = spent / step * (steps_ - step);
@@ -71,9 +71,8 @@ class SlowRun {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
   int steps_;
-  Clock::time_point start_ = Clock::now();
+  SteadyClock::time_point start_ = SteadyClock::now();
   double next_ = 2;  ///< when to speak [s since the start]
 };
 
@@ -119,7 +118,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_flag("--verbose", options->verbose,
                "Say on stderr how far it is and what the solver made of its settings");
   app.add_option("--into", options->into, "Used by taut run")->group("");
-  app.add_flag("--frames", options->frames, "Used by taut require")->group("");
+  app.add_option("--frames", options->frames, "Used with --into")->group("");
   return [options] { return run(*options); };
 }
 

@@ -99,7 +99,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("SCENE", options->scenes, "Names of shipped scenes, or scene files");
   app.add_flag("--all", options->all, "Every shipped scene");
   app.add_option("-o,--out", options->out,
-                 "Where references are kept (default: " + options->out + ")");
+                 "Where references are kept (default: beside those that came with the program)");
   add_json(app, options->json, "What became of each");
   return [options] { return run(*options); };
 }

@@ -6,14 +6,15 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/case/record_io.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/report/chart/settings.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -34,8 +35,6 @@ struct Options {
   int jobs = 1;
   bool json = false;
 };
-
-using Clock = std::chrono::steady_clock;
 
 std::string percent(double share) { return number_text(100 * share, 2) + " %"; }
 
@@ -128,9 +127,7 @@ void print_text(const Requirement& found, const Store& store, const std::string&
             << " s\n";
 }
 
-Json json_of(const std::optional<Interval>& i) {
-  return i ? Json{i->low, i->mid, i->high} : Json();
-}
+Json json_of(const std::optional<Interval>& i) { return i ? Json(*i) : Json(); }
 
 Json json_of(const ModelTrial& trial) {
   return {{"change", trial.change},
@@ -156,7 +153,7 @@ Json json_of(const Requirement& found, const Store& store, const std::string& pi
            {"bytes", full_bytes(found, store)},
            {"effects", Json::array()},
            {"smallest", nullptr},
-           {"control", json_of(std::optional(found.control))},
+           {"control", found.control},
            {"cases", found.cases},
            {"ran", found.ran},
            {"seconds", seconds},
@@ -240,14 +237,11 @@ Row summary(const Requirement& found) {
         effect.chosen ? effect.trials[*effect.chosen] : effect.representative();
     if (effect.chosen && told.change != "gone") list += " " + told.change;
   }
-  std::string answers;
-  for (const KeptAnswer& answer : found.answers)
-    answers += (answers.empty() ? "" : ", ") + answer.name;
   for (const std::string& what : found.not_done)
     drop += (drop.empty() ? "not done: " : "; not done: ") + what;
   return {found.full.scene->name,
           found.chaotic ? number_text(found.horizon, 2) + " s" : "no",
-          answers,
+          join(found.answers, ", ", &KeptAnswer::name),
           drop.empty() ? "nothing" : drop,
           keep.empty() ? (found.effects.empty() ? "-" : "nothing") : keep,
           found.time_ratio ? percent(found.time_ratio->mid) : "-"};
@@ -274,8 +268,8 @@ void leave(const Requirement& found, const Row& row, const fs::path& folder) {
 
 int run_one(const Options& options, const std::string& scene, Json& all, std::vector<Row>& rows,
             bool alone) {
-  const Clock::time_point start = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const auto start = SteadyClock::now();
+  const auto seconds = [&] { return seconds_since(start); };
   const CaseSpec spec{scene, options.settings, parse_solver(options.solver).canonical()};
   const Case full = make_case(spec);
   for (const std::string& reason :

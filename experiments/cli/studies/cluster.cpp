@@ -1,21 +1,21 @@
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/cluster/attempt.hpp"
-#include "experiments/cluster/job_script.hpp"
-#include "experiments/cluster/manifest.hpp"
-#include "experiments/cluster/merge.hpp"
-#include "experiments/cluster/status.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/study/cluster/attempt.hpp"
+#include "experiments/study/cluster/job_script.hpp"
+#include "experiments/study/cluster/manifest.hpp"
+#include "experiments/study/cluster/merge.hpp"
+#include "experiments/study/cluster/status.hpp"
 #include "experiments/study/session.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -212,14 +212,12 @@ std::string clock_text(double seconds) {
 }
 
 std::string commands_of(const std::vector<int>& shards, const fs::path& folder) {
-  std::string commas, spaces;
-  for (const int shard : shards) {
-    commas += (commas.empty() ? "" : ",") + std::to_string(shard);
-    spaces += " " + std::to_string(shard);
-  }
+  const auto list = [&](const char* separator) {
+    return join(shards, separator, [](int shard) { return std::to_string(shard); });
+  };
   const bool slurm = read_text(folder / "job.sh").find("#SBATCH") != std::string::npos;
   return "cd " + shell_word(folder.string()) + " && " +
-         (slurm ? "sbatch --array=" + commas + " job.sh" : "./job.sh" + spaces);
+         (slurm ? "sbatch --array=" + list(",") + " job.sh" : "./job.sh " + list(" "));
 }
 
 Json to_json(const FolderStatus& all, const fs::path& folder) {

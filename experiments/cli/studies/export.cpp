@@ -6,6 +6,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -110,11 +111,7 @@ class TidyTable {
   static void append(Cells& row, const Cells& more) {
     row.insert(row.end(), more.begin(), more.end());
   }
-  static std::string line(const Cells& cells) {
-    std::string text;
-    for (const std::string& one : cells) text += (text.empty() ? "" : ",") + cell(one);
-    return text + "\n";
-  }
+  static std::string line(const Cells& cells) { return join(cells, ",", cell) + "\n"; }
 
   Cells row(const Case& one) const {
     const auto at = records_.find(one.key);

@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -95,7 +95,7 @@ void check(const std::vector<PlotSpec>& specs, const Options& options, const Stu
 /// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
 /// and on standard error.
 std::string hold_other(const PlotSpec& spec, report::Records& records, const std::string& scene) {
-  const std::string held = spec.x == "dt" ? "iterations" : "dt";
+  const std::string held = spec.x == "dt" ? report::kSweeps : "dt";
   const report::Slice slice = report::hold(records, held, held == "dt" ? 1.0 / 64 : 8);
   const std::size_t left_out = records.size() - slice.records.size();
   records = slice.records;
@@ -120,7 +120,7 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
   std::vector<report::TimeSeries> series;
   if (spec.kind == "series") series = report::stored_series(records, spec.y, store);
   if (const auto slope = study.slopes.find(scene);
-      slope != study.slopes.end() && spec.kind == "error-iterations" && spec.x == "iterations" &&
+      slope != study.slopes.end() && spec.kind == "error-iterations" && spec.x == report::kSweeps &&
       !spec.slope && spec.y.starts_with("stretch."))
     spec.slope = slope->second;
   spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
@@ -175,14 +175,12 @@ int run(const Options& options) {
 
 std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  std::string kinds;
   std::vector<std::string> names;
-  for (const report::PlotKind& kind : report::plot_kinds())
-    names.emplace_back(kind.name), kinds += (kinds.empty() ? "" : ", ") + names.back();
+  for (const report::PlotKind& kind : report::plot_kinds()) names.emplace_back(kind.name);
   app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
   app.add_option("--preset", options->preset, "The preset under which it was run");
   app.add_option("--kind", options->kind,
-                 "One of: " + kinds + " (default: what the study asks for)")
+                 "One of: " + join(names, ", ") + " (default: what the study asks for)")
       ->check(known("kind of plot", names));
   app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
   app.add_option("--y", options->y, "Value on y, such as stretch.rms");

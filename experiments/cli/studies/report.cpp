@@ -14,9 +14,8 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/film/film.hpp"
+#include "experiments/render/film/film.hpp"
 #include "experiments/report/findings.hpp"
-#include "experiments/report/model/model.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/main_job.hpp"
 #include "experiments/system/data.hpp"
@@ -143,31 +142,19 @@ int run(Options options) {
                       {"toolchain", std::string(toolchain())},
                       {"preset", options.preset}};
   if (options.preset.empty()) input.provenance.pop_back();
-  const auto left_out = [&](const char* file, const InputError& error) {
-    input.left_out.emplace_back((std::filesystem::path(options.results) / file).string(),
-                                error.what());
-    std::cerr << "left out: " << error.what() << '\n';
+  const auto add = [&](const char* file, auto& to, const auto& stored) {
+    try {
+      to = stored(options.results, program);
+    } catch (const InputError& error) {
+      input.left_out.emplace_back((std::filesystem::path(options.results) / file).string(),
+                                  error.what());
+      std::cerr << "left out: " << error.what() << '\n';
+    }
   };
-  try {
-    input.truths = report::stored_truths(options.results, program);
-  } catch (const InputError& error) {
-    left_out("verify.json", error);
-  }
-  try {
-    input.regressions = report::stored_regressions(options.results, program);
-  } catch (const InputError& error) {
-    left_out("check.json", error);
-  }
-  try {
-    input.required = report::stored_requirements(options.results, program);
-  } catch (const InputError& error) {
-    left_out("require", error);
-  }
-  try {
-    input.frontiers = report::stored_frontiers(options.results, program);
-  } catch (const InputError& error) {
-    left_out("frontiers", error);
-  }
+  add("verify.json", input.truths, report::stored_truths);
+  add("check.json", input.regressions, report::stored_regressions);
+  add("require", input.required, report::stored_requirements);
+  add("frontiers", input.frontiers, report::stored_frontiers);
   if (options.json) {
     std::cout << report::make_model(input, 1) << '\n';
     return kPass;

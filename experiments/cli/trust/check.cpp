@@ -12,6 +12,7 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/study/extremes/extremes.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -30,7 +31,8 @@ std::vector<std::string> studies_with_baseline(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(folder, none))
-    if (entry.is_directory()) names.push_back(entry.path().filename());
+    if (entry.is_directory() && entry.path().filename() != kFrontiersFolder)
+      names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -76,10 +78,8 @@ void summarise(const BaselineStudy& study, const Comparison& comparison) {
 }
 
 Unit unit_of(const std::string& value) {
-  for (const MetricEntry* metric : metrics())
-    for (const ValueSpec& spec : metric->values)
-      if (spec.name == value) return spec.unit;
-  return kNumber;
+  const ValueSpec* spec = find_value(value).second;
+  return spec ? spec->unit : kNumber;
 }
 
 /// "better in 3, worse in 1": of an error; "" of what has neither.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -15,9 +14,11 @@
 #include "experiments/command_line/colour.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/store.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
+#include "experiments/timing/timing.hpp"
 
 namespace taut::verb::doctor {
 
@@ -30,18 +31,12 @@ struct Check {
   bool good = true;
 };
 
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// Seconds of CPU time for a fixed piece of arithmetic, about 5 ms.
 double fixed_work() {
-  const double start = thread_seconds();
+  const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
   volatile double sink = 1;
   for (int i = 0; i < 1'000'000; ++i) sink = sink * 1.0000001 + 1e-9;
-  return thread_seconds() - start;
+  return seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
 }
 
 /// Half the spread between quartiles of the time of identical code, over its median.
@@ -52,24 +47,11 @@ double noise() {
   return (times[15] - times[5]) / 2 / times[10];
 }
 
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f %%", 100 * share);
-  return text;
-}
-
 std::string first_line(const fs::path& file) {
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
   return line;
-}
-
-std::string cpu_model() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown";
 }
 
 Check writable(const fs::path& results) {
@@ -99,7 +81,7 @@ std::vector<Check> examine() {
   std::vector<Check> all{
       {"toolchain", std::string(toolchain())},
       {"system", std::string(system.sysname) + " " + system.release + " " + system.machine},
-      {"processor", cpu_model() + ", " + std::to_string(cores) + " cores"},
+      {"processor", machine_name()},
       arithmetic(),
       {"scenes and studies", data_folder().string(), !shipped("scenes").empty()},
       writable(default_results())};
@@ -114,7 +96,7 @@ std::vector<Check> examine() {
                  std::to_string(load).substr(0, 4) + " on " + std::to_string(cores) + " cores",
                  load < 0.5 * cores});
   if (!governor.empty()) all.push_back({"clock", governor, governor == "performance"});
-  all.push_back({"same code, twice", percent(spread) + " apart", spread < 0.02});
+  all.push_back({"same code, twice", number_text(100 * spread, 2) + " % apart", spread < 0.02});
   return all;
 }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -18,7 +17,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/system/data.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/truths/truth.hpp"
@@ -71,12 +70,10 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
   const Countdown countdown("truth");
   const auto work = [&] {
     for (std::size_t i = next++; i < chosen.size(); i = next++) {
-      const auto start = std::chrono::steady_clock::now();
+      const auto start = SteadyClock::now();
       Findings findings(options.solvers);
       chosen[i]->check(findings);
-      outcomes[i] = {
-          chosen[i], findings.all(),
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+      outcomes[i] = {chosen[i], findings.all(), seconds_since(start)};
       const std::lock_guard lock(mutex);
       countdown(++done, chosen.size());
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "experiments/render/image/colour.hpp"
 #include "experiments/render/opengl/camera.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/model/join.hpp"
+
 namespace taut {
 
 namespace {
@@ -43,9 +45,7 @@ void draw_header(Canvas& canvas, const SceneRenderer& renderer, const RecordedRu
       canvas.text({left, title_y}, run.title, {27 * u * shrink, kInk, Weight::bold});
   if (!run.settings.empty())
     canvas.text({left + advance, title_y}, "   " + run.settings, {21 * u * shrink, kMuted});
-  std::string line;
-  for (const std::string& part : caption(renderer, run, t))
-    line += (line.empty() ? "" : "      ") + part;
+  const std::string line = join(caption(renderer, run, t), "      ");
   const double size = 19 * u * std::min(1.0, available / text_width(line, 19 * u));
   canvas.text({left, line_y}, line, {size, kMuted});
 }

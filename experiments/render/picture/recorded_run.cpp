@@ -1,7 +1,6 @@
 #include "experiments/render/picture/recorded_run.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/model/input_error.hpp"
 #include "core/model/params.hpp"

@@ -7,15 +7,17 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/settings.hpp"
+#include "experiments/timing/candidate.hpp"
 
 namespace taut::report {
 
 namespace {
 
 bool is_setting(const std::string& name) {
-  return name == "iterations" || name == "dt" || name == "substeps" || name == "vertices";
+  return name == kSweeps || name == "dt" || name == kSubsteps || name == "vertices";
 }
 
 bool plays_a_file(const Record& r) { return std::isfinite(value_of(r, kStrainFloor)); }
@@ -48,13 +50,7 @@ Records records_along(const ReportInput& input, const std::string& scene,
 
 std::string held_text(const std::string& setting, double value) {
   const Quantity q = quantity(setting);
-  return q.unit.empty() ? q.text(value, 3) + " " + q.title : q.title + " " + q.text(value, 3);
-}
-
-constexpr const char* kRounding = "rounding of the file of positions";
-
-void raise_floor(Chart& chart, double y, const char* text) {
-  if (y > 0 && !(chart.floor && chart.floor->y >= y)) chart.floor = {y, text};
+  return q.unit.shown.empty() ? q.text(value, 3) + " " + q.title : q.title + " " + q.text(value, 3);
 }
 
 /// Positions from a file have no sweeps and no substeps: their value is a level across the chart.
@@ -76,12 +72,16 @@ void draw_levels(Chart& chart) {
 
 }  // namespace
 
-void add_strain_floor(Chart& chart) {
-  if (!chart.y.name.starts_with("stretch.")) return;
+void add_floor(Chart& chart) {
+  const ValueSpec* value = find_value(chart.y.name).second;
+  if (!value || value->floor.value.empty()) return;
+  double highest = 0;
   for (const Curve& curve : chart.curves)
     for (const Point& p : curve.points)
-      raise_floor(chart, value_of(*p.record, kStrainFloor), kRounding);
-  for (const TimeSeries& series : chart.series) raise_floor(chart, series.floor, kRounding);
+      highest = std::fmax(highest, value_of(*p.record, value->floor.value));
+  if (value->floor.value == kStrainFloor)
+    for (const TimeSeries& series : chart.series) highest = std::max(highest, series.floor);
+  if (highest > 0) chart.floor = {highest, std::string(value->floor.text)};
 }
 
 bool failed(const Point& p) { return !completed(p.record->status); }
@@ -172,18 +172,41 @@ std::vector<StatusMap> make_maps(const Records& records, const std::string& scen
 }
 
 std::string tick_of(const Quantity& q, double si) {
-  const double shown = si * q.scale;
-  const bool whole = std::abs(shown - std::round(shown)) < 1e-6 * shown && shown < 99999.5;
-  return whole ? exact(std::round(shown)) : significant(shown, 2);
+  const double value = si * q.unit.scale;
+  const bool whole = std::abs(value - std::round(value)) < 1e-6 * value && value < 99999.5;
+  return whole ? exact(std::round(value)) : significant(value, 2);
 }
+
+namespace {
+
+/// What the chart of a value is called in its scene; where several have the role, after the value.
+std::string id_of(const ValueSpec& value) {
+  constexpr std::string_view kNames[] = {"",         "convergence", "vertices", "faces",
+                                         "passages", "reference",   "slip"};
+  const std::vector<const ValueSpec*> all = values_with_role();
+  const bool alone = std::ranges::count(all, value.role, &ValueSpec::role) == 1;
+  return std::string(alone ? kNames[static_cast<std::size_t>(value.role)] : value.name);
+}
+
+std::string caption_of(const ValueSpec& value) {
+  if (value.role == Role::reference_error)
+    return "The reference is the static equilibrium of the same cloth, found without any of these "
+           "solvers.";
+  if (value.role == Role::error) return capitalised(std::string(to_string(value.window))) + ".";
+  return value.role == Role::vertex_depth || value.role == Role::face_depth
+             ? "Peak over the whole run."
+             : "";
+}
+
+}  // namespace
 
 std::vector<Chart> scene_charts(const ReportInput& input, const std::string& scene) {
   std::vector<Chart> charts;
   // Curves along the time step are of one number of sweeps, all others of one time step.
   const auto add = [&](const std::string& id, const std::string& kind, const std::string& x,
                        const std::string& y, const std::string& along, const std::string& caption) {
-    const std::string over = along == "setting" ? "iterations" : along,
-                      held = along == "dt" ? "iterations" : "dt";
+    const std::string over = along == "setting" ? kSweeps : along,
+                      held = along == "dt" ? kSweeps : "dt";
     const Slice slice =
         hold(records_along(input, scene, over, y), held, held == "dt" ? 1.0 / 64 : 16);
     try {
@@ -191,7 +214,7 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
       chart.id = scene + "-" + id, chart.scene = scene, chart.caption = caption;
       chart.title =
           capitalised(chart.y.title) + " over " + (x == "dt" ? "the time step" : chart.x.title);
-      add_strain_floor(chart);
+      add_floor(chart);
       if (std::isfinite(slice.value)) chart.held = held_text(held, slice.value);
       charts.push_back(std::move(chart));
       return true;
@@ -199,30 +222,26 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
       return false;  // nothing to draw
     }
   };
-  if (add("convergence", "convergence", "iterations", "stretch.rms", "iterations", "Last second."))
+  const std::vector<const ValueSpec*> values = values_with_role();
+  for (const ValueSpec* value : values) {
+    if (value->role != Role::error && value->role != Role::reference_error) continue;
+    const std::string y(value->name);
+    if (!add(id_of(*value), "convergence", kSweeps, y, kSweeps, caption_of(*value))) continue;
     for (const StudyResult& study : input.studies)
-      if (const auto at = study.slopes.find(scene); at != study.slopes.end())
+      if (const auto at = study.slopes.find(scene); y == kErrorMetric && at != study.slopes.end())
         charts.back().slope = at->second;
-  if (add("reference", "convergence", "iterations", "reference.rms", "iterations",
-          "The reference is the static equilibrium of the same cloth, found without any of these "
-          "solvers."))
-    for (const Curve& curve : charts.back().curves)
-      for (const Point& p : curve.points)
-        raise_floor(charts.back(), value_of(*p.record, "reference.floor"),
-                    "the reference's own error");
+  }
   const bool timed =
-      std::ranges::any_of(records_along(input, scene, "iterations", "stretch.rms"),
+      std::ranges::any_of(records_along(input, scene, kSweeps, kErrorMetric),
                           [](const Record* r) { return std::isfinite(value_of(*r, kCpuValue)); });
-  if (add("work", "work-precision", timed ? kCpuValue : "projections", "stretch.rms", "setting",
+  if (add("work", "work-precision", timed ? kCpuValue : "projections", kErrorMetric, "setting",
           "Down and left is better."))
     charts.back().front = true;
-  for (const auto& [y, id] : {std::pair<std::string, std::string>{"penetration.peak", "vertices"},
-                              {"face.peak", "faces"},
-                              {"tunnelling.events", "passages"},
-                              {"slip.distance", "slip"}}) {
-    const std::string caption = y.ends_with(".peak") ? "Peak over the whole run." : "";
-    add(id, "contact", "iterations", y, "iterations", caption);
-    add(id + "-dt", "contact", "dt", y, "dt", caption);
+  for (const ValueSpec* value : values) {
+    if (value->role == Role::error || value->role == Role::reference_error) continue;
+    const std::string y(value->name);
+    add(id_of(*value), "contact", kSweeps, y, kSweeps, caption_of(*value));
+    add(id_of(*value) + "-dt", "contact", "dt", y, "dt", caption_of(*value));
   }
   return charts;
 }
@@ -244,8 +263,8 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
   for (const StudyResult& study : input.studies) {
     std::set<double> sweeps, steps;
     for (const Record& r : study.records)
-      if (r.scene == scene) sweeps.insert(value_of(r, "iterations")), steps.insert(r.dt);
-    if (steps.size() >= 3 && sweeps.size() >= 3) add(study.name, study.records, "dt", "iterations");
+      if (r.scene == scene) sweeps.insert(value_of(r, kSweeps)), steps.insert(r.dt);
+    if (steps.size() >= 3 && sweeps.size() >= 3) add(study.name, study.records, "dt", kSweeps);
   }
   for (const MapResult& map : input.maps) {
     const auto ran = std::ranges::find(input.studies, map.study, &StudyResult::name);
@@ -256,7 +275,7 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
 }
 
 Chart cost_chart(const SceneBench& scene, const Records& records) {
-  Chart chart = make_chart("cost", records, "cpu.per_second", "stretch.rms", "setting");
+  Chart chart = make_chart("cost", records, "cpu.per_second", kErrorMetric, "setting");
   chart.id = scene.scene + "-cost", chart.scene = scene.scene;
   chart.title = capitalised(chart.y.title) + " over " + chart.x.title;
   chart.caption =

@@ -38,8 +38,8 @@ struct Chart {
 Chart make_chart(std::string kind, const Records&, const std::string& x, const std::string& y,
                  const std::string& along);
 
-/// Draws the rounding of files of positions into a chart of strain.
-void add_strain_floor(Chart&);
+/// Draws into the chart below what its y says nothing (ValueSpec::floor), if it says so.
+void add_floor(Chart&);
 
 /// Whether the point has no value to be drawn: it failed.
 bool failed(const Point&);
@@ -72,7 +72,7 @@ std::string tick_of(const Quantity&, double si);
 /// Everything drawn of a scene that a study ran, in the order in which to show it.
 std::vector<Chart> scene_charts(const ReportInput&, const std::string& scene);
 std::vector<StatusMap> scene_maps(const ReportInput&, const std::string& scene);
-/// Error over cost of a bench.
+/// kErrorMetric over the cost of a bench.
 Chart cost_chart(const SceneBench&, const Records&);
 
 }  // namespace taut::report

@@ -26,7 +26,7 @@ Settings settings(const Record& record, const std::vector<std::string>& free) {
       if (const auto equals = text.find('='); equals != std::string::npos)
         all[text.substr(0, equals)] = text.substr(equals + 1);
   for (const std::string& name : free) {
-    all.erase(name == "vertices" ? "cloth.grid" : name);
+    all.erase(name == "vertices" ? "cloth.grid" : parameter_of(record.solver, name));
     if (name != "setting") continue;
     for (const std::string& parameter : accuracy_parameters(record.solver)) all.erase(parameter);
   }

@@ -28,8 +28,8 @@ struct Curve {
   std::vector<Point> points;
 };
 
-/// Groups records into curves of y over x: those that differ in nothing but `along` ("iterations",
-/// "dt", ...) and `also` share a curve. Labels name only the settings that vary among the records.
+/// Groups records into curves of y over x: those that differ in nothing but `along` (kSweeps, "dt",
+/// ...) and `also` share a curve. Labels name only the settings that vary among the records.
 /// `along` = "setting" frees every accuracy parameter at once: one curve per solver, ordered by x.
 std::vector<Curve> make_curves(const Records&, const std::string& x, const std::string& y,
                                const std::string& along, const std::string& also = "");

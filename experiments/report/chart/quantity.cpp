@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/settings.hpp"
 
 namespace taut::report {
 
@@ -25,8 +25,8 @@ struct Titled {
 };
 constexpr std::array kTitles{
     Titled{"dt", "time step", kMilliseconds},
-    Titled{"iterations", "sweeps per substep", kNumber},
-    Titled{"substeps", "substeps per step", kNumber},
+    Titled{kSweeps, "sweeps per substep", kNumber},
+    Titled{kSubsteps, "substeps per step", kNumber},
     Titled{"steps", "steps", kNumber},
     Titled{"t", "simulated time", kTime},
     Titled{"projections", "constraint projections per step", kNumber},
@@ -89,29 +89,29 @@ double value_of(const Record& record, std::string_view name) {
   const std::string key(name);
   if (const auto value = record.values.find(key); value != record.values.end())
     return value->second;
-  const auto param = record.params.find(key);
+  const auto param = record.params.find(parameter_of(record.solver, key));
   return param == record.params.end() ? overridden(record, key) : number(param->second);
 }
 
-std::string Quantity::text(double si, int digits) const {
-  const bool counted = unit.empty() && si == std::round(si) && std::abs(si) < 1e7;
-  const std::string number = counted ? exact(si) : significant(si * scale, digits);
-  return unit.empty() || !std::isfinite(si) ? number : number + "\u00A0" + unit;
+std::string shown(const Unit& unit, double si, int digits) {
+  const bool counted = unit.shown.empty() && si == std::round(si) && std::abs(si) < 1e7;
+  const std::string number = counted ? exact(si) : significant(si * unit.scale, digits);
+  return unit.shown.empty() || !std::isfinite(si) ? number
+                                                  : number + "\u00A0" + std::string(unit.shown);
+}
+
+std::string Quantity::label() const {
+  return unit.shown.empty() ? title : title + " [" + std::string(unit.shown) + "]";
 }
 
 Quantity quantity(std::string_view name) {
-  const auto shown = [&](std::string title, const Unit& unit, std::string_view help) {
-    return Quantity{std::string(name), std::move(title),  std::string(unit.shown), unit.scale,
-                    unit.logarithmic,  std::string(help), unit.less_is_better};
-  };
+  std::string own(name);
   if (const auto known = std::ranges::find(kTitles, name, &Titled::name); known != kTitles.end())
-    return shown(std::string(known->title), known->unit, known->help);
+    return {own, std::string(known->title), known->unit, std::string(known->help)};
   const ValueSpec* value = find_value(name).second;
-  if (!value) return shown(std::string(name), kNumber, "");
-  Quantity q = shown(value->title.empty() ? title_from(name) : std::string(value->title),
-                     value->unit, value->help);
-  q.window = to_string(value->window);
-  return q;
+  if (!value) return {own, own};
+  return {own, value->title.empty() ? title_from(name) : std::string(value->title), value->unit,
+          std::string(value->help), value->window};
 }
 
 std::vector<std::string> quantity_names() {

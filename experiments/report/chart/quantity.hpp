@@ -5,31 +5,34 @@
 #include <vector>
 
 #include "experiments/case/record.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut::report {
 
+/// The names of sweeps per substep and of substeps per step, whatever a solver's own parameters for
+/// them are called.
+inline constexpr const char *kSweeps = "iterations", *kSubsteps = "substeps";
+
 /// What a record holds under `name`: "dt" [s], "steps", "vertices", "links", "projections" (per
-/// step), any numeric parameter of its solver ("iterations"), any metric value ("stretch.rms"),
-/// any scene key that its case sets to a number ("wind.strength"). NaN if it has none.
+/// step), kSweeps, kSubsteps, any numeric parameter of its solver ("omega"), any metric value
+/// ("stretch.rms"), kStrainFloor, any scene key that its case sets to a number ("wind.strength").
+/// NaN if it has none.
 double value_of(const Record&, std::string_view name);
 
-/// Of a case that plays positions from a file: the RMS strain that their rounding makes.
-inline constexpr std::string_view kStrainFloor = "strain.floor";
+/// "1.2 %", "0.31 mm": for prose and tables.
+std::string shown(const Unit&, double si, int digits = 2);
 
-/// How a quantity is shown: `shown = scale * SI value`, in `unit`.
+/// What people are told of a quantity.
 struct Quantity {
   std::string name;
   std::string title;  ///< "RMS stretch"
-  std::string unit;   ///< "%", "mm", "ms", "" ...
-  double scale = 1;
-  bool logarithmic = true;  ///< the axis that suits it
-  std::string help = {};    ///< its definition; "" of settings
-  bool less_is_better = false;
-  std::string window = {};  ///< "last second", "whole run", "end of the run"; "" of settings
+  Unit unit = kNumber;
+  std::string help = {};         ///< its definition; "" of settings
+  Window window = Window::none;  ///< Window::none of settings
 
-  std::string label() const { return unit.empty() ? title : title + " [" + unit + "]"; }
-  /// "1.2 %", "0.31 mm": for prose and tables.
-  std::string text(double si, int digits = 2) const;
+  /// "RMS stretch [%]"
+  std::string label() const;
+  std::string text(double si, int digits = 2) const { return shown(unit, si, digits); }
 };
 /// As the metric's own file declares it; unknown names are shown as they are.
 Quantity quantity(std::string_view name);

@@ -38,9 +38,21 @@ std::string solver_title(std::string_view solver) {
   return capitalised(title);
 }
 
+std::string parameter_of(std::string_view solver, std::string_view name) {
+  std::string_view own;
+  if (const SolverEntry* entry = find_entry(solver)) {
+    if (name == kSweeps) own = entry->knobs.sweeps;
+    if (name == kSubsteps) own = entry->knobs.substeps;
+  }
+  return std::string(own.empty() ? name : own);
+}
+
 std::vector<std::string> accuracy_parameters(const std::string& solver) {
+  std::vector<std::string> all{parameter_of(solver, kSubsteps), parameter_of(solver, kSweeps)};
   const SolverEntry* entry = find_entry(solver);
-  return parts(entry ? entry->knobs.labelled : AccuracyKnobs{}.labelled);
+  for (const std::string& name : parts(entry ? entry->knobs.labelled : ""))
+    if (std::ranges::find(all, name) == all.end()) all.push_back(name);
+  return all;
 }
 
 std::vector<std::string> extras(const Record& r, const std::map<std::string, std::string>& others) {
@@ -62,23 +74,25 @@ std::string Work::text() const {
 }
 
 Work work_of(const Record& r) {
-  const auto number = [&](const char* name) {
+  const auto number = [&](std::string_view name) {
     const double value = value_of(r, name);
     return std::isfinite(value) ? static_cast<int>(value) : -1;
   };
-  const int substeps = number("substeps"), sweeps = number("iterations");
+  const int substeps = number(kSubsteps), sweeps = number(kSweeps);
   return {sweeps >= 0 ? std::max(1, substeps) : substeps, sweeps};  // whole steps are one substep
 }
 
 std::string brief_settings(const std::string& solver) try {
   const SolverChoice choice = parse_solver(solver);
+  const std::string sweeps = parameter_of(choice.entry->name, kSweeps),
+                    substeps = parameter_of(choice.entry->name, kSubsteps);
   Work work;
   std::string text;
   for (const ParamSpec& spec : choice.params.specs()) {
     const std::string value(choice.params.value(spec.name));
-    if (spec.name == "iterations")
+    if (spec.name == sweeps)
       work.sweeps = std::stoi(value);
-    else if (spec.name == "substeps")
+    else if (spec.name == substeps)
       work.substeps = std::stoi(value);
     else if (value != spec.default_value)
       text += ", " + std::string(spec.name) + "=" + value;
@@ -120,6 +134,8 @@ SettingLabels::SettingLabels(const Records& all) {
 }
 
 std::string SettingLabels::of(const Record& record) const {
+  const std::string sweeps = parameter_of(record.solver, kSweeps),
+                    substeps = parameter_of(record.solver, kSubsteps);
   std::string text;
   bool work = false;
   for (const std::string& name : accuracy_parameters(record.solver)) {
@@ -128,7 +144,7 @@ std::string SettingLabels::of(const Record& record) const {
     const auto seen = seen_.find({record.solver, name});
     const bool varies = seen != seen_.end() && seen->second.size() > seen->second.count(at->second);
     if (!varies || at->second == "off") continue;
-    if (name == "substeps" || name == "iterations")
+    if (name == substeps || name == sweeps)
       work = true;
     else
       text += ", " + (at->second == "on" ? name : at->second);

@@ -27,8 +27,10 @@ struct Records : std::vector<const Record*> {
 /// What its entry says, or its name in words: "bullet-deformable" -> "Bullet deformable".
 std::string solver_title(std::string_view solver);
 
-/// The parameters that decide accuracy and cost, as the entry says; of a solver that this program
-/// does not have substeps and sweeps.
+/// Of kSweeps and kSubsteps the solver's own parameter, as its entry says; else the name itself.
+std::string parameter_of(std::string_view solver, std::string_view name);
+
+/// The parameters that decide accuracy and cost, as the entry says: substeps and sweeps first.
 std::vector<std::string> accuracy_parameters(const std::string& solver);
 
 /// Accelerators that this case uses and that a solver with these parameters lacks ("tethers").

@@ -4,38 +4,20 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/settings.hpp"
 
 namespace taut::report {
 
 namespace {
 
-constexpr double kTolerance = kAlike - 1;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
-
-std::string_view to_string(Sure sure) {
-  constexpr std::array<std::string_view, 5> kWords{"clear", "likely", "too noisy", "no difference",
-                                                   "single run"};
-  return kWords[static_cast<std::size_t>(sure)];
-}
-
-std::string_view meaning(Sure sure) {
-  constexpr std::array<std::string_view, 5> kMeanings{
-      "the whole 95 % interval is further from 1 than 5 % and than identical code differed from "
-      "itself, which was less than 5 %",
-      "the 95 % interval excludes 1, and its middle is further from 1 than 5 % and than identical "
-      "code differed from itself",
-      "identical code differed from itself by more than the difference",
-      "the 95 % interval has 1 in it, or its middle is within 5 % of 1",
-      "computed, not timed: the same build gives the same bits on every run, so there is no "
-      "spread"};
-  return kMeanings[static_cast<std::size_t>(sure)];
-}
 
 std::string_view to_string(ClaimKind kind) {
   constexpr std::array<std::string_view, 3> kWords{"headline", "tile", "note"};
@@ -75,7 +57,7 @@ void Evidence::leave_out(const std::string& sentence) {
   left_out_ += (left_out_.empty() ? "" : " ") + sentence;
 }
 
-Claim::Claim(std::string name, ClaimKind what, std::string of, std::string text, Sure how,
+Claim::Claim(std::string name, ClaimKind what, std::string of, std::string text, Certainty how,
              std::vector<Evidence> evidence)
     : id(std::move(name)),
       kind(what),
@@ -94,6 +76,7 @@ Claim::Claim(const Claim& of, std::string heading, std::string what, std::vector
       sentence(std::move(what)),
       sure(of.sure),
       basis(of.basis),
+      quoted_(of.quoted_),
       heading_(std::move(heading)),
       bars_(std::move(bars)) {}
 
@@ -103,19 +86,13 @@ Claim& Claim::emphasise(const std::vector<std::string>& parts) {
   return *this;
 }
 
-Claim Claim::tile(std::string heading, std::string what, std::vector<Bar> bars) const {
-  return {*this, std::move(heading), std::move(what), std::move(bars)};
+Claim& Claim::quotes() {
+  quoted_ = true;
+  return *this;
 }
 
-std::optional<Sure> judge_ratio(const Interval& ratio, const Interval& control) {
-  const double noise = spread(control), change = std::abs(std::log(ratio.mid));
-  if (change <= std::log1p(kTolerance)) return {};
-  if (change <= std::log1p(noise)) return Sure::too_noisy;
-  if (ratio.contains(1)) return {};
-  const double nearest = std::log(ratio.mid < 1 ? ratio.high : ratio.low);
-  const bool clear = std::abs(nearest) > std::log1p(std::max(kTolerance, noise)) &&
-                     (nearest < 0) == (ratio.mid < 1) && noise <= kTolerance;
-  return clear ? Sure::clear : Sure::likely;
+Claim Claim::tile(std::string heading, std::string what, std::vector<Bar> bars) const {
+  return {*this, std::move(heading), std::move(what), std::move(bars)};
 }
 
 Interval geometric_mean(const std::vector<Interval>& ratios) {
@@ -142,6 +119,71 @@ std::string sentence_if(const std::string& opening, const std::vector<std::strin
 
 std::string share_text(double ratio) {
   return ratio <= 0.55 ? "1/" + significant(1 / ratio, 2) : fixed(100 * ratio, 0) + "\u00A0%";
+}
+
+Json json_of(const Claim& claim, References& refs) {
+  Json one{{"id", claim.id},
+           {"kind", to_string(claim.kind)},
+           {"about", claim.about},
+           {"sentence", claim.sentence},
+           {"sure", to_string(claim.sure)}};
+  add_if(one, "strong", claim.strong());
+  add_if(one, "heading", claim.heading());
+  for (const Bar& bar : claim.bars()) {
+    Json at{{"solver", bar.solver},
+            {"label", bar.label},
+            {"value", bar.value ? json_number(*bar.value) : Json()},
+            {"text", bar.text}};
+    if (bar.interval) at["low"] = bar.interval->low, at["high"] = bar.interval->high;
+    one["bars"].push_back(std::move(at));
+  }
+  if (!claim.bars().empty()) one["metric"] = claim.basis->front().quantity().name;
+  for (const Evidence& evidence : *claim.basis) {
+    const Quantity& q = refs.use(evidence.quantity().name);
+    Json basis{{"metric", q.name},
+               {"window", to_string(q.window == Window::none ? Window::run : q.window)},
+               {"rule", evidence.rule()}};
+    std::set<std::string> scenes, cases;
+    std::map<std::string, std::set<std::string_view>> settings;
+    std::map<std::string, std::map<std::string, int>> statuses;
+    std::vector<const Evidence::Seen*> listed;
+    for (const Evidence::Seen& seen : evidence.seen()) {
+      const Record& r = *seen.record;
+      scenes.insert(r.scene);
+      settings[seen.label].insert(r.spec.solver);
+      ++statuses[seen.label][std::string(to_string(r.status.kind))];
+      listed.push_back(&seen);
+    }
+    if (listed.size() > kMostValues) {  // what has no value is listed first
+      basis["unlisted"] = listed.size() - kMostValues;
+      std::ranges::stable_partition(listed, [](const auto* s) { return !std::isfinite(s->value); });
+      listed.resize(kMostValues);
+    }
+    for (const Evidence::Seen* seen : listed) {
+      const Record& r = *seen->record;
+      const std::string key = refs.key(r);
+      Json value{{"scene", r.scene},
+                 {"solver", r.solver},
+                 {"label", seen->label},
+                 {"value", json_number(seen->value)},
+                 {"n", seen->n},
+                 {"status", to_string(r.status.kind)},
+                 {"text", evidence.text(*seen)}};
+      if (!key.empty()) value["case"] = key, cases.insert(key);
+      if (seen->interval) value["low"] = seen->interval->low, value["high"] = seen->interval->high;
+      basis["values"].push_back(std::move(value));
+    }
+    basis["scenes"] = scenes, basis["statuses"] = statuses, basis["cases"] = cases;
+    for (const auto& [label, texts] : settings)
+      basis["settings"].push_back(
+          {{"solver", label},
+           {"text", texts.size() == 1
+                        ? brief_settings(std::string(*texts.begin()))
+                        : std::to_string(texts.size()) + " settings: see its cases"}});
+    add_if(basis, "left_out", evidence.left_out());
+    one["basis"].push_back(std::move(basis));
+  }
+  return one;
 }
 
 }  // namespace taut::report

@@ -7,22 +7,12 @@
 #include <vector>
 
 #include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/chart/references.hpp"
 #include "experiments/report/claims/rivals.hpp"
+#include "experiments/system/json.hpp"
 #include "experiments/timing/bench.hpp"
 
 namespace taut::report {
-
-/// How sure a comparison is.
-enum class Sure {
-  clear,      ///< the whole interval is beyond the tolerance and beyond what identical code showed
-  likely,     ///< the interval excludes 1 and its middle is beyond both
-  too_noisy,  ///< identical code differed from itself by more
-  none,       ///< no difference that can be told
-  single_run  ///< computed, not timed: the same bits on every run, no spread known
-};
-std::string_view to_string(Sure);
-/// What the word means, one sentence.
-std::string_view meaning(Sure);
 
 /// Values of one quantity that a claim rests on. Points to the cases that it looked at. Looking at
 /// a case is the only way to get its value here, and every case that was looked at is counted by
@@ -80,18 +70,22 @@ class Claim {
  public:
   /// `about`: "all", a scene, "cost", "only", "failures", "differences". Throws std::logic_error
   /// without evidence or with evidence that looked at no case.
-  Claim(std::string id, ClaimKind, std::string about, std::string sentence, Sure,
+  Claim(std::string id, ClaimKind, std::string about, std::string sentence, Certainty,
         std::vector<Evidence>);
 
   const std::string id;
   const ClaimKind kind;
   const std::string about, sentence;
-  const Sure sure;
+  const Certainty sure;
   const std::shared_ptr<const std::vector<Evidence>> basis;  ///< its tile has the same
 
   /// Parts of the sentence to emphasise; what is not in it is left out.
   Claim& emphasise(const std::vector<std::string>&);
   const std::vector<std::string>& strong() const { return strong_; }
+
+  /// Says that its values are those of the quoted cases alone: a film may show just these.
+  Claim& quotes();
+  bool quoted() const { return quoted_; }
 
   /// The claim as a tile on the same basis: a heading, a bar for each solver (of the first
   /// evidence's quantity) and what the bars are. Each bar's text is in the claim's sentence.
@@ -103,20 +97,18 @@ class Claim {
   /// The tile of a claim.
   Claim(const Claim&, std::string heading, std::string what, std::vector<Bar>);
   std::vector<std::string> strong_;
+  bool quoted_ = false;
   std::string heading_;
   std::vector<Bar> bars_;
 };
 
-/// A ratio of costs below which nobody says "less", and what counts as no stretch at all: without a
-/// floor one scene in free fall (1e-17 against 1e-13) would decide every mean.
-inline constexpr double kAlike = 1.05;
-inline constexpr double kNoStretch = 1e-3;
-
-/// The error whose price heads the page.
-inline constexpr const char* kPricedMetric = "stretch.rms";
+/// The value of kErrorMetric whose price heads the page.
 inline constexpr double kPricedError = 0.01;
 
-/// Stretch, penetration, largest stable time step and failures, over all scenes and scene by scene.
+/// As the model has it (model/MODEL.md).
+Json json_of(const Claim&, References&);
+
+/// Errors, penetration, largest stable time step and failures, over all scenes and scene by scene.
 std::vector<Claim> physics_claims(const Rivals&);
 /// What a step of the same work costs, then the priced error, each at its best, and apart from that
 /// with what only one has.
@@ -126,9 +118,9 @@ std::vector<Claim> cost_claims(const ReportInput&);
 /// much. Empty with one folder alone.
 std::vector<Claim> difference_claims(const ReportInput&);
 
-/// How sure a ratio is, given the ratio of identical code to itself; nothing: no difference that
-/// can be told.
-std::optional<Sure> judge_ratio(const Interval& ratio, const Interval& control);
+/// What the input's results do not show, a sentence each.
+std::vector<std::string> caveats(const ReportInput&);
+
 /// Geometric mean of independent ratios: their errors add as squares of logarithms.
 Interval geometric_mean(const std::vector<Interval>&);
 double geometric_mean(const std::vector<double>&);

@@ -22,7 +22,7 @@ struct SceneRatio {
 /// A scene's cases with their costs and errors: an interval is a bootstrap, made once.
 struct Timed {
   const SceneBench& bench;
-  std::vector<Candidate> candidates = bench.candidates(kPricedMetric);
+  std::vector<Candidate> candidates = bench.candidates(kErrorMetric);
 };
 
 /// Two solvers by whose costs a claim is made.
@@ -90,15 +90,15 @@ std::string noise_text(double noise) {
 }
 
 /// Of two that were judged; where there is no difference nothing was.
-Sure less_sure(Sure a, Sure b) {
-  return a == Sure::none ? b : b == Sure::none ? a : std::max(a, b);
+Certainty less_sure(Certainty a, Certainty b) {
+  return a == Certainty::none ? b : b == Certainty::none ? a : std::max(a, b);
 }
 
 /// The mean over scenes, who is cheaper where, and how sure all that is.
 struct Verdicts {
   std::string text;
-  Sure sure = Sure::none;  ///< the least sure of all that was judged
-  std::string strong;      ///< the factor
+  Certainty sure = Certainty::none;  ///< the least sure of all that was judged
+  std::string strong;                ///< the factor
 };
 
 Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
@@ -106,23 +106,23 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
   std::vector<Interval> all;
   Verdicts verdicts;
   double noise = 0;
-  const auto sure = [&](Sure s) { verdicts.sure = less_sure(verdicts.sure, s); };
+  const auto sure = [&](Certainty s) { verdicts.sure = less_sure(verdicts.sure, s); };
   for (const SceneRatio& r : ratios) {
     all.push_back(r.ratio), names.push_back(r.scene);
     noise = std::max(noise, spread(r.control));
-    const auto judged = judge_ratio(r.ratio, r.control);
-    if (judged) sure(*judged);
-    (!judged                      ? even
-     : *judged == Sure::too_noisy ? noisy
-     : r.ratio.mid < 1            ? ours
-                                  : theirs)
+    const Certainty judged = judge(r.ratio, r.control);
+    sure(judged);
+    (judged == Certainty::none        ? even
+     : judged == Certainty::too_noisy ? noisy
+     : r.ratio.mid < 1                ? ours
+                                      : theirs)
         .push_back(r.scene);
   }
   const Interval mean = geometric_mean(all), control{1 / (1 + noise), 1, 1 + noise};
-  const auto judged = judge_ratio(mean, control);
+  const Certainty judged = judge(mean, control);
+  sure(judged);
   const std::string over = "; geometric mean over " + joined(names) + ")";
-  if (judged && *judged != Sure::too_noisy) {
-    sure(*judged);
+  if (is_difference(judged)) {
     const bool less = mean.mid < 1;
     const Interval share = less ? mean : inverse(mean);
     verdicts.strong = share_text(share.mid) + " of the CPU time";
@@ -130,8 +130,8 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
                     " of " + (less ? pair.other_label : pair.first_label) + " (" +
                     share_interval(share) + over + ".";
   } else {
-    if (judged) sure(*judged);
-    verdicts.text = std::string(judged ? "too noisy to judge" : "no difference that can be told") +
+    verdicts.text = std::string(judged == Certainty::too_noisy ? "too noisy to judge"
+                                                               : "no difference that can be told") +
                     " (" + pair.first_label + " over " + pair.other_label + " " +
                     fixed(mean.mid, 2) + ", 95\u00A0% interval " + fixed(mean.low, 2) + " to " +
                     fixed(mean.high, 2) + over + ".";
@@ -146,7 +146,7 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
 /// The priced error, each at the cheapest setting tried with what both have.
 void claim_price(const std::vector<Timed>& scenes, const Pair& pair, bool with_tile,
                  std::vector<Claim>& claims) {
-  const Quantity q = quantity(kPricedMetric);
+  const Quantity q = quantity(kErrorMetric);
   const std::string level = q.text(kPricedError, 1) + " " + q.title;
   Evidence evidence("cpu.per_second", "cheapest case that reaches " + level +
                                           "; geometric mean of the interleaved ratios over scenes");
@@ -186,7 +186,7 @@ void claim_price(const std::vector<Timed>& scenes, const Pair& pair, bool with_t
   const std::string id = "cost-" + pair.other;
   if (ratios.empty()) {
     claims.emplace_back(id, ClaimKind::headline, "cost",
-                        opening + "no scene where both reach it." + rest, Sure::single_run,
+                        opening + "no scene where both reach it." + rest, Certainty::single_run,
                         std::vector{evidence});
     return;
   }
@@ -261,11 +261,11 @@ void claim_same_work(const std::vector<Timed>& scenes, const Pair& pair,
 /// What a solver gains by a knob that the other one lacks, said apart.
 void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
                   std::vector<Claim>& claims) {
-  const Quantity q = quantity(kPricedMetric), cpu = quantity("cpu.per_second");
+  const Quantity q = quantity(kErrorMetric), cpu = quantity("cpu.per_second");
   Evidence evidence("cpu.per_second", "cheapest case that reaches the level, with and without");
   std::vector<std::string> clauses, missed;
   std::set<std::string> knobs;
-  std::optional<Sure> sure;
+  std::optional<Certainty> sure;
   double noise = 0;
   for (const Timed& timed_scene : timed_scenes) {
     if (!timed(timed_scene, pair.other)) continue;
@@ -292,12 +292,13 @@ void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
       evidence.look(scene.cases[*without], candidates[*without].cost,
                     pair.first_label + " without");
       const Interval ratio = *scene.ratio(*with, *without);
-      const auto judged = judge_ratio(ratio, scene.control);
-      sure = less_sure(sure.value_or(Sure::none), judged.value_or(Sure::none));
-      const bool told = judged && *judged != Sure::too_noisy;
+      const Certainty judged = judge(ratio, scene.control);
+      sure = less_sure(sure.value_or(Certainty::none), judged);
+      const bool told = is_difference(judged);
       const std::string than = told && ratio.mid > 1 ? ", more than" : ", the same as";
       text += told && ratio.mid < 1 ? ", " + share_text(ratio.mid) + " of" : than;
-      text += std::string(" without") + (judged && !told ? " as far as the noise lets tell" : "");
+      text += std::string(" without") +
+              (judged == Certainty::too_noisy ? " as far as the noise lets tell" : "");
     } else {
       text += ", without not reached by the settings tried";
     }
@@ -312,7 +313,7 @@ void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
       "With " + joined({knobs.begin(), knobs.end()}) + ", which " + pair.other_label +
           " does not have, " + pair.first_label + " reaches " + q.text(kPricedError, 1) + " " +
           q.title + " for this CPU time per simulated second: " + text + "." + noise_text(noise),
-      sure.value_or(Sure::single_run), std::vector{evidence});
+      sure.value_or(Certainty::single_run), std::vector{evidence});
 }
 
 }  // namespace

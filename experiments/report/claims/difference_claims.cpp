@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
@@ -8,10 +9,6 @@
 namespace taut::report {
 
 namespace {
-
-/// What a claim is made of, one each.
-constexpr const char* kCompared[] = {"stretch.rms", "penetration.peak", "face.peak",
-                                     "tunnelling.events", "reference.rms"};
 
 std::string case_name(const Record& r) {
   return r.scene + ", " + solver_title(r.solver) + " " + brief_settings(r.spec.solver);
@@ -39,7 +36,7 @@ Claim claim_statuses(const Differences& differences) {
     text += " A alone has " + std::to_string(differences.only_a) + " cases, B alone " +
             std::to_string(differences.only_b) + ".";
   return {"differences-statuses", ClaimKind::headline, "differences", text,
-          Sure::single_run,       {evidence}};
+          Certainty::single_run,  {evidence}};
 }
 
 std::optional<Claim> claim_values(const Differences& differences, const std::string& metric) {
@@ -64,12 +61,8 @@ std::optional<Claim> claim_values(const Differences& differences, const std::str
               ? "the same to the bit."
               : "less in B in " + std::to_string(less) + ", more in " + std::to_string(more) +
                     "; the largest change is that of " + where + ".";
-  return Claim{"differences-" + slug(metric),
-               ClaimKind::headline,
-               "differences",
-               text,
-               Sure::single_run,
-               {evidence}};
+  return Claim{"differences-" + slug(metric), ClaimKind::headline, "differences", text,
+               Certainty::single_run,         {evidence}};
 }
 
 /// What B costs over A; each was timed in a session of its own, so nothing is clear.
@@ -83,24 +76,22 @@ Claim claim_cost(const Differences& differences, const std::string& solver) {
     evidence.look(a, cost_a, "A"), evidence.look(b, cost_b, "B");
     if (a.stable() && b.stable()) ratios.push_back(cost_b.mid / cost_a.mid);
   }
-  const double mean = ratios.empty() ? 1 : geometric_mean(ratios);
-  const double change = std::abs(std::log(mean)), noise = differences.noise;
-  const bool told = change > std::log(kAlike), noisy = told && change <= std::log1p(noise);
+  const double mean = ratios.empty() ? 1 : geometric_mean(ratios), noise = differences.noise;
+  const Certainty judged = judge({mean, mean, mean}, {1 / (1 + noise), 1, 1 + noise});
   std::string text = "CPU time of " + solver_title(solver) + ", " + std::to_string(ratios.size()) +
                      (ratios.size() == 1 ? " case" : " cases") + " in sessions of their own: ";
   if (ratios.empty())
     text += "none completed in both";
-  else if (noisy || !told)
-    text += (noisy ? "too noisy to judge" : "no difference that can be told") +
-            std::string(" (B over A ") + fixed(mean, 2) + ")";
+  else if (!is_difference(judged))
+    text += (judged == Certainty::too_noisy ? "too noisy to judge (B over A "
+                                            : "no difference that can be told (B over A ") +
+            fixed(mean, 2) + ")";
   else
     text += (mean < 1 ? "B uses " : "A uses ") + share_text(mean < 1 ? mean : 1 / mean) +
             " of the CPU time of " + (mean < 1 ? "A" : "B");
   text += "; identical code differed by up to " + significant(100 * noise, 2) + "\u00A0%.";
-  const Sure sure = ratios.empty() ? Sure::single_run
-                    : noisy        ? Sure::too_noisy
-                    : told         ? Sure::likely
-                                   : Sure::none;
+  const Certainty sure =
+      ratios.empty() ? Certainty::single_run : std::max(judged, Certainty::likely);
   return {"differences-cost-" + solver, ClaimKind::headline, "differences", text, sure, {evidence}};
 }
 
@@ -111,8 +102,9 @@ std::vector<Claim> difference_claims(const ReportInput& input) {
   if (!input.differences || input.differences->pairs.empty()) return claims;
   const Differences& differences = *input.differences;
   claims.push_back(claim_statuses(differences));
-  for (const char* metric : kCompared)
-    if (const auto claim = claim_values(differences, metric)) claims.push_back(*claim);
+  for (const ValueSpec* value : values_with_role())
+    if (const auto claim = claim_values(differences, std::string(value->name)))
+      claims.push_back(*claim);
   std::vector<std::string> solvers;
   for (const auto& [a, b] : differences.timed)
     if (std::ranges::find(solvers, a.record.solver) == solvers.end())

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "experiments/case/record_io.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/settings.hpp"
 #include "experiments/report/claims/claim.hpp"
@@ -10,11 +11,6 @@
 namespace taut::report {
 
 namespace {
-
-constexpr const char* kStretch = "stretch.rms";
-constexpr const char* kVertexDepth = "penetration.peak";
-constexpr const char* kFaceDepth = "face.peak";
-constexpr const char* kPassages = "tunnelling.events";
 
 /// A map needs at least this many time steps, over at least this range, to have a largest one.
 constexpr std::size_t kLeastSteps = 3;
@@ -65,17 +61,36 @@ std::vector<SceneValues> look_at_all(const Rivals& rivals, Evidence& evidence) {
   return all;
 }
 
-/// Who has least of it on which scenes.
-std::string winners(const Rivals& rivals, const std::vector<SceneValues>& common) {
+/// "RMS stretch in the last second"
+std::string in_window(const Quantity& q) {
+  return q.title +
+         (q.window == Window::last_second ? " in the "
+          : q.window == Window::run       ? " over the "
+                                          : " at the ") +
+         std::string(to_string(q.window));
+}
+
+/// "stretch" of "stretch.rms", which has all that is said of an error by that name; of further
+/// errors of one metric the whole name.
+std::string topic(const ValueSpec& error) {
+  const MetricEntry& metric = *find_value(error.name).first;
+  const bool alone = std::ranges::count(metric.values, Role::error, &ValueSpec::role) == 1;
+  return std::string(alone ? metric.name : error.name);
+}
+
+/// Who has least of it on which scenes; less than `negligible` counts as that: else a scene in free
+/// fall (1e-17 against 1e-13) would have a winner.
+std::string winners(const Rivals& rivals, const std::vector<SceneValues>& common,
+                    double negligible) {
   std::vector<std::vector<std::string>> least(rivals.all.size());
   std::vector<std::string> alike;
   for (const SceneValues& here : common) {
     std::vector<double> v;
-    for (const auto& value : here.values) v.push_back(std::max(*value, kNoStretch));
+    for (const auto& value : here.values) v.push_back(std::max(*value, negligible));
     const auto best = static_cast<std::size_t>(std::ranges::min_element(v) - v.begin());
     std::vector<double> sorted = v;
     std::ranges::sort(sorted);
-    if (sorted[1] < kAlike * sorted[0])
+    if (sorted[1] < (1 + kTolerance) * sorted[0])
       alike.push_back(here.scene);
     else
       least[best].push_back(here.scene);
@@ -89,51 +104,67 @@ std::string winners(const Rivals& rivals, const std::vector<SceneValues>& common
                             alike);
 }
 
-void claim_stretch(const Rivals& rivals, std::vector<Claim>& claims) {
-  const Quantity q = quantity(kStretch);
-  Evidence evidence(kStretch, "geometric mean over scenes; less than " + q.text(kNoStretch, 1) +
-                                  " counts as " + q.text(kNoStretch, 1));
+void claim_error(const Rivals& rivals, const ValueSpec& error, std::vector<Claim>& claims) {
+  const std::string metric(error.name);
+  const Quantity q = quantity(metric);
+  const double nothing = error.negligible;
+  Evidence evidence(metric, "geometric mean over scenes; less than " + q.text(nothing, 1) +
+                                " counts as " + q.text(nothing, 1));
   std::vector<SceneValues> common;
-  std::vector<std::string> names, nothing, lacking;
+  std::vector<std::string> names, below, lacking;
   for (const SceneValues& here : look_at_all(rivals, evidence)) {
     if (!here.lacking.empty()) {
       lacking.push_back(here.lacking);
-    } else if (std::ranges::all_of(here.values, [](const auto& v) { return *v < kNoStretch; })) {
-      nothing.push_back(here.scene);
+    } else if (std::ranges::all_of(here.values, [&](const auto& v) { return *v < nothing; })) {
+      below.push_back(here.scene);
     } else {
       common.push_back(here);
       names.push_back(here.scene);
     }
   }
   if (evidence.seen().empty()) return;
-  const std::string opening = "RMS stretch in the last second" + at_work(rivals);
-  const std::string rest =
-      sentence_if(" Below " + q.text(kNoStretch, 1) + " with all on ", nothing) +
-      sentence_if(" Left out: ", lacking);
+  const std::string opening = capitalised(in_window(q)) + at_work(rivals);
+  const std::string rest = sentence_if(" Below " + q.text(nothing, 1) + " with all on ", below) +
+                           sentence_if(" Left out: ", lacking);
   if (!lacking.empty()) evidence.leave_out("Left out: " + joined(lacking) + ".");
   if (common.empty()) {
-    claims.emplace_back("stretch", ClaimKind::headline, "all",
+    claims.emplace_back(topic(error), ClaimKind::headline, "all",
                         opening + ": no scene has a value above that of every solver." + rest,
-                        Sure::single_run, std::vector{evidence});
+                        Certainty::single_run, std::vector{evidence});
+    claims.back().quotes();
     return;
   }
   std::vector<Bar> bars;
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < rivals.all.size(); ++i) {
     std::vector<double> values;
-    for (const SceneValues& here : common) values.push_back(std::max(*here.values[i], kNoStretch));
+    for (const SceneValues& here : common) values.push_back(std::max(*here.values[i], nothing));
     const double mean = geometric_mean(values);
     bars.push_back({rivals.all[i].solver, rivals.all[i].label, mean, {}, q.text(mean)});
     parts.push_back(q.text(mean) + " with " + rivals.all[i].label);
   }
-  Claim claim("stretch", ClaimKind::headline, "all",
+  Claim claim(topic(error), ClaimKind::headline, "all",
               opening + at_step(rivals, names) + ", geometric mean over " + joined(names) + ": " +
-                  joined(parts) + "." + (bars.size() > 1 ? winners(rivals, common) : "") + rest,
-              Sure::single_run, {evidence});
-  claims.push_back(claim.emphasise(parts));
-  claims.push_back(claim.tile("RMS stretch, last second",
+                  joined(parts) + "." + (bars.size() > 1 ? winners(rivals, common, nothing) : "") +
+                  rest,
+              Certainty::single_run, {evidence});
+  claims.push_back(claim.emphasise(parts).quotes());
+  claims.push_back(claim.tile(capitalised(q.title) + ", " + std::string(to_string(q.window)),
                               "Geometric mean over " + joined(names) + at_work(rivals) + ".",
                               bars));
+}
+
+/// Penetration: how deep, and how often through.
+bool of_depth(const ValueSpec& value) {
+  return value.role == Role::vertex_depth || value.role == Role::face_depth ||
+         value.role == Role::passages;
+}
+
+/// What follows such a number in a sentence.
+std::string place_of(Role role) {
+  return role == Role::vertex_depth ? " at a vertex"
+         : role == Role::face_depth ? " at a face"
+                                    : " passages of vertices through a collider";
 }
 
 /// The largest of one rival over scenes on which all have the value.
@@ -150,8 +181,10 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
   std::set<std::string> counted;
   std::vector<std::string> names, lacking;
   bool passages_known = false;
-  for (const char* metric : {kVertexDepth, kFaceDepth, kPassages}) {
-    const bool sum = metric == kPassages;
+  for (const ValueSpec* value : values_with_role()) {
+    if (!of_depth(*value)) continue;
+    const std::string metric(value->name);
+    const bool sum = value->role == Role::passages;
     Evidence evidence(metric, sum ? "sum over scenes" : "largest over scenes");
     Evidence all_of_it = evidence;  // scenes without colliders are no evidence
     for (const SceneValues& here : look_at_all(rivals, all_of_it)) {
@@ -169,7 +202,7 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
       if (counted.insert(here.scene).second) names.push_back(here.scene);
       for (std::size_t i = 0; i < n; ++i) {
         if (sum) passages[i] += *here.values[i], passages_known = true;
-        Deepest& d = deepest[metric == kFaceDepth][i];
+        Deepest& d = deepest[value->role == Role::face_depth][i];
         if (!sum && *here.values[i] > d.value) d = {*here.values[i], here.scene};
       }
     }
@@ -182,25 +215,23 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
   if (names.empty()) {
     claims.emplace_back("depth", ClaimKind::headline, "all",
                         opening + ": no scene has a value of every solver." + rest,
-                        Sure::single_run, basis);
+                        Certainty::single_run, basis);
+    claims.back().quotes();
     return;
   }
-  const Quantity q = quantity(kVertexDepth);
   std::string text;
   std::vector<Bar> bars;
   for (std::size_t i = 0; i < n; ++i) {
     text += (i > 0 ? "; " : "") + rivals.all[i].label;
-    const char* where[] = {" at a vertex", " at a face"};
     Bar bar{rivals.all[i].solver, rivals.all[i].label, {}, {}, ""};
     bool said = false;
     for (std::size_t k = 0; k < 2; ++k) {
       const Deepest& d = deepest[k][i];
       if (d.value < 0) continue;
       const std::string one =
-          q.text(d.value) + where[k] + (d.value > 0 ? " (" + d.scene + ")" : "");
-      text += (said ? " and " : " ") + one, said = true;
-      if (d.value >= bar.value.value_or(0))
-        bar.value = d.value, bar.text = q.text(d.value) + where[k];
+          shown(kErrorLength, d.value) + place_of(k == 0 ? Role::vertex_depth : Role::face_depth);
+      text += (said ? " and " : " ") + one + (d.value > 0 ? " (" + d.scene + ")" : ""), said = true;
+      if (d.value >= bar.value.value_or(0)) bar.value = d.value, bar.text = one;
     }
     bars.push_back(std::move(bar));
   }
@@ -210,11 +241,11 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
     for (std::size_t i = 0; i < n; ++i)
       text += (i > 0 ? ", " : " ") + rivals.all[i].label + " " + exact(passages[i]);
   }
-  const Claim claim(
+  Claim claim(
       "depth", ClaimKind::headline, "all",
       opening + at_step(rivals, names) + ", deepest of " + joined(names) + ": " + text + "." + rest,
-      Sure::single_run, basis);
-  claims.push_back(claim);
+      Certainty::single_run, basis);
+  claims.push_back(claim.quotes());
   claims.push_back(claim.tile("Peak penetration, vertices and faces",
                               "Whole run, deepest of " + joined(names) + at_work(rivals) + ".",
                               bars));
@@ -318,7 +349,7 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
   if (clauses.size() > 1 && !none) text += "; geometric mean over these scenes " + joined(means);
   const Claim claim("step", ClaimKind::headline, "all",
                     "Largest time step up to which every case completed: " + text + ".",
-                    Sure::single_run, {evidence});
+                    Certainty::single_run, {evidence});
   claims.push_back(claim);
   if (!none)
     claims.push_back(
@@ -357,7 +388,7 @@ void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
                                                                  : " Counted in the studies ",
                                       rivals.studies) +
                           sentence_if(" Not supported: ", refused),
-                      Sure::single_run, std::vector{evidence});
+                      Certainty::single_run, std::vector{evidence});
 }
 
 /// One scene, values side by side, failures by name.
@@ -365,11 +396,11 @@ void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Cl
   const std::string& scene = quoted.question.scene;
   const std::string at = at_work(rivals) + ", time step " + dt_text(quoted.question.dt);
   const auto side_by_side = [&](const std::string& id, const std::string& opening,
-                                const std::vector<std::pair<const char*, std::string>>& metrics) {
+                                const std::vector<std::pair<std::string, std::string>>& values) {
     std::vector<Evidence> basis;
     std::vector<std::string> parts(rivals.all.size());
     bool any = false;
-    for (const auto& [metric, suffix] : metrics) {
+    for (const auto& [metric, suffix] : values) {
       const Quantity q = quantity(metric);
       Evidence evidence(metric, "values side by side");
       bool here = false;
@@ -388,13 +419,17 @@ void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Cl
       text += (i > 0 ? "; " : "") + rivals.all[i].label +
               (parts[i].empty() ? " " + why_none(quoted.cases[i]) : parts[i]);
     claims.emplace_back(id + "-" + scene, ClaimKind::note, scene, opening + at + ": " + text + ".",
-                        Sure::single_run, basis);
+                        Certainty::single_run, basis);
+    claims.back().quotes();
   };
-  side_by_side("stretch", "RMS stretch in the last second", {{kStretch, ""}});
-  side_by_side("depth", "Peak penetration over the whole run",
-               {{kVertexDepth, " at a vertex"},
-                {kFaceDepth, " at a face"},
-                {kPassages, " passages of vertices through a collider"}});
+  std::vector<std::pair<std::string, std::string>> depths;
+  for (const ValueSpec* value : values_with_role()) {
+    const std::string name(value->name);
+    if (value->role == Role::error)
+      side_by_side(topic(*value), capitalised(in_window(quantity(name))), {{name, ""}});
+    if (of_depth(*value)) depths.emplace_back(name, place_of(value->role));
+  }
+  side_by_side("depth", "Peak penetration over the whole run", depths);
 }
 
 }  // namespace
@@ -402,7 +437,8 @@ void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Cl
 std::vector<Claim> physics_claims(const Rivals& rivals) {
   std::vector<Claim> claims;
   if (rivals.all.empty()) return claims;
-  claim_stretch(rivals, claims);
+  for (const ValueSpec* value : values_with_role())
+    if (value->role == Role::error) claim_error(rivals, *value, claims);
   claim_depth(rivals, claims);
   claim_step(rivals, claims);
   claim_failures(rivals, claims);

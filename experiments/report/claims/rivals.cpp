@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/settings.hpp"
 
 namespace taut::report {
@@ -13,7 +14,7 @@ namespace {
 
 std::map<std::string, std::string> choice_of(const Record& r) {
   auto params = r.params;
-  params.erase("iterations"), params.erase("substeps");
+  params.erase(parameter_of(r.solver, kSweeps)), params.erase(parameter_of(r.solver, kSubsteps));
   return params;
 }
 

@@ -2,7 +2,9 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/settings.hpp"
+#include "experiments/report/claims/claim.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/timing/answer.hpp"
 #include "experiments/timing/profile.hpp"
@@ -11,10 +13,11 @@ namespace taut::report {
 
 namespace {
 
-std::string span_text(const Interval& i, const Quantity& q) {
-  const int decimals = decimals_for((i.high - i.low) * q.scale);
-  const auto number = [&](double v) { return fixed(v * q.scale, decimals); };
-  return number(i.mid) + "\u00A0" + q.unit + " (" + number(i.low) + "–" + number(i.high) + ")";
+std::string span_text(const Interval& i, const Unit& unit) {
+  const int decimals = decimals_for((i.high - i.low) * unit.scale);
+  const auto number = [&](double v) { return fixed(v * unit.scale, decimals); };
+  return number(i.mid) + "\u00A0" + std::string(unit.shown) + " (" + number(i.low) + "–" +
+         number(i.high) + ")";
 }
 
 /// Settings of one solver on one scene that a table speaks of.
@@ -38,26 +41,26 @@ struct CostScene {
   }
   /// "not reached by the settings tried (at best 0.12 %)".
   std::string missed(const std::string& solver) const {
-    const std::vector<Candidate> candidates = bench.candidates(kPricedMetric);
+    const std::vector<Candidate> candidates = bench.candidates(kErrorMetric);
     const auto nearest =
         best_for({.budget = std::numeric_limits<double>::infinity()}, candidates, solver);
     if (!nearest) return "no case completed";
     return std::string(bench.searched_to_the_end(solver) ? "never reached, to the end of its knobs"
                                                          : "not reached by the settings tried") +
-           " (at best " + quantity(kPricedMetric).text(candidates[*nearest].error) + ")";
+           " (at best " + quantity(kErrorMetric).text(candidates[*nearest].error) + ")";
   }
 };
 
 /// How a solver's cheapest compares with the cheapest of all.
 void add_ratio(Json& cell, const Interval& times, const Interval& control) {
-  const auto sure = judge_ratio(times, control);
+  const Certainty sure = judge(times, control);
   const int decimals = decimals_for(times.high - times.low);
   cell["note"] = fixed(times.mid, decimals) + " × the cheapest (" + fixed(times.low, decimals) +
                  "–" + fixed(times.high, decimals) + ")" +
-                 (!sure                      ? ", no difference that can be told"
-                  : *sure == Sure::too_noisy ? ", too noisy to judge"
-                                             : "");
-  if (sure) cell["sure"] = to_string(*sure);
+                 (sure == Certainty::none        ? ", no difference that can be told"
+                  : sure == Certainty::too_noisy ? ", too noisy to judge"
+                                                 : "");
+  if (sure != Certainty::none) cell["sure"] = to_string(sure);
 }
 
 /// Without the cases that use a knob which another solver of the scene lacks: a table compares what
@@ -74,26 +77,26 @@ SceneBench with_shared_knobs(SceneBench bench) {
 }
 
 Json levels_table(const CostScene& scene) {
-  const Quantity q = quantity(kPricedMetric), cpu = quantity("cpu.per_second");
+  const Quantity q = quantity(kErrorMetric), cpu = quantity("cpu.per_second");
   Json table{{"id", "cost-levels-" + scene.bench.scene},
              {"title", "Cost of an error"},
              {"caption",
               "CPU time per simulated second, its 95 % interval, and the setting: the cheapest "
               "that was tried, with what all solvers of the scene have."},
              {"columns", Json::array()}};
-  table["columns"].push_back({{"title", "to reach"}, {"metric", kPricedMetric}});
+  table["columns"].push_back({{"title", "to reach"}, {"metric", kErrorMetric}});
   for (const std::string& solver : solvers_of(scene.bench))
     table["columns"].push_back({{"title", solver_title(solver)}, {"metric", cpu.name}});
   for (const double level : kErrorLevels) {
     Json row = Json::array();
     row.push_back({{"text", q.text(level, 1)}, {"value", level}});
-    for (const SolverAnswer& r : answer(scene.bench, {.error = level}, kPricedMetric).solvers) {
+    for (const SolverAnswer& r : answer(scene.bench, {.error = level}, kErrorMetric).solvers) {
       if (!r.at) {
         row.push_back(scene.missed(r.solver));
         continue;
       }
-      Json cell = scene.cell(
-          *r.at, span_text(scene.bench.cases[*r.at].cost(), cpu) + ", " + scene.setting(*r.at));
+      Json cell = scene.cell(*r.at, span_text(scene.bench.cases[*r.at].cost(), cpu.unit) + ", " +
+                                        scene.setting(*r.at));
       if (r.times && r.times->mid > 1) add_ratio(cell, *r.times, scene.bench.control);
       row.push_back(std::move(cell));
     }
@@ -103,7 +106,8 @@ Json levels_table(const CostScene& scene) {
 }
 
 Json budgets_table(const CostScene& scene) {
-  const Quantity q = quantity(kPricedMetric), ms{"", "", "ms", 1e3 * kFrame};
+  const Quantity q = quantity(kErrorMetric);
+  const Unit ms{"s", "ms", 1e3 * kFrame};
   Json table{{"id", "cost-budgets-" + scene.bench.scene},
              {"title", "Error within a budget"},
              {"caption",
@@ -111,9 +115,9 @@ Json budgets_table(const CostScene& scene) {
               "costs and with which setting, of those that were tried with what all solvers have."},
              {"columns", Json::array()}};
   table["columns"].push_back({{"title", "within, per frame"}});
-  const std::vector<Candidate> candidates = scene.bench.candidates(kPricedMetric);
+  const std::vector<Candidate> candidates = scene.bench.candidates(kErrorMetric);
   for (const std::string& solver : solvers_of(scene.bench))
-    table["columns"].push_back({{"title", solver_title(solver)}, {"metric", kPricedMetric}});
+    table["columns"].push_back({{"title", solver_title(solver)}, {"metric", kErrorMetric}});
   for (const double budget : kFrameBudgets) {
     Json row = Json::array();
     row.push_back({{"text", significant(1e3 * budget, 2) + "\u00A0ms"}, {"value", budget}});
@@ -140,11 +144,11 @@ Json answer_row(const CostScene& scene) {
   if (!bench.cases.empty())
     for (const std::string& value : bench.cases.front().record.spec.overrides)
       again += " --set '" + value + "'";
-  const auto best = best_for({.error = kPricedError}, bench.candidates(kPricedMetric));
+  const auto best = best_for({.error = kPricedError}, bench.candidates(kErrorMetric));
   if (!best) return {bench.scene, "not reached by the settings tried", "–", "–", again};
   const BenchedCase& c = bench.cases[*best];
   std::string others;
-  for (const SolverAnswer& r : answer(bench, {.error = kPricedError}, kPricedMetric).solvers) {
+  for (const SolverAnswer& r : answer(bench, {.error = kPricedError}, kErrorMetric).solvers) {
     if (r.at == best) continue;
     others += (others.empty() ? "" : "; ") + solver_title(r.solver) + " ";
     if (!r.at || !r.times) {
@@ -156,18 +160,18 @@ Json answer_row(const CostScene& scene) {
     others += cell["note"].get<std::string>() + " with " + scene.setting(*r.at);
   }
   return {bench.scene, solver_title(c.record.solver) + " " + scene.setting(*best),
-          scene.cell(*best, span_text(c.cost(), quantity("cpu.per_second"))),
+          scene.cell(*best, span_text(c.cost(), quantity("cpu.per_second").unit)),
           others.empty() ? "no other solver can run this scene" : others, again};
 }
 
 /// Dolan and More's performance profiles at a few factors.
 Json profile_table(const std::vector<SceneBench>& scenes) {
-  const std::vector<Profile> profiles = performance_profiles(scenes, kPricedMetric);
+  const std::vector<Profile> profiles = performance_profiles(scenes, kErrorMetric);
   const std::size_t problems = profiles.empty() ? 0 : profiles.front().ratios.size();
   Json table{{"id", "cost-profiles"},
              {"title", "How often each solver is within a factor of the cheapest"},
              {"caption", "Share of " + std::to_string(problems) + " problems: an error of " +
-                             quantity(kPricedMetric).title +
+                             quantity(kErrorMetric).title +
                              " to be reached on a scene. Every solver has equally many settings of "
                              "a scene, with what all of its solvers have."},
              {"columns", Json::array({{{"title", "solver"}}})},
@@ -194,8 +198,8 @@ Json json_of_cost(const BenchSession& session, References& refs, Json& charts, J
   Json cost{{"machine", session.machine}};
   Json answers{
       {"id", "cost-answers"},
-      {"title", "Cheapest setting for " + quantity(kPricedMetric).text(kPricedError, 1) + " " +
-                    quantity(kPricedMetric).title},
+      {"title", "Cheapest setting for " + quantity(kErrorMetric).text(kPricedError, 1) + " " +
+                    quantity(kErrorMetric).title},
       {"caption", "With what all solvers of a scene have; what only one has is said apart."},
       {"columns", Json::array()}};
   for (const char* title :
@@ -211,7 +215,7 @@ Json json_of_cost(const BenchSession& session, References& refs, Json& charts, J
         {"scene", bench.scene},
         {"control", json_interval(bench.control,
                                   bench.cases.empty() ? 0 : bench.cases[0].timing.samples.size())},
-        {"noisy", spread(bench.control) > kAlike - 1},
+        {"noisy", spread(bench.control) > kTolerance},
         {"noise", "Timing noise: two runs of identical code differed by up to " +
                       significant(100 * spread(bench.control), 2) + "\u00A0%."}};
     try {

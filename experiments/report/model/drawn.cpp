@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/settings.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/report/model/parts.hpp"
 
 namespace taut::report {
@@ -12,9 +15,9 @@ namespace {
 Json json_of_axis(const Quantity& q, const std::vector<double>& ticks) {
   Json axis{{"metric", q.name},
             {"title", q.title},
-            {"unit", q.unit},
-            {"scale", q.scale},
-            {"axis", q.logarithmic ? "log" : "linear"}};
+            {"unit", q.unit.shown},
+            {"scale", q.unit.scale},
+            {"axis", q.unit.logarithmic ? "log" : "linear"}};
   if (ticks.empty()) return axis;
   axis["values"] = ticks;
   for (const double value : ticks) axis["texts"].push_back(tick_of(q, value));
@@ -53,7 +56,7 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
     cut.t.resize(static_cast<std::size_t>(end)), cut.y.resize(static_cast<std::size_t>(end));
     if (cut.t.size() > 1) by_value[series.value].push_back(json_of(cut, refs));
   }
-  // The scene's own quantity before stretch, which every scene has; last what stays zero but for
+  // The scene's own quantity before an error that every scene has; last what stays zero but for
   // rounding.
   constexpr double kNoise = 1e-6;
   const auto place = [&](const std::string& value) {
@@ -62,7 +65,8 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
       if (series.scene == scene && series.value == value)
         for (const double y : series.y)
           if (std::isfinite(y)) largest = std::max(largest, std::abs(y));
-    return largest < kNoise ? 2 : value.starts_with("stretch.") ? 1 : 0;
+    const ValueSpec* spec = find_value(value).second;
+    return largest < kNoise ? 2 : spec && spec->role == Role::error ? 1 : 0;
   };
   Json tracks;
   for (const int wanted : {0, 1, 2})
@@ -73,12 +77,12 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
   return tracks;
 }
 
-Json json_of(const MaterialRow& row, const Quantity& strain) {
+Json json_of(const MaterialRow& row) {
   Json one{{"solver", row.solver}};
   for (const MaterialRow::Still& m : row.stills)
     one["moments"].push_back({{"t", m.t},
                               {"rms", m.rms},
-                              {"text", strain.text(m.rms)},
+                              {"text", shown(kErrorShare, m.rms)},
                               {"image", "data:image/png;base64," + base64(m.png)}});
   return one;
 }
@@ -91,19 +95,11 @@ Json json_of(const ColourBar& bar) {
 
 }  // namespace
 
-Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 Json json_interval(const Interval& i, std::size_t n) {
   return {{"low", json_number(i.low)},
           {"mid", json_number(i.mid)},
           {"high", json_number(i.high)},
           {"n", n}};
-}
-
-void add_if(Json& object, const char* name, Json value) {
-  const bool blank = value.is_string() && value.get_ref<const std::string&>().empty();
-  if (!blank && !value.is_null() && !(value.is_structured() && value.empty()))
-    object[name] = std::move(value);
 }
 
 Json json_of(const Chart& chart, References& refs) {
@@ -120,17 +116,17 @@ Json json_of(const Chart& chart, References& refs) {
   for (const Curve& curve : chart.curves)
     for (const Point& p : curve.points)
       ++all, failures += failed(p), zeros = zeros && (failed(p) || p.y == 0);
-  const std::vector<std::size_t> shown =
-      spread(chart.curves.size(), all > kMostPoints ? kMostCurves : chart.curves.size());
+  const std::vector<std::size_t> places =
+      places_of(chart.curves.size(), all > kMostPoints ? kMostCurves : chart.curves.size());
   std::size_t drawn = 0;
   std::map<std::string, int> variants;
-  for (const std::size_t i : shown) {
+  for (const std::size_t i : places) {
     const Curve& curve = chart.curves[i];
     Json series{{"solver", curve.solver},
                 {"label", curve.label},
                 {"variant", variants[curve.solver]++},
                 {"join", chart.join}};
-    for (const std::size_t k : spread(curve.points.size(), kMostPoints / shown.size())) {
+    for (const std::size_t k : places_of(curve.points.size(), kMostPoints / places.size())) {
       series["points"].push_back(json_of(curve.points[k], chart, refs));
       ++drawn, failures -= failed(curve.points[k]);
     }
@@ -143,7 +139,7 @@ Json json_of(const Chart& chart, References& refs) {
   }
   if (drawn < all)
     one["thinned"] = "Drawn: " + std::to_string(drawn) + " of " + std::to_string(all) +
-                     " points, on " + std::to_string(shown.size()) + " of " +
+                     " points, on " + std::to_string(places.size()) + " of " +
                      std::to_string(chart.curves.size()) + " curves; " + std::to_string(failures) +
                      " cases that failed are among the others.";
   for (const TimeSeries& series : chart.series) one["series"].push_back(json_of(series, refs));
@@ -224,7 +220,7 @@ Json json_of(const SceneMedia& media, const ReportInput& input, References& refs
       for (const MaterialRow::Still& m : row.stills) weight += m.png.size() * 4 / 3;
       if (weight > budget) continue;
       budget -= weight;
-      rows.push_back(json_of(row, quantity("stretch.rms")));
+      rows.push_back(json_of(row));
     }
     if (!rows.is_null())
       films.front()["material"] = {{"aspect", media.aspect}, {"rows", std::move(rows)}};

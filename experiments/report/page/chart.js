@@ -40,7 +40,7 @@ function scaleOf(kind, values, range) {
   return d3.scaleLinear().domain([low === 0 ? 0 : low - air, high + air]).range(range);
 }
 
-/** Ticks that can be read: the values of a swept setting, or 1, 2 and 5 of each power of ten as far as they fit. */
+/** Ticks that can be read: the values of a swept setting, or 1, 2 and 5 of each power of ten as far as they fit; of many powers every second. */
 function ticksOf(scale, axis, kind, wanted) {
   const [low, high] = scale.domain(), inside = (v) => v >= low && v <= high;
   if (axis.values) return axis.values.map((v) => v * axis.scale).filter(inside);
@@ -48,7 +48,8 @@ function ticksOf(scale, axis, kind, wanted) {
   const decades = Math.log10(high / low);
   if (decades < 0.7) return d3.ticks(low, high, wanted);
   const factors = decades > 0.7 * wanted ? [1] : decades > 1.6 ? [1, 3] : [1, 2, 5];
-  return d3.range(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)) + 1)
+  const by = Math.ceil(decades / (2 * wanted)), first = by * Math.floor(Math.log10(low) / by);
+  return d3.range(first, Math.ceil(Math.log10(high)) + 1, by)
       .flatMap((power) => factors.map((f) => f * 10 ** power)).filter(inside);
 }
 
@@ -64,9 +65,8 @@ function thin(texts, obstacles = []) {
 }
 
 function pointLines(spec, series, point) {
-  const {x, y} = spec, spread = interval(point.low, point.high, y), costs = interval(point.x_low, point.x_high, x);
-  const value = point.y === null || point.y === undefined ? 'no value' :
-    `${shown(point.y, y, 4)}${spread && ` (95 %: ${spread})`}`;
+  const {x, y} = spec, costs = interval(point.x_low, point.x_high, x);
+  const value = point.y === null || point.y === undefined ? 'no value' : shown(point.y, y, 4);
   return [`${series.label}${point.name ? `, ${point.name}` : ''}`, `${y.title}: ${value}`,
           `${x.title}: ${shown(point.x, x, 4)}${costs && ` (95 %: ${costs})`}`,
           ...caseLines(point.status, undefined, point.case)];
@@ -85,7 +85,7 @@ function swatch(series) {
   const svg = d3.create('svg').attr('class', 'swatch').attr('viewBox', '0 0 30 12').attr('aria-hidden', 'true');
   svg.append('line').attr('x2', 30).attr('y1', 6).attr('y2', 6).attr('stroke-width', 2)
       .style('stroke', series.colour ?? solverColour(series.solver))
-      .attr('stroke-dasharray', series.dash ?? dashOf(series));
+      .attr('stroke-dasharray', series.dash ?? dashOf(series)).attr('class', series.className);
   if (series.solver)
     svg.append('path').attr('transform', 'translate(15,6)').attr('d', markerPath(solverOf(series.solver).marker, 45))
         .style('fill', solverColour(series.solver));
@@ -94,7 +94,7 @@ function swatch(series) {
 
 /** Whether the reference's own error is drawn: unless it lies far below all points. */
 const floorShown = ({floor, series}) => floor.y > d3.min(series.flatMap((s) => s.points)
-    .flatMap((p) => p.failed ? [] : [p.y, p.low]).filter((v) => v > 0)) / 30;
+    .map((p) => p.failed ? 0 : p.y).filter((v) => v > 0)) / 30;
 
 /** The key: series, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
 function chartKey(spec, kind) {
@@ -106,7 +106,7 @@ function chartKey(spec, kind) {
     spec.series.map((s) => entry(swatch(s), short(s.label, 60), solverOf(s.solver).order)),
     spec.theory && entry(grey('4 3'), spec.theory.text),
     spec.floor && entry(floorShown(spec) ? grey('1 3') : '', spec.floor.text + (floorShown(spec) ? '' : ': below the plot')),
-    spec.front && entry(grey(''), 'no setting is better in both'),
+    spec.front && entry(swatch({className: 'front', colour: 'var(--stair)', dash: ''}), 'no setting is better in both'),
     failed.map((s) => entry(el('b', {}, s.glyph), `above the plot: ${s.title}`)),
     kind === 'log' && points.some((p) => p.zero) && entry(el('b', {}, '▲'), 'on the axis: exactly zero'),
     kind === 'log' && points.some((p) => p.y < 0) && entry(el('b', {}, '!'),
@@ -166,8 +166,7 @@ function chartFigure(spec) {
   watchWidth(plot, again);
   drawn.add({plot, draw, zoom, svg});
   return el('figure', {className: 'card chart', id: `chart-${spec.id}`}, el('figcaption', {}, heading, bar, note), key,
-            el('div', {className: 'y-title'}, titled(spec.y)), plot, el('div', {className: 'x-title'}, titled(spec.x)),
-            claimList(all(spec.claims, claims)));
+            el('div', {className: 'y-title'}, titled(spec.y)), plot, el('div', {className: 'x-title'}, titled(spec.x)));
 }
 
 function drawChart(svg, spec, view, width) {
@@ -177,7 +176,7 @@ function drawChart(svg, spec, view, width) {
   const floor = view.kind === 'log' && flat.some((p) => p.zero) ? 12 : 0;
   const [yLow, yHigh] = [box.height - box.bottom - floor, box.top + strip];
   const numbers = (list, scale) => list.filter((v) => typeof v === 'number').map((v) => v * scale);
-  const measured = flat.filter((p) => !p.failed).flatMap((p) => [p.y, p.low, p.high]);
+  const measured = flat.filter((p) => !p.failed).map((p) => p.y);
   if (spec.floor && floorShown(spec)) measured.push(spec.floor.y);
   const up = numbers(measured, y.scale);
   const across = numbers(flat.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale);
@@ -225,7 +224,7 @@ function drawChart(svg, spec, view, width) {
     const lines = area.append('g').attr('data-s', solver.order).style('stroke', colour).style('fill', 'none');
     if (s.join) lines.append('path').attr('class', 'line').attr('stroke-dasharray', dashOf(s)).attr('d', line(s.points));
     lines.append('path').attr('class', 'error')
-        .attr('d', s.points.filter(usable).map((p) => errorBar(p, px, py, view.kind)).join(''));
+        .attr('d', s.points.filter(usable).map((p) => errorBar(p, px, py)).join(''));
     const group = svg.append('g').attr('data-s', solver.order).style('color', colour);
     s.points.forEach((p, i) => {
       const floored = p.zero && view.kind === 'log';
@@ -240,18 +239,12 @@ function drawChart(svg, spec, view, width) {
   nameBest(svg, spec);
 }
 
-/** Vertical and horizontal bars over the 95 % intervals, with caps. */
-function errorBar(p, px, py, kind) {
-  const cx = px(p.x), cy = py(p.y), cap = 3;
-  let d = '';
-  if (typeof p.low === 'number' && typeof p.high === 'number') {
-    const low = kind === 'log' && p.low <= 0 ? py(p.y) + 400 : py(p.low), high = py(p.high);
-    d += `M${cx},${low}V${high}M${cx - cap},${low}h${2 * cap}M${cx - cap},${high}h${2 * cap}`;
-  }
-  if (typeof p.x_low === 'number' && typeof p.x_high === 'number')
-    d += `M${px(p.x_low)},${cy}H${px(p.x_high)}` +
+/** A bar over the 95 % interval of x, with caps. */
+function errorBar(p, px, py) {
+  const cy = py(p.y), cap = 3;
+  if (typeof p.x_low !== 'number' || typeof p.x_high !== 'number') return '';
+  return `M${px(p.x_low)},${cy}H${px(p.x_high)}` +
          [p.x_low, p.x_high].map((v) => `M${px(v)},${cy - cap}v${2 * cap}`).join('');
-  return d;
 }
 
 function drawPoint(group, {spec, series, point, place, order, cx, cy, floored}) {

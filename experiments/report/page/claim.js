@@ -101,8 +101,7 @@ function tileNode(claim) {
     el('ul', {}, bars.map((bar) => el('li', {},
       named(bar.solver), el('span', {className: 'amount'}, bar.text ?? shown(bar.value, quantity)),
       el('span', {className: 'bar', 'aria-hidden': 'true'},
-         el('i', {style: `width:${100 * (bar.value ?? 0) / largest}%;background:${solverColour(bar.solver)}`})),
-      bar.note && el('small', {}, bar.note)))),
+         el('i', {style: `width:${100 * (bar.value ?? 0) / largest}%;background:${solverColour(bar.solver)}`}))))),
     el('p', {}, sentence(claim), ' ', sureness(claim),
        said && el('span', {className: 'print-only'}, 'It rests on what its sentence above does.')), basis(claim)));
 }

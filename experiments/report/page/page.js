@@ -61,7 +61,9 @@ function start() {
   let at = null, scene = null;
   state.watch(() => {
     const wanted = state.section(), now = state.get('scene');
-    if (wanted && (wanted !== at || now !== scene)) placeOf(wanted)?.scrollIntoView();
+    // A frame later charts and films have their heights: what is shown stays where it was scrolled to.
+    if (wanted && (wanted !== at || now !== scene))
+      requestAnimationFrame(() => requestAnimationFrame(() => placeOf(wanted)?.scrollIntoView()));
     [at, scene] = [wanted, now];
   });
   state.tell();

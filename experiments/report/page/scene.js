@@ -43,13 +43,13 @@ const figureOf = (chart) => chart.kind === 'series' ? seriesFigure(chart) : char
 
 function scenePart(scene) {
   const priced = model.cost?.scenes.find((entry) => entry.scene === scene.id);
-  const figures = all(scene.charts, charts), told = figures.flatMap((chart) => chart.claims ?? []);
+  const figures = all(scene.charts, charts);
   const costs = all(priced?.charts, charts).filter((chart) => !figures.includes(chart));
   const claimsHere = [...all(scene.claims, claims), ...claimsAbout(['note'], [scene.id])];
   return el('article', {className: 'scene', 'aria-label': short(scene.title)},
     el('h3', {className: 'scene-title'}, scene.title), el('p', {}, scene.summary),
     scene.studied === false && note('No study of this report runs this scene: it is shown, not compared.'),
-    ends(scene.statuses), claimList(claimsHere.filter(({id}) => !told.includes(id))),
+    ends(scene.statuses), claimList(claimsHere),
     (scene.refusals ?? []).map(({solver, reason}) => el('p', {}, named(solver), ` cannot run this scene: ${reason}.`)),
     filmOf(scene),
     scene.material && material(scene.material),

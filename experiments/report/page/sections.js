@@ -84,7 +84,9 @@ function methodSection() {
   const study = (s) => item(el('b', {}, s.name), `: ${s.question} `, el('span', {className: 'note'},
     `(${s.cases}${s.cases < s.planned ? ` of ${s.planned}` : ''} cases)`), s.unequal && el('p', {}, s.unequal));
   const glossary = Object.values(model.metrics).filter((m) => m.help).map((m) => row(m.title, m.help, m.unit, m.window));
-  const build = Object.entries(model.meta.build ?? {}).map(([name, value]) => ({name, value}));
+  const known = (method.facts ?? []).map(({name}) => name);
+  const build = Object.entries(model.meta.build ?? {}).filter(([name]) => !known.includes(name))
+      .map(([name, value]) => ({name, value}));
   return section('method', 'Method and limits', el('div', {className: 'card'},
     tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver)),
     method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,

@@ -9,6 +9,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/settings.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
@@ -19,13 +20,13 @@ namespace taut::report {
 namespace {
 
 constexpr std::array kKinds{
-    PlotKind{"error-iterations", "iterations", "stretch.rms", "iterations"},
-    PlotKind{"penetration", "iterations", "penetration.peak", "iterations"},
-    PlotKind{"profile", "cpu.per_second", "stretch.rms", "setting"},  // Dolan and More
+    PlotKind{"error-iterations", kSweeps, kErrorMetric, kSweeps},
+    PlotKind{"penetration", kSweeps, "penetration.peak", kSweeps},
+    PlotKind{"profile", "cpu.per_second", kErrorMetric, "setting"},  // Dolan and More
     PlotKind{"scaling", "vertices", "cpu.per_step", "vertices"},
-    PlotKind{"series", "t", "stretch.rms", "t"},
-    PlotKind{"stability", "dt", "iterations", "dt"},
-    PlotKind{"work-precision", "projections", "stretch.rms", "setting"},
+    PlotKind{"series", "t", kErrorMetric, "t"},
+    PlotKind{"stability", "dt", kSweeps, "dt"},
+    PlotKind{"work-precision", "projections", kErrorMetric, "setting"},
 };
 
 std::string colour_of(std::string_view solver) {
@@ -72,25 +73,27 @@ bool any_positive(const Chart& chart, bool of_y) {
 
 /// The chart's floor as a line from edge to edge.
 std::string floor_line(const Chart::Floor& floor, const Quantity& y) {
-  return exact(floor.y * y.scale) + " with lines dt (1,3) lc rgb '#5B6472' title " +
+  return exact(floor.y * y.unit.scale) + " with lines dt (1,3) lc rgb '#5B6472' title " +
          gnuplot_string(floor.text + ", " + y.text(floor.y));
 }
 
 Sheet curves_sheet(const Chart& chart, const std::string& title) {
   Sheet sheet;
-  const bool log_x = chart.x.logarithmic && any_positive(chart, false),
-             log_y = chart.y.logarithmic && any_positive(chart, true);
+  const bool log_x = chart.x.unit.logarithmic && any_positive(chart, false),
+             log_y = chart.y.unit.logarithmic && any_positive(chart, true);
   constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   double low = kUnbounded, high = -kUnbounded, left = kUnbounded, right = -kUnbounded;
   for (const Curve& curve : chart.curves)
     for (const Point& p : curve.points) {
       if (std::isfinite(p.x) && (!log_x || p.x > 0))
-        left = std::min(left, p.x * chart.x.scale), right = std::max(right, p.x * chart.x.scale);
+        left = std::min(left, p.x * chart.x.unit.scale),
+        right = std::max(right, p.x * chart.x.unit.scale);
       if (!p.measured() || (log_y && !(p.y > 0))) continue;
-      low = std::min(low, p.y * chart.y.scale), high = std::max(high, p.y * chart.y.scale);
+      low = std::min(low, p.y * chart.y.unit.scale),
+      high = std::max(high, p.y * chart.y.unit.scale);
     }
-  if (chart.floor && chart.floor->y * chart.y.scale > low / 30)  // else far below the picture
-    low = std::min(low, chart.floor->y * chart.y.scale);
+  if (chart.floor && chart.floor->y * chart.y.unit.scale > low / 30)  // else far below the picture
+    low = std::min(low, chart.floor->y * chart.y.unit.scale);
   const double floor = log_y ? low / 3 : std::min(0.0, low);
   const double top = log_y ? high * 3 : high + 0.12 * (high - floor + (high == floor ? 1 : 0));
   sheet.settings = "set title " + gnuplot_string(title) + "\n" +
@@ -100,7 +103,7 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
     std::string ticks;
     for (const double tick : chart.ticks)
       ticks += (ticks.empty() ? "" : ", ") + gnuplot_string(tick_of(chart.x, tick)) + " " +
-               exact(tick * chart.x.scale);
+               exact(tick * chart.x.unit.scale);
     sheet.settings += "set xtics (" + ticks + ")\n";
   }
   sheet.csv = "curve,solver,label,x,x_low,x_high,y,status,reason,failed,setting,case\n";
@@ -123,7 +126,7 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
           csv_field(r.status.reason) + "," + (none ? "yes" : "no") + "," +
           csv_field(work_of(r).text()) + "," + csv_field(r.id) + "\n";
     }
-    const std::string scale_x = exact(chart.x.scale), scale_y = exact(chart.y.scale);
+    const std::string scale_x = exact(chart.x.unit.scale), scale_y = exact(chart.y.unit.scale);
     const std::string x = "column(4)*" + scale_x;
     const std::string look = " lc rgb '" + colour_of(curve.solver) + "' dt " +
                              dash_of(curve.solver, variants[curve.solver]++) + " pt " +
@@ -148,15 +151,15 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
           gnuplot_string(curve.label + ": exactly zero"));
   }
   if (const double factor = theory_factor(chart); std::isfinite(factor) && left < right)
-    sheet.draw("[" + exact(left) + ":" + exact(right) + "] " + exact(factor * chart.y.scale) +
-               "*(x/" + exact(chart.x.scale) + ")**" + exact(*chart.slope) +
+    sheet.draw("[" + exact(left) + ":" + exact(right) + "] " + exact(factor * chart.y.unit.scale) +
+               "*(x/" + exact(chart.x.unit.scale) + ")**" + exact(*chart.slope) +
                " with lines dt (4,4) lc rgb '#5B6472' title 'theory: slope " + exact(*chart.slope) +
                "'");
   if (chart.floor) sheet.draw(floor_line(*chart.floor, chart.y));
   if (chart.front) {
     std::string steps;
     for (const Point& p : pareto_front(chart))
-      steps += exact(p.x * chart.x.scale) + " " + exact(p.y * chart.y.scale) + "\n";
+      steps += exact(p.x * chart.x.unit.scale) + " " + exact(p.y * chart.y.unit.scale) + "\n";
     sheet.settings += "$front << EOD\n" + steps + "EOD\n";
     sheet.draw("$front using 1:2 with steps lc rgb '#9BA5B3' title 'Pareto front'");
   }
@@ -178,14 +181,14 @@ Sheet series_sheet(std::span<const TimeSeries> all, const std::string& value,
       sheet.csv += std::to_string(i) + "," + csv_field(series.solver) + "," +
                    csv_field(series.label) + "," + exact(series.t[k]) + ",,," + exact(series.y[k]) +
                    ",ok,,no,," + csv_field(series.key) + "\n";
-    sheet.draw(only(i++, false, "column(4)", ("(column(7)*" + exact(y.scale) + ")").c_str()) +
+    sheet.draw(only(i++, false, "column(4)", ("(column(7)*" + exact(y.unit.scale) + ")").c_str()) +
                " with lines lw 1.5 lc rgb '" + colour_of(series.solver) + "' dt " +
                dash_of(series.solver, variants[series.solver]++) + " title " +
                gnuplot_string(series.label));
   }
   Chart chart{.id = {}, .scene = {}, .kind = {}, .title = {}, .x = x, .y = y};
   chart.series.assign(all.begin(), all.end());
-  add_strain_floor(chart);
+  add_floor(chart);
   if (chart.floor) sheet.draw(floor_line(*chart.floor, y));
   if (i == 0) throw InputError("no series of '" + value + "' was recorded");
   return sheet;
@@ -326,7 +329,7 @@ PlotFiles make_plot(PlotSpec spec, const Records& records, std::span<const TimeS
   if (spec.y.empty()) spec.y = kind.y;
   if (spec.along.empty())
     spec.along =
-        spec.x == "dt" || spec.x == "substeps" || spec.x == "vertices" ? spec.x : kind.along;
+        spec.x == "dt" || spec.x == kSubsteps || spec.x == "vertices" ? spec.x : kind.along;
   for (const std::string& name : {spec.x, spec.y}) check_value_name(name, records);
   if (spec.file.empty()) spec.file = slug(spec.kind + "-" + spec.y + "-over-" + spec.x);
   Sheet sheet;
@@ -337,7 +340,7 @@ PlotFiles make_plot(PlotSpec spec, const Records& records, std::span<const TimeS
     sheet = map_sheet(make_maps(records, records.front()->scene, spec.x, spec.y), spec.title);
   } else {
     Chart chart = make_chart(spec.kind, records, spec.x, spec.y, spec.along);
-    add_strain_floor(chart);
+    add_floor(chart);
     chart.slope = spec.slope, chart.front = spec.kind == "work-precision";
     sheet = curves_sheet(chart, spec.title);
   }

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/extremes/extremes.hpp"
 #include "experiments/report/chart/charts.hpp"
+#include "experiments/study/extremes/extremes.hpp"
 
 namespace taut::report {
 

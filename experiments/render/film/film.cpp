@@ -1,0 +1,227 @@
+#include "experiments/render/film/film.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/join.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/render/film/recorded_runs.hpp"
+#include "experiments/render/picture/media.hpp"
+#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/system/data.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr int kScenesAtATime = 2;
+constexpr double kSeconds = 3;  ///< of a film
+constexpr std::size_t kMostPanels = 4;
+
+/// One scene to be filmed: who runs it and who does not.
+struct Film {
+  std::string scene, summary;
+  RunRequest request;
+  struct Panel {
+    std::string label;     ///< "Bullet float"
+    std::string settings;  ///< "1 × 16, order=mesh"
+    std::string key;       ///< of its case; "": no study ran it
+  };
+  std::vector<Panel> panels;  ///< of the solvers, in the order of the request's
+  std::vector<std::pair<std::string, std::string>> refused;  ///< solver, why
+  double speed = 1;
+  bool studied = true;
+
+  void add(const std::string& solver, const std::string& label, const std::string& key) {
+    request.solvers.push_back(solver);
+    panels.push_back({label, report::brief_settings(solver), key});
+  }
+};
+
+/// The cases that are quoted: pictures show what sentences speak of.
+Film studied_film(const report::Rivals& rivals, const report::QuotedScene& quoted) {
+  Film film{.scene = quoted.question.scene};
+  for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
+    const Record* one = quoted.cases[i];
+    if (!one || film.request.solvers.size() == kMostPanels) continue;
+    if (one->status.kind == Status::Kind::unsupported) {
+      film.refused.emplace_back(one->solver, one->status.reason);
+      continue;
+    }
+    film.request.scene = one->spec.scene, film.request.overrides = one->spec.overrides;
+    film.add(one->spec.solver, rivals.all[i].label, one->key);
+  }
+  return film;
+}
+
+/// A thrown sheet is gone before anybody has seen it: it takes half a second to cross its own size,
+/// at no less than an eighth of real time.
+double watchable_speed(const Scene& scene) {
+  double fastest = 0;
+  for (const Vec3& v : scene.start.v) fastest = std::max(fastest, v.norm());
+  for (const double speed : {1.0, 0.5, 0.25})
+    if (fastest * 0.5 * speed <= extent(scene)) return speed;
+  return 0.125;
+}
+
+Film other_film(const report::Rivals& rivals, const std::string& name) {
+  const Scene scene = load_scene(find_scene(name));
+  Film film{.scene = scene.name, .summary = scene.summary, .studied = false};
+  film.speed = watchable_speed(scene);
+  film.request.scene = name;
+  if (scene.duration() > kSeconds)
+    film.request.overrides.push_back("time.duration=" + std::to_string(kSeconds));
+  for (const report::Rival& rival : rivals.all) {
+    const auto quoted = std::ranges::find_if(
+        rival.cases, [&](const Record* r) { return report::work_of(*r) == rival.work; });
+    if (quoted == rival.cases.end() || film.request.solvers.size() == kMostPanels) continue;
+    const SolverChoice choice = parse_solver((*quoted)->spec.solver);
+    const std::string why = join(choice.entry->unsupported(scene, choice.params), "; ");
+    if (why.empty())
+      film.add((*quoted)->spec.solver, rival.label, "");
+    else
+      film.refused.emplace_back(rival.solver, why);
+  }
+  return film;
+}
+
+std::vector<Film> all_films(const report::ReportInput& input,
+                            const std::vector<std::string>& others) {
+  const report::Rivals rivals = report::rivals_of(input);
+  std::vector<Film> films;
+  for (const report::QuotedScene& quoted : rivals.scenes)
+    films.push_back(studied_film(rivals, quoted));
+  for (const std::string& name : others) {
+    Film film = other_film(rivals, name);
+    if (std::ranges::find(films, film.scene, &Film::scene) == films.end())
+      films.push_back(std::move(film));
+  }
+  std::erase_if(films, [](const Film& film) { return film.request.solvers.empty(); });
+  return films;
+}
+
+MediaOptions options_of(const Film& film, std::size_t runs) {
+  MediaOptions options;
+  options.speed = film.speed;
+  options.duration = kSeconds * film.speed;
+  const std::size_t panels = std::max<std::size_t>(2, runs + film.refused.size());
+  options.width = 960, options.height = 400;
+  if (!film.studied) {
+    options.width = 704, options.height = 320;
+    options.fps = 16;
+    options.quality.light = {16, 192, 96};
+    options.crf = 27;
+  }
+  options.width = options.width / static_cast<int>(panels) * static_cast<int>(runs) / 2 * 2;
+  return options;
+}
+
+report::ColourBar bar_of(const ColourScale& scale) {
+  constexpr int kStops = 17;
+  report::ColourBar bar{scale.title(), {}, {}};
+  for (int k = 0; k < kStops; ++k) {
+    const Rgb8 c = scale.map().at(static_cast<double>(k) / (kStops - 1));
+    char text[8];
+    std::snprintf(text, sizeof text, "#%02X%02X%02X", c.r, c.g, c.b);
+    bar.stops.emplace_back(text);
+  }
+  for (const double value : scale.ticks())
+    bar.ticks.emplace_back(scale.position(value), scale.text(value));
+  return bar;
+}
+
+std::string solver_name(const RecordedRun& run) {
+  const std::string& solver = run.trajectory.header.solver;
+  return solver.substr(0, solver.find(':'));
+}
+
+report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
+  report::Clip clip;
+  std::string who;
+  for (std::size_t k = 0; k < set.runs.size(); ++k) {
+    const RecordedRun& run = set.runs[k];
+    clip.panels.push_back({solver_name(run), film.panels[k].settings, film.panels[k].key});
+    who += (k > 0 ? " and " : "") + run.title + " (" + run.settings + ")";
+  }
+  clip.alt = set.scene.name + ": " + who + (set.runs.size() > 1 ? " side by side" : "") +
+             " from the left, coloured by " + media.scale.title() + ", full red at " +
+             media.scale.text(media.scale.high) +
+             "; cloth inside a collider is hatched, a run that ended early is framed in red";
+  clip.type = media.mp4.empty() ? media.poster_type : "video/mp4";
+  clip.bytes = media.mp4.empty() ? media.poster : media.mp4;
+  clip.poster = media.poster, clip.poster_type = media.poster_type;
+  return clip;
+}
+
+/// What a film gives a report.
+struct FilmResult {
+  report::SceneMedia media;
+  std::vector<report::TimeSeries> series;  ///< of a scene that no study ran
+};
+
+FilmResult make_film(const Film& film) {
+  const RunSet set = record_runs(film.request, [](const std::string&) {});
+  const Media media = render_media(set.scene, set.runs, options_of(film, set.runs.size()));
+  FilmResult result{{.scene = film.scene,
+                     .clips = {clip_of(film, set, media)},
+                     .duration = media.t.back(),
+                     .speed = film.speed,
+                     .bar = bar_of(media.scale),
+                     .aspect = media.aspect,
+                     .summary = film.summary,
+                     .frame = media.t[1] - media.t[0],
+                     .poster = media.poster_t,
+                     .refused = film.refused},
+                    {}};
+  for (std::size_t k = 0; k < media.material.size(); ++k) {
+    report::MaterialRow& row = result.media.material.emplace_back();
+    row.solver = solver_name(set.runs[k]);
+    for (const Media::Flat& flat : media.material[k])
+      row.stills.push_back({flat.t, flat.rms, flat.png});
+  }
+  for (std::size_t k = 0; !film.studied && k < set.runs.size(); ++k)
+    std::ranges::move(report::shown_series(
+                          set.series[k],
+                          {film.scene, solver_name(set.runs[k]), film.panels[k].label, "", {}, {}}),
+                      std::back_inserter(result.series));
+  return result;
+}
+
+}  // namespace
+
+void film_scenes(report::ReportInput& input, const std::vector<std::string>& others,
+                 const std::function<void(const std::string&)>& say) {
+  const std::vector<Film> films = all_films(input, others);
+  std::vector<std::optional<FilmResult>> results(films.size());
+  std::atomic<std::size_t> next{0};
+  std::mutex telling;
+  const auto work = [&] {
+    for (std::size_t k = next++; k < films.size(); k = next++) {
+      std::string news = films[k].scene + " filmed";
+      try {
+        results[k] = make_film(films[k]);
+      } catch (const InputError& error) {
+        news = films[k].scene + " not filmed: " + error.what();
+      }
+      const std::lock_guard lock(telling);
+      say(news);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int j = 1; j < kScenesAtATime; ++j) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  for (auto& result : results) {
+    if (!result) continue;
+    input.media.push_back(std::move(result->media));
+    std::ranges::move(result->series, std::back_inserter(input.series));
+  }
+}
+
+}  // namespace taut

@@ -1,0 +1,186 @@
+// Tables of what scenes require and how far solvers go, of what differs between two folders, and of
+// what Vasilovici's report claims.
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/case/record_io.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/model/parts.hpp"
+#include "experiments/truths/vasilovici/claims.hpp"
+
+namespace taut::report {
+
+namespace {
+
+Json columns(const std::vector<std::string>& titles) {
+  Json all = Json::array();
+  for (const std::string& title : titles) all.push_back({{"title", title}});
+  return all;
+}
+
+Json required_table(const std::vector<RequiredModel>& required) {
+  Json rows = Json::array();
+  for (const RequiredModel& one : required)
+    rows.push_back(Json::array({one.scene, solver_title(one.solver.substr(0, one.solver.find(':'))),
+                                one.chaotic.empty() ? "no" : one.chaotic, one.answers, one.drop,
+                                one.keep, one.time}));
+  return {
+      {"id", "required"},
+      {"title", "The smallest model that keeps a scene's answers"},
+      {"caption",
+       "taut require takes away or coarsens one effect at a time and then all that can go; an "
+       "answer may move by its tolerance, or by what a rounding error at the start moves it. Of "
+       "a chaotic scene only statistics are kept."},
+      {"columns", columns({"scene", "solver", "chaotic", "kept answers", "can go", "required",
+                           "CPU time left"})},
+      {"rows", rows}};
+}
+
+std::string setting_text(double value, const KnobFrontier& knob) {
+  return significant(value, 3) + (knob.unit.empty() ? "" : "\u00A0" + knob.unit);
+}
+
+std::string end_text(const KnobFrontier& knob) {
+  if (!knob.lacks.empty()) return "–: " + knob.lacks;
+  if (std::isnan(knob.bad)) return setting_text(knob.to, knob) + ", as far as was asked";
+  return (std::isnan(knob.good) ? "none" : setting_text(knob.good, knob)) + ", then " +
+         knob.symptom +
+         (std::isnan(knob.theory) ? "" : " (theory: " + setting_text(knob.theory, knob) + ")");
+}
+
+Json frontier_table(const std::vector<KnobFrontier>& frontiers) {
+  std::vector<std::string> solvers, knobs;
+  for (const KnobFrontier& f : frontiers) {
+    if (!std::ranges::count(solvers, f.solver)) solvers.push_back(f.solver);
+    if (!std::ranges::count(knobs, f.knob)) knobs.push_back(f.knob);
+  }
+  std::vector<std::string> titles{"knob"};
+  titles.insert(titles.end(), solvers.begin(), solvers.end());
+  Json rows = Json::array();
+  for (const std::string& knob : knobs) {
+    Json row = Json::array({knob});
+    for (const std::string& solver : solvers) {
+      const auto at = std::ranges::find_if(
+          frontiers, [&](const auto& f) { return f.knob == knob && f.solver == solver; });
+      row.push_back(at == frontiers.end() ? "–" : end_text(*at));
+    }
+    rows.push_back(std::move(row));
+  }
+  return {
+      {"id", "frontiers"},
+      {"title", "How far every knob goes on a small swinging sheet"},
+      {"caption",
+       "The hardest setting up to which nothing was wrong, and what goes wrong first beyond it, "
+       "by its own metric; taut frontier --all."},
+      {"columns", columns(titles)},
+      {"rows", rows}};
+}
+
+}  // namespace
+
+Json json_of_limits(const ReportInput& input, Json& tables) {
+  Json limits;
+  const auto add = [&](Json table) {
+    limits["tables"].push_back(table["id"]);
+    tables.push_back(std::move(table));
+  };
+  if (!input.required.empty()) add(required_table(input.required));
+  if (!input.frontiers.empty()) add(frontier_table(input.frontiers));
+  return limits;
+}
+
+namespace {
+
+constexpr std::size_t kMostRows = 200;  ///< of the table; the data has all
+
+/// A value of a case that B has otherwise.
+struct Changed {
+  const std::pair<Record, Record>* pair;
+  const std::string* value;  ///< nullptr: the status
+  double size;               ///< |b - a| over the larger; 2: another status
+};
+
+/// The largest first.
+std::vector<Changed> all_changed(const Differences& differences) {
+  std::vector<Changed> all;
+  for (const auto& pair : differences.pairs) {
+    const auto& [a, b] = pair;
+    if (a.status.kind != b.status.kind) {
+      all.push_back({&pair, nullptr, 2});
+      continue;
+    }
+    if (!completed(b.status)) continue;
+    for (const auto& [name, now] : b.values) {
+      const auto at = a.values.find(name);
+      if (at == a.values.end() || !std::isfinite(now) || !std::isfinite(at->second)) continue;
+      const double before = at->second;
+      if (now != before)
+        all.push_back(
+            {&pair, &name, std::abs(now - before) / std::max(std::abs(now), std::abs(before))});
+    }
+  }
+  std::ranges::stable_sort(all, [](const Changed& x, const Changed& y) { return x.size > y.size; });
+  return all;
+}
+
+/// Its row: what it is, in A, in B, the change, and whether that is better.
+Json row_of(const Changed& changed, References& refs) {
+  const auto& [a, b] = *changed.pair;
+  Json head{{"text", b.scene + " " + solver_title(b.solver) + " " + brief_settings(b.spec.solver) +
+                         ", " + quantity("dt").text(b.dt, 3)}};
+  add_if(head, "case", refs.key(b));
+  if (!changed.value)
+    return {head, "status", to_string(a.status.kind), to_string(b.status.kind), "–", ""};
+  const Quantity& q = refs.use(*changed.value);
+  const double before = a.values.at(*changed.value), now = b.values.at(*changed.value);
+  return {head,
+          q.title,
+          q.text(before, 4),
+          q.text(now, 4),
+          before == 0 ? "–" : significant(100 * (now / before - 1), 2) + "\u00A0%",
+          !q.unit.less_is_better ? ""
+          : now < before         ? "better"
+                                 : "worse"};
+}
+
+}  // namespace
+
+Json json_of(const Differences& differences, References& refs, Json& tables) {
+  const std::vector<Changed> changed = all_changed(differences);
+  Json one{{"a", differences.a}, {"b", differences.b}};
+  if (changed.empty()) return one;
+  const std::size_t rows = std::min(changed.size(), kMostRows);
+  Json table{{"id", "differences-values"},
+             {"title", "Values that differ"},
+             {"caption", "The " + std::to_string(rows) + " largest relative changes of " +
+                             std::to_string(changed.size()) +
+                             "; better and worse where a value is an error."},
+             {"columns", columns({"case", "value", "A", "B", "change", "judged"})},
+             {"rows", Json::array()}};
+  for (std::size_t i = 0; i < rows; ++i) table["rows"].push_back(row_of(changed[i], refs));
+  one["tables"].push_back(table["id"]);
+  tables.push_back(std::move(table));
+  return one;
+}
+
+Json json_of_vasilovici(const std::optional<Truths>& truths) {
+  Json all = Json::array();
+  for (const VasiloviciClaim& claim : vasilovici_claims()) {
+    Json one{{"section", claim.section},
+             {"claim", typeset(claim.claim)},
+             {"verdict", to_string(claim.verdict)},
+             {"because", typeset(claim.because)}};
+    if (truths)
+      if (const auto now = truths->claims.find(std::string(claim.claim));
+          now != truths->claims.end()) {
+        one["verdict"] = now->second.first;
+        add_if(one, "figure", typeset(now->second.second));
+      }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace taut::report

@@ -1,0 +1,156 @@
+#include "experiments/study/cluster/attempt.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <thread>
+
+#include "core/io/text_file.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/system/clock.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut::cluster {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kBeatsFile = "beats";
+constexpr const char* kStates[] = {"claiming", "running", "ended"};
+
+Beat beat_of(const JsonReader& j) {
+  Beat beat;
+  const std::string state = j.at("state").text();
+  const auto known = std::ranges::find(kStates, state);
+  if (known == std::end(kStates)) j.at("state").fail("unknown state '" + state + "'");
+  beat.state = static_cast<Beat::State>(known - std::begin(kStates));
+  beat.done = j.at("done").count();
+  beat.cases = j.at("cases").count();
+  beat.work = j.at("work").number();
+  beat.work_done = j.at("work_done").number();
+  beat.seconds = j.at("seconds").number();
+  beat.why = j.at("why").text();
+  return beat;
+}
+
+std::string line_of(const Beat& beat) {
+  return to_text(Json{{"state", kStates[static_cast<int>(beat.state)]},
+                      {"done", beat.done},
+                      {"cases", beat.cases},
+                      {"work", beat.work},
+                      {"work_done", beat.work_done},
+                      {"seconds", beat.seconds},
+                      {"why", beat.why}});
+}
+
+/// What a session has said so far; a line that is being written is not counted.
+Beats read(const fs::path& session) {
+  Beats beats{session, 0, {}, {}, {}};
+  if (!fs::exists(session / kBeatsFile)) return beats;
+  std::istringstream lines(read_text(session / kBeatsFile));
+  std::string last;
+  for (std::string line; std::getline(lines, line) && !lines.eof(); ++beats.count) last = line;
+  if (!last.empty())
+    beats.last =
+        read_json(last, (session / kBeatsFile).string(), beat_of, static_cast<int>(beats.count));
+  return beats;
+}
+
+}  // namespace
+
+std::chrono::duration<double> patience() {
+  const char* given = std::getenv("TAUT_CLUSTER_PATIENCE");
+  const double seconds = given ? std::atof(given) : 0;
+  return std::chrono::duration<double>(seconds > 0 ? seconds : 8);
+}
+
+std::vector<Beats> not_ended(const fs::path& shard) {
+  std::vector<Beats> all;
+  std::error_code none;
+  for (const auto& session : fs::directory_iterator(shard / "sessions", none)) {
+    if (!fs::exists(session.path() / "session.json")) continue;  // being made
+    Beats beats = read(session);
+    if (beats.last.state == Beat::State::ended) continue;
+    const fs::path file = session.path() / "session.json";
+    read_json(read_text(file), file.string(), [&](const JsonReader& j) {
+      beats.host = j.at("host").text();
+      beats.started = j.at("started").text();
+    });
+    all.push_back(std::move(beats));
+  }
+  std::ranges::sort(all, {}, &Beats::session);
+  return all;
+}
+
+std::vector<Beats> living(const std::vector<Beats>& before) {
+  std::vector<Beats> alive;
+  const auto deadline = SteadyClock::now() + patience();
+  std::vector<Beats> silent = before;
+  while (!silent.empty() && SteadyClock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    std::erase_if(silent, [&](const Beats& known) {
+      Beats now = read(known.session);
+      if (now.count == known.count) return false;
+      now.host = known.host, now.started = known.started;
+      if (now.last.state != Beat::State::ended) alive.push_back(std::move(now));
+      return true;
+    });
+  }
+  return alive;
+}
+
+Attempt::Attempt(const fs::path& shard, const fs::path& session)
+    : file_(session / kBeatsFile), start_(SteadyClock::now()) {
+  beat();
+  std::vector<Beats> others = not_ended(shard);
+  std::erase_if(others, [&](const Beats& b) { return b.session == session; });
+  // Of two that start together the one whose session has the lesser name goes on.
+  const auto before_me = [&](const Beats& b) {
+    return b.last.state == Beat::State::running || b.session < session;
+  };
+  for (const auto until = SteadyClock::now() + patience();
+       !others.empty() && SteadyClock::now() < until;) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    if (SteadyClock::now() - last_ >= kBeat) beat();
+    for (const Beats& other : others)
+      if (const Beats now = read(other.session);
+          now.count > other.count && now.last.state != Beat::State::ended && before_me(now)) {
+        end("another start was at this shard");
+        throw InputError(shard.string() + ": is being run on " + other.host + " since " +
+                         other.started + " (its clock); nothing was run here");
+      }
+  }
+  for (const Beats& silent : others)  // nobody waits for it again, unless it speaks again
+    append_line(silent.session / kBeatsFile, line_of({Beat::State::ended, silent.last.done,
+                                                      silent.last.cases, 0, 0, 0, "lost"}));
+  now_.state = Beat::State::running;
+  beat();
+}
+
+Attempt::~Attempt() {
+  try {
+    if (now_.state != Beat::State::ended) end("an error");
+  } catch (const InputError&) {  // a disk that is full: the silence says it
+  }
+}
+
+void Attempt::progress(const CampaignProgress& campaign) {
+  now_.done = campaign.done(), now_.cases = campaign.cases;
+  now_.work = campaign.work, now_.work_done = campaign.work_done;
+  if (SteadyClock::now() - last_ >= kBeat) beat();
+}
+
+void Attempt::end(const std::string& why) {
+  now_.state = Beat::State::ended, now_.why = why;
+  beat();
+}
+
+void Attempt::beat() {
+  last_ = SteadyClock::now();
+  now_.seconds = seconds_between(start_, last_);
+  append_line(file_, line_of(now_));
+}
+
+}  // namespace taut::cluster

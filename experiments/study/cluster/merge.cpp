@@ -1,0 +1,151 @@
+#include "experiments/study/cluster/merge.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/study/cluster/manifest.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::cluster {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A record among those of all stores: failures give way to results.
+struct Found {
+  std::string result;  ///< result_digest
+  bool is_result = false;
+  const Store* store = nullptr;
+};
+
+/// Who ran what, and when.
+void copy_sessions(const fs::path& from, const fs::path& to) {
+  std::error_code none;
+  for (const auto& session : fs::directory_iterator(from / "sessions", none)) {
+    make_folder(to / "sessions");
+    fs::copy(session.path(), to / "sessions" / session.path().filename(),
+             fs::copy_options::recursive | fs::copy_options::skip_existing);
+  }
+}
+
+std::string name_of(const std::vector<ManifestEntry>& cases) {
+  std::string keys;
+  for (const ManifestEntry& one : cases) keys += one.key;
+  return sha256(keys).substr(0, 12);
+}
+
+}  // namespace
+
+void Merge::note_planned_alone(const Source& a, const Source& b,
+                               std::vector<std::string>& foreign) {
+  std::vector<ManifestEntry> alone;
+  std::ranges::set_difference(a.cases, b.cases, std::back_inserter(alone), {}, &ManifestEntry::key,
+                              &ManifestEntry::key);
+  for (const ManifestEntry& one : alone)
+    foreign.push_back(one.id + ": planned by " + a.folder.string() + ", not by " +
+                      b.folder.string() + " (another study or build)");
+}
+
+Merge::Merge(const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    Source source{folder, {}, {}};
+    if (fs::exists(folder / "manifest.jsonl")) {
+      const Manifest manifest = read_manifest(folder);
+      name_ = manifest.study;
+      for (const PlannedCase& one : manifest.cases)
+        source.cases.push_back({one.key, one.id, one.shard, manifest.shards});
+      for (int i = 1; i <= manifest.shards; ++i)
+        source.stores.emplace_back(shard_folder(folder, i));
+    } else if (fs::is_directory(folder / "store") || fs::is_directory(folder / "packs")) {
+      source.cases = read_manifests(folder);
+      source.stores.emplace_back(folder);
+    } else {
+      throw InputError(folder.string() +
+                       ": neither a cluster folder (no 'manifest.jsonl' in it) nor results (no "
+                       "'store')");
+    }
+    std::ranges::sort(source.cases, {}, &ManifestEntry::key);
+    sources_.push_back(std::move(source));
+  }
+}
+
+MergePlan Merge::look(const Store& into) const {
+  MergePlan plan{sources_.front().cases, name_, {}, {}, {}};
+  if (plan.name.empty()) plan.name = name_of(plan.cases);
+  std::map<std::string, std::string> ids;
+  for (const ManifestEntry& one : plan.cases) ids[one.key] = one.id;
+  for (const Source& other : std::span(sources_).subspan(1)) {
+    note_planned_alone(sources_.front(), other, plan.foreign);
+    note_planned_alone(other, sources_.front(), plan.foreign);
+  }
+  std::unordered_map<std::string, Found> found;
+  for (const Source& source : sources_)
+    for (const Store& store : source.stores) {
+      for (const std::string& key : store.conflicts())
+        plan.conflicts.push_back(ids[key] + ": two results in " + store.root().string());
+      for (const std::string& key : store.keys()) {
+        const std::optional<Record> record = store.find(key);
+        if (!record) continue;
+        if (!std::ranges::binary_search(source.cases, key, {}, &ManifestEntry::key)) {
+          plan.foreign.push_back(record->id + ": in " + store.root().string() +
+                                 ", but not planned (another study or build)");
+          continue;
+        }
+        const Found mine{result_digest(*record), record->status.is_result(), &store};
+        auto [at, fresh] = found.try_emplace(key, mine);
+        if (!fresh && mine.is_result && at->second.is_result && mine.result != at->second.result)
+          plan.conflicts.push_back(ids[key] + ": " + at->second.store->root().string() + " and " +
+                                   store.root().string() + " have different results");
+        if (!at->second.is_result) at->second = mine;
+      }
+    }
+  for (const ManifestEntry& one : plan.cases) {
+    const auto at = found.find(one.key);
+    const std::optional<Record> there = into.find(one.key);
+    if (at == found.end() && !there) plan.missing.push_back(one);
+    if (at != found.end() && there && at->second.is_result && there->status.is_result() &&
+        result_digest(*there) != at->second.result)
+      plan.conflicts.push_back(one.id + ": " + at->second.store->root().string() + " and " +
+                               into.root().string() + " have different results");
+  }
+  return plan;
+}
+
+void Merge::copy(const MergePlan& plan, Store& into,
+                 const std::function<void(std::size_t, std::size_t)>& progress) const {
+  constexpr std::size_t kBatch = std::size_t{4} << 20;
+  const std::size_t all = plan.cases.size() - plan.missing.size();
+  std::unordered_set<std::string> copied;
+  std::vector<std::pair<const Store*, std::string>> failures;
+  const auto add = [&](const Store& store, const Record& record) {
+    if (!copied.insert(record.key).second) return;
+    into.commit(store.parts(record.key), record);
+    progress(std::min(copied.size(), all), all);
+  };
+  int number = 0;
+  for (const Source& source : sources_)
+    for (const Store& store : source.stores) {
+      if (fs::weakly_canonical(store.root()) == fs::weakly_canonical(into.root())) continue;
+      into.pack_into(plan.name + "-" + std::to_string(++number) + "." + unique_suffix(), kBatch);
+      for (const std::string& key : store.keys())
+        if (const std::optional<Record> record = store.find(key); record) {
+          if (record->status.is_result())
+            add(store, *record);
+          else
+            failures.emplace_back(&store, key);
+        }
+      copy_sessions(store.root(), into.root());
+    }
+  for (const auto& [store, key] : failures) add(*store, *store->find(key));
+  into.flush();
+}
+
+}  // namespace taut::cluster

@@ -1,0 +1,140 @@
+#include "experiments/timing/bench/effects.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/join.hpp"
+#include "core/model/solver.hpp"
+#include "core/solver/thread_pool.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/timing/timing.hpp"
+
+namespace taut {
+
+namespace {
+
+/// Nothing if the scene is no sheet and a side is asked for.
+std::optional<Scene> scene_of(const std::string& name, int side) {
+  const auto file = find_scene(name);
+  Scene scene = load_scene(file);
+  if (side == 0) return scene;
+  if (!scene.mesh.grid || std::min(scene.mesh.grid->nu, scene.mesh.grid->nv) < 2) return {};
+  const std::string n = std::to_string(side);
+  std::vector<std::string> changes{"cloth.grid=[" + n + "," + n + "]"};
+  if (scene.self_collision) {
+    const int least = std::min(scene.mesh.grid->nu, scene.mesh.grid->nv);
+    changes.push_back("self_collision.radius=" +
+                      std::to_string(scene.self_collision->radius * (least - 1) / (side - 1)));
+  }
+  return load_scene(file, changes);
+}
+
+std::string effects_of(const Scene& scene) {
+  std::vector<std::string> all;
+  if (!scene.mesh.grid) all.emplace_back("any mesh");
+  if (scene.wind) all.emplace_back("wind");
+  for (const Collider& c : scene.colliders) all.emplace_back(type_name(c.shape));
+  if (scene.self_collision) all.emplace_back("itself");
+  return join(all, ", ");
+}
+
+Scene without_effects(Scene scene) {
+  scene.wind.reset(), scene.colliders.clear(), scene.self_collision.reset();
+  return scene;
+}
+
+/// Many sheets that know nothing of each other, on two threads: each of them makes every step.
+class Copies final : public Solver {
+ public:
+  Copies(const Scene& scene, const SolverChoice& choice, int count) {
+    for (int n = 0; n < count; ++n) sheets_.push_back(choice.entry->make(scene, choice.params));
+  }
+  void load(const State& state) override {
+    for (const auto& sheet : sheets_) sheet->load(state);
+  }
+  void step(double t, double dt) override {
+    threads_.run(sheets_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) sheets_[n]->step(t, dt);
+    });
+  }
+  void store(State& state) const override { sheets_.back()->store(state); }
+  std::vector<PassCost> step_cost() const override { return sheets_.back()->step_cost(); }
+
+ private:
+  std::vector<std::unique_ptr<Solver>> sheets_;
+  ThreadPool threads_{2};
+};
+
+/// One scene, with its effects and without them.
+class TimedScene {
+ public:
+  TimedScene(const Scene& scene, const EffectBenchOptions& options) : wall_(options.wall) {
+    const SolverChoice choice = parse_solver(options.solver);
+    row_ = {.scene = scene.name,
+            .effects = effects_of(scene),
+            .vertices = scene.start.x.size(),
+            .dt = scene.dt,
+            .refused = {},
+            .whole = {},
+            .bare = {},
+            .copies = {}};
+    if (const auto reasons = choice.entry->unsupported(scene, choice.params); !reasons.empty()) {
+      row_.refused = reasons.front();
+      return;
+    }
+    whole_ = choice.entry->make(scene, choice.params);
+    bare_ = choice.entry->make(without_effects(scene), choice.params);
+    if (options.copies > 0) copies_ = std::make_unique<Copies>(scene, choice, options.copies);
+    run_.emplace(scene, *whole_, scene.steps);
+    State end;
+    whole_->store(end);
+    if (!std::ranges::all_of(end.x, [](const Vec3& x) { return x.allFinite(); })) {
+      row_.refused = "it exploded";
+      return;
+    }
+    const StepTime step = run_->whole();
+    steps_ = std::clamp(static_cast<int>(options.seconds / (wall_ ? step.wall : step.cpu)), 1,
+                        scene.steps);
+  }
+
+  void sample() {
+    if (!row_.refused.empty()) return;
+    row_.whole.push_back(time(*whole_));
+    row_.bare.push_back(time(*bare_));
+    if (copies_) row_.copies.push_back(time(*copies_));
+  }
+
+  EffectRow take() { return std::move(row_); }
+
+ private:
+  double time(Solver& solver) const {
+    const StepTime step = run_->sample(solver, steps_);
+    return 1e9 * (wall_ ? step.wall : step.cpu) / static_cast<double>(row_.vertices);
+  }
+
+  EffectRow row_;
+  bool wall_;
+  std::unique_ptr<Solver> whole_, bare_, copies_;
+  std::optional<CheckpointedRun> run_;
+  int steps_ = 1;
+};
+
+}  // namespace
+
+std::vector<EffectRow> bench_effects(const EffectBenchOptions& options) {
+  std::vector<TimedScene> subjects;
+  for (const std::string& name : options.scenes)
+    if (const auto scene = scene_of(name, options.side)) subjects.emplace_back(*scene, options);
+  for (int round = 0; round < options.rounds; ++round) {
+    for (TimedScene& subject : subjects) subject.sample();
+    for (auto s = subjects.rbegin(); s != subjects.rend(); ++s) s->sample();
+    options.progress(static_cast<std::size_t>(round) + 1, static_cast<std::size_t>(options.rounds));
+  }
+  std::vector<EffectRow> rows;
+  for (TimedScene& subject : subjects) rows.push_back(subject.take());
+  return rows;
+}
+
+}  // namespace taut

@@ -1,0 +1,181 @@
+// Adding is one file: a program with a metric and a solver more, each a file that is named nowhere
+// else, shows both on the page's model as it shows its own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/io/scene_io.hpp"
+#include "experiments/case/case.hpp"
+#include "experiments/metrics/metric.hpp"
+#include "experiments/report/report.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/require/answers.hpp"
+#include "experiments/study/campaign.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut::report {
+namespace {
+
+CaseRun run(const std::string& solver, const std::string& dt) {
+  return run_case(make_case({"hang",
+                             {"cloth.grid=[7, 7]", "time.duration=1.5", "time.dt=\"" + dt + "\""},
+                             parse_solver(solver).canonical()}),
+                  {.series_rows = 20});
+}
+
+/// Both solvers at the same work on a small sheet; their costs are made up: a sweep of the new one
+/// costs three times as much, and half of that with its accelerator.
+Json model() {
+  StudyResult study{"sweeps", "?", {}, 0, {{"hang", -1}}};
+  BenchSession bench{"sweeps", "a machine", {{"hang", {0.99, 1, 1.01}, {}}}};
+  ReportInput input;
+  for (const std::string sweeps : {"1", "4", "16", "64"})
+    for (const std::string dt : {"1/240", "1/64", "1/32"})
+      for (const std::string& solver :
+           {"jakobsen:substeps=1,order=mesh,iterations=" + sweeps, "made-up:passes=" + sweeps,
+            "made-up:boost=on,passes=" + sweeps}) {
+        const CaseRun done = run(solver, dt);
+        const Record& r = done.record;
+        const bool boost = solver.find("boost") != std::string::npos;
+        if (!boost) study.records.push_back(r);
+        if (dt != "1/64") continue;
+        const std::vector<double> samples(10, 1e-4 * std::stod(sweeps) *
+                                                  (r.solver == "jakobsen" ? 1
+                                                   : boost                ? 1.5
+                                                                          : 3));
+        bench.scenes[0].cases.push_back({r, {samples, samples, 4096, "", ""}});
+        if (sweeps == "4" && !boost)
+          for (TimeSeries& series :
+               shown_series(done.series, {"hang", r.solver, r.solver, "", {}, {}, r.key}))
+            input.series.push_back(std::move(series));
+      }
+  input.studies = {study};
+  input.bench = bench;
+  return parse_json(make_model(input));
+}
+const Json& made() {
+  static const Json all = model();
+  return all;
+}
+
+const Json& by_id(const char* part, const std::string& id) {
+  for (const Json& one : made()[part])
+    if (one["id"] == id) return one;
+  throw std::runtime_error("no " + id + " among the " + part);
+}
+
+TEST(Added, AMetricIsShownInItsUnitWithItsWindow) {
+  const Json& metric = made()["metrics"]["sag.rms"];
+  EXPECT_EQ(metric["title"], "RMS sag");
+  EXPECT_EQ(metric["unit"], "cm");
+  EXPECT_EQ(metric["scale"], 100);
+  EXPECT_EQ(metric["window"], "last second");
+  EXPECT_EQ(metric["better"], "less");
+  for (const Json& one : made()["cases"]) EXPECT_GT(one["values"]["sag.rms"], 0);
+}
+
+TEST(Added, AMetricsRoleDrawsItsCharts) {
+  for (const auto& [id, metric, x] : {std::tuple("hang-sag.rms", "sag.rms", "iterations"),
+                                      {"hang-sag.peak", "sag.peak", "iterations"},
+                                      {"hang-sag.peak-dt", "sag.peak", "dt"},
+                                      {"hang-over-time-sag.rms", "sag.rms", "t"}}) {
+    const Json& chart = by_id("charts", id);
+    EXPECT_EQ(chart["y"]["metric"], metric);
+    EXPECT_EQ(chart["y"]["unit"], "cm");
+    EXPECT_EQ(chart["x"]["metric"], x);
+    std::set<std::string> solvers;
+    for (const Json& series : chart["series"]) solvers.insert(series["solver"]);
+    EXPECT_EQ(solvers, (std::set<std::string>{"jakobsen", "made-up"}));
+  }
+}
+
+TEST(Added, AMetricsRoleMakesItsSentencesAndTheirBasis) {
+  const Json& claim = by_id("claims", "sag");
+  const std::string sentence = claim["sentence"];
+  EXPECT_TRUE(sentence.starts_with("RMS sag in the last second at 1 × 16 (substeps × sweeps)"));
+  EXPECT_NE(sentence.find("cm with Made up"), std::string::npos) << sentence;
+  const Json& basis = claim["basis"][0];
+  EXPECT_EQ(basis["metric"], "sag.rms");
+  EXPECT_EQ(basis["window"], "last second");
+  EXPECT_EQ(basis["rule"],
+            "geometric mean over scenes; less than 0.1\u00A0cm counts as 0.1\u00A0cm");
+  EXPECT_EQ(basis["settings"][1], (Json{{"solver", "Made up"}, {"text", "1 × 16"}}));
+  for (const Json& value : basis["values"]) {
+    EXPECT_TRUE(value["text"].get<std::string>().ends_with("\u00A0cm")) << value;
+    EXPECT_GT(value["value"], 0);
+  }
+  EXPECT_EQ(by_id("claims", "tile-sag")["heading"], "RMS sag, last second");
+  EXPECT_EQ(by_id("claims", "sag-hang")["basis"][0]["metric"], "sag.rms");
+  EXPECT_TRUE(find_value("sag.rms").second->kept);
+}
+
+TEST(Added, AValueThatIsKeptIsAnAnswer) {
+  const Case one = make_case({"hang", {"cloth.grid=[3, 3]", "time.duration=0.5"}, "made-up"});
+  const std::vector<std::string> kept = default_answers({one, run_case(one).record, {}});
+  EXPECT_EQ(std::ranges::count(kept, "sag.rms"), 1);
+  EXPECT_EQ(std::ranges::count(kept, "sag.peak"), 0);
+}
+
+/// x of the points that a solver has in a chart.
+std::set<double> points_of(const std::string& chart, const std::string& solver) {
+  std::set<double> all;
+  for (const Json& series : by_id("charts", chart)["series"])
+    if (series["solver"] == solver)
+      for (const Json& p : series["points"]) all.insert(p["x"].get<double>());
+  return all;
+}
+
+TEST(Added, ASolversOwnParametersAreItsSweepsAndSubsteps) {
+  const Json& solver = by_id("solvers", "made-up");
+  EXPECT_EQ(solver["title"], "Made up");
+  EXPECT_EQ(solver["settings"], "boost=off") << "sweeps and substeps are no choice";
+  EXPECT_EQ(points_of("hang-stretch.rms", "made-up"), points_of("hang-stretch.rms", "jakobsen"));
+  EXPECT_EQ(points_of("hang-stretch.rms", "made-up"), (std::set<double>{1, 4, 16, 64}));
+  for (const Json& series : by_id("charts", "hang-stretch.rms")["series"])
+    EXPECT_TRUE(series["join"]) << "a curve along its sweeps, not a point for each";
+  EXPECT_EQ(by_id("charts", "hang-stretch.rms")["series"].size(), 6U)
+      << "two solvers, three time steps";
+  for (const Json& one : made()["cases"]) {
+    if (one["solver"] != "made-up") continue;
+    const std::string passes = one["parameters"]["passes"];
+    EXPECT_EQ(one["brief"],
+              "1 × " + passes + (one["parameters"]["boost"] == "on" ? ", boost=on" : ""));
+  }
+  const Json& map = by_id("maps", "hang-sweeps-made-up");
+  EXPECT_EQ(map["y"]["values"], (Json{1, 4, 16, 64}));
+  const auto named = [](const Json& fact) { return fact["name"] == "sweeps per substep"; };
+  const Json& facts = by_id("scenes", "hang")["facts"];
+  EXPECT_EQ((*std::ranges::find_if(facts, named))["value"], "1 to 64 (4 values)");
+  EXPECT_FALSE(made()["method"]["studies"][0].contains("unequal"));
+}
+
+TEST(Added, ASolverIsComparedAtEqualErrorWithWhatBothHave) {
+  const std::string work = by_id("claims", "work-made-up")["sentence"];
+  EXPECT_TRUE(
+      work.starts_with("For a step of the same substeps × sweeps (1 × 1, 1 × 4, 1 × 16 and "
+                       "1 × 64): Jakobsen uses 1/3.0 of the CPU time of Made up"))
+      << work;
+  const Json& claim = by_id("claims", "cost-made-up");
+  const std::string cost = claim["sentence"];
+  EXPECT_NE(cost.find("Jakobsen uses 1/3.0 of the CPU time of Made up"), std::string::npos) << cost;
+  for (const Json& value : claim["basis"][0]["values"])
+    for (const Json& one : made()["cases"])
+      if (one["key"] == value["case"]) {
+        EXPECT_EQ(one["parameters"].value("boost", "off"), "off");
+      }
+  const std::string only = by_id("claims", "only-made-up-jakobsen")["sentence"];
+  EXPECT_TRUE(only.starts_with("With boost, which Jakobsen does not have, Made up reaches"))
+      << only;
+}
+
+TEST(Added, WhatTakesLongestIsKnownBeforehand) {
+  const auto work = [](const std::string& solver) {
+    return estimated_work(make_case({"hang", {}, solver}));
+  };
+  EXPECT_GT(work("made-up:passes=16"), 3 * work("made-up:passes=1"));
+  EXPECT_EQ(work("made-up:passes=16"), work("made-up:slices=16,passes=1"));
+}
+
+}  // namespace
+}  // namespace taut::report

@@ -1,0 +1,80 @@
+// What the plot of frontiers draws: how many times harder each knob may be made, and what theory
+// says.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <sstream>
+
+#include "core/io/text_file.hpp"
+#include "experiments/report/plot/plot.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::report {
+namespace {
+
+const double kNone = std::numeric_limits<double>::quiet_NaN();
+
+KnobFrontier knob(const std::string& solver, const std::string& name, double from, double good,
+                  double theory, bool downwards) {
+  KnobFrontier k;
+  k.solver = solver, k.knob = name, k.from = from, k.good = good, k.theory = theory,
+  k.downwards = downwards;
+  k.bad = downwards ? good / 2 : good * 2, k.symptom = "explodes";
+  return k;
+}
+
+TEST(FrontierPlot, BarsAreHowManyTimesHarderEachKnobMayBeMade) {
+  std::vector<KnobFrontier> all{knob("jakobsen", "time step", 0.01, 0.08, 0.1, false),
+                                knob("bullet", "time step", 0.01, 0.02, kNone, false),
+                                knob("jakobsen", "size, down", 8, 0.5, 0.25, true),
+                                knob("bullet", "size, down", 8, 2, kNone, true)};
+  all[3].bad = kNone;
+  const Scratch scratch;
+  try {
+    plot_frontiers(all, scratch.path(), "frontiers");
+  } catch (const InputError&) {
+    GTEST_SKIP() << "no gnuplot";
+  }
+  std::istringstream csv(read_text(scratch.path() / "frontiers.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "solver,knob,y,half,headroom,theory,end");
+  std::vector<std::vector<double>> rows;
+  std::vector<std::string> ends;
+  while (std::getline(csv, line)) {
+    // the knob's name may hold a comma and is quoted then
+    const std::size_t name =
+        line.find('"') == std::string::npos ? line.find(',', 2) : line.find('"', 3) + 1;
+    std::istringstream rest(line.substr(name + 1));
+    std::vector<double> row{std::stod(line)};
+    for (std::string cell; std::getline(rest, cell, ',');)
+      if (row.size() < 5)
+        row.push_back(cell.empty() || cell == "nan" || cell == "NaN" ? kNone : std::stod(cell));
+      else
+        ends.push_back(cell);
+    rows.push_back(row);
+  }
+  ASSERT_EQ(rows.size(), 4u);
+  ASSERT_EQ(ends.size(), 4u);
+  const double headroom[] = {8, 2, 16, 4}, theory[] = {10, kNone, 32, kNone};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(rows[k][0], static_cast<double>(k % 2)) << "its solver";
+    EXPECT_NEAR(rows[k][3], headroom[k], 1e-12);
+    if (std::isnan(theory[k])) {
+      EXPECT_TRUE(std::isnan(rows[k][4]));
+    } else {
+      EXPECT_NEAR(rows[k][4], theory[k], 1e-12);
+    }
+    // bars of a knob lie beside each other within its row
+    EXPECT_GT(rows[k][1] - rows[k][2], static_cast<double>(k / 2) - 0.5);
+    EXPECT_LT(rows[k][1] + rows[k][2], static_cast<double>(k / 2) + 0.5);
+  }
+  EXPECT_LE(rows[0][1] + rows[0][2], rows[1][1] - rows[1][2]);
+  EXPECT_EQ(ends[0], "explodes");
+  EXPECT_EQ(ends[3], "as far as was asked");
+}
+
+}  // namespace
+}  // namespace taut::report

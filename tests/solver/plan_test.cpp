@@ -1,0 +1,178 @@
+// What a solver says of its steps: which passes, over what, how often, in how much memory, and when
+// each substep ends.
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <map>
+
+#include "core/model/index.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+std::unique_ptr<Solver> make(const Scene& scene, const std::string& solver) {
+  const SolverChoice choice = parse_solver(solver);
+  return choice.entry->make(scene, choice.params);
+}
+
+TEST(Plan, SubstepsEndAtEvenTimesWhereShorterStepsEnd) {
+  Scene scene = hanging_sheet(6, 5);
+  scene.pin_motions = {{{5}, {.velocity = {-0.5, 0.2, 0.1}}}};
+  Scene fine = scene;
+  fine.dt = scene.dt / 4;
+  for (const std::string solver : {"jakobsen:precision=double", "xpbd:precision=double",
+                                   "mass-spring:precision=double", "bullet", "bullet-deformable"}) {
+    const auto coarse =
+                   make(scene, solver + (solver.ends_with("double") ? "," : ":") + "substeps=4"),
+               steps = make(fine, solver + (solver.ends_with("double") ? "," : ":") + "substeps=1");
+    std::vector<double> times;
+    std::vector<State> states;
+    coarse->visit_substeps([&](double t) {
+      times.push_back(t);
+      coarse->store(states.emplace_back());
+    });
+    coarse->load(scene.start), steps->load(fine.start);
+    State state;
+    for (int n = 0; n < 3; ++n) {
+      times.clear(), states.clear();
+      coarse->step(n * scene.dt, scene.dt);
+      coarse->store(states.emplace_back());
+      ASSERT_EQ(times.size(), 3u) << solver << ": of each substep but the last";
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (k < 3) {
+          EXPECT_NEAR(times[k], (n + (static_cast<double>(k) + 1) / 4) * scene.dt, 1e-15) << solver;
+        }
+        steps->step(n * scene.dt + static_cast<double>(k) * fine.dt, fine.dt);
+        steps->store(state);
+        EXPECT_LT(largest_distance(states[k].x, state.x), 1e-12) << solver << ' ' << n << ' ' << k;
+      }
+    }
+  }
+}
+
+/// pass -> its line; "collide ball" and the like by their first word.
+std::map<std::string, PassCost> plan(const Scene& scene, const std::string& solver) {
+  const auto made = make(scene, solver);
+  made->load(scene.start);
+  made->step(0, scene.dt);
+  std::map<std::string, PassCost> lines;
+  for (const PassCost& line : made->step_cost()) lines[line.pass] = line;
+  return lines;
+}
+
+TEST(Plan, EveryPassVisitsWhatTheSceneHasAsOftenAsItIsAskedTo) {
+  Scene scene = hanging_sheet(20, 7);
+  scene.pins = {0, 1, 19};
+  scene.wind = Wind{.velocity = {1, 0, 0}, .strength = 0.1};
+  scene.colliders = {{.shape = Ball{{0.5, -9, 0}, 0.1}}};
+  std::map<Family, std::size_t> links;
+  for (const Link& l : scene.links)
+    links[l.family] += !(is_pinned(scene, l.a) && is_pinned(scene, l.b));
+  const auto expect = [&](const std::map<std::string, PassCost>& lines, const std::string& pass,
+                          std::size_t items, std::size_t repeats, bool projections = false) {
+    ASSERT_TRUE(lines.contains(pass)) << pass;
+    EXPECT_EQ(lines.at(pass).items, items) << pass;
+    EXPECT_EQ(lines.at(pass).repeats, repeats) << pass;
+    EXPECT_EQ(lines.at(pass).projections, projections) << pass;
+  };
+  const std::size_t faces = scene.mesh.triangles.size(),
+                    all = links[Family::structural] + links[Family::shear] + links[Family::bend];
+  for (const std::string order : {"mesh", "coloured,layout=interleaved", "coloured,layout=batches",
+                                  "mesh,method=jacobi-averaged"}) {
+    const std::string solver = "jakobsen:iterations=4,substeps=3,order=" + order;
+    for (const auto& [contact, repeats] :
+         {std::pair{"continuous", 12u}, {"discrete", 12u}, {"before", 3u}, {"after", 3u}}) {
+      const auto lines = plan(scene, solver + ",tethers=on,contact=" + contact);
+      expect(lines, "wind", faces, 3);
+      expect(lines, "verlet", 140, 3);
+      expect(lines, "pins", 3, 3);
+      expect(lines, "structural", links[Family::structural], 12, true);
+      expect(lines, "shear", links[Family::shear], 12, true);
+      expect(lines, "bend", links[Family::bend], 12, true);
+      expect(lines, "tethers", 2 * 137, 12, true);
+      expect(lines, "collide ball", 140, repeats);
+    }
+    EXPECT_EQ(projections_per_step(*make(scene, solver)), all * 12);
+  }
+  auto lines = plan(scene, "xpbd:iterations=4,substeps=3");
+  expect(lines, "wind", faces, 3);
+  expect(lines, "predict", 140, 3);
+  expect(lines, "links", all, 12, true);
+  expect(lines, "collide ball", 140, 12);
+  lines = plan(scene, "bullet:iterations=4,substeps=3");
+  expect(lines, "wind", faces, 3);
+  expect(lines, "predict and update tree", 140, 3);
+  expect(lines, "detect contacts", 140, 3);
+  expect(lines, "links", all, 12, true);
+  expect(lines, "normals", faces, 3);
+  scene.colliders.clear();
+  lines = plan(scene, "mass-spring:substeps=3,shear=0");
+  expect(lines, "wind", faces, 3);
+  expect(lines, "integrate", 140, 3);
+  expect(lines, "structural springs", links[Family::structural], 3);
+  expect(lines, "bend springs", links[Family::bend], 3);
+  EXPECT_FALSE(lines.contains("shear springs"));
+  scene.links.clear(), scene.wind.reset(), scene.pins.clear();
+  for (const char* solver : {"jakobsen", "xpbd", "mass-spring", "bullet:faces=off"})
+    EXPECT_EQ(plan(scene, solver).size(), 1u) << solver << ": there is nothing but motion";
+}
+
+struct Memory {
+  double held = 0, reported = 0;  ///< bytes
+};
+
+/// Of what works, after a step.
+Memory memory(const Scene& scene, const std::string& solver) {
+  const auto heap = [] {
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd);
+  };
+  const double before = heap();
+  const auto made = make(scene, solver);
+  made->load(scene.start);
+  made->step(0, scene.dt);
+  Memory memory{heap() - before, 0};
+  for (const PassCost& line : made->step_cost()) memory.reported += static_cast<double>(line.bytes);
+  return memory;
+}
+
+// Of a larger sheet contact and accelerators hold as much more as their passes say.
+TEST(Plan, MemoryOfContactAndTethersIsWhatTheirPassesReport) {
+  if (mallinfo2().uordblks == 0)
+    GTEST_SKIP() << "this allocator does not say what it holds (sanitizers)";
+  const auto sheet = [](int n, bool contact) {
+    Scene scene = hanging_sheet(n, n);
+    if (contact) scene.colliders = {{.shape = Ball{{0.5, -9, 0}, 0.1}}};
+    return scene;
+  };
+  const auto check = [&](const std::string& solver, bool contact) {
+    const Scene small = sheet(48, contact), large = sheet(96, contact);
+    memory(small, solver);  // what is made once stays
+    const Memory a = memory(small, solver), b = memory(large, solver);
+    const double held = b.held - a.held, reported = b.reported - a.reported;
+    EXPECT_NEAR(held / reported, 1, 0.04) << solver << ": " << held << " against " << reported;
+  };
+  for (const std::string order : {"coloured", "mesh", "mesh,precision=double"}) {
+    const std::string solver = "jakobsen:order=" + order;
+    check(solver + ",tethers=on", false);
+    for (const char* contact : {"continuous", "freeze", "halt"})
+      check(solver + ",contact=" + contact, true);
+  }
+  check("jakobsen:order=mesh,method=jacobi-averaged", false);
+}
+
+// Positions now and before, velocities and accelerations, and a weight each; springs need no
+// position before.
+TEST(Plan, MemoryOfPlainSolversIsThatOfTheirArrays) {
+  const Scene scene = hanging_sheet(11, 13);
+  for (const auto& [precision, real] : {std::pair{"float", 4u}, {"double", 8u}}) {
+    EXPECT_EQ(plan(scene, std::string("xpbd:precision=") + precision)["predict"].bytes,
+              143 * (4 * 3 + 1) * real);
+    EXPECT_EQ(plan(scene, std::string("mass-spring:precision=") + precision)["integrate"].bytes,
+              143 * (3 * 3 + 1) * real);
+  }
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,210 @@
+// A second implementation of every solver of core/solver takes the same path, step for step: pins
+// and colliders that move and turn, wind, damping, substeps, friction, accelerators.
+#include "tests/solver/second_implementation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+using second::Cloth;
+using second::Relaxing;
+
+/// A sheet whose vertices weigh differently and start anywhere near, with pins that go their way
+/// and air that flows.
+Scene busy_sheet(bool shear, bool bend) {
+  Scene s = crumpled(hanging_sheet(6, 5, {true, shear, bend}), 0.03);
+  for (std::size_t i = 0; i < s.mesh.mass.size(); ++i) {
+    s.mesh.mass[i] *= 0.5 + static_cast<double>(i * 7 % 11) / 6;
+    s.start.v[i] = Vec3(std::sin(0.3 * double(i)), std::cos(0.7 * double(i)), 0.5);
+  }
+  s.gravity = {0.5, -9, 1};
+  s.damping = 0.7;
+  s.pins = {0, 1, 5, 14, 29};
+  s.pin_motions = {
+      {{5},
+       {.velocity = {-0.4, 0.1, 0.3},
+        .path = {{0.05, {0.1, 0, 0}}, {0.2, {0, 0.2, 0}}, {0.3, {0, 0, -0.1}}}}},
+      {{14, 29}, {.velocity = {0, 0.2, 0}, .spin = {0.5, 1, -2}, .pivot = {0.5, -0.2, 0.1}}}};
+  return s;
+}
+
+void expect_same_path(const Scene& scene, const std::string& solver, Relaxing second,
+                      int steps = 25) {
+  const SolverChoice choice = parse_solver(solver);
+  const auto first = choice.entry->make(scene, choice.params);
+  first->load(scene.start);
+  State state;
+  for (int n = 0; n < steps; ++n) {
+    first->step(n * scene.dt, scene.dt), second.step(n * scene.dt);
+    first->store(state);
+    ASSERT_LT(largest_distance(state.x, second.state().x), 1e-10) << solver << " step " << n;
+    ASSERT_LT(largest_distance(state.v, second.state().v), 1e-7) << solver << " step " << n;
+  }
+  EXPECT_GT(largest_distance(state.x, scene.start.x), 0.1) << solver;
+}
+
+std::string in_double(const std::string& params) {
+  return "jakobsen:precision=double,projection=exact,order=mesh," + params;
+}
+
+TEST(SecondImplementation, OfPinsWindDampingAndSubsteps) {
+  for (const int substeps : {1, 3}) {
+    Scene scene = busy_sheet(true, true);
+    scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.2};
+    const std::string params = "iterations=4,substeps=" + std::to_string(substeps);
+    expect_same_path(scene, in_double(params),
+                     Relaxing(scene, {.iterations = 4, .substeps = substeps}));
+    expect_same_path(scene, in_double(params + ",omega=0.8"),
+                     Relaxing(scene, {.iterations = 4, .substeps = substeps, .omega = 0.8}));
+  }
+}
+
+TEST(SecondImplementation, OfTethersAndLevels) {
+  for (const bool shear : {true, false}) {  // a sheet, and a net: other lengths
+    Scene scene = busy_sheet(shear, true);
+    expect_same_path(scene, in_double("iterations=2,substeps=2,tethers=on"),
+                     Relaxing(scene, {.iterations = 2, .substeps = 2, .tethers = true}));
+    for (const int levels : {2, 3, 4})
+      expect_same_path(scene, in_double("iterations=2,substeps=1,levels=" + std::to_string(levels)),
+                       Relaxing(scene, {.iterations = 2, .levels = levels}));
+    expect_same_path(
+        scene, in_double("iterations=2,substeps=2,levels=3,tethers=on,omega=1.2"),
+        Relaxing(scene,
+                 {.iterations = 2, .substeps = 2, .tethers = true, .levels = 3, .omega = 1.2}));
+  }
+}
+
+/// One collider of each kind that moves, turns and rubs, under and in front of the sheet.
+std::vector<Collider> moving_colliders(double friction) {
+  return {{.shape = Plane{Vec3(0.2, 1, 0.1).normalized(), -0.5},
+           .motion = {.velocity = {0.3, 0.2, 0}, .spin = {0.3, 0.2, -0.5}, .pivot = {1, 0, 2}},
+           .friction = friction},
+          {.shape = Ball{{0.4, -0.4, 0.2}, 0.15},
+           .motion = {.velocity = {0, 0, -0.5}, .spin = {1, 4, 2}, .pivot = {0.4, -0.3, 0.2}},
+           .friction = 0.7 * friction},
+          {.shape = Box{{0.8, -0.3, -0.25},
+                        {0.2, 0.1, 0.15},
+                        Eigen::Quaterniond(0.9, 0.1, 0.3, -0.2).normalized()},
+           .motion = {.spin = {2, 0.5, -1},
+                      .pivot = {0.8, -0.2, 0},
+                      .path = {{0, {0, 0, 0}}, {0.5, {0, 0.1, 0.4}}}},
+           .friction = 0.5 * friction}};
+}
+
+TEST(SecondImplementation, OfContactWithWhatMovesTurnsAndRubs) {
+  for (const int substeps : {1, 3}) {
+    Scene scene = busy_sheet(true, false);
+    scene.thickness = 0.02;
+    for (const Collider& collider : moving_colliders(0.4)) {
+      scene.colliders = {collider};
+      const std::string params = "iterations=3,substeps=" + std::to_string(substeps);
+      expect_same_path(scene, in_double(params + ",contact=discrete"),
+                       Relaxing(scene, {.substeps = substeps}), 30);
+      expect_same_path(scene, in_double(params + ",contact=after"),
+                       Relaxing(scene, {.substeps = substeps, .contact_in_sweeps = false}), 30);
+    }
+    scene.colliders = moving_colliders(0.4);
+    expect_same_path(
+        scene, in_double("iterations=2,substeps=" + std::to_string(substeps) + ",contact=discrete"),
+        Relaxing(scene, {.iterations = 2, .substeps = substeps}), 30);
+  }
+}
+
+TEST(SecondImplementation, OfTheOctree) {
+  Scene scene = busy_sheet(true, false);
+  for (const double radius : {0.1, 0.13, 0.2}) {
+    scene.self_collision = SelfCollision{.radius = radius};
+    expect_same_path(scene, in_double("iterations=2,substeps=2,self=octree"),
+                     Relaxing(scene, {.iterations = 2, .substeps = 2, .octree = true}));
+    EXPECT_GT(largest_distance(simulate(scene, in_double("iterations=2,self=octree"), 9).x,
+                               simulate(scene, in_double("iterations=2,self=off"), 9).x),
+              1e-3)
+        << "some of them meet";
+  }
+}
+
+TEST(SecondImplementation, OfXpbd) {
+  for (const int substeps : {1, 4}) {
+    Scene scene = busy_sheet(true, true);
+    scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.2};
+    scene.thickness = 0.02;
+    scene.colliders = moving_colliders(0);
+    expect_same_path(
+        scene,
+        "xpbd:precision=double,iterations=3,structural=0.0001,shear=0.002,bend=0.05,substeps=" +
+            std::to_string(substeps),
+        Relaxing(scene, {.iterations = 3,
+                         .substeps = substeps,
+                         .friction = false,
+                         .compliance = {{Family::structural, 0.0001},
+                                        {Family::shear, 0.002},
+                                        {Family::bend, 0.05}}}),
+        30);
+  }
+}
+
+// F = -k x - c v on every particle; the velocity after a step is (x - x')/h.
+TEST(SecondImplementation, OfSprings) {
+  const std::map<Family, double> stiffness{
+      {Family::structural, 20}, {Family::shear, 9}, {Family::bend, 3}};
+  for (const std::string integrator :
+       {"explicit-euler", "symplectic-euler", "verlet", "verlet,drag-at=central"}) {
+    Scene scene = busy_sheet(true, true);
+    scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.05};
+    const int substeps = 8;
+    const double h = scene.dt / substeps, drag = 0.01, keep = std::exp(-scene.damping * h);
+    const bool central = integrator.ends_with("central");
+    Cloth second(scene);
+    const SolverChoice choice = parse_solver(
+        "mass-spring:precision=double,structural=20,shear=9,bend=3,drag=0.01,substeps=8,"
+        "integrator=" +
+        integrator);
+    const auto first = choice.entry->make(scene, choice.params);
+    first->load(scene.start);
+    State state;
+    for (int n = 0; n < 30; ++n) {
+      for (int s = 1; s <= substeps; ++s) {
+        auto a = second.accelerations(second.v);
+        for (const Link& l : scene.links) {
+          const Vec3 along = second.x[to_index(l.b)] - second.x[to_index(l.a)],
+                     force = stiffness.at(l.family) * (along.norm() - l.rest) * along.normalized();
+          a[to_index(l.a)] += second.w[to_index(l.a)] * force;
+          a[to_index(l.b)] -= second.w[to_index(l.b)] * force;
+        }
+        for (std::size_t i = 0; i < a.size(); ++i) {
+          const double cm = second.w[i] * drag;
+          Vec3 &x = second.x[i], &v = second.v[i];
+          if (second.w[i] == 0) {
+            v.setZero();
+          } else if (integrator == "explicit-euler") {
+            x += h * v;
+            v = keep * v + h * (a[i] - cm * v);
+          } else {
+            // central: v' = keep v + h (a - c/m (keep v + v')/2)
+            v = central ? Vec3((keep * v * (1 - cm * h / 2) + h * a[i]) / (1 + cm * h / 2))
+                        : Vec3(keep * v + h * (a[i] - cm * v));
+            x += h * v;
+          }
+        }
+        const std::vector<Vec3> before = second.x;
+        second.move_pins(n * scene.dt + s * h);
+        for (const PinMotion& group : scene.pin_motions)
+          for (const int pin : group.vertices)
+            second.v[to_index(pin)] = (second.x[to_index(pin)] - before[to_index(pin)]) / h;
+      }
+      first->step(n * scene.dt, scene.dt), first->store(state);
+      ASSERT_LT(largest_distance(state.x, second.x), 1e-10) << integrator << " step " << n;
+      ASSERT_LT(largest_distance(state.v, second.v), 1e-8) << integrator << " step " << n;
+    }
+    EXPECT_GT(largest_distance(state.x, scene.start.x), 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,68 @@
+"""The small errors that mutate.py plants: patterns on a line of code, and what stands there instead."""
+import re
+
+NUMBER = r"(?<![\w.'])(\d+\.?\d*(?:e-?\d+)?)(?![\w.'])"
+
+
+def scaled(factor, step):
+    """A literal times `factor`; a whole number that this leaves alone, plus `step`."""
+    def change(match):
+        text = match[1]
+        if text.isdigit():
+            value = int(int(text) * factor)
+            return str(value if value != int(text) else int(text) + step)
+        return repr(float(text) * factor if float(text) else 0.1)
+    return change
+
+
+def exchanged(*couples):
+    table = {a: b for x, y in couples for a, b in ((x, y), (y, x))}
+    return lambda match: match[0].replace(match[1], table[match[1]])
+
+
+# operator: (pattern on code without texts and comments, replacement)
+OPERATORS = {
+    "arithmetic": (r" ([-+*/]) (?=[\w(])", exchanged("+-", "*/")),
+    "assignment": (r" ([-+*/])= ", exchanged("+-", "*/")),
+    "border": (r" (<|>)(=?) ", lambda m: f" {m[1]}{'' if m[2] else '='} "),
+    "direction": (r" ([<>])=? ", exchanged("<>")),
+    "equality": (r" ([=!]=) ", exchanged(("==", "!="))),
+    "logic": (r" (&&|\|\|) ", lambda m: " || " if m[1] == "&&" else " && "),
+    "negation": (r"(?<=\()!(?=\w)", lambda m: ""),
+    "little": (NUMBER, scaled(1.02, 1)),
+    "much": (NUMBER, scaled(10, 1)),
+    "sign": (r"(?<=[(,=] )-(?=[a-z(])|(?<=\()-(?=[a-z(])|(?<=return )-(?=[a-z(])", lambda m: ""),
+    "axis": (r"(?<=[\w\])])\.([xyz])(?=\W)", lambda m: "." + "yzx"["xyz".index(m[1])]),
+    "extreme": (r"\b(min|max)(?=[({])", lambda m: {"min": "max", "max": "min"}[m[1]]),
+    "function": (r"\b(sin|cos|floor|ceil|front|back|begin|end)(?=\()",
+                 exchanged(("sin", "cos"), ("floor", "ceil"), ("front", "back"), ("begin", "end"))),
+    "constant": (r"\b(true|false)\b", lambda m: "false" if m[1] == "true" else "true"),
+    "removed": (r"^ +((?!return|break|continue|const|auto|using|throw|delete|else|case|default)"
+                r"[a-z_][\w.\[\]]*(->|\.|\(| [-+*/]?= |\+\+)[^{}]*;)$", lambda m: ";"),
+    "swapped": (r"(?<=\w\()(\w+), (\w+)(?=\))", lambda m: f"{m[2]}, {m[1]}"),
+}
+NOT_CODE = re.compile(r"^\s*(#|//|assert\(|static_assert|if constexpr|template|using |EXPECT_|ASSERT_|TAUT_)")
+
+
+def code_of(line):
+    """The line with texts and comments blanked out, or "" if there is nothing to plant in it."""
+    if NOT_CODE.match(line):
+        return ""
+    line = re.sub(r'"(\\.|[^"\\])*"', lambda m: '"' + "_" * (len(m[0]) - 2) + '"', line)
+    line = re.sub(r"<[\w:, <>*&]*>", lambda m: "_" * len(m[0]), line)  # template arguments
+    return re.sub(r"//.*", "", line).rstrip()
+
+
+def sites(file):
+    """operator -> every (line number, line with the error) in a file"""
+    found = {}
+    for number, line in enumerate(file.read_text().splitlines()):
+        code = code_of(line)
+        for name, (pattern, change) in OPERATORS.items():
+            for match in re.finditer(pattern, code):
+                planted = line[:match.start()] + change(match) + line[match.end():]
+                if name == "removed":
+                    planted = re.match(" *", line)[0] + ";"
+                if planted != line:
+                    found.setdefault(name, []).append((number, planted))
+    return found

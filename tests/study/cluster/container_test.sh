@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# The steps of Containerfile and taut.def, run as a script: the archive of the sources holds what a build asks for, and what is
+# installed from it gives the bits of the build tree, without its sources. Only the build itself is BUILD's, for it takes minutes.
+# Usage: container_test.sh BUILD
+set -euo pipefail
+home=$(cd "$(dirname "$0")/../../.." && pwd)
+build=$1
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+for recipe in Containerfile taut.def; do
+  grep -q '/usr/src/taut/experiments/study/cluster/container.sh$' "$home/experiments/study/cluster/$recipe" ||
+    { echo "$recipe does not call container.sh"; exit 1; }
+done
+mkdir "$scratch/src"
+{ git -C "$home" archive HEAD 2>/dev/null || tar -C "$home" --exclude=./build --exclude=./results/runs -c .; } | tar -x -C "$scratch/src"
+(cd "$scratch/src" && cmake --preset default >/dev/null)
+"$scratch/src/experiments/study/cluster/container.sh" "$scratch/usr" "$build" >"$scratch/said"
+"$build/taut" case hang jakobsen:iterations=4 --set time.duration=0.5 --json >"$scratch/here"
+"$build/taut" --version >>"$scratch/here"
+tail -n "$(wc -l <"$scratch/here")" "$scratch/said" | diff - "$scratch/here" || { echo "other bits than in the build tree"; exit 1; }
+[[ $(wc -l <"$scratch/here") -gt 20 ]] || { echo "nothing was compared"; exit 1; }

@@ -1,0 +1,168 @@
+// A study of many cheap cases: planned, packed by shards, merged, read back, reported. Prints what
+// each part costs; TAUT_SCALE_CASES=100000 makes the table of results/benchmarks/cluster.md.
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+
+#include "experiments/case/record_io.hpp"
+#include "experiments/report/report.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/study/campaign.hpp"
+#include "experiments/study/cluster/manifest.hpp"
+#include "experiments/study/cluster/merge.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::cluster {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the process holds now (VmRSS), or held at most since forget_peak() (VmHWM) [kB].
+long held(const std::string& what) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with(what + ":")) return std::stol(line.substr(what.size() + 1));
+  return 0;
+}
+
+void forget_peak() {
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+class Stopwatch {
+ public:
+  void lap(const char* what) {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - last_;
+    malloc_trim(0);
+    std::cout << "| " << what << " | " << spent.count() << " | " << held("VmRSS") / 1024 << " |\n";
+    last_ = std::chrono::steady_clock::now();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// The study, in a file: `taut report ROOT/many.toml --results ROOT/merged` reads what is left
+/// here.
+Study many(int cases, const fs::path& root) {
+  const std::string seeds = std::to_string(cases / 100);
+  make_folder(root);
+  write_file(root / "many.toml",
+             "question = \"What do many cases cost?\"\nscenes = [\"hang\"]\nsolvers = "
+             "[\"jakobsen\"]\nset = [\"cloth.grid=[4, 4]\", \"time.duration=0.1\"]\n[axes]\n"
+             "iterations = { from = 1, to = 100, steps = 100 }\nseed = { from = 1, to = " +
+                 seeds + ", steps = " + seeds + " }\n");
+  return load_study((root / "many.toml").string());
+}
+
+/// One small result, which every case of a study gets under its own name and settings.
+class Copies {
+ public:
+  explicit Copies(const Study& study)
+      : run_(run_case(make_case({"hang", study.settings, "jakobsen"}), {.series_rows = 120})),
+        parts_{{"series.csv", to_csv(run_.series)}} {}
+  void put(Store& into, const std::string& key, const std::string& id, const CaseSpec& spec) {
+    Record& record = run_.record;
+    record.key = key, record.id = id, record.spec = spec;
+    const SolverChoice choice = parse_solver(spec.solver);
+    for (const std::string name : {"iterations", "seed"})
+      record.params[name] = choice.params.value(name);
+    into.commit(parts_, record);
+  }
+
+ private:
+  CaseRun run_;
+  EntryParts parts_;
+};
+
+/// What a report of the study holds at most beside what was held before [bytes].
+double peak_of_report(const Study& study, const Store& store) {
+  forget_peak();
+  const long before = held("VmRSS");
+  EXPECT_FALSE(report::make_report(report::stored_results({study}, store)).empty());
+  return 1024.0 * static_cast<double>(held("VmHWM") - before);
+}
+
+TEST(StoreScale, AReportHoldsFewBytesOfACase) {
+  const Scratch root;
+  const Study few = many(4200, root.path() / "few"), all = many(8400, root.path() / "all");
+  Store store(root.path() / "results");
+  store.pack_into("a", 1 << 20);
+  Copies copies(all);
+  each_case(all, [&](Case&& one) { copies.put(store, one.key, one.id, one.spec); });
+  store.flush();
+  // What a page holds of some cases it holds of the first 4000: beyond them only records grow.
+  const double first = peak_of_report(few, store), both = peak_of_report(all, store);
+  ASSERT_GT(first, 1e6) << "the peak was not measured";
+  const double of_a_case = (both - first) / 4200;
+  std::cout << "bytes of a case: " << of_a_case << ", of the first 4200 in all: " << first << '\n';
+  EXPECT_LT(of_a_case, 7800);
+}
+
+TEST(StoreScale, ManyCheapCases) {
+  const char* given = std::getenv("TAUT_SCALE_CASES");
+  const char* keep = std::getenv("TAUT_SCALE_FOLDER");
+  const int count = given ? std::atoi(given) : 300;
+  const fs::path root =
+      keep ? fs::path(keep) : fs::path(testing::TempDir()) / ("scale." + unique_suffix());
+  const fs::path folder = root / "folder";
+  std::cout << "| " << count << " cases | s | MB held then |\n|---|---|---|\n";
+  Stopwatch watch;
+  const Study study = many(count, root);
+  std::vector<std::size_t> sizes;
+  {
+    Manifest manifest = plan(study, {}, folder);
+    manifest.shards = 8;
+    share_out(manifest);
+    write_file((make_folder(folder), folder / "manifest.jsonl"), manifest_text(manifest));
+  }
+  watch.lap("plan: keys, shards, manifest");
+  Copies copies(study);
+  {
+    const Manifest manifest = read_manifest(folder);
+    ASSERT_EQ(manifest.cases.size(), static_cast<std::size_t>(count));
+    watch.lap("read the manifest");
+    for (int shard = 1; shard <= manifest.shards; ++shard) {
+      Store store(shard_folder(folder, shard));
+      store.pack_into("a", 1 << 20);
+      for (const PlannedCase& one : manifest.cases)
+        if (one.shard == shard) copies.put(store, one.key, one.id, one.spec);
+      store.flush();
+    }
+  }
+  watch.lap("write eight pack files");
+  Store merged(root / "merged");
+  {
+    const Merge merge({folder});
+    const MergePlan found = merge.look(merged);
+    ASSERT_TRUE(found.mergeable() && found.missing.empty());
+    watch.lap("compare for the merge");
+    merge.copy(found, merged, [](std::size_t, std::size_t) {});
+  }
+  watch.lap("merge");
+  EXPECT_EQ(Store(root / "merged").digest(), merged.digest());
+  watch.lap("digest, twice");
+  {
+    const StudyRecords all = collect(study, merged);
+    EXPECT_EQ(all.records.size(), static_cast<std::size_t>(count));
+    watch.lap("collect all records");
+  }
+  std::map<fs::path, int> entries;
+  for (const auto& one : fs::recursive_directory_iterator(root))
+    ++entries[one.path().parent_path()];
+  int most = 0;
+  for (const auto& [where, number] : entries) most = std::max(most, number);
+  std::cout << "most entries in a folder: " << most
+            << ", bytes on disk: " << fs::file_size(folder / "manifest.jsonl") / 1000000
+            << " MB manifest\n";
+  EXPECT_LE(most, 20) << "many cases, few files";
+  if (!keep) fs::remove_all(root);
+}
+
+}  // namespace
+}  // namespace taut::cluster

@@ -1,0 +1,258 @@
+#!/usr/bin/env python3
+"""200 cases in 8 shards under the real schedulers, with a node and a task that die in the middle.
+
+Slurm (slurmctld, two slurmd, munged) runs on the loopback address as whoever calls this, in a folder of its own.
+Debian: slurmctld, slurmd, slurm-client, munge, parallel; without them the tests are skipped (77) and say so."""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
+from command_line import BINARIES, CommandLine  # noqa: E402
+
+SLURM = ("slurmctld", "slurmd", "sbatch", "munged")
+os.environ["PATH"] += ":/usr/sbin:/sbin"
+
+CONFIGURATION = """
+ClusterName=taut
+SlurmctldHost={host}(127.0.0.1)
+SlurmUser={user}
+SlurmdUser={user}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.socket,cred_expire=3
+SlurmctldPort={ports[0]}
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/%n.pid
+SlurmdSpoolDir={folder}/spool/%n
+StateSaveLocation={folder}/state
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdLogFile={folder}/%n.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SlurmdParameters=config_overrides
+SlurmdTimeout=6
+KillWait=5
+ReturnToService=2
+SchedulerParameters=sched_interval=1,sched_min_interval=0
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+MpiDefault=none
+NodeName=n1 NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[1]} CPUs=2 RealMemory=4000
+NodeName=n2 NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[2]} CPUs=2 RealMemory=4000
+PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+"""
+
+
+def free_ports(count):
+    sockets = [socket.socket() for _ in range(count)]
+    for one in sockets:
+        one.bind(("127.0.0.1", 0))
+    ports = [one.getsockname()[1] for one in sockets]
+    for one in sockets:
+        one.close()
+    return ports
+
+
+class Schedulers(CommandLine):
+    def setUp(self):
+        super().setUp()
+        os.environ["TAUT"] = str(BINARIES / "taut")
+        os.environ["TAUT_CLUSTER_PATIENCE"] = "5"
+        self.study(scenes=["./small.toml"], solvers=["jakobsen:order=mesh,substeps=1", "bullet"],
+                   rest='set = ["cloth.grid=[12, 12]", "time.duration=3"]\n'
+                        "axes.iterations = { from = 1, to = 100, steps = 100 }\n")
+
+    def wait_for(self, what, seconds=120, every=0.2):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if value := what():
+                return value
+            time.sleep(every)
+        self.fail("waited in vain: " + self.said())
+
+    def said(self):
+        logs = [*self.folder.glob("*.log"), *self.folder.glob("c/log/*"), *self.folder.glob("*.out")]
+        return "".join(f"\n== {file.name}\n{file.read_text()[-1500:]}" for file in logs)
+
+    def packs(self):
+        return sorted((self.folder / "c/shards").glob("*/packs/*.pack"))
+
+    def tasks(self, node=None):
+        """The processes of `taut cluster run` of this test, by number."""
+        found = []
+        for entry in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                words = (entry / "cmdline").read_bytes().split(b"\0")
+                told = (entry / "environ").read_bytes().split(b"\0")
+                here = (entry / "cwd").resolve() == self.folder / "c"
+            except OSError:
+                continue
+            if b"run" in words and b"cluster" in words and words[0].endswith(b"taut") and here:
+                if node is None or b"SLURMD_NODENAME=" + node.encode() in told:
+                    found.append(int(entry.name))
+        return found
+
+    def status(self):
+        process = self.taut("cluster", "status", "c", "--json", expect=None)
+        self.assertIn(process.returncode, (0, 3), process.err)
+        return json.loads(process.out)
+
+    def merged_equals_a_single_run(self):
+        merged = self.taut("cluster", "merge", "c", "--out", "m")
+        self.assertIn("200/200 cases", merged.out)
+        single = self.taut("run", "./study.toml", "--out", "single", "-j", 2)
+        self.assertEqual(self.store_digest(merged), self.store_digest(single))
+
+
+class Slurm(Schedulers):
+    def setUp(self):
+        super().setUp()
+        lacking = [name for name in SLURM if not shutil.which(name)]
+        if lacking:
+            self.skipTest("not installed: " + ", ".join(lacking))
+        self.daemons = {}
+        for name in ("spool/n1", "spool/n2", "state"):
+            (self.folder / name).mkdir(parents=True)
+        os.chmod(self.folder, 0o700)
+        key = self.folder / "munge.key"
+        key.write_bytes(os.urandom(64))
+        key.chmod(0o400)
+        user = subprocess.run(["id", "-un"], capture_output=True, text=True, check=True).stdout.strip()
+        conf = self.folder / "slurm.conf"
+        conf.write_text(CONFIGURATION.format(host=socket.gethostname().split(".")[0], user=user, folder=self.folder,
+                                             ports=free_ports(3)))
+        os.environ["SLURM_CONF"] = str(conf)
+        self.addCleanup(os.environ.pop, "SLURM_CONF")
+        self.addCleanup(self.end)
+        self.daemon("munged", "--foreground", "--force", *(f"--{what}={self.folder}/munge.{end}" for what, end in (
+            ("key-file", "key"), ("socket", "socket"), ("pid-file", "pid"), ("log-file", "log"), ("seed-file", "seed"))))
+        self.daemon("slurmctld", "-D")
+        for node in ("n1", "n2"):
+            self.daemon("slurmd", "-D", "-N", node, name=node)
+        for _ in range(100):
+            if "2 idle" in " ".join(self.ask("sinfo", "-h", "-o", "%D %t").split()):
+                return
+            dead = [name for name, process in self.daemons.items() if process.poll() is not None]
+            if dead:
+                break
+            time.sleep(0.2)
+        self.skipTest("Slurm does not start here: " + self.said())
+
+    def daemon(self, *words, name=None):
+        with open(self.folder / f"{name or words[0]}.out", "w") as out:
+            self.daemons[name or words[0]] = subprocess.Popen(words, stdout=out, stderr=out, start_new_session=True)
+
+    def end(self):
+        subprocess.run(["scancel", "--signal=KILL", "--user", str(os.geteuid())], capture_output=True)
+        for pid in self.tasks():
+            os.kill(pid, signal.SIGKILL)
+        for process in reversed(self.daemons.values()):
+            process.kill()
+            process.wait()
+
+    def ask(self, *words):
+        return subprocess.run(words, capture_output=True, text=True).stdout
+
+    def power_off(self, node):
+        """The node's daemon and everything that it runs, at once."""
+        mine = [int(entry.name) for entry in pathlib.Path("/proc").glob("[0-9]*")
+                if self.told(entry, f"SLURMD_NODENAME={node}")]
+        self.daemons[node].kill()
+        self.daemons[node].wait()
+        steps = {step for step in map(self.parent, mine) if self.is_step(step)}
+        for pid in [*steps, *mine]:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+
+    def parent(self, pid):
+        try:
+            return int(pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
+        except OSError:
+            return 0
+
+    def is_step(self, pid):
+        file = pathlib.Path(f"/proc/{pid}/comm")
+        return file.exists() and file.read_text().startswith("slurmstepd")
+
+    def told(self, entry, variable):
+        try:
+            told = (entry / "environ").read_bytes().split(b"\0")
+        except OSError:
+            return False
+        return variable.encode() in told and f"SLURM_CONF={self.folder}/slurm.conf".encode() in told
+
+    def test_a_node_and_a_task_die_in_the_middle(self):
+        out = self.taut("cluster", "submit", "./study.toml", "--on", "slurm", "--shards", 8, "--folder", "c").out
+        self.assertIn("200 cases in 8 shards", out)
+        self.wait_for(lambda: len(self.packs()) >= 3 and self.tasks("n1") and self.tasks("n2"))
+        job = self.ask("squeue", "-h", "-t", "R", "-w", "n2", "-o", "%F_%a").split()[0]
+        self.ask("scontrol", "requeue", job)  # what a preemption does: SIGTERM, and back into the queue
+        self.wait_for(lambda: self.tasks("n1") and self.tasks("n2"))
+        os.kill(self.tasks("n2")[0], signal.SIGKILL)
+        self.power_off("n1")
+        self.assertIn("nothing was merged", self.taut("cluster", "merge", "c", "--out", "m", expect=3).out)
+        self.wait_for(lambda: not self.ask("squeue", "-h").strip(), seconds=240)
+        self.assertIn("requeue", (self.folder / "slurmctld.log").read_text().lower())
+        status = self.status()
+        self.assertEqual(len(status["start"]), 1, f"the killed task's shard, nothing else {status}\n{self.said()}")
+        self.assertIn(status["shards"][status["start"][0] - 1]["state"], ("lost", "stopped"))
+        subprocess.run(["bash", "-c", status["command"]], cwd=self.folder, check=True, capture_output=True)
+        self.wait_for(lambda: not self.ask("squeue", "-h").strip(), seconds=120)
+        self.assertEqual(self.status()["start"], [])
+        self.merged_equals_a_single_run()
+
+    def test_the_signal_before_a_time_limit_queues_the_shard_again(self):
+        self.taut("cluster", "submit", "./study.toml", "--on", "slurm", "--shards", 1, "--folder", "c")
+        self.wait_for(lambda: self.packs() and self.tasks())
+        self.ask("scancel", "--batch", "--signal=USR1", "1_1")  # as --signal=B:USR1@60 does
+        self.wait_for(lambda: not self.ask("squeue", "-h").strip(), seconds=240)
+        self.assertEqual(len(self.packs()), 2, "it was queued again and went on: " + self.said())
+        self.merged_equals_a_single_run()
+
+
+class Parallel(Schedulers):
+    def setUp(self):
+        super().setUp()
+        version = subprocess.run(["parallel", "--version"], capture_output=True, text=True) if shutil.which("parallel") else None
+        if not version or "GNU" not in version.stdout:
+            self.skipTest("not installed: GNU parallel")
+
+    def test_a_task_dies_and_the_rest_is_resumed(self):
+        ssh = self.folder / "ssh"  # a login without a daemon: what it is told, it does here
+        ssh.write_text('#!/bin/bash\nwhile [[ $1 == -* ]]; do shift; done\nhost=$1; shift; [[ $1 != -- ]] || shift\necho "$host" >>' +
+                       f'{self.folder}/hosts.log\nexec bash -c "$*"\n')
+        ssh.chmod(0o755)
+        environment = {**os.environ, "PARALLEL_SSH": str(ssh), "JOBS": "1"}
+        job = self.start("cluster", "submit", "./study.toml", "--on", "parallel", "--shards", 8, "--folder", "c",
+                         "--sshlogin", "1/near,1/far", env=environment)
+        self.addCleanup(job.communicate)
+        victim = self.wait_for(lambda: len(self.packs()) >= 2 and self.tasks())[0]
+        os.kill(victim, signal.SIGKILL)
+        out, err = job.communicate(timeout=240)
+        self.assertNotEqual(job.returncode, 0, "a shard that died is a failed job")
+        self.assertEqual(set((self.folder / "hosts.log").read_text().split()), {"near", "far"})
+        self.assertEqual(len(self.status()["start"]), 1, f"{out}\n{err}")
+        before = len(self.packs())
+        subprocess.run(["./job.sh"], cwd=self.folder / "c", env=environment, check=True, capture_output=True)
+        self.assertEqual(self.status()["start"], [])
+        self.assertEqual(len(self.packs()), before + 1, "only the shard that died was run again")
+        self.merged_equals_a_single_run()
+
+
+if __name__ == "__main__":
+    result = unittest.main(argv=[sys.argv[0], *sys.argv[2:]], exit=False, verbosity=2).result
+    for test, why in result.skipped:
+        print(f"skipped: {test}: {why}")
+    sys.exit(1 if not result.wasSuccessful() else 77 if len(result.skipped) == result.testsRun else 0)

@@ -1,0 +1,174 @@
+// What is wrong with a run, how a knob becomes cases, and frontiers against those that were kept.
+#include "experiments/study/extremes/extremes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/io/text_file.hpp"
+#include "core/model/input_error.hpp"
+#include "experiments/study/extremes/symptom.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut {
+namespace {
+
+using Names = std::vector<std::string>;
+
+Seen swing(const std::map<std::string, double>& values, Status status = {}) {
+  Seen seen{make_case({"swing", {"cloth.grid=[9, 9]"}, "jakobsen"}), {}, {}};
+  seen.record.status = status;
+  seen.record.values = values;
+  seen.end = seen.one.scene->start.x;
+  return seen;
+}
+
+TEST(Symptoms, EachIsSeenInItsOwnMetricAndNowhereElse) {
+  const Seen start = swing({{"drift.max", 1}, {"popping.max", 30}});
+  const auto of = [&](const std::map<std::string, double>& values, Status status = {}) {
+    std::map<std::string, double> all{{"drift.max", 1}, {"popping.max", 30}};
+    for (const auto& [name, value] : values) all[name] = value;
+    return symptoms(swing(all, status), &start);
+  };
+  EXPECT_EQ(of({}), Names{});
+  EXPECT_EQ(of({{"tunnelling.count", 1}}), Names{"tunnels"});
+  EXPECT_EQ(of({{"stretch.max", 1.01}}), Names{"overstretches"});
+  EXPECT_EQ(of({{"stretch.max", 0.99}}), Names{});
+  EXPECT_EQ(of({{"drift.max", 0.09}}), Names{"freezes"});
+  EXPECT_EQ(of({{"drift.max", 0.11}}), Names{});
+  EXPECT_EQ(of({{"popping.max", 1000}}), Names{"jitters"});
+  EXPECT_EQ(of({{"popping.max", 970}}), Names{}) << "below 100 g";
+  // The swing sets free 10.4 % of m g L.
+  EXPECT_EQ(of({{"energy.peak", 0.006}}), Names{"gains energy"});
+  EXPECT_EQ(of({{"energy.peak", 0.004}}), Names{});
+  EXPECT_EQ(of({{"energy.mean", -0.056}}), Names{"loses energy"});
+  EXPECT_EQ(of({{"energy.mean", -0.048}}), Names{});
+  EXPECT_EQ(of({{"stretch.max", 2}, {"energy.mean", -1}}),
+            (Names{"overstretches", "loses energy"}));
+  EXPECT_EQ(of({}, {Status::Kind::exploded, "nonfinite"}), Names{"NaN"});
+  EXPECT_EQ(of({}, {Status::Kind::exploded, "energy"}), Names{"explodes"});
+  EXPECT_EQ(of({}, {Status::Kind::crash, "SIGSEGV"}), Names{"crashes"});
+  EXPECT_EQ(of({}, {Status::Kind::unsupported, "no"}), Names{"refuses"});
+  EXPECT_EQ(of({}, {Status::Kind::extreme, "stretch"}), Names{"overstretches"});
+  EXPECT_EQ(of({}, {Status::Kind::unsettled, ""}), Names{"jitters"});
+}
+
+TEST(Symptoms, ASmallClothIsNotFrozenForMovingLess) {
+  const Seen start = swing({{"drift.max", 1}});
+  Seen small = swing({{"drift.max", 0.02}});
+  small.one = make_case({"swing", {"cloth.size=[0.1, 0.1]"}, "jakobsen"});
+  EXPECT_EQ(symptoms(small, &start), Names{});
+  small.record.values["drift.max"] = 0.009;
+  EXPECT_EQ(symptoms(small, &start), Names{"freezes"});
+}
+
+TEST(Symptoms, AsymmetryIsTheDistanceFromTheMirrorImage) {
+  Seen seen = swing({});
+  const double size = extent(*seen.one.scene);
+  EXPECT_NEAR(asymmetry(*seen.one.scene, seen.end), 0, 1e-12);
+  seen.end[9 * 8].z() += 0.05 * size;
+  EXPECT_NEAR(asymmetry(*seen.one.scene, seen.end), 0.05 * size, 1e-12);
+  EXPECT_EQ(symptoms(seen, nullptr), Names{});
+  seen.end[9 * 8].z() += 0.06 * size;
+  EXPECT_EQ(symptoms(seen, nullptr), Names{"asymmetric"});
+  const Case blown = make_case({"swing", {"wind={ velocity = [1, 0, 0] }"}, "jakobsen"});
+  EXPECT_EQ(asymmetry(*blown.scene, blown.scene->start.x), 0) << "wind from the side";
+}
+
+TEST(Symptoms, WhatASwingSetsFreeIsItsFallToThePlumbLine) {
+  const Seen seen = swing({});
+  const Scene& scene = *seen.one.scene;
+  // Rows at distance r from the top fall by r (1 - cos 45 degrees).
+  double expected = 0;
+  for (int j = 0; j < 9; ++j)
+    for (int i = 0; i < 9; ++i)
+      expected += scene.mesh.mass[static_cast<std::size_t>(9 * j + i)] * 9.81 * j / 8 *
+                  (1 - std::numbers::sqrt2 / 2);
+  EXPECT_NEAR(swing_energy(scene), expected, 1e-6 * expected);
+  for (const char* active : {"wind={ velocity = [0, 0, 1] }", "cloth.pins=[]"})
+    EXPECT_EQ(swing_energy(*make_case({"swing", {active}, "jakobsen"}).scene), 0) << active;
+}
+
+TEST(Knobs, StartWhereTheyAreEasyAndMakeCases) {
+  for (const char* solver : {"jakobsen", "bullet:iterations=4", "mass-spring", "xpbd"}) {
+    std::size_t answered = 0;
+    for (const Knob& knob : knobs_of(solver)) {
+      if (!knob.lacks.empty()) continue;
+      ++answered;
+      for (const double at : {knob.question.range.from, knob.question.range.to})
+        EXPECT_NO_THROW(make_case(knob.question.at(at))) << solver << ": " << knob.name;
+    }
+    EXPECT_GE(answered, 8u) << solver;
+  }
+  EXPECT_THROW(knobs_of("nobody"), InputError);
+}
+
+// Where a search begins it has changed nothing yet: the scene is the standard one, the solver the
+// one that was asked about.
+TEST(Knobs, BeginAtWhatTheStandardSceneHas) {
+  for (const std::string solver : {"jakobsen", "bullet:iterations=4", "mass-spring", "xpbd"})
+    for (const Knob& knob : knobs_of(solver)) {
+      if (!knob.lacks.empty() || knob.name == "sweeps") continue;  // these begin with many
+      const FrontierQuestion& question = knob.question;
+      const Case base = make_case(question.base),
+                 start = make_case(question.at(question.range.from));
+      EXPECT_EQ(content(*start.scene), content(*base.scene)) << solver << ": " << knob.name;
+      EXPECT_EQ(start.choice.canonical(), base.choice.canonical()) << solver << ": " << knob.name;
+      const Case end = make_case(question.at(question.range.to));
+      EXPECT_TRUE(content(*end.scene) != content(*base.scene) ||
+                  end.choice.canonical() != base.choice.canonical())
+          << solver << ": " << knob.name;
+    }
+}
+
+TEST(Knobs, TheoriesAreClosedForms) {
+  for (const Knob& knob : knobs_of("jakobsen:substeps=1,contact=discrete")) {
+    if (knob.name == "wind") {
+      EXPECT_NEAR(knob.theory->value, 2 * 0.2 * 240, 1e-9);
+    }
+    if (knob.name == "speed of a collider") {
+      EXPECT_NEAR(knob.theory->value, 0.02 * 240, 1e-9);
+    }
+    if (knob.name == "distance from the origin") {
+      const float far = static_cast<float>(knob.theory->value);
+      const float fall = 9.81F / (240 * 240);
+      EXPECT_EQ(far + fall, far) << "in float nothing falls there";
+      EXPECT_NE(far / 2 + fall, far / 2) << "and it does at half of it";
+    }
+  }
+  EXPECT_FALSE(knobs_of("jakobsen")[5].theory) << "swept tests know no limit";
+  for (const Knob& knob : knobs_of("mass-spring"))
+    if (knob.name == "time step") {
+      // Below 2/w: a 20 x 20 grid with both diagonals holds to 0.71 sqrt(m/k) without its borders.
+      EXPECT_NEAR(knob.theory->value / 32 / std::sqrt(0.2 / 64 / 50), 0.7, 0.2);
+    }
+}
+
+KnobFrontier kept(double good, double bad, bool downwards = false) {
+  KnobFrontier knob;
+  knob.solver = "jakobsen", knob.knob = "time step", knob.unit = "s";
+  knob.downwards = downwards, knob.from = downwards ? 1 : 0.01, knob.to = downwards ? 0.01 : 1;
+  knob.good = good, knob.bad = bad, knob.symptom = std::isnan(bad) ? "" : "explodes";
+  knob.beyond = {"swing", {"time.dt=\"0.2\""}, "jakobsen"};
+  return knob;
+}
+
+const double kNone = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Frontiers, AreReadBackOfTheProgramThatFoundThemAndDamageIsNamed) {
+  const Scratch scratch;
+  const auto file = scratch.path() / "frontiers.json";
+  const std::vector<KnobFrontier> all{kept(0.1, 0.102), kept(0.1, kNone, true)};
+  write_file(file, to_json(all, "program"));
+  const auto read = read_frontiers(file, "program");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(to_json(*read, "program"), read_text(file));
+  EXPECT_FALSE(read_frontiers(file, "another"));
+  write_file(file, "{}\n");
+  EXPECT_THROW(read_frontiers(file, "program"), InputError);
+}
+
+}  // namespace
+}  // namespace taut
