@@ -92,6 +92,7 @@ class FaceWindPass final : public WindPass<Real> {
       : WindPass<Real>(*scene.wind),
         items_(scene.mesh.triangles.size()),
         blow_(kernels<Real>(simd).wind_on_faces) {
+    batches_.reserve((items_ + kLanes - 1) / kLanes);
     for (std::size_t f = 0; f < items_; ++f) {
       if (f % kLanes == 0) add_idle_batch(layout);
       for (std::size_t c = 0; c < 3; ++c) {

@@ -138,16 +138,17 @@ Memory memory(const Scene& scene, const std::string& solver) {
 }
 
 // Of a larger sheet contact and accelerators hold as much more as their passes say.
-TEST(Plan, MemoryOfContactAndTethersIsWhatTheirPassesReport) {
+TEST(Plan, MemoryOfContactWindTethersAndLevelsIsWhatTheirPassesReport) {
   if (mallinfo2().uordblks == 0)
     GTEST_SKIP() << "this allocator does not say what it holds (sanitizers)";
-  const auto sheet = [](int n, bool contact) {
+  const auto sheet = [](int n, bool contact, bool wind) {
     Scene scene = hanging_sheet(n, n);
+    if (wind) scene.wind = Wind{};
     if (contact) scene.colliders = {{.shape = Ball{{0.5, -9, 0}, 0.1}}};
     return scene;
   };
-  const auto check = [&](const std::string& solver, bool contact) {
-    const Scene small = sheet(48, contact), large = sheet(96, contact);
+  const auto check = [&](const std::string& solver, bool contact, bool wind = false) {
+    const Scene small = sheet(48, contact, wind), large = sheet(96, contact, wind);
     memory(small, solver);  // what is made once stays
     const Memory a = memory(small, solver), b = memory(large, solver);
     const double held = b.held - a.held, reported = b.reported - a.reported;
@@ -160,6 +161,8 @@ TEST(Plan, MemoryOfContactAndTethersIsWhatTheirPassesReport) {
       check(solver + ",contact=" + contact, true);
   }
   check("jakobsen:order=mesh,method=jacobi-averaged", false);
+  check("jakobsen:order=mesh,levels=3", false);
+  check("jakobsen:order=mesh", false, true);
 }
 
 // Positions now and before, velocities and accelerations, and a weight each; springs need no
