@@ -51,7 +51,7 @@ MUTATIONS = {
 SIMD = ["core/solver/simd/instruction_set.cpp"]  # four times
 RESPONSES = ["core/solver/contact/responses.cpp"]
 CLAIMS = [f"experiments/report/claims/{name}.cpp" for name in ("claim", "cost_claims", "physics_claims", "difference_claims")]
-SEARCH = ["tests/solver/self_collision_test.cpp"]  # which instantiates the templates itself
+SEARCH = ["tests/solver/contact/self_collision_test.cpp"]  # which instantiates the templates itself
 
 # name: (file, what is there, what is planted, units to recompile, tests that must break)
 TESTED = {
