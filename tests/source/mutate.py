@@ -256,7 +256,7 @@ class Coverage:
         with self.lock:
             if target in self.lines:
                 return self.lines[target]
-        found, function, line, block, first = {}, "", None, None, []
+        found, function, start, line, block, first = {}, "", 0, None, None, []
         listing = subprocess.run(["objdump", "-d", "-l", "-r", "--no-show-raw-insn", self.build.folder / target], check=True,
                                  text=True, errors="replace", capture_output=True).stdout
         called = False
@@ -265,12 +265,13 @@ class Coverage:
                 inside = place[1].startswith(f"{ROOT}/")
                 line = (os.path.relpath(place[1], ROOT), int(place[2])) if inside else None
             elif text.endswith(">:"):
-                function, line, block, first = text.split("<")[1][:-2], None, None, []
+                function, start = text.split("<")[1][:-2], int(text.split()[0], 16)
+                line, block, first = None, None, []
             elif text.endswith("__sanitizer_cov_trace_pc-0x4"):
                 called = True
             elif re.match(r" +[0-9a-f]+:\t", text):
                 if called:
-                    called, block = False, (function, int(text.split(":")[0], 16))
+                    called, block = False, (function, int(text.split(":")[0], 16) - start)
                     if first is not None:  # what stands in front of the first call
                         for before in first:
                             found.setdefault(before, set()).add(block)
