@@ -6,8 +6,9 @@ Usage: mutate.py BUILD FOLDER [--sample N] [--minutes M] [--seed S] [--layer L].
 
 1. BUILD is a Ninja build of this tree. The layers are built once more in FOLDER, file by file and at -O1, so that one error
    costs one object and a link; every block of code calls tests/source/executed.c. All else is taken from BUILD.
-2. Every check runs once, alone; a check is a unit test or a truth of `taut verify`. So it is known which checks run
-   which block, and how long each takes. This is kept in FOLDER until a layer or the test's own file changes.
+2. Every check runs once, alone; a check is a unit test, a truth of `taut verify` or a test of the command line. So it is
+   known which checks run which block, and how long each takes. This is kept in FOLDER until a layer or the test's own
+   file changes.
 3. N places are drawn: layers in turn, then an operator (arithmetic, comparison, logic, a constant off by little or by
    much, a sign, an axis, min for max, a removed statement, swapped arguments), then a place. What does not compile, or
    compiles to the same code, is drawn again. The same seed plants the same errors in the same sources.
@@ -23,6 +24,7 @@ The tests ask for 0.7 until a whole sample has been judged: of 70 errors that so
 were noticed (69 %), before tests were strengthened.
 """
 import argparse
+import ast
 import bisect
 import concurrent.futures
 import contextlib
@@ -51,12 +53,15 @@ from mutation_operators import sites  # noqa: E402
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EQUIVALENT = pathlib.Path(__file__).with_name("equivalent_mutants.txt")
 EXECUTED = pathlib.Path(__file__).with_name("executed.c")
-UNIT, TRUTH = "tests/taut_tests", "taut"  # the programs whose checks notice
+UNIT, TAUT = "tests/taut_tests", "taut"  # the programs whose checks notice
+SCRIPTS = [file for folder in ("cli", "study/cluster", "external") for file in (ROOT / "tests" / folder).glob("*_test.py")
+           if file.stem not in ("launcher_test", "contributing_test", "schedulers_test")]  # which build, or need a scheduler
 
 # Layers and their libraries; the tests of each are in the folder of tests/ with its last name.
 LAYERS = {"core/model": "taut_model", "core/io": "taut_io", "core/solver": "taut_solver", "core/reference": "taut_reference",
           "bullet_ref": "taut_bullet64", **{f"experiments/{name}": f"taut_{name}" for name in (
-              "metrics", "case", "study", "timing", "require", "extremes", "baseline", "truths", "report", "render")}}
+              "system", "metrics", "case", "external", "study", "timing", "require", "baseline", "truths",
+              "report", "render")}}
 LEFT_OUT = re.compile(r"/(gl|font|shaders)\.[ch]pp$")  # no numbers in them
 
 
@@ -72,7 +77,7 @@ class Build:
                             "-DTAUT_BATCH_SIZE=1", "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1 -gno-column-info -fsanitize-coverage=trace-pc"],
                            check=True, stdout=subprocess.DEVNULL)
         subprocess.run(["cc", "-O2", "-c", EXECUTED, "-o", self.end], check=True)
-        for where, targets in (folder, LAYERS.values()), (ordinary, (TRUTH, pathlib.Path(UNIT).name)):
+        for where, targets in (folder, LAYERS.values()), (ordinary, (TAUT, pathlib.Path(UNIT).name)):
             subprocess.run(["cmake", "--build", where, "--target", *targets], check=True, stdout=subprocess.DEVNULL)
         self.own = [word for library in LAYERS.values()
                     for word in self.ninja(folder, "-t", "query", f"lib{library}.a").split("outputs:")[0].split()
@@ -83,7 +88,7 @@ class Build:
             self.command[os.path.normpath(words[words.index("-o") + 1])] = words
         linker = next((f"-fuse-ld={name}" for name in ("lld", "gold") if shutil.which(f"ld.{name}")), "-fuse-ld=bfd")
         self.link_command = {}
-        for program in (UNIT, TRUTH):
+        for program in (UNIT, TAUT):
             lines = [line for line in self.ninja(ordinary, "-t", "commands", program).splitlines() if f"-o {program} " in line]
             words = shlex.split(lines[-1].removeprefix(": && ").split(" && ")[0])
             self.link_command[program] = [words[0], linker, "-Wl,--strip-debug", *words[1:], str(self.end)]
@@ -143,17 +148,18 @@ def code(object_, out):
 
 
 class Check:
-    """A unit test, or a truth."""
+    """A unit test, a truth, or a test of a script."""
 
     def __init__(self, program, name, file=None):
         self.program, self.name = program, name
-        self.folder = file.parent.name if file else "truths"
+        self.script = file if file in SCRIPTS else None
+        self.folder = file.relative_to(ROOT / "tests").parts[0] if file else "truths"
         self.source = hashlib.sha256(file.read_bytes()).digest() if file else b""
         self.seconds, self.green = 0.0, True  # CPU time that it takes
 
 
 def checks_of(build):
-    file_of = {suite: file for file in (ROOT / "tests").glob("*/*_test.cpp")
+    file_of = {suite: file for file in (ROOT / "tests").rglob("*_test.cpp")
                for suite in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", file.read_text(), re.MULTILINE)}
     listed = subprocess.run([build.program(UNIT), "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
                             text=True, capture_output=True).stdout
@@ -164,19 +170,30 @@ def checks_of(build):
             checks.append(Check(UNIT, suite + name, file_of.get(suite[:-1].split("/")[-1])))
         elif name.endswith("."):
             suite = name
-    truths = subprocess.run([build.program(TRUTH), "verify", "--list"], check=True, text=True, capture_output=True).stdout
-    return checks + [Check(TRUTH, line.split("\t")[1]) for line in truths.splitlines()]
+    truths = subprocess.run([build.program(TAUT), "verify", "--list"], check=True, text=True, capture_output=True).stdout
+    checks += [Check(TAUT, line.split("\t")[1]) for line in truths.splitlines()]
+    for script in SCRIPTS:
+        checks += [Check(TAUT, f"{of.name}.{test.name}", script) for of in ast.parse(script.read_text()).body
+                   if isinstance(of, ast.ClassDef) for test in of.body if getattr(test, "name", "").startswith("test")]
+    return checks
 
 
-def run(checks, program, where, seconds=600.0, **environment):
+def run(build, checks, program, where, seconds=600.0, **environment):
     """(name of a red check or None, CPU seconds) of checks of one program; red if they take more CPU time, or hang"""
     # A folder of its own for what the tests write: several run at the same time.
     environment = {**os.environ, "TMPDIR": f"{where}/", "TEST_TMPDIR": f"{where}/", **environment}
     names = [check.name for check in checks]
-    words = (["--gtest_filter=" + ":".join(names), "--gtest_fail_fast"] if checks[0].program == UNIT else
-             ["verify", "-j1", "--quiet", *names])
+    if checks[0].script:  # it wants a folder with all programs: BUILD, with one program in the place of its own
+        folder = pathlib.Path(where) / "build"
+        folder.mkdir()
+        for entry in build.ordinary.iterdir():
+            (folder / entry.name).symlink_to(program if entry.name == TAUT else entry)
+        words = [sys.executable, checks[0].script, folder, *names]
+    else:
+        words = [program, *(["--gtest_filter=" + ":".join(names), "--gtest_fail_fast"] if checks[0].program == UNIT else
+                            ["verify", "-j1", "--quiet", *names])]
     with open(f"{where}/output", "w+") as output:
-        process = subprocess.Popen([program, *words], cwd=where, env=environment, start_new_session=True,
+        process = subprocess.Popen(words, cwd=where, env=environment, start_new_session=True,
                                    stdin=subprocess.DEVNULL, stdout=output, stderr=output)
 
         def kill():
@@ -239,7 +256,8 @@ class Coverage:
 
     def measure(self, check):
         with tempfile.TemporaryDirectory() as where:
-            red, check.seconds = run([check], self.build.program(check.program), where, TAUT_EXECUTED=f"{where}/executed")
+            red, check.seconds = run(self.build, [check], self.build.program(check.program), where,
+                                     TAUT_EXECUTED=f"{where}/executed")
             check.green = red is None
             marked = pathlib.Path(f"{where}/executed.{pathlib.Path(check.program).name}")
             places, names, begin = self.functions[check.program]
@@ -348,7 +366,8 @@ class Mutant:
             # Quick ones of a program go into one process.
             batch = [running[0]]
             for check in running[1:]:
-                if check.program == batch[0].program and sum(c.seconds for c in batch) + check.seconds < 2:
+                alike = (check.program, check.script) == (batch[0].program, batch[0].script)
+                if alike and sum(c.seconds for c in batch) + check.seconds < 2:
                     batch.append(check)
             running = [check for check in running if check not in batch]
             program = batch[0].program
@@ -357,7 +376,7 @@ class Mutant:
                 if not build.link(program, self.objects, programs[program]):
                     return False
             with tempfile.TemporaryDirectory(dir=folder) as where:
-                self.by, seconds = run(batch, programs[program], where, 5 + 4 * sum(check.seconds for check in batch))
+                self.by, seconds = run(build, batch, programs[program], where, 5 + 4 * sum(check.seconds for check in batch))
             self.tried, self.seconds = self.tried + len(batch), self.seconds + seconds
             if self.by:
                 break
