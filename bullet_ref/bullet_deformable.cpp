@@ -233,8 +233,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
-constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"},
-                                                   {"newton", "2|4"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
+                                                        {"newton", "2|4"}};
 
 }  // namespace
 }  // namespace taut::solver::bullet_deformable
@@ -249,7 +249,7 @@ TAUT_SOLVER(bullet_deformable) = {
     .unsupported = taut::solver::bullet_deformable::unsupported,
     .resolved_settings = taut::solver::bullet_deformable::resolved_settings,
     .program = taut::bullet_ref::program,
-    .knobs = {.substeps = "substeps",
-              .stiffness = {"stiffness", "1000|4000|16000|64000|256000|1024000"},
-              .alternatives = taut::solver::bullet_deformable::kAlternatives,
-              .labelled = "substeps|newton|stiffness|precision"}};
+    .accuracy = {.substeps = "substeps",
+                 .stiffness = {"stiffness", "1000|4000|16000|64000|256000|1024000"},
+                 .alternatives = taut::solver::bullet_deformable::kAlternatives,
+                 .labelled = "substeps|newton|stiffness|precision"}};

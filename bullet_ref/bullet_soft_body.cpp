@@ -255,7 +255,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
-constexpr AccuracyKnobs::Ladder kAlternatives[] = {
+constexpr AccuracyParameters::Ladder kAlternatives[] = {
     {"precision", "float|double"}, {"reorder", "off|on"}, {"faces", "on|off"}};
 
 constexpr OptionalEffect kOptionalEffects[] = {{"normals", "faces", "on", "off", true}};
@@ -279,9 +279,9 @@ TAUT_SOLVER(bullet) = {.name = "bullet",
                        .unsupported = taut::solver::bullet_soft_body::unsupported,
                        .resolved_settings = taut::solver::bullet_soft_body::resolved_settings,
                        .program = taut::bullet_ref::program,
-                       .knobs = {.substeps = "substeps",
-                                 .sweeps = "iterations",
-                                 .alternatives = taut::solver::bullet_soft_body::kAlternatives,
-                                 .labelled = "substeps|iterations|stiffness|order|precision"},
+                       .accuracy = {.substeps = "substeps",
+                                    .sweeps = "iterations",
+                                    .alternatives = taut::solver::bullet_soft_body::kAlternatives,
+                                    .labelled = "substeps|iterations|stiffness|order|precision"},
                        .optional_effects = taut::solver::bullet_soft_body::kOptionalEffects,
                        .linear_model = taut::solver::bullet_soft_body::linear_model};

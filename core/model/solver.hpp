@@ -71,7 +71,7 @@ using ResolvedSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// The parameters that decide how accurate a result is and what it costs, and what a search for a
 /// setting may try of them (experiments/timing/search.hpp). Names and values as typed.
-struct AccuracyKnobs {
+struct AccuracyParameters {
   /// Parameters that take one of the values together: "structural|shear", "50|200|800".
   struct Ladder {
     std::string_view parameters, values;
@@ -129,7 +129,7 @@ struct SolverEntry {
   /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
   /// other one, make() throws InputError.
   std::string_view (*program)(const Params&) = nullptr;
-  AccuracyKnobs knobs = {};
+  AccuracyParameters accuracy = {};
   std::span<const OptionalEffect> optional_effects = {};
   LinearModel (*linear_model)(const Scene&, const Params&) = nullptr;  ///< null: none is known
   /// Digest of what a solver outside this program is made of; "": it is part of this program.

@@ -335,11 +335,11 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
-constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"},
-                                                   {"order", "coloured|mesh"},
-                                                   {"omega", "1.3|1.6"},
-                                                   {"levels", "2|3"},
-                                                   {"tethers", "on"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
+                                                        {"order", "coloured|mesh"},
+                                                        {"omega", "1.3|1.6"},
+                                                        {"levels", "2|3"},
+                                                        {"tethers", "on"}};
 
 constexpr OptionalEffect kOptionalEffects[] = {
     {"contact of faces", "faces", "on", "off", true},
@@ -365,10 +365,10 @@ TAUT_SOLVER(jakobsen) = {
     .make = taut::solver::jakobsen::make,
     .unsupported = taut::solver::jakobsen::unsupported,
     .resolved_settings = taut::solver::jakobsen::resolved_settings,
-    .knobs = {.substeps = "substeps",
-              .sweeps = "iterations",
-              .alternatives = taut::solver::jakobsen::kAlternatives,
-              .labelled = "substeps|iterations|omega|order|tethers|levels|precision",
-              .accelerators = "tethers|levels|omega|threads"},
+    .accuracy = {.substeps = "substeps",
+                 .sweeps = "iterations",
+                 .alternatives = taut::solver::jakobsen::kAlternatives,
+                 .labelled = "substeps|iterations|omega|order|tethers|levels|precision",
+                 .accelerators = "tethers|levels|omega|threads"},
     .optional_effects = taut::solver::jakobsen::kOptionalEffects,
     .linear_model = taut::solver::jakobsen::linear_model};

@@ -196,7 +196,7 @@ ResolvedSettings resolved_settings(const Scene&, const Params& params) {
           {"work unit", "spring evaluations, not projections"}};
 }
 
-constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"}};
 
 LinearModel linear_model(const Scene&, const Params& params) {
   return LinearSprings{
@@ -218,8 +218,8 @@ TAUT_SOLVER(mass_spring) = {
     .make = taut::solver::mass_spring::make,
     .unsupported = taut::solver::mass_spring::unsupported,
     .resolved_settings = taut::solver::mass_spring::resolved_settings,
-    .knobs = {.substeps = "substeps",
-              .stiffness = {"structural|shear", "50|200|800|3200|12800|51200"},
-              .alternatives = taut::solver::mass_spring::kAlternatives,
-              .labelled = "substeps|precision"},
+    .accuracy = {.substeps = "substeps",
+                 .stiffness = {"structural|shear", "50|200|800|3200|12800|51200"},
+                 .alternatives = taut::solver::mass_spring::kAlternatives,
+                 .labelled = "substeps|precision"},
     .linear_model = taut::solver::mass_spring::linear_model};

@@ -181,7 +181,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
-constexpr AccuracyKnobs::Ladder kAlternatives[] = {{"precision", "float|double"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"}};
 
 LinearModel linear_model(const Scene&, const Params& params) {
   for (const Family family : kFamilies)
@@ -201,8 +201,8 @@ TAUT_SOLVER(xpbd) = {.name = "xpbd",
                      .make = taut::solver::xpbd::make,
                      .unsupported = taut::solver::xpbd::unsupported,
                      .resolved_settings = taut::solver::xpbd::resolved_settings,
-                     .knobs = {.substeps = "substeps",
-                               .sweeps = "iterations",
-                               .alternatives = taut::solver::xpbd::kAlternatives,
-                               .labelled = "substeps|iterations|precision"},
+                     .accuracy = {.substeps = "substeps",
+                                  .sweeps = "iterations",
+                                  .alternatives = taut::solver::xpbd::kAlternatives,
+                                  .labelled = "substeps|iterations|precision"},
                      .linear_model = taut::solver::xpbd::linear_model};

@@ -151,8 +151,8 @@ void Program::introduce(std::string_view given) {
     const auto at = std::ranges::find(specs_, parameter, &ParamSpec::name);
     return at != specs_.end() && at->kind == ParamSpec::Kind::integer;
   };
-  if (has("substeps")) entry_.knobs.substeps = "substeps";
-  if (has("iterations")) entry_.knobs.sweeps = "iterations";
+  if (has("substeps")) entry_.accuracy.substeps = "substeps";
+  if (has("iterations")) entry_.accuracy.sweeps = "iterations";
 }
 
 Program::Loaded Program::load(const Scene& scene, const Params& params) const {

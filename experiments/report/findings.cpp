@@ -36,7 +36,7 @@ TruthRow row_of(const JsonReader& truth, const JsonReader& finding) {
                "",
                verdict,
                finding.at("why").text()};
-  if (verdict == "not claimed") return row;
+  if (verdict == "not applicable") return row;
   const double measured = finding.at("measured").number_or_null();
   if (expected == 0) {
     row.expected = "at most " + with_unit(slack, unit, 2),
@@ -98,9 +98,9 @@ std::vector<RequiredModel> stored_requirements(const std::filesystem::path& resu
   return all;
 }
 
-std::vector<KnobFrontier> stored_frontiers(const std::filesystem::path& results,
-                                           std::string_view program) {
-  std::vector<KnobFrontier> all;
+std::vector<ParameterFrontier> stored_frontiers(const std::filesystem::path& results,
+                                                std::string_view program) {
+  std::vector<ParameterFrontier> all;
   for (const auto& file : files_below(results / kFrontiersFolder, ".json"))
     if (const auto found = read_frontiers(file, program))
       all.insert(all.end(), found->begin(), found->end());
@@ -109,7 +109,7 @@ std::vector<KnobFrontier> stored_frontiers(const std::filesystem::path& results,
 
 std::optional<Truths> stored_truths(const std::filesystem::path& results,
                                     std::string_view program) {
-  return read_found(results / "verify.json", "taut-truths-1", program, [](const JsonReader& root) {
+  return read_found(results / "verify.json", "taut-truths-2", program, [](const JsonReader& root) {
     Truths truths;
     for (const JsonReader& truth : root.at("truths").items()) {
       std::optional<JsonReader> nearest;
@@ -126,9 +126,9 @@ std::optional<Truths> stored_truths(const std::filesystem::path& results,
       if (nearest) truths.rows.push_back(row_of(truth, *nearest));
       for (TruthRow& row : apart) truths.rows.push_back(std::move(row));
     }
-    for (const JsonReader& claim : root.at("claims").items())
-      truths.claims[claim.at("claim").text()] = {claim.at("verdict").text(),
-                                                 claim.at("figure").text()};
+    for (const JsonReader& one : root.at("assertions").items())
+      truths.assertions[one.at("assertion").text()] = {one.at("verdict").text(),
+                                                       one.at("figure").text()};
     return truths;
   });
 }

@@ -22,7 +22,7 @@ std::vector<RequiredModel> stored_requirements(const std::filesystem::path& resu
                                                std::string_view program);
 
 /// What `taut frontier --all` found, solver by solver.
-std::vector<KnobFrontier> stored_frontiers(const std::filesystem::path& results,
-                                           std::string_view program);
+std::vector<ParameterFrontier> stored_frontiers(const std::filesystem::path& results,
+                                                std::string_view program);
 
 }  // namespace taut::report

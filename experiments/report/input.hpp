@@ -106,7 +106,7 @@ struct TruthRow {
   std::string statement, source;   ///< of the truth
   std::string subject;             ///< "jakobsen:iterations=4"
   std::string expected, measured;  ///< with tolerance and unit
-  std::string verdict;             ///< "passed", "deviates", "not claimed", "broken"
+  std::string verdict;             ///< "passed", "deviates", "not applicable", "broken"
   std::string why;                 ///< what explains a deviation; may be empty
 };
 
@@ -115,8 +115,8 @@ struct Truths {
   int truths = 0, findings = 0;
   std::map<std::string, int> verdicts;  ///< findings by verdict
   std::vector<TruthRow> rows;
-  /// By claim of Vasilovici's report: its verdict now, and the number that it rests on.
-  std::map<std::string, std::pair<std::string, std::string>> claims = {};
+  /// By assertion of Vasilovici's report: its verdict now, and the number that it rests on.
+  std::map<std::string, std::pair<std::string, std::string>> assertions = {};
 };
 
 /// What `taut check` found: how much was compared with the committed baselines and what moved.
@@ -161,12 +161,12 @@ struct ReportInput {
   std::vector<MapResult> maps;
   std::vector<TimeSeries> series;  ///< over time, for the scene on top and its playhead
   std::vector<SceneMedia> media;
-  std::optional<BenchSession> bench;            ///< what accuracy costs; nullopt: not timed
-  std::optional<Truths> truths;                 ///< nullopt: not run
-  std::optional<Regressions> regressions;       ///< nullopt: not checked
-  std::optional<Differences> differences = {};  ///< nullopt: one folder alone
-  std::vector<RequiredModel> required = {};     ///< of the scenes that were asked about
-  std::vector<KnobFrontier> frontiers = {};     ///< solver by solver, knob by knob
+  std::optional<BenchSession> bench;              ///< what accuracy costs; nullopt: not timed
+  std::optional<Truths> truths;                   ///< nullopt: not run
+  std::optional<Regressions> regressions;         ///< nullopt: not checked
+  std::optional<Differences> differences = {};    ///< nullopt: one folder alone
+  std::vector<RequiredModel> required = {};       ///< of the scenes that were asked about
+  std::vector<ParameterFrontier> frontiers = {};  ///< solver by solver, parameter by parameter
   /// Inputs that could not be understood, and why: they are left out and said so.
   std::vector<std::pair<std::string, std::string>> left_out = {};
 };

@@ -73,7 +73,7 @@ class Builder {
       cases.push_back(std::move(one));
     }
     for (const char* name : {kSweeps, kSubsteps, "dt", "t", "projections"}) refs_.use(name);
-    Json model{{"schema", "taut-report/1"},
+    Json model{{"schema", "taut-report/2"},
                {"meta", meta(cases.size())},
                {"solvers", solvers()},
                {"statuses", statuses()},
@@ -344,7 +344,7 @@ class Builder {
         at["unequal"] = "Unequal work: " + unequal + ".";
       one["studies"].push_back(std::move(at));
     }
-    one["claims"] = json_of_vasilovici(input_.truths);
+    one["assertions"] = json_of_vasilovici(input_.truths);
     for (const auto& [what, value] : input_.provenance)
       one["facts"].push_back({{"name", what}, {"value", value}});
     for (const std::string& host : input_.cost_hosts)

@@ -259,8 +259,8 @@ std::vector<TimeSeries> stored_series(const Records& records, const std::string&
   const SettingLabels labels(records);
   for (const Record* r : records) {
     const Record& record = *r;
-    const std::string knobs = labels.of(record);
-    const std::string label = solver_title(record.solver) + (knobs.empty() ? "" : " " + knobs);
+    const std::string setting = labels.of(record);
+    const std::string label = solver_title(record.solver) + (setting.empty() ? "" : " " + setting);
     TimeSeries series = column(
         store.series(record.key),
         {record.scene, record.solver, label, value, {}, {}, record.key, strain_floor(record)});

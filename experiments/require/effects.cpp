@@ -121,8 +121,8 @@ std::vector<Effect> effects_of(const Case& one) {
   const SolverEntry& solver = *one.choice.entry;
   for (const OptionalEffect& effect : solver.optional_effects)
     if (!effect.of_contact || !one.scene->colliders.empty()) add_parameter(one, effects, effect);
-  add_parameter(one, effects, {"substeps", solver.knobs.substeps});
-  add_parameter(one, effects, {"sweeps", solver.knobs.sweeps});
+  add_parameter(one, effects, {"substeps", solver.accuracy.substeps});
+  add_parameter(one, effects, {"sweeps", solver.accuracy.sweeps});
   add_parameter(one, effects, {"precision", "precision", "double", "float"});
   add_sizes(one, effects);
   return effects.take();

@@ -14,8 +14,8 @@ namespace taut {
 
 double estimated_work(const Case& one) {
   double sweeps = 1;
-  const AccuracyKnobs& knobs = one.choice.entry->knobs;
-  for (const std::string_view parameter : {knobs.substeps, knobs.sweeps})
+  const AccuracyParameters& accuracy = one.choice.entry->accuracy;
+  for (const std::string_view parameter : {accuracy.substeps, accuracy.sweeps})
     if (!parameter.empty()) sweeps *= std::max(1, one.choice.params.integer(parameter));
   return one.scene->steps *
          (20.0 * one.scene->mesh.size() + static_cast<double>(one.scene->links.size()) * sweeps);

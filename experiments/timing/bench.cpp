@@ -86,17 +86,17 @@ std::optional<Interval> SceneBench::ratio(std::size_t i, std::size_t j) const {
   return scaled(interleaved_ratio(a.timing.samples, b.timing.samples), b.record.dt / a.record.dt);
 }
 
-std::vector<KnobRange> SceneBench::knob_ranges(const std::string& solver) const {
+std::vector<ParameterRange> SceneBench::parameter_ranges(const std::string& solver) const {
   const auto entry = std::ranges::find(solvers(), solver, &SolverEntry::name);
   if (entry == solvers().end()) return {};
-  std::vector<KnobRange> ranges;
-  const AccuracyKnobs& knobs = (*entry)->knobs;
-  for (const auto& [knob, end] :
-       {std::pair{knobs.substeps, kMostSubsteps}, std::pair{knobs.sweeps, kMostSweeps}}) {
-    if (knob.empty()) continue;
-    KnobRange& range = ranges.emplace_back(KnobRange{std::string(knob), 0, end});
+  std::vector<ParameterRange> ranges;
+  const AccuracyParameters& accuracy = (*entry)->accuracy;
+  for (const auto& [parameter, end] :
+       {std::pair{accuracy.substeps, kMostSubsteps}, std::pair{accuracy.sweeps, kMostSweeps}}) {
+    if (parameter.empty()) continue;
+    ParameterRange& range = ranges.emplace_back(ParameterRange{std::string(parameter), 0, end});
     for (const BenchedCase& c : cases)
-      if (const auto at = c.record.params.find(range.knob);
+      if (const auto at = c.record.params.find(range.parameter);
           c.record.solver == solver && at != c.record.params.end())
         range.largest = std::max(range.largest, std::atoi(at->second.c_str()));
   }
@@ -104,9 +104,9 @@ std::vector<KnobRange> SceneBench::knob_ranges(const std::string& solver) const 
 }
 
 bool SceneBench::searched_to_the_end(const std::string& solver) const {
-  const std::vector<KnobRange> ranges = knob_ranges(solver);
+  const std::vector<ParameterRange> ranges = parameter_ranges(solver);
   return !ranges.empty() &&
-         std::ranges::all_of(ranges, [](const KnobRange& r) { return r.largest >= r.end; });
+         std::ranges::all_of(ranges, [](const ParameterRange& r) { return r.largest >= r.end; });
 }
 
 SceneBench bench_scene(const std::string& scene, const std::vector<Record>& records,
@@ -158,9 +158,9 @@ std::string to_json(const BenchSession& session) {
                               {"failure", timing.failure},
                               {"remark", timing.remark}});
     for (const std::string& solver : solvers_of(scene))
-      for (const KnobRange& range : scene.knob_ranges(solver))
-        one["accuracy_parameters"][solver][range.knob] = {{"largest", range.largest},
-                                                          {"end", range.end}};
+      for (const ParameterRange& range : scene.parameter_ranges(solver))
+        one["accuracy_parameters"][solver][range.parameter] = {{"largest", range.largest},
+                                                               {"end", range.end}};
     all["scenes"].push_back(std::move(one));
   }
   return to_text(all, 1) + "\n";

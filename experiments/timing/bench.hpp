@@ -22,9 +22,9 @@ struct BenchedCase {
   bool stable() const;
 };
 
-/// The largest value tried of an accuracy knob, and the last one that a search would try.
-struct KnobRange {
-  std::string knob;
+/// The largest value tried of an accuracy parameter, and the last one that a search would try.
+struct ParameterRange {
+  std::string parameter;
   int largest = 0, end = 0;
 };
 
@@ -39,8 +39,8 @@ struct SceneBench {
   /// Cost of case i over case j per simulated second, from their interleaved samples; nothing if
   /// either failed.
   std::optional<Interval> ratio(std::size_t i, std::size_t j) const;
-  /// How far the cases of a solver go along its accuracy knobs.
-  std::vector<KnobRange> knob_ranges(const std::string& solver) const;
+  /// How far the cases of a solver go along its accuracy parameters.
+  std::vector<ParameterRange> parameter_ranges(const std::string& solver) const;
   /// All of them to the end: only then is an error that no case reaches never reached.
   bool searched_to_the_end(const std::string& solver) const;
 };

@@ -15,9 +15,9 @@ constexpr double kDearer = 1.3;   ///< a quick cost this much above its own best
 constexpr double kHopeless = 30;  ///< nor is one this much above the best of all
 constexpr double kFar = 10;       ///< above the best of all: found, but not polished
 
-/// Values of the second knob, each tried with its own number of substeps.
+/// Values of the second parameter, each tried with its own number of substeps.
 struct Columns {
-  std::vector<std::string> knobs;  ///< parameters that take the value together
+  std::vector<std::string> parameters;  ///< parameters that take the value together
   std::vector<std::string> values;
   bool sweeps = false;  ///< more of it costs more and needs fewer substeps
 };
@@ -33,10 +33,11 @@ std::vector<std::string> parts_of(std::string_view list) {
   return parts;
 }
 
-/// The solver's accuracy knobs, as far as the user's text leaves them open.
-class Knobs {
+/// The solver's accuracy parameters, as far as the user's text leaves them open.
+class OpenParameters {
  public:
-  explicit Knobs(const std::string& solver) : base_(solver), entry_(*parse_solver(solver).entry) {}
+  explicit OpenParameters(const std::string& solver)
+      : base_(solver), entry_(*parse_solver(solver).entry) {}
 
   bool open(std::string_view name) const {
     const auto fixed = [&](char mark) {
@@ -45,23 +46,23 @@ class Knobs {
     return !name.empty() && !fixed(':') && !fixed(',');
   }
 
-  std::string substeps() const { return std::string(entry_.knobs.substeps); }
-  bool has_substeps() const { return open(entry_.knobs.substeps); }
-  std::string sweeps() const { return std::string(entry_.knobs.sweeps); }
+  std::string substeps() const { return std::string(entry_.accuracy.substeps); }
+  bool has_substeps() const { return open(entry_.accuracy.substeps); }
+  std::string sweeps() const { return std::string(entry_.accuracy.sweeps); }
 
   Columns columns() const {
-    if (open(entry_.knobs.sweeps)) return {{sweeps()}, doublings(1, kMostSweeps), true};
-    Columns columns{parts_of(entry_.knobs.stiffness.parameters), {}, false};
-    std::erase_if(columns.knobs, [&](const std::string& name) { return !open(name); });
-    if (columns.knobs.empty()) return {{}, {""}, false};
-    columns.values = parts_of(entry_.knobs.stiffness.values);
+    if (open(entry_.accuracy.sweeps)) return {{sweeps()}, doublings(1, kMostSweeps), true};
+    Columns columns{parts_of(entry_.accuracy.stiffness.parameters), {}, false};
+    std::erase_if(columns.parameters, [&](const std::string& name) { return !open(name); });
+    if (columns.parameters.empty()) return {{}, {""}, false};
+    columns.values = parts_of(entry_.accuracy.stiffness.values);
     return columns;
   }
 
   /// Single changes worth trying beside substeps and columns.
   std::vector<std::pair<std::string, std::string>> alternatives() const {
     std::vector<std::pair<std::string, std::string>> all;
-    for (const auto& [name, values] : entry_.knobs.alternatives)
+    for (const auto& [name, values] : entry_.accuracy.alternatives)
       for (const std::string& value : parts_of(values))
         if (open(name) && value != parse_solver(base_).params.value(name))
           all.emplace_back(name, value);
@@ -80,18 +81,18 @@ class Knobs {
 
 using Values = std::map<std::string, std::string>;
 
-class KnobSearch {
+class SettingSearch {
  public:
-  KnobSearch(const std::string& solver, const Target& target, const Evaluation& run,
-             std::vector<Candidate> known)
-      : solver_(solver), target_(target), run_(run), knobs_(solver), known_(std::move(known)) {}
+  SettingSearch(const std::string& solver, const Target& target, const Evaluation& run,
+                std::vector<Candidate> known)
+      : solver_(solver), target_(target), run_(run), open_(solver), known_(std::move(known)) {}
 
   std::vector<Candidate> run() {
-    const Columns columns = knobs_.columns();
+    const Columns columns = open_.columns();
     int start = 1, idle = 0;
     for (const std::string& value : columns.values) {
       Values values;
-      for (const std::string& knob : columns.knobs) values[knob] = value;
+      for (const std::string& name : columns.parameters) values[name] = value;
       const auto before = best_;
       if (target_.error)
         start = columns.sweeps ? std::max(1, fewest(values, start) / 2) : (fewest(values, 1), 1);
@@ -117,7 +118,7 @@ class KnobSearch {
 
   /// The candidate at these values and substeps, run at most once; nullptr when time is up.
   const Candidate* attempt(Values values, int substeps) {
-    if (knobs_.has_substeps()) values[knobs_.substeps()] = std::to_string(substeps);
+    if (open_.has_substeps()) values[open_.substeps()] = std::to_string(substeps);
     const std::string setting = text(values);
     if (const auto at = index_.find(setting); at != index_.end()) return &tried_[at->second];
     if (over_) return nullptr;
@@ -159,7 +160,7 @@ class KnobSearch {
       return n;
     }
     double last = candidate->error;
-    for (int stuck = 0; stuck < 3 && n < kMostSubsteps && knobs_.has_substeps();) {
+    for (int stuck = 0; stuck < 3 && n < kMostSubsteps && open_.has_substeps();) {
       if (2 * candidate->cost.mid > bar()) {
         hopeless_ = n == from;  // not even the start of the next column can be cheaper
         return n;
@@ -182,7 +183,7 @@ class KnobSearch {
       if (!candidate) return;
       const double room = 0.97 * *target_.budget / candidate->cost.mid;
       const int next = std::clamp(static_cast<int>(n * std::min(room, 1e6)), 1, kMostSubsteps);
-      if (next == n || !knobs_.has_substeps() || (room >= 1 && next < n * 1.15)) return;
+      if (next == n || !open_.has_substeps() || (room >= 1 && next < n * 1.15)) return;
       n = next;
     }
   }
@@ -219,8 +220,8 @@ class KnobSearch {
     if (!worth_more()) return;
     Values values = without_substeps(best_values_);
     const int substeps = best_substeps_;
-    halve(std::stoi(values[knobs_.sweeps()]), [&](int sweeps) {
-      values[knobs_.sweeps()] = std::to_string(sweeps);
+    halve(std::stoi(values[open_.sweeps()]), [&](int sweeps) {
+      values[open_.sweeps()] = std::to_string(sweeps);
       return attempt(values, substeps);
     });
   }
@@ -232,7 +233,7 @@ class KnobSearch {
   }
 
   void alternatives() {
-    for (const auto& [name, value] : knobs_.alternatives()) {
+    for (const auto& [name, value] : open_.alternatives()) {
       if (over_) return;
       Values values = without_substeps(best_values_);
       if (values.contains(name) && values[name] == value) continue;
@@ -266,14 +267,14 @@ class KnobSearch {
   };
 
   Values without_substeps(Values values) const {
-    values.erase(knobs_.substeps());
+    values.erase(open_.substeps());
     return values;
   }
 
   std::string solver_;
   Target target_;
   const Evaluation& run_;
-  Knobs knobs_;
+  OpenParameters open_;
   std::vector<Candidate> known_, tried_;
   std::map<std::string, std::size_t> index_;
   std::optional<std::size_t> best_;
@@ -287,7 +288,7 @@ class KnobSearch {
 
 std::vector<Candidate> search_settings(const std::string& solver, const Target& target,
                                        const Evaluation& run, std::vector<Candidate> known) {
-  return KnobSearch(solver, target, run, std::move(known)).run();
+  return SettingSearch(solver, target, run, std::move(known)).run();
 }
 
 }  // namespace taut

@@ -13,9 +13,9 @@ namespace taut {
 using Evaluation = std::function<std::optional<Candidate>(const std::string& setting)>;
 
 /// Looks for the setting of `solver` (its text fixes what it names) that serves the target best,
-/// and gives all that it tried. It walks the accuracy knobs of the solver's
-/// entry, not their grid:
-///   1. columns of the second knob (sweeps, or a stiffness): in each, the fewest substeps that
+/// and gives all that it tried. It walks the accuracy parameters of the
+/// solver's entry, not their grid:
+///   1. columns of the second parameter (sweeps, or a stiffness): in each, the fewest substeps that
 ///      reach the error by doubling, from half of what the column before needed; or the most that
 ///      the budget allows. Two columns without progress end it, as does a cost far above what
 ///      `known`, the candidates of others, have.

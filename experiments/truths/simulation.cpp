@@ -38,7 +38,7 @@ bool can_run(Findings& findings, std::string_view solver, const Scene& scene) {
   } catch (const InputError& error) {  // a solver or a precision that this program does not have
     reasons = {error.what()};
   }
-  if (!reasons.empty()) findings.not_claimed(solver, reasons.front());
+  if (!reasons.empty()) findings.not_applicable(solver, reasons.front());
   return reasons.empty();
 }
 

@@ -31,7 +31,7 @@ class Simulation {
 };
 
 /// Whether the solver was asked for, exists in this program and can do the scene; if it was asked
-/// for but cannot, the findings get "not claimed" with the reasons.
+/// for but cannot, the findings get "not applicable" with the reasons.
 bool can_run(Findings&, std::string_view solver, const Scene&);
 
 constexpr const char* kStatic = "reference:static";  ///< core/reference/static_equilibrium

@@ -201,7 +201,7 @@ TAUT_TRUTH(stiffness, 4, 14,
       }
   }
   for (const char* solver : {"jakobsen", "bullet"})
-    if (findings.wants(solver)) findings.not_claimed(solver, "its links are rigid");
+    if (findings.wants(solver)) findings.not_applicable(solver, "its links are rigid");
 }
 
 }  // namespace taut

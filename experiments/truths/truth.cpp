@@ -7,7 +7,7 @@
 namespace taut {
 
 std::string_view to_string(TruthVerdict verdict) {
-  constexpr std::array<std::string_view, 4> names{"passed", "deviates", "not claimed", "broken"};
+  constexpr std::array<std::string_view, 4> names{"passed", "deviates", "not applicable", "broken"};
   return names[static_cast<std::size_t>(verdict)];
 }
 
@@ -88,9 +88,9 @@ void Findings::deviates(std::string_view subject, std::string_view quantity, std
   add(std::move(f));
 }
 
-void Findings::not_claimed(std::string_view subject, std::string_view why) {
+void Findings::not_applicable(std::string_view subject, std::string_view why) {
   Finding f;
-  f.subject = subject, f.verdict = TruthVerdict::not_claimed, f.why = why;
+  f.subject = subject, f.verdict = TruthVerdict::not_applicable, f.why = why;
   f.measured = f.expected = std::nan("");
   add(std::move(f));
 }

@@ -11,10 +11,10 @@ namespace taut {
 
 /// How a measured number compares with what is known.
 enum class TruthVerdict {
-  passed,       ///< agrees within the tolerance
-  deviates,     ///< differs for a known reason, by as much as that reason explains
-  not_claimed,  ///< the solver does not offer what the truth is about
-  broken        ///< differs: the testbed or the solver is wrong
+  passed,          ///< agrees within the tolerance
+  deviates,        ///< differs for a known reason, by as much as that reason explains
+  not_applicable,  ///< the solver does not offer what the truth is about
+  broken           ///< differs: the testbed or the solver is wrong
 };
 std::string_view to_string(TruthVerdict);
 
@@ -28,7 +28,7 @@ struct Finding {
   double tolerance = 0;    ///< |measured - expected| may be this large; for `deviates` too
   double uncertainty = 0;  ///< one standard error of a fitted slope; 0: not fitted
   TruthVerdict verdict = TruthVerdict::passed;
-  std::string why;  ///< of a deviation or of a claim not made
+  std::string why;  ///< of a deviation or of what the solver does not offer
 };
 
 /// Collects the findings of one truth and knows which solvers were asked for.
@@ -58,7 +58,7 @@ class Findings {
   void deviates(std::string_view subject, std::string_view quantity, std::string_view unit,
                 double measured, double expected, double explained, double tolerance,
                 std::string_view why);
-  void not_claimed(std::string_view subject, std::string_view why);
+  void not_applicable(std::string_view subject, std::string_view why);
 
   const std::vector<Finding>& all() const { return findings_; }
 

@@ -1,4 +1,4 @@
-"""A model with every part that taut-report/1 has, made up, and one that is hostile: material of the browser tests."""
+"""A model with every part that taut-report/2 has, made up, and one that is hostile: material of the browser tests."""
 
 import base64
 import copy
@@ -115,7 +115,7 @@ def scene_parts(model, scene):
 
 
 def make():
-    model = {"schema": "taut-report/1",
+    model = {"schema": "taut-report/2",
              "meta": {"title": "Jakobsen and Bullet", "question": "Which solver stretches less?", "build": {"program": "abc", "toolchain": "g++"},
                       "made": "2026-11-22 13:26 UTC", "machine": "a machine", "command": "taut run sample", "cases": 96, "planned": 97,
                       "policy": {"single run": "the same bits on the same build"}},

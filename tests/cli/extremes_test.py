@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`taut frontier --all` and `taut verify --claims`: what they print and keep, and that a narrower frontier and another
+"""`taut frontier --all` and `taut verify --assertions`: what they print and keep, and that a narrower frontier and another
 verdict are red. Performance profiles, counted from the raw samples of a session by other code."""
 
 import csv
@@ -11,7 +11,7 @@ import statistics
 
 from command_line import CommandLine, main
 
-KNOBS = ["time step", "sweeps", "stiffness", "mass ratio", "resolution", "speed of a collider", "size, up", "size, down",
+PARAMETERS = ["time step", "sweeps", "stiffness", "mass ratio", "resolution", "speed of a collider", "size, up", "size, down",
          "distance from the origin", "wind"]
 SYMPTOMS = {"NaN", "explodes", "crashes", "refuses", "tunnels", "overstretches", "freezes", "gains energy", "jitters",
             "asymmetric", "loses energy"}
@@ -29,30 +29,30 @@ class AllFrontiers(CommandLine):
         change({row["id"].split(", ", 1)[1]: row for row in rows})
         file.write_text("".join(json.dumps(row) + "\n" for row in rows))
 
-    def test_every_knob_has_its_frontier_and_a_narrower_one_is_red(self):
+    def test_every_parameter_has_its_frontier_and_a_narrower_one_is_red(self):
         self.assertIn("xpbd: the study runs this solver, which has no baseline", self.all("--check", expect=4).err)
         found = json.loads(self.all("--json", "--update").out)["parameters"]
-        self.assertEqual([knob["parameter"] for knob in found], KNOBS)
-        answered = [knob for knob in found if not knob["lacks"]]
+        self.assertEqual([one["parameter"] for one in found], PARAMETERS)
+        answered = [one for one in found if not one["lacks"]]
         self.assertGreaterEqual(len(answered), 8)
-        for knob in answered:
-            if knob["bad"] is None:
-                self.assertEqual((knob["good"], knob["symptom"]), (knob["to"], ""))
+        for one in answered:
+            if one["bad"] is None:
+                self.assertEqual((one["good"], one["symptom"]), (one["to"], ""))
                 continue
-            self.assertTrue(set(knob["symptom"].split(", ")) <= SYMPTOMS, knob)
-            gap = max(knob["good"], knob["bad"]) / min(knob["good"], knob["bad"]) - 1
-            whole = knob["parameter"] in ("sweeps", "resolution") and abs(knob["good"] - knob["bad"]) == 1
-            self.assertTrue(gap < 0.021 or whole, knob)
+            self.assertTrue(set(one["symptom"].split(", ")) <= SYMPTOMS, one)
+            gap = max(one["good"], one["bad"]) / min(one["good"], one["bad"]) - 1
+            whole = one["parameter"] in ("sweeps", "resolution") and abs(one["good"] - one["bad"]) == 1
+            self.assertTrue(gap < 0.021 or whole, one)
         # The case beyond a frontier shows what is said of it.
-        beyond = next(knob for knob in answered if "overstretches" in knob["symptom"])["beyond"]
+        beyond = next(one for one in answered if "overstretches" in one["symptom"])["beyond"]
         sets = [word for one in beyond["overrides"] for word in ("--set", one)]
         values = json.loads(self.taut("case", beyond["scene"], beyond["solver"], *sets, "--json").out)["values"]
         self.assertGreater(values["stretch.max"], 1)
 
         text = self.all("--check")
-        self.assertIn(f"{len(KNOBS)} frontiers compared with kept/frontiers: none has moved", text.err)
+        self.assertIn(f"{len(PARAMETERS)} frontiers compared with kept/frontiers: none has moved", text.err)
         commands = [line for line in text.out.splitlines() if line.startswith("    taut case")]
-        self.assertEqual(len(commands), sum(knob["bad"] is not None for knob in answered))
+        self.assertEqual(len(commands), sum(one["bad"] is not None for one in answered))
         self.assertEqual(shlex.split(commands[0])[:3], ["taut", "case", "swing"])
         picture = pathlib.Path(text.out.splitlines()[-1])
         self.assertIn("<svg", (self.folder / picture).read_text())
@@ -64,9 +64,9 @@ class AllFrontiers(CommandLine):
         model = json.loads(self.taut("report", study, "--json").out)
         tables = {table["id"]: table["rows"] for table in model["tables"]}
         self.assertEqual(model["limits"]["tables"], ["required", "frontiers"])
-        self.assertEqual([row[0] for row in tables["frontiers"]], KNOBS)
-        for knob, row in zip(found, tables["frontiers"]):
-            self.assertIn(knob["lacks"] or knob["symptom"] or "as far as was asked", row[1])
+        self.assertEqual([row[0] for row in tables["frontiers"]], PARAMETERS)
+        for one, row in zip(found, tables["frontiers"]):
+            self.assertIn(one["lacks"] or one["symptom"] or "as far as was asked", row[1])
         (row,) = tables["required"]
         self.assertEqual(row[0], "small")
         for effect in required["effects"]:
@@ -91,21 +91,21 @@ class AllFrontiers(CommandLine):
         self.assertFalse(list(self.folder.glob("results/runs/store/*")))
 
 
-class Claims(CommandLine):
+class Assertions(CommandLine):
     def test_a_verdict_that_changes_is_red(self):
-        kept = pathlib.Path(__file__).parents[2] / "results/baselines/claims.jsonl"
+        kept = pathlib.Path(__file__).parents[2] / "results/baselines/assertions.jsonl"
         rows = [json.loads(line) for line in kept.read_text().splitlines()]
-        listed = json.loads(self.taut("list", "claims", "--json").out)
+        listed = json.loads(self.taut("list", "assertions", "--json").out)
         self.assertEqual([(c["name"], c["summary"], c["verdict"]) for c in listed],
-                         [(c["section"], c["claim"], c["verdict"]) for c in rows])
+                         [(c["section"], c["assertion"], c["verdict"]) for c in rows])
         rows[4]["verdict"] = "does not hold"
         (self.folder / "kept").mkdir()
-        (self.folder / "kept/claims.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
-        said = self.taut("verify", "--claims", "--baselines", "kept", expect=1)
-        self.assertIn(f'"{rows[4]["claim"]}": \'does not hold\' -> ', said.err)
+        (self.folder / "kept/assertions.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+        said = self.taut("verify", "--assertions", "--baselines", "kept", expect=1)
+        self.assertIn(f'"{rows[4]["assertion"]}": \'does not hold\' -> ', said.err)
         self.assertIn("1 changed", said.err)
         self.taut("verify", "--update", expect=2)
-        self.taut("verify", "--claims", "--section", "8", "--update", expect=2)
+        self.taut("verify", "--assertions", "--section", "8", "--update", expect=2)
 
 
 class Profiles(CommandLine):

@@ -42,8 +42,9 @@ class CostReader {
       for (const bool to_the_end : {false, true}) {
         const std::string words =
             (to_the_end ? " Never reached by " : " Reached by no setting tried of ") +
-            label_of(missing) + (to_the_end ? ", tried to the end of its knobs" : "") +
-            ", but by " + label_of(having) + " on ";
+            label_of(missing) +
+            (to_the_end ? ", tried to the end of its accuracy parameters" : "") + ", but by " +
+            label_of(having) + " on ";
         check(words, having == first, having == other, true);
         for (const std::string& name : names_in(said(words)))
           EXPECT_EQ(searched(bench(name), missing), to_the_end) << words << name;
@@ -217,7 +218,7 @@ class CostReader {
     EXPECT_NE(first, other);
     return first;
   }
-  /// Tried at the last value of both knobs that a search would try.
+  /// Tried at the last value of both parameters that a search would try.
   static bool searched(const SceneBench& scene, const std::string& solver) {
     int substeps = 0, sweeps = 0;
     for (const BenchedCase& c : scene.cases)

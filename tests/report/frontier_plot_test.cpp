@@ -1,5 +1,5 @@
-// What the plot of frontiers draws: how many times harder each knob may be made, and what theory
-// says.
+// What the plot of frontiers draws: how many times harder each parameter may be made, and what
+// theory says.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,20 +16,20 @@ namespace {
 
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
-KnobFrontier knob(const std::string& solver, const std::string& name, double from, double good,
-                  double theory, bool downwards) {
-  KnobFrontier k;
-  k.solver = solver, k.knob = name, k.from = from, k.good = good, k.theory = theory,
+ParameterFrontier frontier(const std::string& solver, const std::string& name, double from,
+                           double good, double theory, bool downwards) {
+  ParameterFrontier k;
+  k.solver = solver, k.parameter = name, k.from = from, k.good = good, k.theory = theory,
   k.downwards = downwards;
   k.bad = downwards ? good / 2 : good * 2, k.symptom = "explodes";
   return k;
 }
 
-TEST(FrontierPlot, BarsAreHowManyTimesHarderEachKnobMayBeMade) {
-  std::vector<KnobFrontier> all{knob("jakobsen", "time step", 0.01, 0.08, 0.1, false),
-                                knob("bullet", "time step", 0.01, 0.02, kNone, false),
-                                knob("jakobsen", "size, down", 8, 0.5, 0.25, true),
-                                knob("bullet", "size, down", 8, 2, kNone, true)};
+TEST(FrontierPlot, BarsAreHowManyTimesHarderEachParameterMayBeMade) {
+  std::vector<ParameterFrontier> all{frontier("jakobsen", "time step", 0.01, 0.08, 0.1, false),
+                                     frontier("bullet", "time step", 0.01, 0.02, kNone, false),
+                                     frontier("jakobsen", "size, down", 8, 0.5, 0.25, true),
+                                     frontier("bullet", "size, down", 8, 2, kNone, true)};
   all[3].bad = kNone;
   const Scratch scratch;
   try {
@@ -40,11 +40,11 @@ TEST(FrontierPlot, BarsAreHowManyTimesHarderEachKnobMayBeMade) {
   std::istringstream csv(read_text(scratch.path() / "frontiers.csv"));
   std::string line;
   std::getline(csv, line);
-  EXPECT_EQ(line, "solver,knob,y,half,headroom,theory,end");
+  EXPECT_EQ(line, "solver,parameter,y,half,headroom,theory,end");
   std::vector<std::vector<double>> rows;
   std::vector<std::string> ends;
   while (std::getline(csv, line)) {
-    // the knob's name may hold a comma and is quoted then
+    // the parameter's name may hold a comma and is quoted then
     const std::size_t name =
         line.find('"') == std::string::npos ? line.find(',', 2) : line.find('"', 3) + 1;
     std::istringstream rest(line.substr(name + 1));
@@ -67,7 +67,7 @@ TEST(FrontierPlot, BarsAreHowManyTimesHarderEachKnobMayBeMade) {
     } else {
       EXPECT_NEAR(rows[k][4], theory[k], 1e-12);
     }
-    // bars of a knob lie beside each other within its row
+    // bars of a parameter lie beside each other within its row
     EXPECT_GT(rows[k][1] - rows[k][2], static_cast<double>(k / 2) - 0.5);
     EXPECT_LT(rows[k][1] + rows[k][2], static_cast<double>(k / 2) + 0.5);
   }

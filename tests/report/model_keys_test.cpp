@@ -9,7 +9,7 @@
 #include "experiments/report/report.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/truths/vasilovici/claims.hpp"
+#include "experiments/truths/vasilovici/assertions.hpp"
 #include "tests/report/made_up.hpp"
 #include "tests/support/synthetic_records.hpp"
 
@@ -95,14 +95,14 @@ ReportInput full() {
                           {"video/mp4", std::string(6'000'000, 'x'), "", "", "", {}}};
   input.media[0].material = {{r.solver, {{1, 0.1, "png"}}}};
   input.truths = Truths{1, 1, {{"deviates", 1}}, {{"1", "s", "p", "j", "1", "2", "deviates", "w"}}};
-  input.truths->claims[std::string(vasilovici_claims()[0].claim)] = {"holds", "1"};
+  input.truths->assertions[std::string(vasilovici_assertions()[0].assertion)] = {"holds", "1"};
   for (unsigned seed = 0; !input.bench; ++seed) input.bench = made_up::Maker(seed).input().bench;
   input.regressions = Regressions{1, 1, {{"regression", "hang", "0.1 -> 0.2"}}};
   Record changed = r;
   changed.values["stretch.rms"] *= 2;
   input.differences = Differences{"a", "b", {{r, changed}}, {}, 0, 0, 0};
   input.required = {{"hang", "jakobsen", "", "shape", "a", "b", "34 %", "taut"}};
-  input.frontiers = {KnobFrontier{}};
+  input.frontiers = {ParameterFrontier{}};
   input.left_out = {{"x.json", "cut off"}};
   return input;
 }

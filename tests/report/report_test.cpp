@@ -85,7 +85,7 @@ TEST(Report, NamesFromOutsideStayText) {
 
 TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   const Json model = model_of(example());
-  EXPECT_EQ(model["schema"], "taut-report/1");
+  EXPECT_EQ(model["schema"], "taut-report/2");
   for (const char* part : {"meta", "solvers", "statuses", "metrics", "claims", "scenes", "charts",
                            "maps", "method", "missing", "cases"})
     EXPECT_TRUE(model.contains(part) && !model[part].empty()) << part;

@@ -31,7 +31,7 @@ namespace {
 
 struct Options {
   CaseOptions which;
-  std::vector<std::string> all;  ///< solvers whose every knob is asked for; empty: one case
+  std::vector<std::string> all;  ///< solvers whose every parameter is asked for; empty: one case
   std::string baselines;
   bool check = false, update = false;
   std::string of = "dt", out;
@@ -145,27 +145,27 @@ std::string with_unit(double value, const std::string& unit) {
   return std::isnan(value) ? "-" : number_text(value) + (unit.empty() ? "" : " " + unit);
 }
 
-std::string theory_text(const KnobFrontier& knob) {
-  if (knob.law.empty()) return "";
-  return (std::isnan(knob.theory) ? "beyond" : number_text(knob.theory)) + ": " + knob.law;
+std::string theory_text(const ParameterFrontier& one) {
+  if (one.law.empty()) return "";
+  return (std::isnan(one.theory) ? "beyond" : number_text(one.theory)) + ": " + one.law;
 }
 
-/// A row a knob, three columns a solver; the theory of a single one.
-void print_all(const std::vector<KnobFrontier>& found, std::size_t solvers) {
-  const std::size_t knobs = found.size() / solvers;
+/// A row a parameter, three columns a solver; the theory of a single one.
+void print_all(const std::vector<ParameterFrontier>& found, std::size_t solvers) {
+  const std::size_t parameters = found.size() / solvers;
   Row head{"parameter"}, names{""};
   for (std::size_t s = 0; s < solvers; ++s) {
     head.insert(head.end(), {"good up to", "bad from", "what goes wrong"});
-    names.insert(names.end(), {found[s * knobs].solver, "", ""});
+    names.insert(names.end(), {found[s * parameters].solver, "", ""});
   }
   if (solvers == 1) head.emplace_back("theory"), names.emplace_back();
   std::vector<Row> rows{names, head};
-  for (std::size_t k = 0; k < knobs; ++k) {
+  for (std::size_t k = 0; k < parameters; ++k) {
     const std::string& unit = found[k].unit;
-    const bool common = found[(solvers - 1) * knobs + k].unit == unit;
-    Row row{found[k].knob + (unit.empty() || !common ? "" : " [" + unit + "]")};
+    const bool common = found[(solvers - 1) * parameters + k].unit == unit;
+    Row row{found[k].parameter + (unit.empty() || !common ? "" : " [" + unit + "]")};
     for (std::size_t s = 0; s < solvers; ++s) {
-      const KnobFrontier& one = found[s * knobs + k];
+      const ParameterFrontier& one = found[s * parameters + k];
       if (!one.lacks.empty())
         row.insert(row.end(), {"-", "-", "(" + one.lacks.substr(0, 40) + ")"});
       else
@@ -177,20 +177,20 @@ void print_all(const std::vector<KnobFrontier>& found, std::size_t solvers) {
     rows.push_back(std::move(row));
   }
   print_columns(rows, 1);
-  for (const KnobFrontier& one : found) {
+  for (const ParameterFrontier& one : found) {
     if (!one.at_start.empty())
-      std::cout << one.solver << ", " << one.knob << ": not counted, for it is so at "
+      std::cout << one.solver << ", " << one.parameter << ": not counted, for it is so at "
                 << with_unit(one.from, one.unit) << " already: " << one.at_start << '\n';
     if (!std::isnan(one.bad))
-      std::cout << one.solver << ", " << one.knob << ", " << one.symptom << ":\n    "
+      std::cout << one.solver << ", " << one.parameter << ", " << one.symptom << ":\n    "
                 << reproduce(one.beyond) << '\n';
   }
 }
 
 /// As a baseline keeps cases: an id, what is wrong beyond, and the ends.
-BaselineRow row_of(const KnobFrontier& one) {
+BaselineRow row_of(const ParameterFrontier& one) {
   BaselineRow row;
-  row.id = one.solver + ", " + one.knob;
+  row.id = one.solver + ", " + one.parameter;
   row.spec = one.beyond;
   row.spec.solver = one.beyond.solver.empty() ? one.solver : one.beyond.solver;
   if (!one.lacks.empty()) {
@@ -204,13 +204,13 @@ BaselineRow row_of(const KnobFrontier& one) {
 }
 
 /// Compares with the rows of these solvers in the baseline, or puts what was found in their place.
-int check_or_update(const Options& options, const std::vector<KnobFrontier>& found) {
+int check_or_update(const Options& options, const std::vector<ParameterFrontier>& found) {
   const auto folder = std::filesystem::path(options.baselines) / kFrontiersFolder;
   Baseline now, others, before = read_baseline(folder);
-  for (const KnobFrontier& one : found) now.push_back(row_of(one));
+  for (const ParameterFrontier& one : found) now.push_back(row_of(one));
   std::erase_if(before, [&](const BaselineRow& row) {
     const bool other = std::ranges::none_of(
-        found, [&](const KnobFrontier& one) { return row.id.starts_with(one.solver + ", "); });
+        found, [&](const ParameterFrontier& one) { return row.id.starts_with(one.solver + ", "); });
     if (other) others.push_back(row);
     return other;
   });
@@ -230,7 +230,7 @@ int check_or_update(const Options& options, const std::vector<KnobFrontier>& fou
   return comparison.mismatched() || comparison.cases == 0 ? kNothing : kPass;
 }
 
-/// Every knob of one or two solvers.
+/// Every parameter of one or two solvers.
 int run_all(const Options& options) {
   const Store store(options.out);
   std::vector<std::string> solvers;
@@ -239,7 +239,7 @@ int run_all(const Options& options) {
     throw InputError("--all: " + solvers[0] + " twice");
   store.prepare();
   const Session session(store, "taut frontier --all", {}, {});
-  std::vector<KnobFrontier> found;
+  std::vector<ParameterFrontier> found;
   for (const std::string& solver : solvers) {
     const Countdown countdown("parameter of " + solver);
     const Extremes extremes =
@@ -249,8 +249,8 @@ int run_all(const Options& options) {
     const std::filesystem::path folder = std::filesystem::path(options.out) / kFrontiersFolder;
     make_folder(folder);
     write_file(folder / (report::slug(solver) + ".json"),
-               to_json(extremes.knobs, program_digest()));
-    found.insert(found.end(), extremes.knobs.begin(), extremes.knobs.end());
+               to_json(extremes.frontiers, program_digest()));
+    found.insert(found.end(), extremes.frontiers.begin(), extremes.frontiers.end());
   }
   if (options.json)
     std::cout << to_json(found, program_digest());

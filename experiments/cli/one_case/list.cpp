@@ -9,7 +9,7 @@
 #include "experiments/study/study.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/truths/vasilovici/claims.hpp"
+#include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut::verb::list {
 
@@ -86,15 +86,15 @@ Json list_studies() {
   return all;
 }
 
-/// What Vasilovici's report claims.
-Json list_claims() {
+/// What Vasilovici's report asserts.
+Json list_assertions() {
   Json all = Json::array();
-  for (const VasiloviciClaim& claim : vasilovici_claims())
-    all.push_back({{"name", claim.section},
-                   {"summary", claim.claim},
-                   {"verdict", to_string(claim.verdict)},
-                   {"because", claim.because},
-                   {"truth", claim.truth.empty() ? Json() : Json(claim.truth)}});
+  for (const VasiloviciAssertion& assertion : vasilovici_assertions())
+    all.push_back({{"name", assertion.section},
+                   {"summary", assertion.assertion},
+                   {"verdict", to_string(assertion.verdict)},
+                   {"because", assertion.because},
+                   {"truth", assertion.truth.empty() ? Json() : Json(assertion.truth)}});
   return all;
 }
 
@@ -102,7 +102,7 @@ constexpr std::pair<const char*, Json (*)()> kKinds[] = {{"scenes", list_scenes}
                                                          {"solvers", list_solvers},
                                                          {"metrics", list_metrics},
                                                          {"studies", list_studies},
-                                                         {"claims", list_claims}};
+                                                         {"assertions", list_assertions}};
 
 std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
 
@@ -147,8 +147,8 @@ int run(const std::string& what, bool as_json) {
 std::function<int()> bind(CLI::App& app) {
   const auto what = std::make_shared<std::string>();
   const auto as_json = std::make_shared<bool>(false);
-  app.add_option("WHAT", *what, "scenes | solvers | metrics | studies | claims (default: all)")
-      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies", "claims"}));
+  app.add_option("WHAT", *what, "scenes | solvers | metrics | studies | assertions (default: all)")
+      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies", "assertions"}));
   app.add_flag("--json", *as_json, "Print JSON");
   return [what, as_json] { return run(*what, *as_json); };
 }
@@ -159,6 +159,6 @@ std::function<int()> bind(CLI::App& app) {
 TAUT_VERB(list) = {
     .name = "list",
     .group = VerbGroup::one_case,
-    .summary = "Names scenes, solvers with their parameters, metrics, studies and claims",
+    .summary = "Names scenes, solvers with their parameters, metrics, studies and assertions",
     .example = "taut list solvers",
     .bind = taut::verb::list::bind};

@@ -11,7 +11,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/baseline/claims_baseline.hpp"
+#include "experiments/baseline/assertions_baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/colour.hpp"
 #include "experiments/command_line/options.hpp"
@@ -21,7 +21,7 @@
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/truths/truth.hpp"
-#include "experiments/truths/vasilovici/claims.hpp"
+#include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut::verb::verify {
 
@@ -30,11 +30,11 @@ namespace {
 struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
-  bool json = false, verbose = false, claims = false, update = false;
+  bool json = false, verbose = false, assertions = false, update = false;
   std::string out, baselines;
 
-  /// Whether every truth that a claim rests on is checked, for every solver.
-  bool of_all_claims() const { return names.empty() && solvers.empty() && section == 0; }
+  /// Whether every truth that an assertion rests on is checked, for every solver.
+  bool of_all_assertions() const { return names.empty() && solvers.empty() && section == 0; }
 };
 
 struct Outcome {
@@ -48,9 +48,9 @@ std::vector<const TruthEntry*> choose(const Options& options) {
     if (solver != "reference") parse_solver(solver);
   std::vector<const TruthEntry*> chosen;
   for (const TruthEntry* truth : truths()) {
-    if (options.claims &&
-        std::ranges::none_of(vasilovici_claims(), [&](const VasiloviciClaim& claim) {
-          return claim.truth == truth->name;
+    if (options.assertions &&
+        std::ranges::none_of(vasilovici_assertions(), [&](const VasiloviciAssertion& assertion) {
+          return assertion.truth == truth->name;
         }))
       continue;
     const bool named = options.names.empty() || std::ranges::count(options.names, truth->name) > 0;
@@ -85,8 +85,8 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
   return outcomes;
 }
 
-std::vector<JudgedClaim> judged(const std::vector<Outcome>& outcomes) {
-  return judge_claims([&](std::string_view truth) -> const std::vector<Finding>* {
+std::vector<JudgedAssertion> judged(const std::vector<Outcome>& outcomes) {
+  return judge_assertions([&](std::string_view truth) -> const std::vector<Finding>* {
     for (const Outcome& outcome : outcomes)
       if (outcome.truth->name == truth) return &outcome.findings;
     return nullptr;
@@ -115,14 +115,14 @@ Json to_json(const std::vector<Outcome>& outcomes) {
                     {"source", truth->source},
                     {"findings", rows}});
   }
-  Json claims = Json::array();
-  for (const auto& [section, claim, verdict, figure] : judged(outcomes))
-    claims.push_back(
-        {{"section", section}, {"claim", claim}, {"verdict", verdict}, {"figure", figure}});
-  return {{"schema", "taut-truths-1"},
+  Json assertions = Json::array();
+  for (const auto& [section, assertion, verdict, figure] : judged(outcomes))
+    assertions.push_back(
+        {{"section", section}, {"assertion", assertion}, {"verdict", verdict}, {"figure", figure}});
+  return {{"schema", "taut-truths-2"},
           {"program", program_digest()},
           {"truths", list},
-          {"claims", claims}};
+          {"assertions", assertions}};
 }
 
 std::string value(double v) {
@@ -136,7 +136,7 @@ std::string line(const Finding& f) {
   static constexpr Colour kColours[] = {Colour::green, Colour::yellow, Colour::yellow, Colour::red};
   std::string text =
       coloured(to_string(f.verdict), kColours[static_cast<int>(f.verdict)]) + "  " + f.subject;
-  if (f.verdict == TruthVerdict::not_claimed) return text + ": " + f.why;
+  if (f.verdict == TruthVerdict::not_applicable) return text + ": " + f.why;
   text += ": " + f.quantity + " " + value(f.measured);
   if (f.uncertainty > 0) text += " +- " + value(f.uncertainty);
   if (f.unit != "1") text += " " + f.unit;
@@ -194,7 +194,7 @@ int summary(const std::vector<Outcome>& outcomes) {
   }
   std::ostream& news = progress();
   news << outcomes.size() << " truths, " << findings << " numbers: " << counts[0] << " passed, "
-       << counts[1] << " deviate as explained, " << counts[2] << " not claimed, " << counts[3]
+       << counts[1] << " deviate as explained, " << counts[2] << " not applicable, " << counts[3]
        << " broken";
   if (broken_truths > 0) news << " in " << broken_truths << " truths";
   news << '\n';
@@ -202,29 +202,29 @@ int summary(const std::vector<Outcome>& outcomes) {
   return counts[0] + counts[1] > 0 ? kPass : kNothing;
 }
 
-void print_claims(const std::vector<JudgedClaim>& claims) {
-  for (const auto& [section, claim, verdict, figure] : claims)
-    std::cout << section << "  " << claim << "\n      "
+void print_assertions(const std::vector<JudgedAssertion>& assertions) {
+  for (const auto& [section, assertion, verdict, figure] : assertions)
+    std::cout << section << "  " << assertion << "\n      "
               << coloured(verdict, verdict == "overturned" ? Colour::red : Colour::green)
               << (figure.empty() ? "" : ": " + figure) << '\n';
 }
 
-/// Holds the verdicts of claims to those that were kept, or keeps them.
-int compare_with_baseline(const std::vector<JudgedClaim>& claims, const Options& options) {
-  const std::filesystem::path file = std::filesystem::path(options.baselines) / "claims.jsonl";
+/// Holds the verdicts of assertions to those that were kept, or keeps them.
+int compare_with_baseline(const std::vector<JudgedAssertion>& assertions, const Options& options) {
+  const std::filesystem::path file = std::filesystem::path(options.baselines) / "assertions.jsonl";
   if (options.update) {
     make_folder(file.parent_path());
-    write_durably(file, to_json_lines(claims));
+    write_durably(file, to_json_lines(assertions));
     progress() << file.string() << '\n';
     return kPass;
   }
   if (!std::filesystem::exists(file)) {
-    std::cerr << "claims: no baseline " << file.string() << '\n';
-    return options.claims ? kNothing : kPass;
+    std::cerr << "assertions: no baseline " << file.string() << '\n';
+    return options.assertions ? kNothing : kPass;
   }
-  const std::vector<std::string> changes = compare_claims(read_claims(file), claims);
+  const std::vector<std::string> changes = compare_assertions(read_assertions(file), assertions);
   for (const std::string& change : changes) std::cerr << change << '\n';
-  progress() << claims.size() << " claims of Vasilovici's report: "
+  progress() << assertions.size() << " assertions of Vasilovici's report: "
              << (changes.empty() ? "every verdict is as it was"
                                  : std::to_string(changes.size()) + " changed")
              << '\n';
@@ -232,21 +232,22 @@ int compare_with_baseline(const std::vector<JudgedClaim>& claims, const Options&
 }
 
 int run(const Options& options) {
-  if (options.update && !(options.claims && options.of_all_claims()))
-    throw InputError("--update keeps the verdicts of all claims: taut verify --claims --update");
+  if (options.update && !(options.assertions && options.of_all_assertions()))
+    throw InputError(
+        "--update keeps the verdicts of all assertions: taut verify --assertions --update");
   const std::vector<Outcome> outcomes = check(choose(options), options);
   const std::string json = to_text(to_json(outcomes), 1);
   if (!options.out.empty()) write_file(options.out, json + "\n");
   if (options.json)
     std::cout << json << '\n';
-  else if (options.claims)
-    print_claims(judged(outcomes));
+  else if (options.assertions)
+    print_assertions(judged(outcomes));
   else
     print_table(outcomes, options.verbose);
   const int code = summary(outcomes);
-  if (!options.of_all_claims()) return code;
-  const int claims = compare_with_baseline(judged(outcomes), options);
-  return code == kPass ? claims : code;
+  if (!options.of_all_assertions()) return code;
+  const int assertions = compare_with_baseline(judged(outcomes), options);
+  return code == kPass ? assertions : code;
 }
 
 int list() {
@@ -272,10 +273,11 @@ std::function<int()> bind(CLI::App& app) {
       ->check(CLI::Range(1, 64));
   app.add_option("-o,--out", options->out, "Also write the findings as JSON to this file");
   app.add_flag("--json", options->json, "Findings as JSON instead of a table");
-  app.add_flag("--claims", options->claims,
-               "Only what holds the claims of Vasilovici's report, and their verdicts");
+  app.add_flag("--assertions", options->assertions,
+               "Only what holds the assertions of Vasilovici's report, and their verdicts");
   add_baselines(app, options->baselines);
-  app.add_flag("--update", options->update, "With --claims: keep their verdicts as the baseline");
+  app.add_flag("--update", options->update,
+               "With --assertions: keep their verdicts as the baseline");
   app.add_flag("--verbose", options->verbose, "Every number, with sources and times");
   app.add_flag("--list", *only_list, "Only name the truths");
   return [options, only_list] { return *only_list ? list() : run(*options); };
@@ -284,13 +286,14 @@ std::function<int()> bind(CLI::App& app) {
 }  // namespace
 }  // namespace taut::verb::verify
 
-TAUT_VERB(verify) = {.name = "verify",
-                     .group = VerbGroup::trust,
-                     .summary = "Holds solvers and metrics to closed forms and published numbers",
-                     .example =
-                         "taut verify --section 4 --solver jakobsen\n"
-                         "  taut verify hanging-chain-sweeps --verbose\n"
-                         "  taut verify --claims\n"
-                         "Exit: 0 no truth is broken, no verdict of a claim changed; 1 one is or "
-                         "did; 4 nothing was held to anything",
-                     .bind = taut::verb::verify::bind};
+TAUT_VERB(verify) = {
+    .name = "verify",
+    .group = VerbGroup::trust,
+    .summary = "Holds solvers and metrics to closed forms and published numbers",
+    .example =
+        "taut verify --section 4 --solver jakobsen\n"
+        "  taut verify hanging-chain-sweeps --verbose\n"
+        "  taut verify --assertions\n"
+        "Exit: 0 no truth is broken, no verdict of an assertion changed; 1 one is or "
+        "did; 4 nothing was held to anything",
+    .bind = taut::verb::verify::bind};

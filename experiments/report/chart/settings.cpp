@@ -41,8 +41,8 @@ std::string solver_title(std::string_view solver) {
 std::string parameter_of(std::string_view solver, std::string_view name) {
   std::string_view own;
   if (const SolverEntry* entry = find_entry(solver)) {
-    if (name == kSweeps) own = entry->knobs.sweeps;
-    if (name == kSubsteps) own = entry->knobs.substeps;
+    if (name == kSweeps) own = entry->accuracy.sweeps;
+    if (name == kSubsteps) own = entry->accuracy.substeps;
   }
   return std::string(own.empty() ? name : own);
 }
@@ -50,7 +50,7 @@ std::string parameter_of(std::string_view solver, std::string_view name) {
 std::vector<std::string> accuracy_parameters(const std::string& solver) {
   std::vector<std::string> all{parameter_of(solver, kSubsteps), parameter_of(solver, kSweeps)};
   const SolverEntry* entry = find_entry(solver);
-  for (const std::string& name : parts(entry ? entry->knobs.labelled : ""))
+  for (const std::string& name : parts(entry ? entry->accuracy.labelled : ""))
     if (std::ranges::find(all, name) == all.end()) all.push_back(name);
   return all;
 }
@@ -58,7 +58,7 @@ std::vector<std::string> accuracy_parameters(const std::string& solver) {
 std::vector<std::string> extras(const Record& r, const std::map<std::string, std::string>& others) {
   std::vector<std::string> used;
   const SolverEntry* entry = find_entry(r.solver);
-  for (const std::string& name : parts(entry ? entry->knobs.accelerators : "")) {
+  for (const std::string& name : parts(entry ? entry->accuracy.accelerators : "")) {
     const auto spec = std::ranges::find(entry->params, name, &ParamSpec::name);
     const auto at = r.params.find(name);
     if (at != r.params.end() && at->second != spec->default_value && !others.contains(name))

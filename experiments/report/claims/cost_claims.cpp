@@ -39,8 +39,8 @@ std::map<std::string, std::string> params_of(const SceneBench& scene, const std:
   return {};
 }
 
-/// Only what both have: no knob that the other one lacks.
-Admits shared_knobs(const SceneBench& scene, const Pair& pair) {
+/// Only what both have: no parameter that the other one lacks.
+Admits shared_parameters(const SceneBench& scene, const Pair& pair) {
   const auto ours = params_of(scene, pair.first), theirs = params_of(scene, pair.other);
   return [ours, theirs, pair](const BenchedCase& c) {
     return extras(c.record, c.record.solver == pair.first ? theirs : ours).empty();
@@ -79,7 +79,7 @@ Interval inverse(const Interval& r) { return {1 / r.high, 1 / r.mid, 1 / r.low};
 std::string not_reached(const SceneBench& scene, const std::string& solver,
                         const std::string& label) {
   return scene.searched_to_the_end(solver)
-             ? "Never reached by " + label + ", tried to the end of its knobs"
+             ? "Never reached by " + label + ", tried to the end of its accuracy parameters"
              : "Reached by no setting tried of " + label;
 }
 
@@ -160,7 +160,7 @@ void claim_price(const std::vector<Timed>& scenes, const Pair& pair, bool with_t
       absent.push_back(bench.scene);
       continue;
     }
-    const Admits shared = shared_knobs(bench, pair);
+    const Admits shared = shared_parameters(bench, pair);
     look_at(evidence, scene, pair, shared);
     const auto ours = cheapest(scene, pair.first, shared);
     const auto theirs = cheapest(scene, pair.other, shared);
@@ -226,7 +226,7 @@ void claim_same_work(const std::vector<Timed>& scenes, const Pair& pair,
   std::vector<SceneRatio> means;
   std::set<Work> works;
   for (const auto& [scene, candidates] : scenes) {
-    const Admits shared = shared_knobs(scene, pair);
+    const Admits shared = shared_parameters(scene, pair);
     std::map<Work, std::pair<std::optional<std::size_t>, std::optional<std::size_t>>> cheapest;
     for (std::size_t i = 0; i < scene.cases.size(); ++i) {
       const BenchedCase& c = scene.cases[i];
@@ -258,20 +258,20 @@ void claim_same_work(const std::vector<Timed>& scenes, const Pair& pair,
   claims.push_back(claim.emphasise({verdicts.strong}));
 }
 
-/// What a solver gains by a knob that the other one lacks, said apart.
+/// What a solver gains by a parameter that the other one lacks, said apart.
 void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
                   std::vector<Claim>& claims) {
   const Quantity q = quantity(kErrorMetric), cpu = quantity("cpu.per_second");
   Evidence evidence("cpu.per_second", "cheapest case that reaches the level, with and without");
   std::vector<std::string> clauses, missed;
-  std::set<std::string> knobs;
+  std::set<std::string> parameters;
   std::optional<Certainty> sure;
   double noise = 0;
   for (const Timed& timed_scene : timed_scenes) {
     if (!timed(timed_scene, pair.other)) continue;
     const auto& [scene, candidates] = timed_scene;
     const auto theirs = params_of(scene, pair.other);
-    const Admits shared = shared_knobs(scene, pair);
+    const Admits shared = shared_parameters(scene, pair);
     const auto used = [&](const BenchedCase& c) { return extras(c.record, theirs); };
     const auto with =
         cheapest(timed_scene, pair.first, [&](const auto& c) { return !used(c).empty(); });
@@ -284,7 +284,7 @@ void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
       continue;
     }
     noise = std::max(noise, spread(scene.control));
-    for (const std::string& knob : used(scene.cases[*with])) knobs.insert(knob);
+    for (const std::string& name : used(scene.cases[*with])) parameters.insert(name);
     const Interval& cost = candidates[*with].cost;
     evidence.look(scene.cases[*with], cost, pair.first_label + " with");
     std::string text = "on " + scene.scene + " " + cpu.text(cost.mid);
@@ -310,7 +310,7 @@ void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
   if (!missed.empty()) text += "; not reached by the settings tried on " + joined(missed);
   claims.emplace_back(
       "only-" + pair.first + "-" + pair.other, ClaimKind::note, "only",
-      "With " + joined({knobs.begin(), knobs.end()}) + ", which " + pair.other_label +
+      "With " + joined({parameters.begin(), parameters.end()}) + ", which " + pair.other_label +
           " does not have, " + pair.first_label + " reaches " + q.text(kPricedError, 1) + " " +
           q.title + " for this CPU time per simulated second: " + text + "." + noise_text(noise),
       sure.value_or(Certainty::single_run), std::vector{evidence});

@@ -45,8 +45,9 @@ struct CostScene {
     const auto nearest =
         best_for({.budget = std::numeric_limits<double>::infinity()}, candidates, solver);
     if (!nearest) return "no case completed";
-    return std::string(bench.searched_to_the_end(solver) ? "never reached, to the end of its knobs"
-                                                         : "not reached by the settings tried") +
+    return std::string(bench.searched_to_the_end(solver)
+                           ? "never reached, to the end of its accuracy parameters"
+                           : "not reached by the settings tried") +
            " (at best " + quantity(kErrorMetric).text(candidates[*nearest].error) + ")";
   }
 };
@@ -63,9 +64,9 @@ void add_ratio(Json& cell, const Interval& times, const Interval& control) {
   if (sure != Certainty::none) cell["sure"] = to_string(sure);
 }
 
-/// Without the cases that use a knob which another solver of the scene lacks: a table compares what
-/// all have, what only one has is said apart.
-SceneBench with_shared_knobs(SceneBench bench) {
+/// Without the cases that use a parameter which another solver of the scene lacks: a table compares
+/// what all have, what only one has is said apart.
+SceneBench with_shared_parameters(SceneBench bench) {
   std::map<std::string, std::map<std::string, std::string>> params;
   for (const BenchedCase& c : bench.cases) params[c.record.solver] = c.record.params;
   std::erase_if(bench.cases, [&](const BenchedCase& c) {
@@ -209,7 +210,7 @@ Json json_of_cost(const BenchSession& session, References& refs, Json& charts, J
   std::vector<SceneBench> shared;
   for (const SceneBench& bench : session.scenes) {
     const std::vector<Record> records = BenchSession{"", "", {bench}}.records();
-    shared.push_back(with_shared_knobs(bench));
+    shared.push_back(with_shared_parameters(bench));
     const CostScene scene{shared.back(), records, refs};
     Json one{
         {"scene", bench.scene},

@@ -27,7 +27,7 @@ Json json_of_cost(const BenchSession&, References&, Json& charts, Json& tables);
 Json json_of(const Differences&, References&, Json& tables);
 /// What scenes require and how far solvers go; null without either. Its tables go to the model's.
 Json json_of_limits(const ReportInput&, Json& tables);
-/// What Vasilovici's report claims, with verdicts: as its truths say now, if they were checked.
+/// What Vasilovici's report asserts, with verdicts: as its truths say now, if they were checked.
 Json json_of_vasilovici(const std::optional<Truths>&);
 /// Settings of every rival on a scene, row by row; null without a case.
 Json json_of_fairness(const QuotedScene&, const Rivals&, References&);

@@ -1,5 +1,5 @@
 // Tables of what scenes require and how far solvers go, of what differs between two folders, and of
-// what Vasilovici's report claims.
+// what Vasilovici's report asserts.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 #include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/settings.hpp"
 #include "experiments/report/model/parts.hpp"
-#include "experiments/truths/vasilovici/claims.hpp"
+#include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut::report {
 
@@ -38,39 +38,38 @@ Json required_table(const std::vector<RequiredModel>& required) {
       {"rows", rows}};
 }
 
-std::string setting_text(double value, const KnobFrontier& knob) {
-  return significant(value, 3) + (knob.unit.empty() ? "" : "\u00A0" + knob.unit);
+std::string setting_text(double value, const ParameterFrontier& one) {
+  return significant(value, 3) + (one.unit.empty() ? "" : "\u00A0" + one.unit);
 }
 
-std::string end_text(const KnobFrontier& knob) {
-  if (!knob.lacks.empty()) return "–: " + knob.lacks;
-  if (std::isnan(knob.bad)) return setting_text(knob.to, knob) + ", as far as was asked";
-  return (std::isnan(knob.good) ? "none" : setting_text(knob.good, knob)) + ", then " +
-         knob.symptom +
-         (std::isnan(knob.theory) ? "" : " (theory: " + setting_text(knob.theory, knob) + ")");
+std::string end_text(const ParameterFrontier& one) {
+  if (!one.lacks.empty()) return "–: " + one.lacks;
+  if (std::isnan(one.bad)) return setting_text(one.to, one) + ", as far as was asked";
+  return (std::isnan(one.good) ? "none" : setting_text(one.good, one)) + ", then " + one.symptom +
+         (std::isnan(one.theory) ? "" : " (theory: " + setting_text(one.theory, one) + ")");
 }
 
-Json frontier_table(const std::vector<KnobFrontier>& frontiers) {
-  std::vector<std::string> solvers, knobs;
-  for (const KnobFrontier& f : frontiers) {
+Json frontier_table(const std::vector<ParameterFrontier>& frontiers) {
+  std::vector<std::string> solvers, parameters;
+  for (const ParameterFrontier& f : frontiers) {
     if (!std::ranges::count(solvers, f.solver)) solvers.push_back(f.solver);
-    if (!std::ranges::count(knobs, f.knob)) knobs.push_back(f.knob);
+    if (!std::ranges::count(parameters, f.parameter)) parameters.push_back(f.parameter);
   }
-  std::vector<std::string> titles{"knob"};
+  std::vector<std::string> titles{"parameter"};
   titles.insert(titles.end(), solvers.begin(), solvers.end());
   Json rows = Json::array();
-  for (const std::string& knob : knobs) {
-    Json row = Json::array({knob});
+  for (const std::string& parameter : parameters) {
+    Json row = Json::array({parameter});
     for (const std::string& solver : solvers) {
       const auto at = std::ranges::find_if(
-          frontiers, [&](const auto& f) { return f.knob == knob && f.solver == solver; });
+          frontiers, [&](const auto& f) { return f.parameter == parameter && f.solver == solver; });
       row.push_back(at == frontiers.end() ? "–" : end_text(*at));
     }
     rows.push_back(std::move(row));
   }
   return {
       {"id", "frontiers"},
-      {"title", "How far every knob goes on a small swinging sheet"},
+      {"title", "How far every parameter goes on a small swinging sheet"},
       {"caption",
        "The hardest setting up to which nothing was wrong, and what goes wrong first beyond it, "
        "by its own metric; taut frontier --all."},
@@ -167,14 +166,14 @@ Json json_of(const Differences& differences, References& refs, Json& tables) {
 
 Json json_of_vasilovici(const std::optional<Truths>& truths) {
   Json all = Json::array();
-  for (const VasiloviciClaim& claim : vasilovici_claims()) {
-    Json one{{"section", claim.section},
-             {"claim", typeset(claim.claim)},
-             {"verdict", to_string(claim.verdict)},
-             {"because", typeset(claim.because)}};
+  for (const VasiloviciAssertion& assertion : vasilovici_assertions()) {
+    Json one{{"section", assertion.section},
+             {"assertion", typeset(assertion.assertion)},
+             {"verdict", to_string(assertion.verdict)},
+             {"because", typeset(assertion.because)}};
     if (truths)
-      if (const auto now = truths->claims.find(std::string(claim.claim));
-          now != truths->claims.end()) {
+      if (const auto now = truths->assertions.find(std::string(assertion.assertion));
+          now != truths->assertions.end()) {
         one["verdict"] = now->second.first;
         add_if(one, "figure", typeset(now->second.second));
       }

@@ -58,7 +58,7 @@ function truthsSection() {
   const part = (title, rows, open) => el('details', {open}, el('summary', {}, `${title} (${rows.length})`),
                                          tableOf(title, columns, rows.map(line)));
   const apart = truths.rows.filter((r) => r.verdict !== 'passed');
-  const words = {passed: 'passed', deviates: 'deviate as explained', 'not claimed': 'not claimed', broken: 'broken'};
+  const words = {passed: 'passed', deviates: 'deviate as explained', 'not applicable': 'not applicable', broken: 'broken'};
   const counts = Object.entries(words).filter(([verdict]) => truths.verdicts[verdict])
       .map(([verdict, word]) => `${truths.verdicts[verdict]} ${word}`).join(', ');
   return section('truths', 'Checked against theory', el('div', {className: 'card'},
@@ -91,8 +91,8 @@ function methodSection() {
     tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver)),
     method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,
     el('p', {}, 'This makes it all again:'), command(model.meta.command)),
-    method.claims && folded("Claims of Vasilovici's report", tableOf('Claims', ['section', 'claim', 'verdict', 'because', 'measured'],
-      method.claims.map((c) => row(c.section, c.claim, c.verdict, c.because, c.figure ?? '–')))),
+    method.assertions && folded("Assertions of Vasilovici's report", tableOf('Assertions', ['section', 'assertion', 'verdict', 'because', 'measured'],
+      method.assertions.map((a) => row(a.section, a.assertion, a.verdict, a.because, a.figure ?? '–')))),
     folded('Metrics, build and machine', tableOf('Metrics', ['metric', 'definition', 'unit', 'window'], glossary),
            factList([...(method.facts ?? []), ...build])),
     list('What this does not show', method.limits?.map((text) => item(text))),

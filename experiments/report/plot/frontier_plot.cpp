@@ -12,53 +12,54 @@ namespace taut::report {
 
 namespace {
 
-std::vector<std::string> distinct(const std::vector<KnobFrontier>& all,
-                                  std::string KnobFrontier::*name) {
+std::vector<std::string> distinct(const std::vector<ParameterFrontier>& all,
+                                  std::string ParameterFrontier::*name) {
   std::vector<std::string> found;
-  for (const KnobFrontier& knob : all)
-    if (!std::ranges::count(found, knob.*name)) found.push_back(knob.*name);
+  for (const ParameterFrontier& one : all)
+    if (!std::ranges::count(found, one.*name)) found.push_back(one.*name);
   return found;
 }
 
-std::string symptom_text(const KnobFrontier& knob) {
-  if (!knob.lacks.empty()) return "";
-  return std::isnan(knob.bad) ? "as far as was asked" : knob.symptom;
+std::string symptom_text(const ParameterFrontier& one) {
+  if (!one.lacks.empty()) return "";
+  return std::isnan(one.bad) ? "as far as was asked" : one.symptom;
 }
 
-double theory_headroom(const KnobFrontier& knob) {
-  return knob.downwards ? knob.from / knob.theory : knob.theory / knob.from;
+double theory_headroom(const ParameterFrontier& one) {
+  return one.downwards ? one.from / one.theory : one.theory / one.from;
 }
 
 }  // namespace
 
-std::filesystem::path plot_frontiers(const std::vector<KnobFrontier>& all,
+std::filesystem::path plot_frontiers(const std::vector<ParameterFrontier>& all,
                                      const std::filesystem::path& folder, const std::string& stem) {
-  const std::vector<std::string> knobs = distinct(all, &KnobFrontier::knob),
-                                 solvers = distinct(all, &KnobFrontier::solver);
+  const std::vector<std::string> parameters = distinct(all, &ParameterFrontier::parameter),
+                                 solvers = distinct(all, &ParameterFrontier::solver);
   const double height = 0.8 / static_cast<double>(std::max<std::size_t>(solvers.size(), 1));
-  std::string csv = "solver,knob,y,half,headroom,theory,end\n", ticks;
+  std::string csv = "solver,parameter,y,half,headroom,theory,end\n", ticks;
   double most = 10;
-  for (std::size_t k = 0; k < knobs.size(); ++k)
-    ticks += (k ? ", " : "") + gnuplot_string(knobs[k]) + " " + std::to_string(k);
-  for (const KnobFrontier& knob : all) {
-    const auto row = std::ranges::find(knobs, knob.knob) - knobs.begin(),
-               place = std::ranges::find(solvers, knob.solver) - solvers.begin();
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    ticks += (k ? ", " : "") + gnuplot_string(parameters[k]) + " " + std::to_string(k);
+  for (const ParameterFrontier& one : all) {
+    const auto row = std::ranges::find(parameters, one.parameter) - parameters.begin(),
+               place = std::ranges::find(solvers, one.solver) - solvers.begin();
     const double y = static_cast<double>(row) - 0.4 + (static_cast<double>(place) + 0.5) * height;
-    const double headroom = std::isnan(knob.headroom()) ? 1 : knob.headroom();
-    const double theory = theory_headroom(knob);
+    const double headroom = std::isnan(one.headroom()) ? 1 : one.headroom();
+    const double theory = theory_headroom(one);
     most = std::max({most, headroom, std::isnan(theory) ? 1 : theory});
-    csv += std::to_string(place) + "," + csv_field(knob.knob) + "," + exact(y) + "," +
+    csv += std::to_string(place) + "," + csv_field(one.parameter) + "," + exact(y) + "," +
            exact(0.45 * height) + "," + exact(headroom) + "," + exact(theory) + "," +
-           csv_field(symptom_text(knob)) + "\n";
+           csv_field(symptom_text(one)) + "\n";
   }
   std::string script =
-      "# How far each knob goes on the standard scene.\n# Again: gnuplot -e \"set terminal svg "
+      "# How far each parameter goes on the standard scene.\n# Again: gnuplot -e \"set terminal "
+      "svg "
       "noenhanced; set output '" +
       stem + ".svg'\" " + stem +
       ".gp\nset encoding utf8\nset datafile separator ','\nset key outside top center horizontal\n"
       "set border 3\nset tics nomirror\nset grid x lc rgb '#E5E7EB'\nset logscale x\n"
       "set format x '%g'\nset xlabel 'times harder than where it starts'\nset xrange [1:" +
-      exact(most * 300) + "]\nset yrange [" + std::to_string(knobs.size()) + "-0.5:-0.5]\n" +
+      exact(most * 300) + "]\nset yrange [" + std::to_string(parameters.size()) + "-0.5:-0.5]\n" +
       "set ytics (" + ticks + ")\n";
   std::string plot;
   for (std::size_t i = 0; i < solvers.size(); ++i) {

@@ -59,11 +59,11 @@ class PlotError : public std::runtime_error {
 void run_gnuplot(const std::filesystem::path& script, const std::string& terminal,
                  const std::filesystem::path& out, const std::string& program = "gnuplot");
 
-/// A bar for each knob and solver, as long as the knob may be made harder than where it starts,
+/// A bar for each parameter and solver, as long as it may be made harder than where it starts,
 /// with what goes wrong at its end; a mark where theory has the end. Writes `stem`.csv, .gp and
 /// .svg into the folder and gives the picture's path. Throws PlotError without gnuplot and
 /// InputError if the files cannot be written.
-std::filesystem::path plot_frontiers(const std::vector<KnobFrontier>&,
+std::filesystem::path plot_frontiers(const std::vector<ParameterFrontier>&,
                                      const std::filesystem::path& folder, const std::string& stem);
 
 }  // namespace taut::report

@@ -28,19 +28,20 @@ Seen look(const Case& one, const Record& record, const Store& store) {
   return seen;
 }
 
-/// The search for one knob.
-class KnobSearch {
+/// The search along one parameter.
+class ParameterSearch {
  public:
-  KnobSearch(Knob knob, std::string solver, const Store& store)
-      : knob_(std::move(knob)), store_(store) {
-    found_.solver = std::move(solver), found_.knob = knob_.name, found_.unit = knob_.unit;
-    found_.lacks = knob_.lacks;
+  ParameterSearch(ExtremeSetting setting, std::string solver, const Store& store)
+      : setting_(std::move(setting)), store_(store) {
+    found_.solver = std::move(solver), found_.parameter = setting_.name,
+    found_.unit = setting_.unit;
+    found_.lacks = setting_.lacks;
   }
 
   /// False: interrupted.
   bool run(const Session& session, const CampaignOptions& options) {
     if (!found_.lacks.empty()) return true;
-    const FrontierQuestion& question = knob_.question;
+    const FrontierQuestion& question = setting_.question;
     found_.downwards = question.direction != Direction::up;
     found_.from = question.setting(question.range.from);
     found_.to = question.setting(question.range.to);
@@ -65,7 +66,7 @@ class KnobSearch {
     return !result.interrupted;
   }
 
-  KnobFrontier take() { return std::move(found_); }
+  ParameterFrontier take() { return std::move(found_); }
 
  private:
   std::string judge(const Case& one, const Record& record) const {
@@ -75,16 +76,16 @@ class KnobSearch {
   }
 
   void tell_theory() {
-    if (!knob_.theory) return;
-    found_.law = knob_.theory->law;
-    const double end = knob_.theory->value;
-    if (knob_.theory->kind == Frontier::Kind::bracketed && end < knob_.question.range.to)
-      found_.theory = knob_.question.setting(end);
+    if (!setting_.theory) return;
+    found_.law = setting_.theory->law;
+    const double end = setting_.theory->value;
+    if (setting_.theory->kind == Frontier::Kind::bracketed && end < setting_.question.range.to)
+      found_.theory = setting_.question.setting(end);
   }
 
   void tell(const Frontier& frontier) {
     using Kind = Frontier::Kind;
-    const FrontierQuestion& question = knob_.question;
+    const FrontierQuestion& question = setting_.question;
     if (frontier.kind == Kind::not_answered) {
       found_.lacks = "not answered: no time or memory, or interrupted";
       return;
@@ -96,36 +97,36 @@ class KnobSearch {
     found_.beyond = question.at(frontier.unstable);
   }
 
-  Knob knob_;
+  ExtremeSetting setting_;
   const Store& store_;
   std::optional<Seen> start_;
   std::vector<std::string> known_;  ///< symptoms at the start of the range
-  KnobFrontier found_;
+  ParameterFrontier found_;
 };
 
 constexpr const char* kSchema = "taut-frontiers-2";
 
-KnobFrontier knob_of(const JsonReader& json) {
-  KnobFrontier knob;
-  knob.solver = json.at("solver").text();
-  knob.knob = json.at("parameter").text(), knob.unit = json.at("unit").text();
-  knob.lacks = json.at("lacks").text();
-  knob.downwards = json.at("downwards").flag();
-  knob.from = json.at("from").number(), knob.to = json.at("to").number();
-  knob.good = json.at("good").number_or_null(), knob.bad = json.at("bad").number_or_null();
-  knob.symptom = json.at("symptom").text(), knob.at_start = json.at("at_start").text();
-  knob.theory = json.at("theory").number_or_null(), knob.law = json.at("law").text();
+ParameterFrontier frontier_of(const JsonReader& json) {
+  ParameterFrontier one;
+  one.solver = json.at("solver").text();
+  one.parameter = json.at("parameter").text(), one.unit = json.at("unit").text();
+  one.lacks = json.at("lacks").text();
+  one.downwards = json.at("downwards").flag();
+  one.from = json.at("from").number(), one.to = json.at("to").number();
+  one.good = json.at("good").number_or_null(), one.bad = json.at("bad").number_or_null();
+  one.symptom = json.at("symptom").text(), one.at_start = json.at("at_start").text();
+  one.theory = json.at("theory").number_or_null(), one.law = json.at("law").text();
   const JsonReader beyond = json.at("beyond");
-  knob.beyond = {beyond.at("scene").text(), beyond.at("overrides").texts(),
-                 beyond.at("solver").text()};
-  knob.cases = json.at("cases").count();
-  return knob;
+  one.beyond = {beyond.at("scene").text(), beyond.at("overrides").texts(),
+                beyond.at("solver").text()};
+  one.cases = json.at("cases").count();
+  return one;
 }
 
-Json json_of(const KnobFrontier& k) {
+Json json_of(const ParameterFrontier& k) {
   return {
       {"solver", k.solver},
-      {"parameter", k.knob},
+      {"parameter", k.parameter},
       {"unit", k.unit},
       {"lacks", k.lacks},
       {"downwards", k.downwards},
@@ -148,33 +149,33 @@ Extremes find_extremes(const std::string& solver, const Store& store, const Sess
                        const CampaignOptions& options,
                        const std::function<void(std::size_t done, std::size_t all)>& progress) {
   Extremes all;
-  const std::vector<Knob> knobs = knobs_of(solver);
+  const std::vector<ExtremeSetting> settings = extreme_settings(solver);
   const std::string name = parse_solver(solver).brief();
-  for (const Knob& knob : knobs) {
-    KnobSearch search(knob, name, store);
+  for (const ExtremeSetting& setting : settings) {
+    ParameterSearch search(setting, name, store);
     all.interrupted = !search.run(session, options);
     if (all.interrupted) return all;
-    all.knobs.push_back(search.take());
-    progress(all.knobs.size(), knobs.size());
+    all.frontiers.push_back(search.take());
+    progress(all.frontiers.size(), settings.size());
   }
   return all;
 }
 
-std::string to_json(const std::vector<KnobFrontier>& knobs, std::string_view program) {
+std::string to_json(const std::vector<ParameterFrontier>& frontiers, std::string_view program) {
   Json all{{"schema", kSchema}, {"program", program}, {"parameters", Json::array()}};
-  for (const KnobFrontier& knob : knobs) all["parameters"].push_back(json_of(knob));
+  for (const ParameterFrontier& one : frontiers) all["parameters"].push_back(json_of(one));
   return to_text(all, 1) + "\n";
 }
 
-std::optional<std::vector<KnobFrontier>> read_frontiers(const std::filesystem::path& file,
-                                                        std::string_view program) {
+std::optional<std::vector<ParameterFrontier>> read_frontiers(const std::filesystem::path& file,
+                                                             std::string_view program) {
   return read_json(read_text(file), file.string(), [&](const JsonReader& root) {
     root.require_schema(kSchema);
-    std::optional<std::vector<KnobFrontier>> knobs;
-    if (root.at("program").text() != program) return knobs;
-    knobs.emplace();
-    for (const JsonReader& knob : root.at("parameters").items()) knobs->push_back(knob_of(knob));
-    return knobs;
+    std::optional<std::vector<ParameterFrontier>> found;
+    if (root.at("program").text() != program) return found;
+    found.emplace();
+    for (const JsonReader& one : root.at("parameters").items()) found->push_back(frontier_of(one));
+    return found;
   });
 }
 

@@ -8,14 +8,14 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/study/extremes/knob.hpp"
+#include "experiments/study/extremes/extreme_settings.hpp"
 
 namespace taut {
 
-/// How far one knob goes under one solver.
-struct KnobFrontier {
+/// How far one parameter goes under one solver.
+struct ParameterFrontier {
   std::string solver;  ///< "bullet:iterations=4"
-  std::string knob, unit;
+  std::string parameter, unit;
   std::string lacks;             ///< why there is nothing below; "": there is
   bool downwards = false;        ///< smaller is harder
   double from = 0, to = 0;       ///< the easiest and the hardest setting asked for
@@ -34,21 +34,21 @@ struct KnobFrontier {
 
 /// All frontiers of a solver on the standard scene.
 struct Extremes {
-  std::vector<KnobFrontier> knobs;
+  std::vector<ParameterFrontier> frontiers;
   bool interrupted = false;
 };
 
-/// Every probe is a case of the store, judged by symptoms(). `progress` is told after each knob.
+/// Every probe is a case of the store, judged by symptoms(). `progress` is told after each of them.
 Extremes find_extremes(const std::string& solver, const Store&, const Session&,
                        const CampaignOptions&,
                        const std::function<void(std::size_t done, std::size_t all)>& progress);
 
 /// One JSON text with what this program found: what `taut frontier --all` prints and leaves below
 /// kFrontiersFolder for the report.
-std::string to_json(const std::vector<KnobFrontier>&, std::string_view program);
+std::string to_json(const std::vector<ParameterFrontier>&, std::string_view program);
 /// Nothing if another program wrote the file. Throws InputError if it is damaged.
-std::optional<std::vector<KnobFrontier>> read_frontiers(const std::filesystem::path& file,
-                                                        std::string_view program);
+std::optional<std::vector<ParameterFrontier>> read_frontiers(const std::filesystem::path& file,
+                                                             std::string_view program);
 
 /// Where `taut frontier --all` leaves what it found in a results folder, for the report.
 inline constexpr std::string_view kFrontiersFolder = "frontiers";

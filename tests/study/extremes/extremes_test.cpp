@@ -1,4 +1,5 @@
-// What is wrong with a run, how a knob becomes cases, and frontiers against those that were kept.
+// What is wrong with a run, how a setting becomes cases, and frontiers against those that were
+// kept.
 #include "experiments/study/extremes/extremes.hpp"
 
 #include <gtest/gtest.h>
@@ -91,68 +92,69 @@ TEST(Symptoms, WhatASwingSetsFreeIsItsFallToThePlumbLine) {
     EXPECT_EQ(swing_energy(*make_case({"swing", {active}, "jakobsen"}).scene), 0) << active;
 }
 
-TEST(Knobs, StartWhereTheyAreEasyAndMakeCases) {
+TEST(ExtremeSettings, StartWhereTheyAreEasyAndMakeCases) {
   for (const char* solver : {"jakobsen", "bullet:iterations=4", "mass-spring", "xpbd"}) {
     std::size_t answered = 0;
-    for (const Knob& knob : knobs_of(solver)) {
-      if (!knob.lacks.empty()) continue;
+    for (const ExtremeSetting& setting : extreme_settings(solver)) {
+      if (!setting.lacks.empty()) continue;
       ++answered;
-      for (const double at : {knob.question.range.from, knob.question.range.to})
-        EXPECT_NO_THROW(make_case(knob.question.at(at))) << solver << ": " << knob.name;
+      for (const double at : {setting.question.range.from, setting.question.range.to})
+        EXPECT_NO_THROW(make_case(setting.question.at(at))) << solver << ": " << setting.name;
     }
     EXPECT_GE(answered, 8u) << solver;
   }
-  EXPECT_THROW(knobs_of("nobody"), InputError);
+  EXPECT_THROW(extreme_settings("nobody"), InputError);
 }
 
 // Where a search begins it has changed nothing yet: the scene is the standard one, the solver the
 // one that was asked about.
-TEST(Knobs, BeginAtWhatTheStandardSceneHas) {
+TEST(ExtremeSettings, BeginAtWhatTheStandardSceneHas) {
   for (const std::string solver : {"jakobsen", "bullet:iterations=4", "mass-spring", "xpbd"})
-    for (const Knob& knob : knobs_of(solver)) {
-      if (!knob.lacks.empty() || knob.name == "sweeps") continue;  // these begin with many
-      const FrontierQuestion& question = knob.question;
+    for (const ExtremeSetting& setting : extreme_settings(solver)) {
+      if (!setting.lacks.empty() || setting.name == "sweeps") continue;  // these begin with many
+      const FrontierQuestion& question = setting.question;
       const Case base = make_case(question.base),
                  start = make_case(question.at(question.range.from));
-      EXPECT_EQ(content(*start.scene), content(*base.scene)) << solver << ": " << knob.name;
-      EXPECT_EQ(start.choice.canonical(), base.choice.canonical()) << solver << ": " << knob.name;
+      EXPECT_EQ(content(*start.scene), content(*base.scene)) << solver << ": " << setting.name;
+      EXPECT_EQ(start.choice.canonical(), base.choice.canonical())
+          << solver << ": " << setting.name;
       const Case end = make_case(question.at(question.range.to));
       EXPECT_TRUE(content(*end.scene) != content(*base.scene) ||
                   end.choice.canonical() != base.choice.canonical())
-          << solver << ": " << knob.name;
+          << solver << ": " << setting.name;
     }
 }
 
-TEST(Knobs, TheoriesAreClosedForms) {
-  for (const Knob& knob : knobs_of("jakobsen:substeps=1,contact=discrete")) {
-    if (knob.name == "wind") {
-      EXPECT_NEAR(knob.theory->value, 2 * 0.2 * 240, 1e-9);
+TEST(ExtremeSettings, TheoriesAreClosedForms) {
+  for (const ExtremeSetting& setting : extreme_settings("jakobsen:substeps=1,contact=discrete")) {
+    if (setting.name == "wind") {
+      EXPECT_NEAR(setting.theory->value, 2 * 0.2 * 240, 1e-9);
     }
-    if (knob.name == "speed of a collider") {
-      EXPECT_NEAR(knob.theory->value, 0.02 * 240, 1e-9);
+    if (setting.name == "speed of a collider") {
+      EXPECT_NEAR(setting.theory->value, 0.02 * 240, 1e-9);
     }
-    if (knob.name == "distance from the origin") {
-      const float far = static_cast<float>(knob.theory->value);
+    if (setting.name == "distance from the origin") {
+      const float far = static_cast<float>(setting.theory->value);
       const float fall = 9.81F / (240 * 240);
       EXPECT_EQ(far + fall, far) << "in float nothing falls there";
       EXPECT_NE(far / 2 + fall, far / 2) << "and it does at half of it";
     }
   }
-  EXPECT_FALSE(knobs_of("jakobsen")[5].theory) << "swept tests know no limit";
-  for (const Knob& knob : knobs_of("mass-spring"))
-    if (knob.name == "time step") {
+  EXPECT_FALSE(extreme_settings("jakobsen")[5].theory) << "swept tests know no limit";
+  for (const ExtremeSetting& setting : extreme_settings("mass-spring"))
+    if (setting.name == "time step") {
       // Below 2/w: a 20 x 20 grid with both diagonals holds to 0.71 sqrt(m/k) without its borders.
-      EXPECT_NEAR(knob.theory->value / 32 / std::sqrt(0.2 / 64 / 50), 0.7, 0.2);
+      EXPECT_NEAR(setting.theory->value / 32 / std::sqrt(0.2 / 64 / 50), 0.7, 0.2);
     }
 }
 
-KnobFrontier kept(double good, double bad, bool downwards = false) {
-  KnobFrontier knob;
-  knob.solver = "jakobsen", knob.knob = "time step", knob.unit = "s";
-  knob.downwards = downwards, knob.from = downwards ? 1 : 0.01, knob.to = downwards ? 0.01 : 1;
-  knob.good = good, knob.bad = bad, knob.symptom = std::isnan(bad) ? "" : "explodes";
-  knob.beyond = {"swing", {"time.dt=\"0.2\""}, "jakobsen"};
-  return knob;
+ParameterFrontier kept(double good, double bad, bool downwards = false) {
+  ParameterFrontier one;
+  one.solver = "jakobsen", one.parameter = "time step", one.unit = "s";
+  one.downwards = downwards, one.from = downwards ? 1 : 0.01, one.to = downwards ? 0.01 : 1;
+  one.good = good, one.bad = bad, one.symptom = std::isnan(bad) ? "" : "explodes";
+  one.beyond = {"swing", {"time.dt=\"0.2\""}, "jakobsen"};
+  return one;
 }
 
 const double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -160,7 +162,7 @@ const double kNone = std::numeric_limits<double>::quiet_NaN();
 TEST(Frontiers, AreReadBackOfTheProgramThatFoundThemAndDamageIsNamed) {
   const Scratch scratch;
   const auto file = scratch.path() / "frontiers.json";
-  const std::vector<KnobFrontier> all{kept(0.1, 0.102), kept(0.1, kNone, true)};
+  const std::vector<ParameterFrontier> all{kept(0.1, 0.102), kept(0.1, kNone, true)};
   write_file(file, to_json(all, "program"));
   const auto read = read_frontiers(file, "program");
   ASSERT_TRUE(read);

@@ -9,19 +9,19 @@
 namespace taut {
 
 /// A setting of the standard scene, or of the solver on it, that is made harder and harder.
-struct Knob {
+struct ExtremeSetting {
   std::string name;  ///< "time step"
   std::string unit;  ///< of the setting; "": a plain number
   FrontierQuestion question;
-  std::string lacks;                 ///< why the solver has no such knob; "": it has
+  std::string lacks;                 ///< why the solver has no such setting; "": it has
   std::optional<Prediction> theory;  ///< where something is known to end, in the setting's unit
 };
 
 /// The standard scene: `swing` (pinned along its top edge, let go 45 degrees from rest) on 9 x 9
 /// vertices for 2 s in steps of 1/240 s. It is passive and mirror-symmetric.
 ///
-/// Its knobs: time step, sweeps, stiffness, mass ratio, resolution, speed of a collider, size (both
-/// ways), distance from the origin, wind; each from where it is easy to where it is absurd.
+/// Its settings: time step, sweeps, stiffness, mass ratio, resolution, speed of a collider, size
+/// (both ways), distance from the origin, wind; each from where it is easy to where it is absurd.
 /// Theories:
 ///   time step, stiffness, mass ratio: linear_stability, of springs
 ///   wind: c h/sigma < 2, explicit drag of a face across the wind; h: substep (truth wind-face)
@@ -29,6 +29,6 @@ struct Knob {
 ///   speed: D/h, beyond which tests at step boundaries miss a plate of thickness D (truth
 ///          tunnelling); contact=discrete alone
 /// Throws InputError: no such solver.
-std::vector<Knob> knobs_of(const std::string& solver);
+std::vector<ExtremeSetting> extreme_settings(const std::string& solver);
 
 }  // namespace taut

@@ -1,12 +1,12 @@
-#include "experiments/truths/vasilovici/claims.hpp"
+#include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut {
 
 namespace {
 
-using enum ClaimVerdict;
+using enum AssertionVerdict;
 
-constexpr VasiloviciClaim kClaims[] = {
+constexpr VasiloviciAssertion kAssertions[] = {
     {"3", "stretch, shear and bend springs together give cloth its behaviour", holds_if,
      "of shear links: without them a square hung by two corners sags; bend links do little to a "
      "flat sheet",
@@ -109,12 +109,12 @@ constexpr VasiloviciClaim kClaims[] = {
 
 }  // namespace
 
-std::string_view to_string(ClaimVerdict verdict) {
+std::string_view to_string(AssertionVerdict verdict) {
   constexpr std::string_view kNames[] = {"holds", "holds under conditions", "does not hold",
                                          "cannot be tested"};
   return kNames[static_cast<int>(verdict)];
 }
 
-std::span<const VasiloviciClaim> vasilovici_claims() { return kClaims; }
+std::span<const VasiloviciAssertion> vasilovici_assertions() { return kAssertions; }
 
 }  // namespace taut

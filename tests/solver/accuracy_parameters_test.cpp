@@ -1,4 +1,4 @@
-// What solvers say of their accuracy knobs, held against what they accept.
+// What solvers say of their accuracy parameters, held against what they accept.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,21 +20,21 @@ std::vector<std::string> parts_of(std::string_view list) {
   return parts;
 }
 
-TEST(AccuracyKnobs, AreParametersAndTheirValuesAreAccepted) {
+TEST(AccuracyParameters, AreParametersAndTheirValuesAreAccepted) {
   for (const SolverEntry* entry : solvers()) {
     const std::string name(entry->name);
-    const AccuracyKnobs& knobs = entry->knobs;
-    EXPECT_FALSE(knobs.substeps.empty()) << name;
-    EXPECT_NE(knobs.sweeps.empty(), knobs.stiffness.parameters.empty())
+    const AccuracyParameters& accuracy = entry->accuracy;
+    EXPECT_FALSE(accuracy.substeps.empty()) << name;
+    EXPECT_NE(accuracy.sweeps.empty(), accuracy.stiffness.parameters.empty())
         << name << ": one of the two is what substeps are weighed against";
-    for (const std::string_view number : {knobs.substeps, knobs.sweeps})
+    for (const std::string_view number : {accuracy.substeps, accuracy.sweeps})
       if (!number.empty()) {
         EXPECT_EQ(parse_solver(name + ":" + std::string(number) + "=64").params.integer(number),
                   64);
       }
-    std::vector<AccuracyKnobs::Ladder> ladders(knobs.alternatives.begin(),
-                                               knobs.alternatives.end());
-    ladders.push_back(knobs.stiffness);
+    std::vector<AccuracyParameters::Ladder> ladders(accuracy.alternatives.begin(),
+                                                    accuracy.alternatives.end());
+    ladders.push_back(accuracy.stiffness);
     for (const auto& [parameters, values] : ladders) {
       EXPECT_EQ(parameters.empty(), values.empty()) << name;
       for (const std::string& parameter : parts_of(parameters))
@@ -45,10 +45,10 @@ TEST(AccuracyKnobs, AreParametersAndTheirValuesAreAccepted) {
   }
 }
 
-TEST(AccuracyKnobs, StiffnessesRiseFromTheDefault) {
+TEST(AccuracyParameters, StiffnessesRiseFromTheDefault) {
   for (const SolverEntry* entry : solvers())
-    for (const std::string& parameter : parts_of(entry->knobs.stiffness.parameters)) {
-      const std::vector<std::string> values = parts_of(entry->knobs.stiffness.values);
+    for (const std::string& parameter : parts_of(entry->accuracy.stiffness.parameters)) {
+      const std::vector<std::string> values = parts_of(entry->accuracy.stiffness.values);
       EXPECT_EQ(values.front(), parse_solver(std::string(entry->name)).params.value(parameter));
       EXPECT_TRUE(
           std::ranges::is_sorted(values, {}, [](const std::string& v) { return std::stod(v); }));

@@ -1,4 +1,4 @@
-#include "experiments/study/extremes/knob.hpp"
+#include "experiments/study/extremes/extreme_settings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,11 +21,11 @@ std::vector<std::string> standard(const std::vector<std::string>& more) {
 }
 
 /// What is asked of one solver.
-class Knobs {
+class ExtremeSettings {
  public:
-  explicit Knobs(const std::string& solver) : choice_(parse_solver(solver)) {}
+  explicit ExtremeSettings(const std::string& solver) : choice_(parse_solver(solver)) {}
 
-  std::vector<Knob> all() {
+  std::vector<ExtremeSetting> all() {
     linear(add("time step", "s", "dt", kStep, 1));
     add_sweeps();
     add_stiffness();
@@ -38,11 +38,11 @@ class Knobs {
     add("size, up", "m", "cloth.size.0|cloth.size.1", 1, 1e5);
     add("size, down", "m", "cloth.size.0|cloth.size.1", 1, 1e5, Direction::down);
     add_distance();
-    Knob& wind = add("wind", "N s/m^3", "wind.strength", 0.01, 1e5, Direction::up,
-                     {"wind={ velocity = [0, 0, 5], strength = 0.01 }"});
+    ExtremeSetting& wind = add("wind", "N s/m^3", "wind.strength", 0.01, 1e5, Direction::up,
+                               {"wind={ velocity = [0, 0, 5], strength = 0.01 }"});
     wind.theory = {Frontier::Kind::bracketed, 2 * kDensity / substep(), 0,
                    "explicit drag of a face: c h/sigma < 2"};
-    return std::move(knobs_);
+    return std::move(all_);
   }
 
  private:
@@ -54,36 +54,38 @@ class Knobs {
 
   /// s
   double substep() const {
-    return kStep / (parameter("substeps") ? choice_.params.integer("substeps") : 1);
+    const std::string_view substeps = choice_.entry->accuracy.substeps;
+    return kStep / (substeps.empty() ? 1 : choice_.params.integer(substeps));
   }
 
-  Knob& add(const std::string& name, const std::string& unit, const std::string& of, double from,
-            double to, Direction direction = Direction::up,
-            const std::vector<std::string>& more = {}) {
-    Knob knob{name, unit, {{"swing", standard(more), choice_.brief()}, of, {}}, "", {}};
-    knob.question.direction = direction;
-    knob.question.range = {.from = from, .to = to, .tolerance = kTolerance};
-    knobs_.push_back(std::move(knob));
-    return knobs_.back();
+  ExtremeSetting& add(const std::string& name, const std::string& unit, const std::string& of,
+                      double from, double to, Direction direction = Direction::up,
+                      const std::vector<std::string>& more = {}) {
+    ExtremeSetting one{name, unit, {{"swing", standard(more), choice_.brief()}, of, {}}, "", {}};
+    one.question.direction = direction;
+    one.question.range = {.from = from, .to = to, .tolerance = kTolerance};
+    all_.push_back(std::move(one));
+    return all_.back();
   }
 
   void lacking(const std::string& name, const std::string& why) {
-    knobs_.push_back({name, "", {}, why, {}});
+    all_.push_back({name, "", {}, why, {}});
   }
 
-  static void linear(Knob& knob) { knob.theory = predicted_frontier(knob.question); }
+  static void linear(ExtremeSetting& one) { one.theory = predicted_frontier(one.question); }
 
   /// On a finer sheet in long, whole steps, where they matter.
   void add_sweeps() {
-    const std::string sweeps(choice_.entry->knobs.sweeps);
+    const std::string sweeps(choice_.entry->accuracy.sweeps);
     if (sweeps.empty()) return lacking("sweeps", "it has none");
-    Knob& knob = add("sweeps", "", sweeps, 1.0 / 64, 1, Direction::down_in_whole_numbers,
-                     {"cloth.grid=[17, 17]", "time.dt=\"1/30\""});
-    if (parameter("substeps")) set_parameter(knob.question.base.solver, "substeps", "1");
+    ExtremeSetting& one = add("sweeps", "", sweeps, 1.0 / 64, 1, Direction::down_in_whole_numbers,
+                              {"cloth.grid=[17, 17]", "time.dt=\"1/30\""});
+    const std::string substeps(choice_.entry->accuracy.substeps);
+    if (!substeps.empty()) set_parameter(one.question.base.solver, substeps, "1");
   }
 
   void add_stiffness() {
-    const std::string springs(choice_.entry->knobs.stiffness.parameters);
+    const std::string springs(choice_.entry->accuracy.stiffness.parameters);
     if (!springs.empty()) return linear(add("stiffness", "N/m", springs, 50, 1e8));
     for (const char* share : {"stiffness", "omega"})
       if (const ParamSpec* spec = parameter(share)) {
@@ -95,34 +97,36 @@ class Knobs {
 
   /// A free sheet falls on a plate that rises.
   void add_speed() {
-    Knob& knob =
+    ExtremeSetting& one =
         add("speed of a collider", "m/s", "collider.0.velocity.1", 0.1, 1000, Direction::up,
             {"cloth.pins=[]", "cloth.tilt=0", "cloth.v=[0, 0, 1]", "cloth.origin=[-0.5, 0.2, -0.5]",
              "cloth.thickness=0.01",
              "collider=[{ type = \"box\", center = [0, 0, 0], half_extents = [0.8, 0.01, "
              "0.8], velocity = [0, 0.1, 0] }]"});
     if (parameter("contact") && choice_.params.is("contact", "discrete"))
-      knob.theory = {Frontier::Kind::bracketed, kPlate / substep(), 0,
-                     "tests at step boundaries jump a plate beyond D/h"};
+      one.theory = {Frontier::Kind::bracketed, kPlate / substep(), 0,
+                    "tests at step boundaries jump a plate beyond D/h"};
   }
 
   void add_distance() {
-    Knob& knob =
+    ExtremeSetting& one =
         add("distance from the origin", "m", "cloth.origin.0|cloth.origin.1|cloth.origin.2", 1, 1e5,
             Direction::up, {"cloth.origin=[1, 1, 1]"});
     if (!parameter("precision") || !choice_.params.is("precision", "float")) return;
     // The unit in the last place of a binary32 x is 2^(floor(log2 x) - 23).
     const double unit = 2 * kG * substep() * substep();
-    knob.theory = {Frontier::Kind::bracketed, std::exp2(std::floor(std::log2(unit)) + 1 + 23), 0,
-                   "float: g h^2 is below half a unit in the last place"};
+    one.theory = {Frontier::Kind::bracketed, std::exp2(std::floor(std::log2(unit)) + 1 + 23), 0,
+                  "float: g h^2 is below half a unit in the last place"};
   }
 
   SolverChoice choice_;
-  std::vector<Knob> knobs_;
+  std::vector<ExtremeSetting> all_;
 };
 
 }  // namespace
 
-std::vector<Knob> knobs_of(const std::string& solver) { return Knobs(solver).all(); }
+std::vector<ExtremeSetting> extreme_settings(const std::string& solver) {
+  return ExtremeSettings(solver).all();
+}
 
 }  // namespace taut
