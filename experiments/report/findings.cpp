@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 

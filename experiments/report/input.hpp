@@ -161,7 +161,7 @@ struct ReportInput {
   std::vector<MapResult> maps;
   std::vector<TimeSeries> series;  ///< over time, for the scene on top and its playhead
   std::vector<SceneMedia> media;
-  std::optional<BenchSession> bench;              ///< what accuracy costs; nullopt: not timed
+  std::optional<StudyBench> bench;                ///< what accuracy costs; nullopt: not timed
   std::optional<Truths> truths;                   ///< nullopt: not run
   std::optional<Regressions> regressions;         ///< nullopt: not checked
   std::optional<Differences> differences = {};    ///< nullopt: one folder alone

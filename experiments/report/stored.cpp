@@ -7,8 +7,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/report/chart/quantity.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/study/session.hpp"
@@ -90,8 +89,8 @@ std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of) 
   return all;
 }
 
-std::optional<BenchSession> stored_bench(const std::filesystem::path& file) {
-  BenchSession bench = bench_from_json(read_text(file), file.string());
+std::optional<StudyBench> stored_bench(const std::filesystem::path& file) {
+  StudyBench bench = bench_from_json(read_text(file), file.string());
   CaseMaker maker;
   for (SceneBench& scene : bench.scenes)
     std::erase_if(scene.cases, [&](const BenchedCase& c) {
@@ -148,7 +147,7 @@ std::map<std::string, std::vector<BenchedCase>> all_timed(const Store& store, do
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(store.root() / "bench", none))
     if (entry.path().extension() == ".json") {
-      const BenchSession session = bench_from_json(read_text(entry.path()), entry.path().string());
+      const StudyBench session = bench_from_json(read_text(entry.path()), entry.path().string());
       std::vector<BenchedCase>& here = all[session.host + ", " + session.machine];
       for (const SceneBench& scene : session.scenes) {
         noise = std::max(noise, spread(scene.control));
@@ -279,7 +278,7 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
   for (const std::string& name : benched) {
     if (input.bench) break;
     for (const std::filesystem::path& file : bench_files(store.root(), name)) try {
-        std::optional<BenchSession> bench = stored_bench(file);
+        std::optional<StudyBench> bench = stored_bench(file);
         if (!bench) continue;
         input.cost_hosts.push_back(
             bench->host + ", build " + bench->build.substr(0, 10) + ": " + bench->machine +

@@ -25,7 +25,7 @@ std::vector<TimeSeries> stored_series(const Records&, const std::string& value, 
 
 /// What `taut bench STUDY` left in this file: the cases that this build would run alike,
 /// in scenes that have any; nullopt: none. Throws InputError if the file is damaged.
-std::optional<BenchSession> stored_bench(const std::filesystem::path& file);
+std::optional<StudyBench> stored_bench(const std::filesystem::path& file);
 
 /// Adds the maps among these studies (two axes and a plot of kind "stability") of which the store
 /// has something; what the input holds of a study is not read again.

@@ -309,7 +309,7 @@ class Search {
   /// What every effect costs, and what the smallest model saves, from one interleaved session.
   void measure() {
     if (found_.interrupted) return;
-    std::vector<TimedCase> cases{{full_.record.spec, full_.record.steps}};
+    std::vector<CaseToTime> cases{{full_.record.spec, full_.record.steps}};
     std::vector<std::optional<Interval>*> wanted{nullptr};
     const auto ask = [&](const ModelTrial& trial, std::optional<Interval>& ratio) {
       if (!trial.done || !trial.why.empty()) return;
@@ -318,7 +318,7 @@ class Search {
     if (found_.smallest) ask(*found_.smallest, found_.time_ratio);
     for (EffectTrial& effect : found_.effects)
       if (effect.done()) ask(effect.representative(), effect.time);
-    const Bench bench = run_bench(
+    const TimingSession bench = time_cases(
         cases,
         {.rounds = kTimingRounds, .seconds = 0.02, .progress = {}, .deadline = at(kTimedBy)});
     found_.control = bench.control;

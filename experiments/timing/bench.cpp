@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <tuple>
+#include <utility>
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
@@ -45,19 +46,41 @@ BenchedCase case_of(const JsonReader& j) {
   return benched;
 }
 
-BenchSession session_of(const JsonReader& j) {
+StudyBench study_of(const JsonReader& j) {
   j.require_schema(kBenchSchema);
-  BenchSession session{
+  StudyBench study{
       j.at("study").text(), j.at("machine").text(), {}, j.at("host").text(), j.at("build").text()};
   for (const JsonReader& one : j.at("scenes").items()) {
     SceneBench scene{one.at("scene").text(), interval_of(one.at("control")), {}};
     for (const JsonReader& c : one.at("cases").items()) scene.cases.push_back(case_of(c));
-    session.scenes.push_back(std::move(scene));
+    study.scenes.push_back(std::move(scene));
   }
-  return session;
+  return study;
 }
 
 }  // namespace
+
+bool Target::meets(const Candidate& c) const {
+  if (!c.failure.empty() || std::isnan(c.error)) return false;
+  return error ? c.error <= *error : c.cost.mid <= *budget;
+}
+
+bool Target::prefers(const Candidate& a, const Candidate& b) const {
+  if (meets(a) != meets(b)) return meets(a);
+  const std::pair by_cost_a(a.cost.mid, a.error), by_cost_b(b.cost.mid, b.error);
+  const std::pair by_error_a(a.error, a.cost.mid), by_error_b(b.error, b.cost.mid);
+  return error ? by_cost_a < by_cost_b : by_error_a < by_error_b;
+}
+
+std::optional<std::size_t> best_for(const Target& target, std::span<const Candidate> candidates,
+                                    const std::string& solver) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (target.meets(candidates[i]) && (solver.empty() || candidates[i].solver == solver) &&
+        (!best || target.prefers(candidates[i], candidates[*best])))
+      best = i;
+  return best;
+}
 
 bool BenchedCase::stable() const {
   return timing.failure.empty() && !timing.samples.empty() && completed(record.status);
@@ -110,10 +133,10 @@ bool SceneBench::searched_to_the_end(const std::string& solver) const {
 }
 
 SceneBench bench_scene(const std::string& scene, const std::vector<Record>& records,
-                       const BenchOptions& options) {
-  std::vector<TimedCase> cases;
+                       const TimingOptions& options) {
+  std::vector<CaseToTime> cases;
   for (const Record& record : records) cases.push_back({record.spec, steps_done(record)});
-  Bench bench = run_bench(cases, options);
+  TimingSession bench = time_cases(cases, options);
   SceneBench result{scene, bench.control, {}};
   for (std::size_t i = 0; i < records.size(); ++i)
     result.cases.push_back({records[i], std::move(bench.timings[i])});
@@ -128,7 +151,7 @@ std::vector<std::string> solvers_of(const SceneBench& bench) {
   return names;
 }
 
-std::vector<Record> BenchSession::records() const {
+std::vector<Record> StudyBench::records() const {
   std::vector<Record> records;
   for (const SceneBench& scene : scenes)
     for (const BenchedCase& c : scene.cases) {
@@ -142,13 +165,13 @@ std::vector<Record> BenchSession::records() const {
   return records;
 }
 
-std::string to_json(const BenchSession& session) {
+std::string to_json(const StudyBench& study) {
   Json all{{"schema", kBenchSchema},
-           {"study", session.study},
-           {"machine", session.machine},
-           {"host", session.host},
-           {"build", session.build}};
-  for (const SceneBench& scene : session.scenes) {
+           {"study", study.study},
+           {"machine", study.machine},
+           {"host", study.host},
+           {"build", study.build}};
+  for (const SceneBench& scene : study.scenes) {
     Json one{{"scene", scene.scene}, {"control", scene.control}};
     for (const auto& [record, timing] : scene.cases)
       one["cases"].push_back({{"record", parse_json(to_json(record))},
@@ -166,30 +189,28 @@ std::string to_json(const BenchSession& session) {
   return to_text(all, 1) + "\n";
 }
 
-BenchSession bench_from_json(std::string_view text, const std::string& where) {
-  return read_json(text, where, session_of);
+StudyBench bench_from_json(std::string_view text, const std::string& where) {
+  return read_json(text, where, study_of);
 }
 
-BenchSession BenchSession::here(const std::string& study) {
+StudyBench StudyBench::here(const std::string& study) {
   return {study, machine_name(), {}, host_name(), program_digest()};
 }
 
-std::filesystem::path bench_file(const std::filesystem::path& results,
-                                 const BenchSession& session) {
-  return results / "bench" / session.study /
-         (session.host + "-" + session.build.substr(0, 10) + ".json");
+std::filesystem::path bench_file(const std::filesystem::path& results, const StudyBench& study) {
+  return results / "bench" / study.study / (study.host + "-" + study.build.substr(0, 10) + ".json");
 }
 
-std::filesystem::path keep(const std::filesystem::path& results, const BenchSession& session) {
-  const std::filesystem::path file = bench_file(results, session);
+std::filesystem::path keep(const std::filesystem::path& results, const StudyBench& study) {
+  const std::filesystem::path file = bench_file(results, study);
   make_folder(file.parent_path());
-  write_durably(file, to_json(session));
+  write_durably(file, to_json(study));
   return file;
 }
 
 std::vector<std::filesystem::path> bench_files(const std::filesystem::path& results,
                                                const std::string& study) {
-  const std::filesystem::path mine = bench_file(results, BenchSession::here(study));
+  const std::filesystem::path mine = bench_file(results, StudyBench::here(study));
   const std::string name = mine.filename(), host = name.substr(0, name.rfind('-') + 1);
   std::vector<std::filesystem::path> files;
   std::error_code none;

@@ -2,14 +2,48 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "experiments/case/record.hpp"
-#include "experiments/timing/candidate.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
+
+/// One setting of one solver on one scene: what it costs and how far it is off.
+struct Candidate {
+  std::string solver;   ///< the entry's name
+  std::string setting;  ///< "jakobsen:substeps=16,iterations=1"
+  Interval cost;        ///< CPU seconds per simulated second
+  double error = 0;     ///< of the chosen metric, >= 0; NaN if the metric has no meaning here
+  std::string failure;  ///< why it is refused, such as "exploded (energy)"; empty: it ran
+};
+
+/// What is asked for: the cheapest setting within an error, or the most accurate within a cost.
+/// Exactly one is set.
+struct Target {
+  std::optional<double> error;   ///< of the metric, its SI unit
+  std::optional<double> budget;  ///< CPU seconds per simulated second
+
+  /// A failure meets nothing.
+  bool meets(const Candidate&) const;
+  /// Whether a serves the target better than b; one that meets it beats all that do not.
+  bool prefers(const Candidate& a, const Candidate& b) const;
+};
+
+/// The candidate of `solver` ("" = any) that serves the target best; nothing: none meets it.
+std::optional<std::size_t> best_for(const Target&, std::span<const Candidate>,
+                                    const std::string& solver = "");
+
+/// Where a search for a setting ends.
+inline constexpr int kMostSubsteps = 1024, kMostSweeps = 128;
+
+/// The errors and budgets for which a bench answers, and of what they are unless asked otherwise.
+inline constexpr const char* kErrorMetric = "stretch.rms";
+inline constexpr double kErrorLevels[] = {0.1, 0.01, 0.001, 0.0001};
+inline constexpr double kFrame = 1.0 / 60;  ///< s; budgets are CPU time within it
+inline constexpr double kFrameBudgets[] = {0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3};  ///< s per frame
 
 /// A case whose physics and whose cost were both measured.
 struct BenchedCase {
@@ -46,7 +80,7 @@ struct SceneBench {
 };
 
 /// What `taut bench STUDY` leaves for reports and plots: every sample is kept.
-struct BenchSession {
+struct StudyBench {
   std::string study;
   std::string machine;  ///< processor and number of cores
   std::vector<SceneBench> scenes;
@@ -54,27 +88,27 @@ struct BenchSession {
   std::string build = {};  ///< program_digest of the program that was timed
 
   /// Nothing measured yet; on this machine, by this program.
-  static BenchSession here(const std::string& study);
+  static StudyBench here(const std::string& study);
   /// The records, each with its cost as further values: "cpu.per_second", "cpu.per_step",
   /// "wall.per_step" [s], "memory.peak" [bytes].
   std::vector<Record> records() const;
 };
 
 /// Times cases of one scene whose physics are known.
-SceneBench bench_scene(const std::string& scene, const std::vector<Record>&, const BenchOptions&);
+SceneBench bench_scene(const std::string& scene, const std::vector<Record>&, const TimingOptions&);
 
 /// Names of the solvers in a bench, in order of appearance.
 std::vector<std::string> solvers_of(const SceneBench&);
 
-std::string to_json(const BenchSession&);
+std::string to_json(const StudyBench&);
 /// Throws InputError that names `where` if the text is not a bench of this schema.
-BenchSession bench_from_json(std::string_view text, const std::string& where);
+StudyBench bench_from_json(std::string_view text, const std::string& where);
 
-/// Where a session lies in a results folder: a file for each host and build.
-std::filesystem::path bench_file(const std::filesystem::path& results, const BenchSession&);
+/// Where a bench lies in a results folder: a file for each host and build.
+std::filesystem::path bench_file(const std::filesystem::path& results, const StudyBench&);
 
 /// Writes it there.
-std::filesystem::path keep(const std::filesystem::path& results, const BenchSession&);
+std::filesystem::path keep(const std::filesystem::path& results, const StudyBench&);
 
 /// What is stored of a study: of this host and build, of this host, of others by name.
 std::vector<std::filesystem::path> bench_files(const std::filesystem::path& results,

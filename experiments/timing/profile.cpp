@@ -30,19 +30,19 @@ std::vector<Candidate> equal_budgets(const SceneBench& scene, const std::string&
 
 }  // namespace
 
-double Profile::share(double factor) const {
+double PerformanceProfile::share(double factor) const {
   if (ratios.empty()) return 0;
   const auto within = std::ranges::count_if(ratios, [&](double r) { return r <= factor; });
   return static_cast<double>(within) / static_cast<double>(ratios.size());
 }
 
-std::vector<Profile> performance_profiles(const std::vector<SceneBench>& scenes,
-                                          const std::string& metric,
-                                          std::span<const double> levels) {
-  std::vector<Profile> profiles;
+std::vector<PerformanceProfile> performance_profiles(const std::vector<SceneBench>& scenes,
+                                                     const std::string& metric,
+                                                     std::span<const double> levels) {
+  std::vector<PerformanceProfile> profiles;
   for (const SceneBench& scene : scenes)
     for (const std::string& solver : solvers_of(scene))
-      if (std::ranges::find(profiles, solver, &Profile::solver) == profiles.end())
+      if (std::ranges::find(profiles, solver, &PerformanceProfile::solver) == profiles.end())
         profiles.push_back({solver, {}});
   for (const SceneBench& scene : scenes) {
     const std::vector<Candidate> tried = equal_budgets(scene, metric);
@@ -50,7 +50,7 @@ std::vector<Profile> performance_profiles(const std::vector<SceneBench>& scenes,
       const Target target{level, {}};
       const auto best = best_for(target, tried);
       if (!best) continue;
-      for (Profile& profile : profiles) {
+      for (PerformanceProfile& profile : profiles) {
         const auto own = best_for(target, tried, profile.solver);
         profile.ratios.push_back(own ? tried[*own].cost.mid / tried[*best].cost.mid
                                      : std::numeric_limits<double>::infinity());

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/timing/candidate.hpp"
+#include "experiments/timing/bench.hpp"
 
 namespace taut {
 

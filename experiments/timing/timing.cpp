@@ -154,8 +154,8 @@ std::string TimingWorker::remark() { return ask("remark"); }
 
 namespace {
 
-/// A case in a bench: its worker, how many steps make a sample, and what was measured.
-struct BenchCase {
+/// A case of a session: its worker, how many steps make a sample, and what was measured.
+struct SampledCase {
   std::unique_ptr<TimingWorker> worker;
   int steps = 0;
   Timing timing;
@@ -171,8 +171,8 @@ struct BenchCase {
   }
 };
 
-BenchCase start_case(const TimedCase& timed, const BenchOptions& options) {
-  BenchCase one;
+SampledCase start_case(const CaseToTime& timed, const TimingOptions& options) {
+  SampledCase one;
   one.guard([&] {
     one.worker = std::make_unique<TimingWorker>(program_of(timed.spec), timed.spec);
     if (options.deadline != SteadyClock::time_point::max())
@@ -210,18 +210,18 @@ std::string machine_name() {
   return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores";
 }
 
-Interval Bench::ratio(std::size_t i, std::size_t j) const {
+Interval TimingSession::ratio(std::size_t i, std::size_t j) const {
   return interleaved_ratio(timings[i].samples, timings[j].samples);
 }
 
-Bench run_bench(const std::vector<TimedCase>& all, const BenchOptions& options) {
-  std::vector<BenchCase> cases;
-  for (const TimedCase& one : all) cases.push_back(start_case(one, options));
+TimingSession time_cases(const std::vector<CaseToTime>& all, const TimingOptions& options) {
+  std::vector<SampledCase> cases;
+  for (const CaseToTime& one : all) cases.push_back(start_case(one, options));
   if (!all.empty()) {
     cases.push_back(start_case(all.front(), options));  // the A/A control
     cases.back().steps = cases.front().steps;
   }
-  const auto sample = [](BenchCase& one) {
+  const auto sample = [](SampledCase& one) {
     one.guard([&] {
       const StepTime time = one.worker->sample(one.steps);
       one.timing.samples.push_back(time.cpu);
@@ -239,20 +239,20 @@ Bench run_bench(const std::vector<TimedCase>& all, const BenchOptions& options) 
                        static_cast<std::size_t>(options.rounds));
     longest = std::max(longest, SteadyClock::now() - start);
   }
-  Bench bench;
-  for (BenchCase& one : cases) {
+  TimingSession session;
+  for (SampledCase& one : cases) {
     one.guard([&] {
       one.timing.peak_bytes = one.worker->peak_bytes();
       one.timing.remark = one.worker->remark();
     });
-    bench.timings.push_back(std::move(one.timing));
+    session.timings.push_back(std::move(one.timing));
   }
-  if (all.empty()) return bench;
-  const Timing control = std::move(bench.timings.back());
-  bench.timings.pop_back();
-  if (control.failure.empty() && bench.timings.front().failure.empty())
-    bench.control = interleaved_ratio(bench.timings.front().samples, control.samples);
-  return bench;
+  if (all.empty()) return session;
+  const Timing control = std::move(session.timings.back());
+  session.timings.pop_back();
+  if (control.failure.empty() && session.timings.front().failure.empty())
+    session.control = interleaved_ratio(session.timings.front().samples, control.samples);
+  return session;
 }
 
 }  // namespace taut

@@ -101,15 +101,15 @@ struct Timing {
 };
 
 /// A case to be timed, and how many steps it has (or survived).
-struct TimedCase {
+struct CaseToTime {
   CaseSpec spec;
   int steps = 0;
 };
 
-/// One session: every case sampled in rounds of alternating order (ABBA: A B C C B A), so that a
+/// Every case sampled in rounds of alternating order (ABBA: A B C C B A), so that a
 /// drift of the machine's speed cancels between any two of them; the first case runs twice as its
 /// own A/A control.
-struct Bench {
+struct TimingSession {
   std::vector<Timing> timings;
   Interval control;  ///< ratio of the first case to itself
 
@@ -117,7 +117,7 @@ struct Bench {
   Interval ratio(std::size_t i, std::size_t j) const;
 };
 
-struct BenchOptions {
+struct TimingOptions {
   int rounds = 5;         ///< each gives two samples of every case
   double seconds = 0.05;  ///< CPU time of one sample: as many steps as fit, all the steps at most;
                           ///< they are spread over the whole run
@@ -125,6 +125,6 @@ struct BenchOptions {
   /// No round begins that would not end by then; a case that is not ready by then has a failure.
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
 };
-Bench run_bench(const std::vector<TimedCase>&, const BenchOptions&);
+TimingSession time_cases(const std::vector<CaseToTime>&, const TimingOptions&);
 
 }  // namespace taut

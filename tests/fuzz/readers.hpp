@@ -95,7 +95,7 @@ inline void read_record(const std::string& bytes) {
 }
 
 inline void read_bench(const std::string& bytes) {
-  const BenchSession bench = bench_from_json(bytes, "bench.json");
+  const StudyBench bench = bench_from_json(bytes, "bench.json");
   for (const Record& record : bench.records()) judge(record);
   for (const SceneBench& scene : bench.scenes) {
     scene.candidates("stretch.rms");

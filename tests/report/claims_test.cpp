@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "tests/report/cost_reader.hpp"
 #include "tests/report/made_up.hpp"

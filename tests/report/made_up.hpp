@@ -129,9 +129,8 @@ class Maker {
     return found;
   }
 
-  BenchSession bench(const std::vector<std::string>& names,
-                     const std::vector<std::string>& scenes) {
-    BenchSession session{"trade", "a machine", {}};
+  StudyBench bench(const std::vector<std::string>& names, const std::vector<std::string>& scenes) {
+    StudyBench session{"trade", "a machine", {}};
     for (const std::string& scene : scenes) {
       const double noise = chance(0.3) ? 0.4 : 0.02;
       SceneBench one{scene, {1 / (1 + noise * uniform()), 1, 1 + noise * uniform()}, {}};

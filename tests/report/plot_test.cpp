@@ -10,6 +10,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"

@@ -120,7 +120,7 @@ TESTED = {
     "noise ignored": ("experiments/timing/statistics.cpp", "change <= std::log1p(noise)", "false",
                       ["experiments/timing/statistics.cpp"], "Claims.*"),
     "a thousandth is a difference": ("experiments/timing/statistics.cpp", "change <= std::log1p(tolerance)",
-                                     "change <= 0", ["experiments/timing/statistics.cpp"], "Answer.*"),
+                                     "change <= 0", ["experiments/timing/statistics.cpp"], "Recommendation.*"),
 }
 
 

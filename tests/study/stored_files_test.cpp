@@ -13,7 +13,7 @@
 #include "experiments/report/findings.hpp"
 #include "experiments/study/session.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/timing/answer.hpp"
+#include "experiments/timing/recommendation.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut {
@@ -39,14 +39,14 @@ std::string bench_text() {
   SceneBench scene{"hang", {0.9, 1, 1.1}, {}};
   for (int i = 0; i < 2; ++i)
     scene.cases.push_back({stored_record(), {{1e-3, 2e-3, 1e-3, 3e-3}, {1, 2, 3, 4}, 4096, ""}});
-  return to_json(BenchSession{"trade", "a machine", {scene}});
+  return to_json(StudyBench{"trade", "a machine", {scene}});
 }
 
 void use_bench(const fs::path& file) {
-  const BenchSession bench = bench_from_json(read_text(file), file.string());
+  const StudyBench bench = bench_from_json(read_text(file), file.string());
   bench.records();
   for (const SceneBench& scene : bench.scenes) {
-    if (!scene.cases.empty()) answer(scene, {.error = 0.01}, "stretch.rms");
+    if (!scene.cases.empty()) recommend(scene, {.error = 0.01}, "stretch.rms");
     for (std::size_t i = 1; i < scene.cases.size(); ++i) scene.ratio(i, 0);
   }
 }

@@ -53,8 +53,8 @@ TEST(Bench, ARatioAccountsForDifferentTimeSteps) {
 }
 
 TEST(Bench, AFileGivesBackEverySample) {
-  const BenchSession session{"trade", "a machine", {sheet()}};
-  const BenchSession again = bench_from_json(to_json(session), "bench.json");
+  const StudyBench session{"trade", "a machine", {sheet()}};
+  const StudyBench again = bench_from_json(to_json(session), "bench.json");
   EXPECT_EQ(to_json(again), to_json(session));
   EXPECT_EQ(again.scenes[0].cases[1].timing.samples, session.scenes[0].cases[1].timing.samples);
   EXPECT_THROW(bench_from_json("{\"schema\": 2}", "bench.json"), InputError);
@@ -62,7 +62,7 @@ TEST(Bench, AFileGivesBackEverySample) {
 }
 
 TEST(Bench, RecordsCarryTheirCost) {
-  const auto records = BenchSession{"trade", "", {sheet()}}.records();
+  const auto records = StudyBench{"trade", "", {sheet()}}.records();
   EXPECT_DOUBLE_EQ(records[1].values.at("cpu.per_step"), 4e-3);
   EXPECT_DOUBLE_EQ(records[1].values.at("cpu.per_second"), 8e-3);
 }
@@ -91,19 +91,19 @@ TEST(Bench, OnlyStepIsInsideTheClock) {
 TEST(BenchFiles, HostsAndBuildsStayApart) {
   const std::filesystem::path results =
       std::filesystem::path(testing::TempDir()) / ("bench." + unique_suffix());
-  BenchSession mine = BenchSession::here("trade");
+  StudyBench mine = StudyBench::here("trade");
   mine.scenes = {sheet()};
-  BenchSession before = mine, other = mine;
+  StudyBench before = mine, other = mine;
   before.build = std::string(64, '0');
   other.host = "a" + mine.host;
   std::vector<std::filesystem::path> expected;
-  for (const BenchSession& session : {mine, before, other}) {
+  for (const StudyBench& session : {mine, before, other}) {
     expected.push_back(bench_file(results, session));
     make_folder(expected.back().parent_path());
     write_file(expected.back(), to_json(session));
   }
   EXPECT_EQ(bench_files(results, "trade"), expected) << "of this host and build first";
-  const BenchSession back = bench_from_json(read_text(expected.back()), "test");
+  const StudyBench back = bench_from_json(read_text(expected.back()), "test");
   EXPECT_EQ(back.host, other.host);
   EXPECT_EQ(back.build, mine.build);
   EXPECT_TRUE(bench_files(results, "scaling").empty());

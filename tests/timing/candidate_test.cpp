@@ -1,10 +1,10 @@
 // Candidates for a target: who is chosen, and who is not.
-#include "experiments/timing/candidate.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <vector>
+
+#include "experiments/timing/bench.hpp"
 
 namespace taut {
 namespace {

@@ -15,7 +15,7 @@
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
-#include "experiments/timing/answer.hpp"
+#include "experiments/timing/recommendation.hpp"
 #include "experiments/timing/search.hpp"
 
 namespace taut::verb::advise {
@@ -65,12 +65,12 @@ struct Result {
   std::vector<std::string> unsupported;  ///< "xpbd: why"
   std::vector<std::string> cut;          ///< solvers whose search --patience ended
   SceneBench bench;
-  Answer answer;
+  Recommendation recommendation;
   Interval cost;  ///< of the best, as it is expected in a second session
   bool same_bits = false;
   Interval again;  ///< cost of the best in a second session
 
-  const BenchedCase& best() const { return bench.cases[*answer.best]; }
+  const BenchedCase& best() const { return bench.cases[*recommendation.best]; }
   bool confirmed() const { return cost.contains(again.mid); }
 };
 
@@ -191,15 +191,16 @@ class Advisor {
       records.push_back(*run_stored(make(result_.tried[i].setting), store_));
     if (records.empty()) return;
     result_.bench = time(records, rounds);
-    Answer& answer = result_.answer =
-        taut::answer(result_.bench, result_.target, options_.metric, options_.tolerance);
-    if (!answer.best) return;
+    Recommendation& recommendation = result_.recommendation =
+        recommend(result_.bench, result_.target, options_.metric, options_.tolerance);
+    if (!recommendation.best) return;
     const Record& best = result_.best().record;
     result_.same_bits = run_again(make(best.spec.solver), store_).digest == best.digest;
     result_.again = time({best}, rounds).cases.front().cost();
-    result_.cost = cost_expected_again(result_.bench, *answer.best);
-    if (answer.certainty == Certainty::clear && !(result_.cut.empty() && result_.confirmed()))
-      answer.certainty = Certainty::likely;
+    result_.cost = cost_expected_again(result_.bench, *recommendation.best);
+    if (recommendation.certainty == Certainty::clear &&
+        !(result_.cut.empty() && result_.confirmed()))
+      recommendation.certainty = Certainty::likely;
   }
 
   const Options& options_;
@@ -218,8 +219,8 @@ std::string command(const Options& options, const Result& result) {
     text +=
         " --solver " + shell_word(parse_solver(result.bench.cases[i].record.spec.solver).brief());
   };
-  solver(*result.answer.best);
-  if (result.answer.runner_up) solver(*result.answer.runner_up);
+  solver(*result.recommendation.best);
+  if (result.recommendation.runner_up) solver(*result.recommendation.runner_up);
   return text + (options.metric == kErrorMetric ? "" : " --metric " + options.metric);
 }
 
@@ -298,18 +299,18 @@ void print_json(const Options& options, const Result& result, double elapsed) {
                             {"error", c.error},
                             {"quick_cost", c.cost.mid},
                             {"refused", c.failure.empty() ? Json() : Json(c.failure)}});
-  if (const Answer& answer = result.answer; answer.best) {
+  if (const Recommendation& chosen = result.recommendation; chosen.best) {
     all["best"] = json_of(result.best(), options.metric);
     all["best"]["cpu_seconds_per_second"] = result.cost;
-    all["certainty"] = to_string(answer.certainty);
+    all["certainty"] = to_string(chosen.certainty);
     all["control"] = result.bench.control;
     all["verified"] = {{"same_bits", result.same_bits},
                        {"cpu_seconds_per_second", result.again},
                        {"inside_interval", result.confirmed()}};
     all["command"] = command(options, result);
-    if (answer.runner_up)
-      all["runner_up"] = json_of(result.bench.cases[*answer.runner_up], options.metric);
-    if (answer.ratio) all["ratio"] = *answer.ratio;
+    if (chosen.runner_up)
+      all["runner_up"] = json_of(result.bench.cases[*chosen.runner_up], options.metric);
+    if (chosen.ratio) all["ratio"] = *chosen.ratio;
   }
   std::cout << to_text(all, 1) << '\n';
 }
@@ -334,13 +335,14 @@ int run(Options options) {
     print_json(options, result, advisor.elapsed());
   } else {
     std::cout << options.scene << ", ";
-    if (result.answer.best)
-      std::cout << text(result.answer, result.bench, options.metric), print_best(options, result);
+    if (result.recommendation.best)
+      std::cout << text(result.recommendation, result.bench, options.metric),
+          print_best(options, result);
     else
       print_nearest(options, result);
     print_searched(options, result, advisor.elapsed());
   }
-  if (!result.answer.best) return kNothing;
+  if (!result.recommendation.best) return kNothing;
   return result.same_bits ? kPass : kConflict;
 }
 

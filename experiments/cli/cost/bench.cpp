@@ -9,7 +9,7 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/timing/answer.hpp"
+#include "experiments/timing/recommendation.hpp"
 
 namespace taut::verb::bench {
 
@@ -45,13 +45,13 @@ void print_control(const SceneBench& bench, double tolerance) {
 }
 
 /// Who is cheapest for each error, and who is most accurate within each budget.
-void print_answers(const SceneBench& bench, const Options& options) {
+void print_recommendations(const SceneBench& bench, const Options& options) {
   std::vector<Target> targets;
   for (const double level : options.levels) targets.push_back({level, {}});
   for (const double budget : kFrameBudgets) targets.push_back({{}, budget / kFrame});
   for (const Target& target : targets)
     std::cout << "  "
-              << text(answer(bench, target, options.metric, options.tolerance), bench,
+              << text(recommend(bench, target, options.metric, options.tolerance), bench,
                       options.metric);
 }
 
@@ -93,31 +93,30 @@ std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
   return groups;
 }
 
-BenchSession bench(const std::string& name, const std::vector<Case>& cases,
-                   const Options& options) {
-  BenchSession session = BenchSession::here(name);
+StudyBench bench(const std::string& name, const std::vector<Case>& cases, const Options& options) {
+  StudyBench result = StudyBench::here(name);
   for (const auto& [scene, records] : by_scene(physics(cases, options))) {
     progress() << scene << ": timing " << records.size() << " cases\n";
-    session.scenes.push_back(bench_scene(scene, records,
-                                         {.rounds = options.rounds,
-                                          .seconds = options.seconds,
-                                          .progress = Countdown("timing round")}));
+    result.scenes.push_back(bench_scene(scene, records,
+                                        {.rounds = options.rounds,
+                                         .seconds = options.seconds,
+                                         .progress = Countdown("timing round")}));
   }
-  return session;
+  return result;
 }
 
 void bench_study(const std::string& name, const Options& options) {
   const Study study = load_study(name, options.preset);
-  const BenchSession session = bench(study.name, cases_of(study), options);
-  const std::filesystem::path file = keep(options.out, session);
+  const StudyBench result = bench(study.name, cases_of(study), options);
+  const std::filesystem::path file = keep(options.out, result);
   if (options.json) {
-    std::cout << to_json(session);
+    std::cout << to_json(result);
     return;
   }
-  for (const SceneBench& scene : session.scenes) {
+  for (const SceneBench& scene : result.scenes) {
     std::cout << scene.scene << '\n';
     print_control(scene, options.tolerance);
-    print_answers(scene, options);
+    print_recommendations(scene, options);
     print_failures(scene);
   }
   std::cout << file.string() << '\n';
@@ -129,12 +128,12 @@ void compare(const std::string& scene, const Options& options) {
   CaseMaker maker;
   for (const std::string& solver : options.solvers)
     cases.push_back(maker.make({scene, options.settings, parse_solver(solver).canonical()}));
-  const BenchSession session = bench(scene, cases, options);
+  const StudyBench result = bench(scene, cases, options);
   if (options.json) {
-    std::cout << to_json(session);
+    std::cout << to_json(result);
     return;
   }
-  for (const SceneBench& one : session.scenes) {
+  for (const SceneBench& one : result.scenes) {
     std::cout << one.scene << '\n';
     print_control(one, options.tolerance);
     for (const BenchedCase& c : one.cases)

@@ -99,7 +99,7 @@ std::filesystem::path keep(const Study& study, const std::vector<ScalingLine>& l
   SceneBench scene{study.scenes.front(), {1, 1, 1}, {}};
   for (const ScalingLine& line : lines)
     for (const BenchedCase& c : line.cases) scene.cases.push_back(c);
-  BenchSession session = BenchSession::here(study.name);
+  StudyBench session = StudyBench::here(study.name);
   session.scenes = {scene};
   return taut::keep(options.out, session);
 }

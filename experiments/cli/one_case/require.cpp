@@ -13,7 +13,7 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/picture/figure.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"

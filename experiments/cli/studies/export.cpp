@@ -12,6 +12,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -52,7 +53,7 @@ Costs stored_costs(const Options& options, const Study& study) {
   const std::vector<std::filesystem::path> files = bench_files(options.results, study.name);
   if (files.empty()) return costs;
   const std::filesystem::path& file = files.front();
-  BenchSession session = bench_from_json(read_text(file), file.string());
+  StudyBench session = bench_from_json(read_text(file), file.string());
   costs.host = session.host;
   for (SceneBench& scene : session.scenes)
     for (BenchedCase& c : scene.cases)

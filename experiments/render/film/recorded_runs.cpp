@@ -6,7 +6,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/palette.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/study/isolate.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"

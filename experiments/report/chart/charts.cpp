@@ -8,9 +8,8 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/settings.hpp"
-#include "experiments/timing/candidate.hpp"
+#include "experiments/report/chart/wording.hpp"
+#include "experiments/timing/bench.hpp"
 
 namespace taut::report {
 

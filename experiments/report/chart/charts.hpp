@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/report/chart/curves.hpp"
-#include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/timing/statistics.hpp"
 

@@ -7,8 +7,7 @@
 #include <set>
 
 #include "experiments/case/record_io.hpp"
-#include "experiments/report/chart/quantity.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 
 namespace taut::report {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 
 namespace taut::report {
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "experiments/report/chart/quantity.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
 
 namespace taut::report {

@@ -8,8 +8,7 @@
 #include <stdexcept>
 
 #include "experiments/case/record_io.hpp"
-#include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 
 namespace taut::report {
 

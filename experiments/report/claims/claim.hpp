@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/chart/quantity.hpp"
 #include "experiments/report/chart/references.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/bench.hpp"

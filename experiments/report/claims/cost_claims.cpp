@@ -3,8 +3,7 @@
 #include <functional>
 #include <set>
 
-#include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 
 namespace taut::report {

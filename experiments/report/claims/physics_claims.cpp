@@ -4,8 +4,7 @@
 
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 
 namespace taut::report {

@@ -5,8 +5,7 @@
 #include <map>
 #include <set>
 
-#include "experiments/report/chart/quantity.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 
 namespace taut::report {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
 
 namespace taut::report {

@@ -6,8 +6,7 @@
 
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/report/chart/charts.hpp"
-#include "experiments/report/chart/quantity.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 
 namespace taut::report {

@@ -1,13 +1,11 @@
 #include <limits>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/quantity.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/model/parts.hpp"
-#include "experiments/timing/answer.hpp"
 #include "experiments/timing/profile.hpp"
+#include "experiments/timing/recommendation.hpp"
 
 namespace taut::report {
 
@@ -91,7 +89,8 @@ Json levels_table(const CostScene& scene) {
   for (const double level : kErrorLevels) {
     Json row = Json::array();
     row.push_back({{"text", q.text(level, 1)}, {"value", level}});
-    for (const SolverAnswer& r : answer(scene.bench, {.error = level}, kErrorMetric).solvers) {
+    for (const SolverRecommendation& r :
+         recommend(scene.bench, {.error = level}, kErrorMetric).solvers) {
       if (!r.at) {
         row.push_back(scene.missed(r.solver));
         continue;
@@ -139,7 +138,7 @@ Json budgets_table(const CostScene& scene) {
 }
 
 /// Who is cheapest for the priced error, by how much, and how to ask again.
-Json answer_row(const CostScene& scene) {
+Json cheapest_row(const CostScene& scene) {
   const SceneBench& bench = scene.bench;
   std::string again = "taut advise " + bench.scene + " --error 1%";
   if (!bench.cases.empty())
@@ -149,7 +148,8 @@ Json answer_row(const CostScene& scene) {
   if (!best) return {bench.scene, "not reached by the settings tried", "–", "–", again};
   const BenchedCase& c = bench.cases[*best];
   std::string others;
-  for (const SolverAnswer& r : answer(bench, {.error = kPricedError}, kErrorMetric).solvers) {
+  for (const SolverRecommendation& r :
+       recommend(bench, {.error = kPricedError}, kErrorMetric).solvers) {
     if (r.at == best) continue;
     others += (others.empty() ? "" : "; ") + solver_title(r.solver) + " ";
     if (!r.at || !r.times) {
@@ -167,7 +167,7 @@ Json answer_row(const CostScene& scene) {
 
 /// Dolan and More's performance profiles at a few factors.
 Json profile_table(const std::vector<SceneBench>& scenes) {
-  const std::vector<Profile> profiles = performance_profiles(scenes, kErrorMetric);
+  const std::vector<PerformanceProfile> profiles = performance_profiles(scenes, kErrorMetric);
   const std::size_t problems = profiles.empty() ? 0 : profiles.front().ratios.size();
   Json table{{"id", "cost-profiles"},
              {"title", "How often each solver is within a factor of the cheapest"},
@@ -182,7 +182,7 @@ Json profile_table(const std::vector<SceneBench>& scenes) {
     table["columns"].push_back(
         {{"title", factor == 1 ? "the cheapest" : "within " + exact(factor) + " ×"}});
   table["columns"].push_back({{"title", "at any cost"}});
-  for (const Profile& profile : profiles) {
+  for (const PerformanceProfile& profile : profiles) {
     if (problems == 0) break;
     Json row = Json::array({solver_title(profile.solver)});
     for (const double factor : kFactors)
@@ -195,21 +195,21 @@ Json profile_table(const std::vector<SceneBench>& scenes) {
 
 }  // namespace
 
-Json json_of_cost(const BenchSession& session, References& refs, Json& charts, Json& tables) {
-  Json cost{{"machine", session.machine}};
-  Json answers{
-      {"id", "cost-answers"},
+Json json_of_cost(const StudyBench& study, References& refs, Json& charts, Json& tables) {
+  Json cost{{"machine", study.machine}};
+  Json cheapest{
+      {"id", "cost-cheapest"},
       {"title", "Cheapest setting for " + quantity(kErrorMetric).text(kPricedError, 1) + " " +
                     quantity(kErrorMetric).title},
       {"caption", "With what all solvers of a scene have; what only one has is said apart."},
       {"columns", Json::array()}};
   for (const char* title :
        {"scene", "cheapest setting", "CPU time per simulated second", "the others", "ask again"})
-    answers["columns"].push_back({{"title", title}});
+    cheapest["columns"].push_back({{"title", title}});
   refs.use("cpu.per_second"), refs.use("cpu.per_step");
   std::vector<SceneBench> shared;
-  for (const SceneBench& bench : session.scenes) {
-    const std::vector<Record> records = BenchSession{"", "", {bench}}.records();
+  for (const SceneBench& bench : study.scenes) {
+    const std::vector<Record> records = StudyBench{"", "", {bench}}.records();
     shared.push_back(with_shared_parameters(bench));
     const CostScene scene{shared.back(), records, refs};
     Json one{
@@ -230,11 +230,11 @@ Json json_of_cost(const BenchSession& session, References& refs, Json& charts, J
       one["tables"].push_back(table["id"]);
       tables.push_back(std::move(table));
     }
-    answers["rows"].push_back(answer_row(scene));
+    cheapest["rows"].push_back(cheapest_row(scene));
     cost["scenes"].push_back(std::move(one));
   }
-  cost["tables"].push_back("cost-answers");
-  tables.push_back(std::move(answers));
+  cost["tables"].push_back("cost-cheapest");
+  tables.push_back(std::move(cheapest));
   if (Json profiles = profile_table(shared); !profiles["rows"].empty()) {
     cost["tables"].push_back(profiles["id"]);
     tables.push_back(std::move(profiles));

@@ -3,8 +3,7 @@
 
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/quantity.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/report/model/parts.hpp"
 

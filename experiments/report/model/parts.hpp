@@ -22,7 +22,7 @@ Json json_of(const Chart&, References&);
 Json json_of(const StatusMap&, const std::string& id, References&);
 Json json_of(const SceneMedia&, const ReportInput&, References&, std::size_t& budget);
 /// What accuracy costs; its charts and tables go to those of the model.
-Json json_of_cost(const BenchSession&, References&, Json& charts, Json& tables);
+Json json_of_cost(const StudyBench&, References&, Json& charts, Json& tables);
 /// What two folders have otherwise; its table goes to those of the model.
 Json json_of(const Differences&, References&, Json& tables);
 /// What scenes require and how far solvers go; null without either. Its tables go to the model's.

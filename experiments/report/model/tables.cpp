@@ -4,9 +4,7 @@
 #include <cmath>
 
 #include "experiments/case/record_io.hpp"
-#include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/quantity.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/truths/vasilovici/assertions.hpp"
 

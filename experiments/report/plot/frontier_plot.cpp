@@ -5,6 +5,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/system/files.hpp"
 

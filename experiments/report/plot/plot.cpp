@@ -9,8 +9,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
-#include "experiments/report/chart/quantity.hpp"
-#include "experiments/report/chart/settings.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/timing/profile.hpp"
@@ -241,10 +240,10 @@ Sheet map_sheet(const std::vector<StatusMap>& maps, const std::string& title) {
   return sheet;
 }
 
-Sheet profile_sheet(const std::vector<Profile>& profiles, const std::string& title) {
+Sheet profile_sheet(const std::vector<PerformanceProfile>& profiles, const std::string& title) {
   Sheet sheet;
   double most = 2;  // of the finite factors
-  for (const Profile& profile : profiles)
+  for (const PerformanceProfile& profile : profiles)
     for (const double r : profile.ratios)
       if (std::isfinite(r)) most = std::max(most, r);
   sheet.settings = "set title " + gnuplot_string(title) +
@@ -253,7 +252,7 @@ Sheet profile_sheet(const std::vector<Profile>& profiles, const std::string& tit
                    exact(1.1 * most) + "]\nset yrange [0:105]\n";
   sheet.csv = "curve,solver,factor,share\n";
   for (std::size_t i = 0; i < profiles.size(); ++i) {
-    const Profile& profile = profiles[i];
+    const PerformanceProfile& profile = profiles[i];
     std::set<double> factors{1, 1.1 * most};
     for (const double r : profile.ratios)
       if (std::isfinite(r)) factors.insert(r);
@@ -347,13 +346,13 @@ PlotFiles make_plot(PlotSpec spec, const Records& records, std::span<const TimeS
   return write_plot(spec, sheet, folder);
 }
 
-PlotFiles make_profile_plot(PlotSpec spec, const BenchSession& bench,
+PlotFiles make_profile_plot(PlotSpec spec, const StudyBench& bench,
                             const std::filesystem::path& folder) {
   const PlotKind& kind = find_plot_kind("profile");
   spec.x = kind.x;
   if (spec.y.empty()) spec.y = kind.y;
   if (spec.file.empty()) spec.file = slug("profile-" + spec.y);
-  const std::vector<Profile> profiles = performance_profiles(bench.scenes, spec.y);
+  const std::vector<PerformanceProfile> profiles = performance_profiles(bench.scenes, spec.y);
   if (profiles.empty() || profiles.front().ratios.empty())
     throw InputError("no setting of any solver reaches an error of " + spec.y +
                      " that is asked for");

@@ -42,7 +42,7 @@ PlotFiles make_plot(PlotSpec, const Records&, std::span<const TimeSeries>,
 
 /// The share of problems, an error `spec.y` to be reached on a scene, in which each solver costs at
 /// most a factor of the best (experiments/timing/profile.hpp). Throws as make_plot().
-PlotFiles make_profile_plot(PlotSpec, const BenchSession&, const std::filesystem::path& folder);
+PlotFiles make_profile_plot(PlotSpec, const StudyBench&, const std::filesystem::path& folder);
 
 /// Throws InputError with a suggestion if no case and no metric has a value of this name.
 void check_value_name(const std::string& name, const Records&);

@@ -33,7 +33,7 @@ class Timed {
       store.commit(store.stage(one.key), records.back());
     }
     for (const auto& [host, seconds] : hosts) {
-      BenchSession session = BenchSession::here(study.name);
+      StudyBench session = StudyBench::here(study.name);
       if (!host.empty()) session.host = host, session.machine = "the processor of " + host;
       SceneBench scene{"hang", {0.99, 1, 1.01}, {}};
       for (std::size_t i = 0; i < records.size(); ++i) {
@@ -63,7 +63,7 @@ TEST(Hosts, TheModelHasTheCostOfOneHostAndNamesTheOthers) {
   const Timed both({{"zeus", 5e-3}, {"", 1e-3}, {"ares", 9e-3}});
   EXPECT_EQ(both.costs(), (std::vector{1e-3, 2e-3})) << "of this host, whatever others measured";
   const ReportInput input = stored_results({both.study}, both.store);
-  EXPECT_EQ(input.bench->machine, BenchSession::here("").machine);
+  EXPECT_EQ(input.bench->machine, StudyBench::here("").machine);
   ASSERT_EQ(input.cost_hosts.size(), 3u);
   EXPECT_NE(input.cost_hosts[0].find("; shown"), std::string::npos);
   for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {

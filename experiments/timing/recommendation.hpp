@@ -9,17 +9,17 @@
 namespace taut {
 
 /// How a solver's best setting serves a target.
-struct SolverAnswer {
+struct SolverRecommendation {
   std::string solver;
   std::optional<std::size_t> at;  ///< index of the case; nothing: not reached
   std::optional<Interval> times;  ///< its cost over that of the best of all
 };
 
 /// Which of the timed cases serves a target best, and how well every solver does.
-struct Answer {
+struct Recommendation {
   Target target;
-  std::vector<SolverAnswer> solvers;     ///< in order of appearance
-  std::optional<std::size_t> best;       ///< index of the case; nothing: none meets the target
+  std::vector<SolverRecommendation> solvers;  ///< in order of appearance
+  std::optional<std::size_t> best;            ///< index of the case; nothing: none meets the target
   std::optional<std::size_t> runner_up;  ///< the best of another solver, else the next of the same
   std::optional<Interval> ratio;         ///< cost of the runner-up over that of the best
   /// Of an error, judge() of that ratio; a budget is clear if the whole interval of the cost meets
@@ -27,8 +27,8 @@ struct Answer {
   Certainty certainty = Certainty::unopposed;
   double tolerance = kTolerance;  ///< the smallest difference that matters
 };
-Answer answer(const SceneBench&, const Target&, const std::string& metric,
-              double tolerance = kTolerance);
+Recommendation recommend(const SceneBench&, const Target&, const std::string& metric,
+                         double tolerance = kTolerance);
 
 /// Where the cost of a case is to be expected in another session [CPU s per simulated s]: its
 /// interval, wider by how far identical code strayed from itself in this one.
@@ -37,10 +37,10 @@ Interval cost_expected_again(const SceneBench&, std::size_t at);
 /// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms per frame of 1/60 s".
 std::string text(const Target&, const std::string& metric);
 
-/// The answer in lines, the first without indentation: who, for what error and cost, and how sure
-/// of what ("clearly within the budget", "likely cheaper than bullet", "costs the same as bullet
-/// within 5 %"); then a line for every other solver.
-std::string text(const Answer&, const SceneBench&, const std::string& metric);
+/// The recommendation in lines, the first without indentation: who, for what error and cost, and
+/// how sure of what ("clearly within the budget", "likely cheaper than bullet", "costs the same as
+/// bullet within 5 %"); then a line for every other solver.
+std::string text(const Recommendation&, const SceneBench&, const std::string& metric);
 
 /// Whom to time: the best by quick cost of every solver that meets the target, at most `most`, then
 /// the next best of the leader. Indices into `tried`, best first.

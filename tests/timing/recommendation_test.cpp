@@ -1,5 +1,5 @@
 // Who is recommended, and how sure that is.
-#include "experiments/timing/answer.hpp"
+#include "experiments/timing/recommendation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,10 +24,10 @@ SceneBench bench(std::vector<BenchedCase> cases, double noise = 0.01) {
   return {"scene", {1 - noise, 1, 1 + noise}, std::move(cases)};
 }
 
-TEST(Answer, TheCheapestWithinTheErrorWinsAndTheRivalIsAnotherSolver) {
+TEST(Recommendation, TheCheapestWithinTheErrorWinsAndTheRivalIsAnotherSolver) {
   const SceneBench b = bench({finalist("a", 2, 0.009), finalist("a", 1, 0.01),
                               finalist("b", 3, 0.001), finalist("c", 0.1, 0.02)});
-  const Answer found = answer(b, {0.01, {}}, "e", 0.05);
+  const Recommendation found = recommend(b, {0.01, {}}, "e", 0.05);
   EXPECT_EQ(found.best, 1u);
   EXPECT_EQ(found.runner_up, 2u);
   EXPECT_NEAR(found.ratio->mid, 3, 1e-9);
@@ -35,10 +35,10 @@ TEST(Answer, TheCheapestWithinTheErrorWinsAndTheRivalIsAnotherSolver) {
 }
 
 // However narrow the interval is: 0.1 % is a difference that nobody should choose by.
-TEST(Answer, LessThanTheToleranceIsNoDifferenceAndSaidSo) {
+TEST(Recommendation, LessThanTheToleranceIsNoDifferenceAndSaidSo) {
   const auto said = [](double cost, double tolerance) {
     const SceneBench b = bench({finalist("jakobsen", 1, 0.01), finalist("bullet", cost, 0.01)});
-    const Answer found = answer(b, {0.01, {}}, "e", tolerance);
+    const Recommendation found = recommend(b, {0.01, {}}, "e", tolerance);
     EXPECT_EQ(found.certainty == Certainty::none, cost < 1 + tolerance) << cost;
     const std::string all = text(found, b, "e");
     return all.substr(0, all.find('\n'));
@@ -51,12 +51,12 @@ TEST(Answer, LessThanTheToleranceIsNoDifferenceAndSaidSo) {
 }
 
 // Equal in the middle is not the same: half of the blocks of one are dearer by a fifth.
-TEST(Answer, NothingIsToldFromAWideIntervalOrUnderNoise) {
+TEST(Recommendation, NothingIsToldFromAWideIntervalOrUnderNoise) {
   BenchedCase wide = finalist("bullet", 1, 0.01);
   for (std::size_t i = 0; i < wide.timing.samples.size(); ++i)
     wide.timing.samples[i] *= i / 2 % 2 == 0 ? 1.2 : 1 / 1.18;
   const auto said = [](const SceneBench& b) {
-    const std::string all = text(answer(b, {0.01, {}}, "e"), b, "e");
+    const std::string all = text(recommend(b, {0.01, {}}, "e"), b, "e");
     return all.substr(0, all.find('\n'));
   };
   EXPECT_TRUE(said(bench({finalist("jakobsen", 1, 0.01), wide}))
@@ -65,31 +65,31 @@ TEST(Answer, NothingIsToldFromAWideIntervalOrUnderNoise) {
                   .ends_with("; too noisy to compare with bullet"));
 }
 
-TEST(Answer, ANoisyMachineIsNeverClear) {
-  const Answer found =
-      answer(bench({finalist("a", 1, 0.01), finalist("b", 3, 0.01)}, 0.3), {0.01, {}}, "e", 0.05);
+TEST(Recommendation, ANoisyMachineIsNeverClear) {
+  const Recommendation found = recommend(
+      bench({finalist("a", 1, 0.01), finalist("b", 3, 0.01)}, 0.3), {0.01, {}}, "e", 0.05);
   EXPECT_EQ(found.certainty, Certainty::likely);
 }
 
-TEST(Answer, ABudgetBuysTheSmallestErrorAndIsClearOnlyIfTheWholeIntervalFits) {
+TEST(Recommendation, ABudgetBuysTheSmallestErrorAndIsClearOnlyIfTheWholeIntervalFits) {
   const SceneBench b =
       bench({finalist("a", 1, 0.01), finalist("b", 2, 0.001), finalist("c", 9, 0)});
-  EXPECT_EQ(answer(b, {{}, 4}, "e", 0.05).best, 1u);
-  EXPECT_EQ(answer(b, {{}, 4}, "e", 0.05).certainty, Certainty::clear);
-  EXPECT_EQ(answer(b, {{}, 2.0001}, "e", 0.05).certainty, Certainty::likely);
+  EXPECT_EQ(recommend(b, {{}, 4}, "e", 0.05).best, 1u);
+  EXPECT_EQ(recommend(b, {{}, 4}, "e", 0.05).certainty, Certainty::clear);
+  EXPECT_EQ(recommend(b, {{}, 2.0001}, "e", 0.05).certainty, Certainty::likely);
 }
 
-TEST(Answer, NobodyIsRecommendedForWhatNobodyReaches) {
-  EXPECT_FALSE(answer(bench({finalist("a", 1, 0.01)}), {1e-9, {}}, "e", 0.05).best);
-  EXPECT_EQ(answer(bench({finalist("a", 1, 0.01)}), {1, {}}, "e", 0.05).certainty,
+TEST(Recommendation, NobodyIsRecommendedForWhatNobodyReaches) {
+  EXPECT_FALSE(recommend(bench({finalist("a", 1, 0.01)}), {1e-9, {}}, "e", 0.05).best);
+  EXPECT_EQ(recommend(bench({finalist("a", 1, 0.01)}), {1, {}}, "e", 0.05).certainty,
             Certainty::unopposed);
 }
 
-TEST(Answer, EverySolverIsNamedWithWhatItCostsOrHowNearItCame) {
+TEST(Recommendation, EverySolverIsNamedWithWhatItCostsOrHowNearItCame) {
   SceneBench b = bench({finalist("jakobsen", 1, 0.01), finalist("bullet", 3, 0.001),
                         finalist("xpbd", 0.1, 0.02), finalist("mass-spring", 0.01, 0.001)});
   b.cases[3].record.status.kind = Status::Kind::exploded;  // a fast failure never ranks
-  const Answer found = answer(b, {0.01, {}}, "e");
+  const Recommendation found = recommend(b, {0.01, {}}, "e");
   EXPECT_EQ(found.best, 0u);
   EXPECT_EQ(found.solvers[1].at, 1u);
   EXPECT_NEAR(found.solvers[1].times->mid, 3, 1e-9);
@@ -100,12 +100,12 @@ TEST(Answer, EverySolverIsNamedWithWhatItCostsOrHowNearItCame) {
         "  xpbd: not by the settings tried; nearest: xpbd, e 0.02",
         "  mass-spring: not by the settings tried; every case failed\n"})
     EXPECT_NE(said.find(part), std::string::npos) << part << " in\n" << said;
-  EXPECT_NE(text(answer(b, {1e-9, {}}, "e"), b, "e").find("not reached"), std::string::npos);
+  EXPECT_NE(text(recommend(b, {1e-9, {}}, "e"), b, "e").find("not reached"), std::string::npos);
 }
 
-TEST(Answer, TheWordsSayOfWhatItIsSure) {
+TEST(Recommendation, TheWordsSayOfWhatItIsSure) {
   const auto said = [](const SceneBench& b, const Target& target) {
-    const std::string all = text(answer(b, target, "e", 0.05), b, "e");
+    const std::string all = text(recommend(b, target, "e", 0.05), b, "e");
     return all.substr(0, all.find('\n'));
   };
   const BenchedCase a = finalist("jakobsen", 1, 0.01), b = finalist("bullet", 1, 0.02);
@@ -133,7 +133,7 @@ std::vector<double> session(int rounds, double sigma, std::mt19937_64& random) {
   return samples;
 }
 
-TEST(Answer, ASecondSessionLiesInsideTheIntervalInNineOfTenRuns) {
+TEST(Recommendation, ASecondSessionLiesInsideTheIntervalInNineOfTenRuns) {
   std::mt19937_64 random(1);
   for (const int rounds : {2, 8})  // as few as advise takes, and as many as it wants
     for (const double sigma : {0.01, 0.1}) {
@@ -152,7 +152,7 @@ TEST(Answer, ASecondSessionLiesInsideTheIntervalInNineOfTenRuns) {
     }
 }
 
-TEST(Answer, EverySolverSendsItsBestToTheFinal) {
+TEST(Recommendation, EverySolverSendsItsBestToTheFinal) {
   const std::vector<Candidate> tried{{"a", "a1", {0.9, 1, 99}, 0.01},
                                      {"a", "a2", {0.2, 2, 20}, 0.01},
                                      {"a", "a3", {0.1, 3, 10}, 0.01},

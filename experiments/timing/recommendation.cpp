@@ -1,4 +1,4 @@
-#include "experiments/timing/answer.hpp"
+#include "experiments/timing/recommendation.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -27,27 +27,28 @@ std::string line(const BenchedCase& c, const std::string& metric) {
 }
 
 /// What the certainty speaks of: the lead over the runner-up, or whether the budget holds.
-std::string verdict(const Answer& answer, const SceneBench& bench) {
-  const std::string sure = answer.certainty == Certainty::clear ? "clearly " : "likely ";
-  if (answer.target.budget) return sure + "within the budget";
-  if (answer.certainty == Certainty::unopposed) return "nothing else timed reaches it";
-  const Record& rival = bench.cases[*answer.runner_up].record;
-  const std::string rest =
-      rival.solver == bench.cases[*answer.best].record.solver ? "the next setting" : rival.solver;
-  if (answer.certainty == Certainty::too_noisy) return "too noisy to compare with " + rest;
-  if (answer.certainty == Certainty::none)
-    return same_within(answer.tolerance, *answer.ratio)
-               ? "costs the same as " + rest + " within " + number_text(100 * answer.tolerance) +
-                     " %"
+std::string verdict(const Recommendation& recommendation, const SceneBench& bench) {
+  const std::string sure = recommendation.certainty == Certainty::clear ? "clearly " : "likely ";
+  if (recommendation.target.budget) return sure + "within the budget";
+  if (recommendation.certainty == Certainty::unopposed) return "nothing else timed reaches it";
+  const Record& rival = bench.cases[*recommendation.runner_up].record;
+  const std::string rest = rival.solver == bench.cases[*recommendation.best].record.solver
+                               ? "the next setting"
+                               : rival.solver;
+  if (recommendation.certainty == Certainty::too_noisy) return "too noisy to compare with " + rest;
+  if (recommendation.certainty == Certainty::none)
+    return same_within(recommendation.tolerance, *recommendation.ratio)
+               ? "costs the same as " + rest + " within " +
+                     number_text(100 * recommendation.tolerance) + " %"
                : "no cheaper than " + rest + " that can be told";
   return sure + "cheaper than " + rest;
 }
 
 /// What a solver that did not reach the target came nearest to.
-std::string nearest(const SolverAnswer& solver, const SceneBench& bench, const Answer& answer,
-                    const std::string& metric) {
+std::string nearest(const SolverRecommendation& solver, const SceneBench& bench,
+                    const Recommendation& recommendation, const std::string& metric) {
   constexpr double kAny = std::numeric_limits<double>::max();
-  const Target any = answer.target.error ? Target{{}, kAny} : Target{kAny, {}};
+  const Target any = recommendation.target.error ? Target{{}, kAny} : Target{kAny, {}};
   const auto at = best_for(any, bench.candidates(metric), solver.solver);
   const std::string missed = bench.searched_to_the_end(solver.solver)
                                  ? "never, to the end of its accuracy parameters"
@@ -70,32 +71,34 @@ std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Ta
   return chosen;
 }
 
-Answer answer(const SceneBench& bench, const Target& target, const std::string& metric,
-              double tolerance) {
+Recommendation recommend(const SceneBench& bench, const Target& target, const std::string& metric,
+                         double tolerance) {
   const std::vector<Candidate> candidates = bench.candidates(metric);
   const std::vector<std::size_t> order = ranking(candidates, target);
-  Answer answer{.target = target, .tolerance = tolerance};
+  Recommendation recommendation{.target = target, .tolerance = tolerance};
   for (const std::string& solver : solvers_of(bench))
-    answer.solvers.push_back({solver, best_for(target, candidates, solver), {}});
-  if (order.empty()) return answer;
-  answer.best = order.front();
-  for (SolverAnswer& solver : answer.solvers)
-    if (solver.at) solver.times = bench.ratio(*solver.at, *answer.best);
+    recommendation.solvers.push_back({solver, best_for(target, candidates, solver), {}});
+  if (order.empty()) return recommendation;
+  recommendation.best = order.front();
+  for (SolverRecommendation& solver : recommendation.solvers)
+    if (solver.at) solver.times = bench.ratio(*solver.at, *recommendation.best);
   const auto rival = std::find_if(order.begin() + 1, order.end(), [&](std::size_t i) {
-    return candidates[i].solver != candidates[*answer.best].solver;
+    return candidates[i].solver != candidates[*recommendation.best].solver;
   });
   if (rival != order.end())
-    answer.runner_up = *rival;
+    recommendation.runner_up = *rival;
   else if (order.size() > 1)
-    answer.runner_up = order[1];
-  if (answer.runner_up) answer.ratio = bench.ratio(*answer.runner_up, *answer.best);
+    recommendation.runner_up = order[1];
+  if (recommendation.runner_up)
+    recommendation.ratio = bench.ratio(*recommendation.runner_up, *recommendation.best);
   if (target.budget)
     // Errors repeat to the last bit; what is uncertain is whether the budget holds.
-    answer.certainty =
-        candidates[*answer.best].cost.high <= *target.budget ? Certainty::clear : Certainty::likely;
-  else if (answer.ratio)
-    answer.certainty = judge(*answer.ratio, bench.control, tolerance);
-  return answer;
+    recommendation.certainty = candidates[*recommendation.best].cost.high <= *target.budget
+                                   ? Certainty::clear
+                                   : Certainty::likely;
+  else if (recommendation.ratio)
+    recommendation.certainty = judge(*recommendation.ratio, bench.control, tolerance);
+  return recommendation;
 }
 
 Interval cost_expected_again(const SceneBench& bench, std::size_t at) {
@@ -110,18 +113,20 @@ std::string text(const Target& target, const std::string& metric) {
          " ms per frame of 1/60 s";
 }
 
-std::string text(const Answer& answer, const SceneBench& bench, const std::string& metric) {
-  std::string out = text(answer.target, metric) + ": ";
-  if (answer.best)
-    out += line(bench.cases[*answer.best], metric) + "; " + verdict(answer, bench) + "\n";
+std::string text(const Recommendation& recommendation, const SceneBench& bench,
+                 const std::string& metric) {
+  std::string out = text(recommendation.target, metric) + ": ";
+  if (recommendation.best)
+    out += line(bench.cases[*recommendation.best], metric) + "; " + verdict(recommendation, bench) +
+           "\n";
   else
     out += "not reached\n";
-  for (const SolverAnswer& solver : answer.solvers) {
-    if (answer.best && solver.at == answer.best) continue;
+  for (const SolverRecommendation& solver : recommendation.solvers) {
+    if (recommendation.best && solver.at == recommendation.best) continue;
     out += "  " + solver.solver + ": ";
     out += solver.at ? (solver.times ? interval_text(*solver.times) + " x the cost: " : "") +
                            line(bench.cases[*solver.at], metric)
-                     : nearest(solver, bench, answer, metric);
+                     : nearest(solver, bench, recommendation, metric);
     out += '\n';
   }
   return out;

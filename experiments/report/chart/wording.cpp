@@ -1,0 +1,381 @@
+#include "experiments/report/chart/wording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+#include "core/model/input_error.hpp"
+#include "core/model/shortest.hpp"
+#include "core/model/solver.hpp"
+
+namespace taut::report {
+
+namespace {
+
+std::string print(const char* format, int precision, double value) {
+  std::array<char, 400> text{};
+  const int size = std::snprintf(text.data(), text.size(), format, precision, value);
+  return {text.data(), static_cast<std::size_t>(std::max(0, size))};
+}
+
+constexpr std::array<const char*, 10> kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+
+/// 10 to this power.
+std::string power_of_ten(int exponent) {
+  std::string text = exponent < 0 ? "10⁻" : "10";
+  for (const char digit : std::to_string(std::abs(exponent)))
+    text += kRaised[static_cast<std::size_t>(digit - '0')];
+  return text;
+}
+
+/// "3.40e-13" -> "3.4×10⁻¹³", "1e+06" -> "10⁶".
+std::string powers(const std::string& scientific) {
+  const auto e = scientific.find('e');
+  std::string mantissa = scientific.substr(0, e);
+  if (mantissa.find('.') != std::string::npos) {
+    mantissa.erase(mantissa.find_last_not_of('0') + 1);
+    if (mantissa.back() == '.') mantissa.pop_back();
+  }
+  return (mantissa == "1" ? "" : mantissa + "×") +
+         power_of_ten(std::stoi(scientific.substr(e + 1)));
+}
+
+}  // namespace
+
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return significant(value);
+  const std::string text = print("%.*f", decimals, std::abs(value));
+  const bool nothing = text.find_first_not_of("0.") == std::string::npos;
+  return (value < 0 && !nothing ? "−" : "") + text;
+}
+
+int decimals_for(double width) {
+  if (!(width > 0) || !std::isfinite(width)) return 6;
+  const double exponent = std::floor(std::log10(width));
+  const bool two = width / std::pow(10.0, exponent) < 3;
+  return std::clamp(static_cast<int>(two ? 1 - exponent : -exponent), 0, 6);
+}
+
+std::string significant(double value, int digits) {
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
+  if (value == 0) return "0";
+  const double magnitude = std::abs(value);
+  // Rounded first, so that 9.96 with two digits becomes "10" and not "10.0".
+  const std::string rounded = print("%.*e", digits - 1, magnitude);
+  const int exponent = std::stoi(rounded.substr(rounded.find('e') + 1));
+  std::string text;
+  if (exponent < -4 || exponent > 5)
+    text = powers(rounded);
+  else
+    text = print("%.*f", std::max(0, digits - 1 - exponent), magnitude);
+  return (value < 0 ? "−" : "") + text;
+}
+
+std::string exact(double value) { return std::isnan(value) ? "" : shortest(value); }
+
+std::string typeset(std::string_view plain) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSigns{{{"^2", "²"},
+                                                                                 {"^3", "³"},
+                                                                                 {">=", "≥"},
+                                                                                 {"<=", "≤"},
+                                                                                 {"+-", "±"},
+                                                                                 {" x ", " × "},
+                                                                                 {" - ", " − "},
+                                                                                 {"mu", "μ"},
+                                                                                 {"pi", "π"}}};
+  const auto at = [&](std::size_t i) { return i < plain.size() ? plain[i] : ' '; };
+  const auto letter = [&](std::size_t i) {
+    return at(i) == '_' || std::isalnum(static_cast<unsigned char>(at(i)));
+  };
+  const auto digit = [&](std::size_t i) { return std::isdigit(static_cast<unsigned char>(at(i))); };
+  std::string out;
+  for (std::size_t i = 0; i < plain.size();) {
+    const auto found = std::ranges::find_if(kSigns, [&](const auto& sign) {
+      const bool word = std::isalpha(static_cast<unsigned char>(sign.first[0]));
+      return plain.substr(i).starts_with(sign.first) &&
+             (!word || (!letter(i - 1) && !letter(i + sign.first.size())));
+    });
+    const bool minus = at(i) == '-' && digit(i + 1) && (at(i - 1) == ' ' || at(i - 1) == '(');
+    std::size_t end = i + 1;  // of an exponent behind a digit: e-12
+    if (at(end) == '-' || at(end) == '+') ++end;
+    const std::size_t digits = end;
+    while (digit(end)) ++end;
+    if (found != kSigns.end()) {
+      out += found->second, i += found->first.size();
+    } else if (at(i) == 'e' && digit(i - 1) && end > digits && !letter(end)) {
+      out += "×" + power_of_ten(std::stoi(std::string(plain.substr(i + 1, end - i - 1)))), i = end;
+    } else {
+      out += minus ? "−" : std::string(1, plain[i]), ++i;
+    }
+  }
+  return out;
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+namespace {
+
+const SolverEntry* find_entry(std::string_view solver) {
+  const auto known = solvers();
+  const auto found = std::ranges::find(known, solver, &SolverEntry::name);
+  return found == known.end() ? nullptr : *found;
+}
+
+std::vector<std::string> parts(std::string_view names) {
+  std::vector<std::string> all;
+  for (std::size_t end = 0; !names.empty(); names.remove_prefix(std::min(end + 1, names.size()))) {
+    end = std::min(names.find('|'), names.size());
+    all.emplace_back(names.substr(0, end));
+  }
+  return all;
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr Unit kMilliseconds{"s", "ms", 1e3}, kCost{"s", "ms", 1e3, true, true};
+
+/// What is no metric's value: settings, sizes and costs.
+struct Titled {
+  std::string_view name, title;
+  Unit unit;
+  std::string_view help = "";
+};
+constexpr std::array kTitles{
+    Titled{"dt", "time step", kMilliseconds},
+    Titled{kSweeps, "sweeps per substep", kNumber},
+    Titled{kSubsteps, "substeps per step", kNumber},
+    Titled{"steps", "steps", kNumber},
+    Titled{"t", "simulated time", kTime},
+    Titled{"projections", "constraint projections per step", kNumber},
+    Titled{"vertices", "vertices", kNumber},
+    Titled{"links", "links", kNumber},
+    Titled{"cpu.per_second", "CPU time per simulated second", kCost,
+           "median of samples that alternate between the solvers, one thread's time"},
+    Titled{"cpu.per_step", "CPU time per step", kCost,
+           "median of samples that alternate between the solvers, one thread's time"},
+    Titled{"wall.per_step", "wall time per step", kCost, "median of the same samples"},
+    Titled{"memory.peak", "peak memory of the process", {"bytes", "MB", 1e-6}},
+    Titled{"structural", "structural links: stiffness in N/m, of xpbd compliance in m/N", kNumber},
+    Titled{"omega", "relaxation factor", kNumber},
+    Titled{"cloth.weights.0.factor", "mass ratio", kNumber},
+};
+
+/// The number that makes up all of the text; NaN if none does.
+double number(const std::string& text) {
+  double value = kNaN;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  return parsed.ec == std::errc() && parsed.ptr == end ? value : kNaN;
+}
+
+/// The last number that the case gives a scene key; NaN if none.
+double overridden(const Record& record, const std::string& key) {
+  double value = kNaN;
+  for (const std::string& text : record.spec.overrides)
+    if (text.starts_with(key + "=")) value = number(text.substr(key.size() + 1));
+  return value;
+}
+
+/// "stretch.max" -> "largest stretch"
+std::string title_from(std::string_view name) {
+  std::string title(name);
+  std::ranges::replace_if(
+      title, [](char c) { return c == '.' || c == '_'; }, ' ');
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{" rms", "RMS "},
+                                 {" max", "largest "},
+                                 {" peak", "peak "},
+                                 {" p95", "95th percentile "},
+                                 {" mean", "mean "}})
+    if (title.ends_with(from)) title = to + title.substr(0, title.size() - from.size());
+  return title;
+}
+
+}  // namespace
+
+double value_of(const Record& record, std::string_view name) {
+  if (name == "dt") return record.dt;
+  if (name == "steps") return record.steps;
+  if (name == "vertices") return record.vertices;
+  if (name == "links") return record.links;
+  if (name == "projections") return static_cast<double>(record.projections);
+  if (name == kStrainFloor) {
+    for (const auto& [line, text] : record.resolved_settings)
+      if (line == "floor of strain") return std::strtod(text.c_str(), nullptr);
+    return kNaN;
+  }
+  const std::string key(name);
+  if (const auto value = record.values.find(key); value != record.values.end())
+    return value->second;
+  const auto param = record.params.find(parameter_of(record.solver, key));
+  return param == record.params.end() ? overridden(record, key) : number(param->second);
+}
+
+std::string shown(const Unit& unit, double si, int digits) {
+  const bool counted = unit.shown.empty() && si == std::round(si) && std::abs(si) < 1e7;
+  const std::string number = counted ? exact(si) : significant(si * unit.scale, digits);
+  return unit.shown.empty() || !std::isfinite(si) ? number
+                                                  : number + "\u00A0" + std::string(unit.shown);
+}
+
+std::string Quantity::label() const {
+  return unit.shown.empty() ? title : title + " [" + std::string(unit.shown) + "]";
+}
+
+Quantity quantity(std::string_view name) {
+  std::string own(name);
+  if (const auto known = std::ranges::find(kTitles, name, &Titled::name); known != kTitles.end())
+    return {own, std::string(known->title), known->unit, std::string(known->help)};
+  const ValueSpec* value = find_value(name).second;
+  if (!value) return {own, own};
+  return {own, value->title.empty() ? title_from(name) : std::string(value->title), value->unit,
+          std::string(value->help), value->window};
+}
+
+std::vector<std::string> quantity_names() {
+  std::vector<std::string> names = value_names();
+  for (const Titled& known : kTitles) names.emplace_back(known.name);
+  return names;
+}
+
+std::string solver_title(std::string_view solver) {
+  if (const SolverEntry* entry = find_entry(solver); entry && !entry->title.empty())
+    return std::string(entry->title);
+  std::string title(solver);
+  std::ranges::replace(title, '_', ' ');
+  std::ranges::replace(title, '-', ' ');
+  return capitalised(title);
+}
+
+std::string parameter_of(std::string_view solver, std::string_view name) {
+  std::string_view own;
+  if (const SolverEntry* entry = find_entry(solver)) {
+    if (name == kSweeps) own = entry->accuracy.sweeps;
+    if (name == kSubsteps) own = entry->accuracy.substeps;
+  }
+  return std::string(own.empty() ? name : own);
+}
+
+std::vector<std::string> accuracy_parameters(const std::string& solver) {
+  std::vector<std::string> all{parameter_of(solver, kSubsteps), parameter_of(solver, kSweeps)};
+  const SolverEntry* entry = find_entry(solver);
+  for (const std::string& name : parts(entry ? entry->accuracy.labelled : ""))
+    if (std::ranges::find(all, name) == all.end()) all.push_back(name);
+  return all;
+}
+
+std::vector<std::string> extras(const Record& r, const std::map<std::string, std::string>& others) {
+  std::vector<std::string> used;
+  const SolverEntry* entry = find_entry(r.solver);
+  for (const std::string& name : parts(entry ? entry->accuracy.accelerators : "")) {
+    const auto spec = std::ranges::find(entry->params, name, &ParamSpec::name);
+    const auto at = r.params.find(name);
+    if (at != r.params.end() && at->second != spec->default_value && !others.contains(name))
+      used.push_back(name);
+  }
+  return used;
+}
+
+std::string Work::text() const {
+  if (sweeps < 0) return substeps < 0 ? "defaults" : std::to_string(substeps) + " substeps";
+  if (substeps < 0) return std::to_string(sweeps) + " sweeps";
+  return std::to_string(substeps) + " × " + std::to_string(sweeps);
+}
+
+Work work_of(const Record& r) {
+  const auto number = [&](std::string_view name) {
+    const double value = value_of(r, name);
+    return std::isfinite(value) ? static_cast<int>(value) : -1;
+  };
+  const int substeps = number(kSubsteps), sweeps = number(kSweeps);
+  return {sweeps >= 0 ? std::max(1, substeps) : substeps, sweeps};  // whole steps are one substep
+}
+
+std::string brief_settings(const std::string& solver) try {
+  const SolverChoice choice = parse_solver(solver);
+  const std::string sweeps = parameter_of(choice.entry->name, kSweeps),
+                    substeps = parameter_of(choice.entry->name, kSubsteps);
+  Work work;
+  std::string text;
+  for (const ParamSpec& spec : choice.params.specs()) {
+    const std::string value(choice.params.value(spec.name));
+    if (spec.name == sweeps)
+      work.sweeps = std::stoi(value);
+    else if (spec.name == substeps)
+      work.substeps = std::stoi(value);
+    else if (value != spec.default_value)
+      text += ", " + std::string(spec.name) + "=" + value;
+  }
+  if (work.sweeps >= 0) work.substeps = std::max(1, work.substeps);
+  if (work == Work{} && !text.empty()) return text.substr(2);
+  return work.text() + text;
+} catch (const InputError&) {
+  const auto colon = solver.find(':');
+  return colon == std::string::npos ? "" : solver.substr(colon + 1);
+}
+
+std::string unequal_work(const Records& records) {
+  std::map<std::string, std::set<Work>> works;
+  std::vector<std::string> solvers;
+  for (const Record* r : records)
+    if (const Work work = work_of(*r); work.sweeps > 0) {
+      if (!works.contains(r->solver)) solvers.push_back(r->solver);
+      works[r->solver].insert(work);
+    }
+  if (works.size() < 2) return "";
+  std::set<Work> common = works.begin()->second;
+  std::string text;
+  for (const std::string& solver : solvers) {
+    const std::set<Work>& own = works[solver];
+    std::erase_if(common, [&](const Work& work) { return !own.contains(work); });
+    const Work &first = *own.begin(), &last = *own.rbegin();
+    text += (text.empty() ? "" : ", ") + solver_title(solver) + " " + first.text() +
+            (own.size() > 1 ? " to " + last.text() : "");
+  }
+  return common.empty() ? text + " (substeps × sweeps)" : "";
+}
+
+SettingLabels::SettingLabels(const Records& all) {
+  for (const Record* r : all)
+    for (const std::string& name : accuracy_parameters(r->solver))
+      if (const auto at = r->params.find(name); at != r->params.end())
+        seen_[{r->solver, name}].insert(at->second);
+}
+
+std::string SettingLabels::of(const Record& record) const {
+  const std::string sweeps = parameter_of(record.solver, kSweeps),
+                    substeps = parameter_of(record.solver, kSubsteps);
+  std::string text;
+  bool work = false;
+  for (const std::string& name : accuracy_parameters(record.solver)) {
+    const auto at = record.params.find(name);
+    if (at == record.params.end()) continue;
+    const auto seen = seen_.find({record.solver, name});
+    const bool varies = seen != seen_.end() && seen->second.size() > seen->second.count(at->second);
+    if (!varies || at->second == "off") continue;
+    if (name == substeps || name == sweeps)
+      work = true;
+    else
+      text += ", " + (at->second == "on" ? name : at->second);
+  }
+  if (work) return work_of(record).text() + text;
+  return text.empty() ? "" : text.substr(2);
+}
+
+}  // namespace taut::report

@@ -1,0 +1,118 @@
+#pragma once
+
+// How people are told of numbers, quantities, solvers and their settings.
+
+#include <compare>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "experiments/case/record.hpp"
+#include "experiments/metrics/metric.hpp"
+
+namespace taut::report {
+
+/// Fewest digits that carry `digits` significant ones, no exponent between 1e-4 and 1e6:
+/// 0.01234 -> "0.012", 22.04 -> "22", 3.4e-13 -> "3.4×10⁻¹³". NaN and infinities give "–" and "∞".
+std::string significant(double value, int digits = 2);
+/// So many decimals: -0.934 -> "−0.93"; never "−0.00".
+std::string fixed(double value, int decimals);
+/// The decimals that a value deserves whose uncertainty spans `width`: one digit of it, two where
+/// the first is below 3; at most six.
+int decimals_for(double width);
+/// Every bit, shortest form: for data files. NaN gives "".
+std::string exact(double value);
+/// Plain text with the signs that a keyboard lacks: "dt^2 >= 2e-5, mu x 2" ->
+/// "dt² ≥ 2×10⁻⁵, μ × 2".
+std::string typeset(std::string_view);
+/// With a capital first letter, if it is a plain one: for headings.
+std::string capitalised(std::string);
+
+/// "ball, box and plane"
+std::string joined(const std::vector<std::string>& names);
+
+/// The names of sweeps per substep and of substeps per step, whatever a solver's own parameters for
+/// them are called.
+inline constexpr const char *kSweeps = "iterations", *kSubsteps = "substeps";
+
+/// What a record holds under `name`: "dt" [s], "steps", "vertices", "links", "projections" (per
+/// step), kSweeps, kSubsteps, any numeric parameter of its solver ("omega"), any metric value
+/// ("stretch.rms"), kStrainFloor, any scene key that its case sets to a number ("wind.strength").
+/// NaN if it has none.
+double value_of(const Record&, std::string_view name);
+
+/// "1.2 %", "0.31 mm": for prose and tables.
+std::string shown(const Unit&, double si, int digits = 2);
+
+/// What people are told of a quantity.
+struct Quantity {
+  std::string name;
+  std::string title;  ///< "RMS stretch"
+  Unit unit = kNumber;
+  std::string help = {};         ///< its definition; "" of settings
+  Window window = Window::none;  ///< Window::none of settings
+
+  /// "RMS stretch [%]"
+  std::string label() const;
+  std::string text(double si, int digits = 2) const { return shown(unit, si, digits); }
+};
+/// As the metric's own file declares it; unknown names are shown as they are.
+Quantity quantity(std::string_view name);
+
+/// What quantity() has a title for, beside the axes of a study.
+std::vector<std::string> quantity_names();
+
+/// Records that live elsewhere, in the order of the study.
+struct Records : std::vector<const Record*> {
+  Records() = default;
+  Records(std::span<const Record> all) {
+    for (const Record& r : all) push_back(&r);
+  }
+  Records(const std::vector<Record>& all) : Records(std::span(all)) {}
+  Records(std::vector<Record>&&) = delete;  // would point to what is gone
+};
+
+/// What its entry says, or its name in words: "bullet-deformable" -> "Bullet deformable".
+std::string solver_title(std::string_view solver);
+
+/// Of kSweeps and kSubsteps the solver's own parameter, as its entry says; else the name itself.
+std::string parameter_of(std::string_view solver, std::string_view name);
+
+/// The parameters that decide accuracy and cost, as the entry says: substeps and sweeps first.
+std::vector<std::string> accuracy_parameters(const std::string& solver);
+
+/// Accelerators that this case uses and that a solver with these parameters lacks ("tethers").
+std::vector<std::string> extras(const Record&, const std::map<std::string, std::string>& others);
+
+/// Work of a step; -1 where the solver has no such setting.
+struct Work {
+  int substeps = -1, sweeps = -1;
+  auto operator<=>(const Work&) const = default;
+  std::string text() const;  ///< "1 × 16": substeps × sweeps
+};
+Work work_of(const Record&);
+
+/// "1 × 16, order=mesh": the work of "jakobsen:substeps=1,iterations=16,...", and what else is not
+/// the default. Of a solver that this program does not have: what follows its name.
+std::string brief_settings(const std::string& solver);
+
+/// "Jakobsen 5 × 1 to 64, Bullet 1 × 1 to 64" (substeps × sweeps), if no such work is common to all
+/// solvers that have sweeps; "": some is.
+std::string unequal_work(const Records&);
+
+/// Labels of records by those accuracy parameters that take several values among their solver's.
+class SettingLabels {
+ public:
+  explicit SettingLabels(const Records&);
+  /// "2 × 8, coloured"; "" if nothing varies.
+  std::string of(const Record&) const;
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> seen_;  ///< solver, name
+};
+
+}  // namespace taut::report
