@@ -8,7 +8,7 @@
 #include "core/io/scene_readers.hpp"
 #include "core/model/angle.hpp"
 #include "core/model/index.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 

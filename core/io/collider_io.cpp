@@ -3,7 +3,7 @@
 
 #include "core/io/scene_readers.hpp"
 #include "core/model/angle.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 

@@ -6,8 +6,7 @@
 #include "core/io/scene_readers.hpp"
 #include "core/io/section.hpp"
 #include "core/model/crossings.hpp"
-#include "core/model/printable.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/io/scene_io.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 

@@ -4,8 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/model/join.hpp"
-#include "core/model/printable.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 

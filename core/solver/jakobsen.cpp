@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "core/solver/constraints/relaxation.hpp"
 #include "core/solver/contact/responses.hpp"
 #include "core/solver/wind.hpp"

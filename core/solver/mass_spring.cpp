@@ -12,8 +12,8 @@
 #include <string>
 
 #include "core/model/index.hpp"
-#include "core/model/join.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "core/solver/wind.hpp"
 
 namespace taut::solver::mass_spring {

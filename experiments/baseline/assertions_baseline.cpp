@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/model/printable.hpp"
+#include "core/model/text.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {

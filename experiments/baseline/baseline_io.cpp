@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "core/io/section.hpp"
-#include "core/model/printable.hpp"
+#include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"

@@ -1,7 +1,7 @@
 #include "experiments/baseline/frontier_baseline.hpp"
 
 #include "core/io/section.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 
 namespace taut {

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/model/printable.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/json.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/model/join.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/divergence.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "core/model/printable.hpp"
+#include "core/model/text.hpp"
 #include "experiments/baseline/frontier_baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/options.hpp"

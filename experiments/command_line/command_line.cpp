@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "core/model/input_error.hpp"
-#include "core/model/printable.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/manual.hpp"

@@ -1,7 +1,7 @@
 #include "experiments/command_line/manual.hpp"
 
-#include "core/model/join.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {

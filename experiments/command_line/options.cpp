@@ -6,9 +6,8 @@
 #include <thread>
 
 #include "core/model/input_error.hpp"
-#include "core/model/join.hpp"
-#include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "core/model/join.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/clock.hpp"
 

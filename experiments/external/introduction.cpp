@@ -8,8 +8,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/join.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/external/command.hpp"
 #include "experiments/external/scene_file.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/trajectory.hpp"
 
 namespace taut::external {

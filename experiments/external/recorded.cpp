@@ -7,7 +7,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/external/command.hpp"
 

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/system/clock.hpp"
 
 namespace taut::external {

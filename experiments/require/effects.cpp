@@ -1,7 +1,7 @@
 // What a case has that it may not need.
 #include <algorithm>
 
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/require/draft.hpp"
 
 namespace taut {

@@ -3,7 +3,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/require/draft.hpp"
 
 namespace taut {

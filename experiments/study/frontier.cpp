@@ -8,7 +8,7 @@
 
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "core/reference/linear_stability.hpp"
 
 namespace taut {
@@ -184,8 +184,7 @@ double FrontierQuestion::setting(double value) const {
 CaseSpec FrontierQuestion::at(double value) const {
   CaseSpec spec = base;
   const std::string text = shortest(setting(value));
-  std::istringstream names(of);
-  for (std::string name; std::getline(names, name, '|');)
+  for (const std::string& name : parts_of(of))
     if (name == "dt")
       set_override(spec.overrides, "time.dt=\"" + text + "\"");
     else if (of_scene(name))

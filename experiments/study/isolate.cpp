@@ -14,7 +14,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/printable.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/clock.hpp"

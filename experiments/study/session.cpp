@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "core/model/input_error.hpp"
-#include "core/model/printable.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/files.hpp"

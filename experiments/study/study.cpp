@@ -5,9 +5,7 @@
 #include <functional>
 
 #include "core/io/section.hpp"
-#include "core/model/join.hpp"
-#include "core/model/printable.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {

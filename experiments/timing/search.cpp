@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -21,17 +22,6 @@ struct Columns {
   std::vector<std::string> values;
   bool sweeps = false;  ///< more of it costs more and needs fewer substeps
 };
-
-/// The parts of "a|b|c".
-std::vector<std::string> parts_of(std::string_view list) {
-  std::vector<std::string> parts;
-  while (!list.empty()) {
-    const std::size_t end = std::min(list.find('|'), list.size());
-    parts.emplace_back(list.substr(0, end));
-    list.remove_prefix(std::min(end + 1, list.size()));
-  }
-  return parts;
-}
 
 /// The solver's accuracy parameters, as far as the user's text leaves them open.
 class OpenParameters {

@@ -2,7 +2,7 @@
 // section 4: a stiffness in N/m is the spring constant, for coupled links and any time step.
 #include <cmath>
 
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/fit.hpp"
 #include "experiments/truths/simulation.hpp"

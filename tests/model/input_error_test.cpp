@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/model/printable.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 namespace {

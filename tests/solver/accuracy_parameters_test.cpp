@@ -6,19 +6,10 @@
 #include <vector>
 
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 namespace {
-
-std::vector<std::string> parts_of(std::string_view list) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end != list.npos && !list.empty(); begin = end + 1) {
-    end = list.find('|', begin);
-    parts.emplace_back(list.substr(begin, end - begin));
-  }
-  return parts;
-}
 
 TEST(AccuracyParameters, AreParametersAndTheirValuesAreAccepted) {
   for (const SolverEntry* entry : solvers()) {

@@ -5,7 +5,7 @@
 #include "core/io/positions/formats.hpp"
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 

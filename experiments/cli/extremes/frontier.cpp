@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"

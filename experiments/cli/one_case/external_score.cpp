@@ -4,7 +4,7 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/case_options.hpp"

@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "core/io/scene_io.hpp"
-#include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/study/study.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "core/model/input_error.hpp"
-#include "core/model/join.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"

@@ -10,7 +10,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/join.hpp"
+#include "core/model/text.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"

@@ -8,8 +8,8 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
-#include "core/model/join.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/render/picture/media.hpp"
 #include "experiments/report/claims/rivals.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/model/join.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 

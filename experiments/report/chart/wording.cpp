@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 
 namespace taut::report {
 
@@ -137,15 +137,6 @@ const SolverEntry* find_entry(std::string_view solver) {
   const auto known = solvers();
   const auto found = std::ranges::find(known, solver, &SolverEntry::name);
   return found == known.end() ? nullptr : *found;
-}
-
-std::vector<std::string> parts(std::string_view names) {
-  std::vector<std::string> all;
-  for (std::size_t end = 0; !names.empty(); names.remove_prefix(std::min(end + 1, names.size()))) {
-    end = std::min(names.find('|'), names.size());
-    all.emplace_back(names.substr(0, end));
-  }
-  return all;
 }
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -275,7 +266,7 @@ std::string parameter_of(std::string_view solver, std::string_view name) {
 std::vector<std::string> accuracy_parameters(const std::string& solver) {
   std::vector<std::string> all{parameter_of(solver, kSubsteps), parameter_of(solver, kSweeps)};
   const SolverEntry* entry = find_entry(solver);
-  for (const std::string& name : parts(entry ? entry->accuracy.labelled : ""))
+  for (const std::string& name : parts_of(entry ? entry->accuracy.labelled : ""))
     if (std::ranges::find(all, name) == all.end()) all.push_back(name);
   return all;
 }
@@ -283,7 +274,7 @@ std::vector<std::string> accuracy_parameters(const std::string& solver) {
 std::vector<std::string> extras(const Record& r, const std::map<std::string, std::string>& others) {
   std::vector<std::string> used;
   const SolverEntry* entry = find_entry(r.solver);
-  for (const std::string& name : parts(entry ? entry->accuracy.accelerators : "")) {
+  for (const std::string& name : parts_of(entry ? entry->accuracy.accelerators : "")) {
     const auto spec = std::ranges::find(entry->params, name, &ParamSpec::name);
     const auto at = r.params.find(name);
     if (at != r.params.end() && at->second != spec->default_value && !others.contains(name))

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "core/model/input_error.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/system/process.hpp"
 
 namespace taut::cluster {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/model/join.hpp"
-#include "core/model/shortest.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/study/extremes/symptom.hpp"
 #include "experiments/system/json.hpp"

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/io/scene_io.hpp"
-#include "core/model/join.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "core/solver/thread_pool.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/timing.hpp"

@@ -1,4 +1,7 @@
-#include "core/model/printable.hpp"
+#include "core/model/text.hpp"
+
+#include <algorithm>
+#include <charconv>
 
 namespace taut {
 
@@ -17,6 +20,22 @@ std::string printable(std::string_view text) {
     if (two) ++i;
   }
   return out;
+}
+
+std::string shortest(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return {text, end};
+}
+
+std::vector<std::string> parts_of(std::string_view list) {
+  std::vector<std::string> all;
+  while (!list.empty()) {
+    const std::size_t end = std::min(list.find('|'), list.size());
+    all.emplace_back(list.substr(0, end));
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+  return all;
 }
 
 }  // namespace taut

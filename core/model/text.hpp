@@ -3,8 +3,19 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace taut {
+
+/// A text from outside as a terminal may have it: each control character but tab and line feed
+/// becomes '?', and what is beyond 2000 bytes "...". The text of every Diagnostic is.
+std::string printable(std::string_view);
+
+/// The shortest text that reads back as the same number.
+std::string shortest(double value);
+
+/// The parts of "a|b|c".
+std::vector<std::string> parts_of(std::string_view list);
 
 /// The texts of all, one after the other; text_of(one) is what one of them says.
 template <class All, class TextOf = std::identity>
