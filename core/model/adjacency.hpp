@@ -40,9 +40,9 @@ class Adjacency {
   std::vector<End> ends_;
 };
 
-/// Shortest ways along links, for each vertex.
+/// Shortest paths along links, for each vertex.
 template <class Real>
-struct Ways {
+struct ShortestPaths {
   std::vector<Real> length;  ///< m; infinite: no way leads there
   std::vector<int> start;    ///< where it begins; -1: no way
   std::vector<int> before;   ///< the last vertex before this one; -1: none
@@ -53,26 +53,26 @@ template <class LengthOf>
 auto shortest_ways(const Adjacency& neighbours, std::span<const int> starts,
                    const LengthOf& length_of) {
   using Real = decltype(length_of(0, Adjacency::End{}));
-  Ways<Real> ways;
-  ways.length.resize(neighbours.size(), std::numeric_limits<Real>::infinity());
-  ways.start.resize(neighbours.size(), -1), ways.before = ways.start;
+  ShortestPaths<Real> paths;
+  paths.length.resize(neighbours.size(), std::numeric_limits<Real>::infinity());
+  paths.start.resize(neighbours.size(), -1), paths.before = paths.start;
   using Reached = std::pair<Real, int>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> open;
   const auto reach = [&](int v, Real length, int start, int before) {
-    if (!(length < ways.length[to_index(v)])) return;
-    ways.length[to_index(v)] = length;
-    ways.start[to_index(v)] = start, ways.before[to_index(v)] = before;
+    if (!(length < paths.length[to_index(v)])) return;
+    paths.length[to_index(v)] = length;
+    paths.start[to_index(v)] = start, paths.before[to_index(v)] = before;
     open.emplace(length, v);
   };
   for (const int v : starts) reach(v, 0, v, -1);
   while (!open.empty()) {
     const auto [length, v] = open.top();
     open.pop();
-    if (length > ways.length[to_index(v)]) continue;
+    if (length > paths.length[to_index(v)]) continue;
     for (const Adjacency::End& end : neighbours.of(v))
-      reach(end.vertex, length + length_of(v, end), ways.start[to_index(v)], v);
+      reach(end.vertex, length + length_of(v, end), paths.start[to_index(v)], v);
   }
-  return ways;
+  return paths;
 }
 
 }  // namespace taut

@@ -77,16 +77,16 @@ std::vector<Link> grid_links(const Mesh& mesh, const LinkChoice& choice) {
     links.push_back(
         {a, b, (x[static_cast<std::size_t>(b)] - x[static_cast<std::size_t>(a)]).norm(), family});
   };
-  const auto sweep = [&](int du, int dv, int eu, int ev, Family family) {
+  const auto link = [&](int du, int dv, int eu, int ev, Family family) {
     for (int j = 0; j < g.nv; ++j)
       for (int i = 0; i < g.nu; ++i) {
         add(i, j, du, dv, family);
         add(i, j, eu, ev, family);
       }
   };
-  if (choice.structural) sweep(1, 0, 0, 1, Family::structural);
-  if (choice.shear) sweep(1, 1, -1, 1, Family::shear);
-  if (choice.bend) sweep(2, 0, 0, 2, Family::bend);
+  if (choice.structural) link(1, 0, 0, 1, Family::structural);
+  if (choice.shear) link(1, 1, -1, 1, Family::shear);
+  if (choice.bend) link(2, 0, 0, 2, Family::bend);
   return links;
 }
 

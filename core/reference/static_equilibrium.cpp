@@ -34,7 +34,7 @@ std::optional<std::vector<Vec3>> hanging_straight(const Scene& scene) {
   };
   std::vector<Vec3> x = scene.start.x;
   std::vector<bool> fixed(n, false);
-  std::vector<Ways<double>> from;
+  std::vector<ShortestPaths<double>> from;
   for (const int pin : scene.pins) fixed[to_index(pin)] = true;
   for (const int pin : scene.pins) from.push_back(paths_from(pin));
   for (std::size_t p = 0; p < scene.pins.size(); ++p)
@@ -55,7 +55,7 @@ std::optional<std::vector<Vec3>> hanging_straight(const Scene& scene) {
   std::vector<Vec3> place = x;
   for (std::size_t f = 0; f < n; ++f) {
     if (!fixed[f]) continue;
-    const Ways<double> paths = paths_from(static_cast<int>(f));
+    const ShortestPaths<double> paths = paths_from(static_cast<int>(f));
     for (std::size_t i = 0; i < n; ++i) {
       const double depth = down.dot(x[f]) + paths.length[i];
       if (fixed[i] || !(depth < lowest[i])) continue;

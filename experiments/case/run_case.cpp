@@ -13,9 +13,9 @@ namespace taut {
 namespace {
 
 /// All metrics that this scene has something for.
-class Instruments {
+class SceneMetrics {
  public:
-  Instruments(const Scene& scene, bool measure) {
+  SceneMetrics(const Scene& scene, bool measure) {
     if (!measure) return;
     for (const MetricEntry* entry : metrics())
       if (auto metric = entry->make(scene)) watching_.push_back({entry, std::move(metric)});
@@ -105,15 +105,15 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
   record.resolved_settings = choice.entry->resolved_settings(scene, choice.params);
 
   DivergenceDetector detector(scene, record.step_cost);
-  Instruments instruments(scene, options.measure);
-  if (options.series_rows > 0) run.series.columns = instruments.series_columns();
+  SceneMetrics scene_metrics(scene, options.measure);
+  if (options.series_rows > 0) run.series.columns = scene_metrics.series_columns();
   const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));
   State state;
   bool stable = true;
-  if (instruments.follow_path())
+  if (scene_metrics.follow_path())
     solver->visit_substeps([&](double t) {
       solver->store(state);
-      instruments.observe_within({step, t, state});
+      scene_metrics.observe_within({step, t, state});
     });
   for (step = 0; step <= scene.steps; ++step) {
     if (step > 0) solver->step((step - 1) * scene.dt, scene.dt);
@@ -121,15 +121,15 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
     const Snapshot moment{step, step * scene.dt, state};
     stable = detector.observe(step, moment.t, state);
     if (!stable) break;
-    instruments.observe(moment);
+    scene_metrics.observe(moment);
     if (options.series_rows > 0 && (step % stride == 0 || step == scene.steps))
-      run.series.rows.push_back(instruments.series_row(moment));
+      run.series.rows.push_back(scene_metrics.series_row(moment));
     if (options.watch) options.watch(moment);
     run.last = state;
   }
   if (stable) detector.finish();
   record.status = detector.status();
-  record.values = instruments.values(stable);
+  record.values = scene_metrics.values(stable);
   record.digest = digest(run.last);
 }
 

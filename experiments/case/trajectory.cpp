@@ -19,12 +19,12 @@ constexpr char kMagic[8] = {'T', 'A', 'U', 'T', 'T', 'R', 'A', 'J'};
 constexpr std::uint32_t kVersion = 1;
 
 /// The first 48 bytes, as documented.
-struct Fixed {
+struct FixedHeader {
   char magic[8];
   std::uint32_t version, first, vertices, triangles, real, channels, name_bytes, solver_bytes;
   double frame_dt;
 };
-static_assert(sizeof(Fixed) == 48);
+static_assert(sizeof(FixedHeader) == 48);
 
 constexpr std::uint64_t round_up_to_8(std::uint64_t bytes) { return (bytes + 7) / 8 * 8; }
 
@@ -60,16 +60,16 @@ std::uint64_t bytes_of_channel(const TrajectoryHeader& header) {
 std::string header_bytes(const TrajectoryHeader& header) {
   const auto u32 = [](auto value) { return static_cast<std::uint32_t>(value); };
   const std::uint64_t before_triangles =
-      round_up_to_8(sizeof(Fixed) + header.scene.size() + header.solver.size());
-  Fixed fixed{.version = kVersion,
-              .first = u32(before_triangles + 12 * header.triangles.size()),
-              .vertices = u32(header.vertices),
-              .triangles = u32(header.triangles.size()),
-              .real = u32(header.real),
-              .channels = header.velocities ? 2u : 1u,
-              .name_bytes = u32(header.scene.size()),
-              .solver_bytes = u32(header.solver.size()),
-              .frame_dt = header.frame_dt};
+      round_up_to_8(sizeof(FixedHeader) + header.scene.size() + header.solver.size());
+  FixedHeader fixed{.version = kVersion,
+                    .first = u32(before_triangles + 12 * header.triangles.size()),
+                    .vertices = u32(header.vertices),
+                    .triangles = u32(header.triangles.size()),
+                    .real = u32(header.real),
+                    .channels = header.velocities ? 2u : 1u,
+                    .name_bytes = u32(header.scene.size()),
+                    .solver_bytes = u32(header.solver.size()),
+                    .frame_dt = header.frame_dt};
   std::memcpy(fixed.magic, kMagic, sizeof kMagic);
   std::string out;
   put(out, fixed);
@@ -129,7 +129,7 @@ void TrajectoryReader::fail(const std::string& why) const {
 
 void TrajectoryReader::read_header(std::uint64_t file_bytes) {
   if (file_bytes == 0) fail("empty file, not a trajectory");
-  Fixed fixed{};
+  FixedHeader fixed{};
   const auto known = static_cast<std::streamsize>(std::min<std::uint64_t>(8, file_bytes));
   in_.read(reinterpret_cast<char*>(&fixed), sizeof fixed);
   if (std::memcmp(fixed.magic, kMagic, static_cast<std::size_t>(known)) != 0)

@@ -24,23 +24,23 @@ namespace {
 constexpr const char* kGroups[] = {"Studies", "One case", "Cost", "Trust", "Extremes"};
 
 /// Discards what is written to stdout for as long as it lives.
-class Silence {
+class DiscardedOutput {
  public:
-  Silence() : stdout_(dup(1)) {
+  DiscardedOutput() : stdout_(dup(1)) {
     std::cout << std::flush;
     std::fflush(stdout);
     const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
     dup2(nothing, 1);
     close(nothing);
   }
-  ~Silence() {
+  ~DiscardedOutput() {
     std::cout << std::flush;
     std::fflush(stdout);
     dup2(stdout_, 1);
     close(stdout_);
   }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
+  DiscardedOutput(const DiscardedOutput&) = delete;
+  DiscardedOutput& operator=(const DiscardedOutput&) = delete;
 
  private:
   int stdout_;
@@ -62,8 +62,8 @@ std::function<int()> bind(const VerbEntry& entry, CLI::App& app) {
   for (CLI::App* parser : parsers)
     parser->add_flag("--quiet", *quiet, "Print nothing but errors; the exit code says how it went");
   return [run = std::move(run), quiet] {
-    std::optional<Silence> silence;
-    if (*quiet) silence.emplace(), show_progress(false);
+    std::optional<DiscardedOutput> discarded;
+    if (*quiet) discarded.emplace(), show_progress(false);
     return run();
   };
 }
@@ -167,8 +167,8 @@ int invoke(const std::string& name, std::vector<std::string> words, Output outpu
   } catch (const CLI::ParseError& error) {
     throw InputError(name + ": " + error.what());
   }
-  std::optional<Silence> silence;
-  if (output == Output::discarded) silence.emplace();
+  std::optional<DiscardedOutput> discarded;
+  if (output == Output::discarded) discarded.emplace();
   return run();
 }
 

@@ -49,7 +49,7 @@ std::pair<std::size_t, double> farthest(const std::vector<Vec3>& a, const std::v
 }
 
 /// What is wrong; the check ends there.
-struct Wrong {
+struct CheckFailed {
   std::string said;
 };
 /// The program refuses the scene.
@@ -69,43 +69,44 @@ class Prober {
     Check one{name, Verdict::passed, {}};
     try {
       one.said = look();
-    } catch (const Wrong& wrong) {
+    } catch (const CheckFailed& wrong) {
       one.verdict = Verdict::failed, one.said = wrong.said;
     } catch (const Refused& refused) {
       one.verdict = Verdict::skipped, one.said = "says that it cannot: " + refused.said;
     } catch (const SolverFailure& failure) {
       one.verdict = Verdict::failed, one.said = failure.status + ": " + failure.what();
       one.status = failure.status;
-      session_.reset();
+      connection_.reset();
     }
     report_(one);
     checks_.push_back(one);
   }
 
-  Session& session() {
-    if (session_) return *session_;
-    session_ = std::make_unique<Session>(command_);
-    hello_ = say_hello(*session_);
+  Connection& connection() {
+    if (connection_) return *connection_;
+    connection_ = std::make_unique<Connection>(command_);
+    hello_ = say_hello(*connection_);
     if (params_.is_null()) params_ = default_params(*hello_);
-    return *session_;
+    return *connection_;
   }
-  void end_session() { session_.reset(); }
+  void end_connection() { connection_.reset(); }
   const Hello& hello() {
-    session();
+    connection();
     return *hello_;
   }
 
   void give(const Scene& scene) {
-    const SceneAnswer answer = give_scene(session(), scene, params_);
+    const SceneAnswer answer = give_scene(connection(), scene, params_);
     if (!answer.cannot.empty()) throw Refused{answer.cannot.front()};
   }
 
   /// The state after so many steps of the scene's dt, from its start or from where it is.
   State run(const Scene& scene, int steps, bool from_start = true) {
-    if (from_start) load_state(session(), scene.start), step_ = 0;
+    if (from_start) load_state(connection(), scene.start), step_ = 0;
     State state;
-    for (int n = 0; n < steps; ++n, ++step_) take_steps(session(), step_ * scene.dt, scene.dt, 1);
-    store_state(session(), scene.mesh.size(), state);
+    for (int n = 0; n < steps; ++n, ++step_)
+      take_steps(connection(), step_ * scene.dt, scene.dt, 1);
+    store_state(connection(), scene.mesh.size(), state);
     return state;
   }
 
@@ -115,7 +116,7 @@ class Prober {
   Command command_;
   Json params_;
   std::function<void(const Check&)> report_;
-  std::unique_ptr<Session> session_;
+  std::unique_ptr<Connection> connection_;
   std::unique_ptr<const Hello> hello_;
   std::vector<Check> checks_;
   int step_ = 0;
@@ -136,31 +137,34 @@ std::string falls(Prober& probe, double dt) {
   const Vec3 way = scene.gravity * t * t / 2, moved = end.x[0] - scene.start.x[0],
              fallen = moved - v0 * t;
   const std::string in = "in " + text(t) + " s of free fall in steps of " + text(dt) + " s ";
-  if (!moved.allFinite()) throw Wrong{in + "a position is not a number"};
-  if (moved.norm() < 0.01 * way.norm()) throw Wrong{in + "nothing moves"};
+  if (!moved.allFinite()) throw CheckFailed{in + "a position is not a number"};
+  if (moved.norm() < 0.01 * way.norm()) throw CheckFailed{in + "nothing moves"};
   if ((moved - way).norm() < 0.05 * way.norm())
-    throw Wrong{in + "it forgets the velocities that 'load' gives"};
+    throw CheckFailed{in + "it forgets the velocities that 'load' gives"};
   const double age = (end.v[0] - v0).dot(scene.gravity) / scene.gravity.squaredNorm();  // s
   if (std::abs(age / t - 1) > 0.05 &&
       (moved - v0 * age - scene.gravity * age * age / 2).norm() < 0.05 * moved.norm())
-    throw Wrong{in + "it advances by " + text(age) + " s: a step is as long as its request says"};
+    throw CheckFailed{in + "it advances by " + text(age) +
+                      " s: a step is as long as its request says"};
   const double ratio = fallen.dot(way) / way.squaredNorm();
-  if (fallen.norm() < 0.01 * way.norm()) throw Wrong{in + "gravity has no effect"};
+  if (fallen.norm() < 0.01 * way.norm()) throw CheckFailed{in + "gravity has no effect"};
   if ((fallen - ratio * way).norm() > 0.05 * fallen.norm() || ratio < 0)
-    throw Wrong{in + "it falls along " + text(fallen.normalized()) + ", but gravity points along " +
-                text(way.normalized())};
+    throw CheckFailed{in + "it falls along " + text(fallen.normalized()) +
+                      ", but gravity points along " + text(way.normalized())};
   if (std::abs(ratio - 1) > 1.05 / steps + 1e-3)
-    throw Wrong{in + "it falls " + text(ratio) + " times as far as g t^2/2: units are m, s and " +
-                "m/s^2, and a step is as long as its request says"};
+    throw CheckFailed{in + "it falls " + text(ratio) +
+                      " times as far as g t^2/2: units are m, s and " +
+                      "m/s^2, and a step is as long as its request says"};
   const Vec3 v = v0 + scene.gravity * t;
   if (!((end.v[0] - v).norm() <= (1.05 / (2 * steps) + 1e-3) * scene.gravity.norm() * t))
-    throw Wrong{in + "it reports the velocity " + text(end.v[0]) + " m/s, but v0 + g t is " +
-                text(v)};
+    throw CheckFailed{in + "it reports the velocity " + text(end.v[0]) + " m/s, but v0 + g t is " +
+                      text(v)};
   std::vector<Vec3> together = scene.start.x;
   for (Vec3& x : together) x += moved;
   if (const auto [i, off] = farthest(end.x, together); !(off <= 1e-3))
-    throw Wrong{in + "the sheet does not stay in shape, though its links are at rest: vertex " +
-                std::to_string(i) + " is " + text(off) + " m off"};
+    throw CheckFailed{in +
+                      "the sheet does not stay in shape, though its links are at rest: vertex " +
+                      std::to_string(i) + " is " + text(off) + " m off"};
   return in + "it falls " + text(ratio) + " g t^2/2";
 }
 
@@ -171,11 +175,11 @@ std::string holds_pins(Prober& probe) {
   for (const int pin : scene.pins)
     if (const double off = (end.x[to_index(pin)] - scene.start.x[to_index(pin)]).norm();
         !(off <= 1e-6))
-      throw Wrong{"vertex " + std::to_string(pin) +
-                  " is pinned (its inverse mass is 0), but after " + std::to_string(kSteps) +
-                  " steps it is " + text(off) + " m away"};
+      throw CheckFailed{"vertex " + std::to_string(pin) +
+                        " is pinned (its inverse mass is 0), but after " + std::to_string(kSteps) +
+                        " steps it is " + text(off) + " m away"};
   if (farthest(end.x, scene.start.x).second < 1e-6)
-    throw Wrong{"a sheet on two pins does not sag at all: nothing moves"};
+    throw CheckFailed{"a sheet on two pins does not sag at all: nothing moves"};
   return "two pinned vertices stay where they are";
 }
 
@@ -184,11 +188,12 @@ std::string repeats(Prober& probe) {
   probe.give(scene);
   const std::string first = digest(probe.run(scene, kSteps));
   if (digest(probe.run(scene, kSteps)) != first)
-    throw Wrong{"the same load and the same steps give other bits the second time: something " +
-                std::string("survives 'load', or depends on chance, time or threads")};
+    throw CheckFailed{
+        "the same load and the same steps give other bits the second time: something " +
+        std::string("survives 'load', or depends on chance, time or threads")};
   probe.give(scene);
   if (digest(probe.run(scene, kSteps)) != first)
-    throw Wrong{"after the same scene is given again, other bits come out"};
+    throw CheckFailed{"after the same scene is given again, other bits come out"};
   return "the same bits twice, and after a reload";
 }
 
@@ -196,21 +201,22 @@ std::string restarts(Prober& probe) {
   const Scene scene = sheet(4, {0, 3});
   probe.give(scene);
   const State middle = probe.run(scene, kSteps / 2), end = probe.run(scene, kSteps / 2, false);
-  load_state(probe.session(), middle);
+  load_state(probe.connection(), middle);
   State read;
-  store_state(probe.session(), scene.mesh.size(), read);
+  store_state(probe.connection(), scene.mesh.size(), read);
   if (const auto [i, off] = farthest(read.x, middle.x); !(off <= 1e-5))
-    throw Wrong{"'store' right after 'load' gives another state: vertex " + std::to_string(i) +
-                " is " + text(off) + " m off"};
+    throw CheckFailed{"'store' right after 'load' gives another state: vertex " +
+                      std::to_string(i) + " is " + text(off) + " m off"};
   if (const auto [i, off] = farthest(read.v, middle.v); !(off <= 1e-3))
-    throw Wrong{"'store' right after 'load' gives another state: the velocity of vertex " +
-                std::to_string(i) + " is " + text(off) + " m/s off"};
+    throw CheckFailed{"'store' right after 'load' gives another state: the velocity of vertex " +
+                      std::to_string(i) + " is " + text(off) + " m/s off"};
   const State again = probe.run(scene, kSteps / 2, false);
   const auto [i, off] = farthest(again.x, end.x);
   if (!(off <= 1e-3))
-    throw Wrong{"a run that goes on from a stored state leaves the uninterrupted one: vertex " +
-                std::to_string(i) + " by " + text(off) + " m after " + std::to_string(kSteps / 2) +
-                " steps"};
+    throw CheckFailed{
+        "a run that goes on from a stored state leaves the uninterrupted one: vertex " +
+        std::to_string(i) + " by " + text(off) + " m after " + std::to_string(kSteps / 2) +
+        " steps"};
   return "a run that goes on from a stored state stays within " + text(off) + " m";
 }
 
@@ -218,20 +224,20 @@ std::string refuses_nonsense(Prober& probe) {
   for (const std::string line :
        {R"({"op": "juggle"})", R"({"op": "scene", "file": "/does/not/exist.json", "params": {}})",
         "this is no JSON", R"({"op": 7})"}) {
-    const Json answer = probe.session().ask_line(line);
+    const Json answer = probe.connection().ask_line(line);
     if (!answer.contains("error"))
-      throw Wrong{"answers " + line + " with " + to_text(answer) +
-                  ", not with {\"error\": \"...\"}"};
-    say_hello(probe.session());
+      throw CheckFailed{"answers " + line + " with " + to_text(answer) +
+                        ", not with {\"error\": \"...\"}"};
+    say_hello(probe.connection());
   }
   return "four bad requests are answered with an error, and it goes on";
 }
 
 std::string ends_with_its_input(Prober& probe) {
-  const auto end = probe.session().close(5);
-  probe.end_session();
+  const auto end = probe.connection().close(5);
+  probe.end_connection();
   if (!end)
-    throw Wrong{
+    throw CheckFailed{
         "does not end within 5 s of the end of its input: it would outlive a taut that is killed"};
   return "ends when its input does, as if taut had been killed";
 }
@@ -241,29 +247,29 @@ std::string tells_its_time(Prober& probe) {
     throw Refused{"its time is not measurable: " + probe.hello().unmeasurable};
   const Scene scene = sheet(24, {0, 23});
   probe.give(scene);
-  load_state(probe.session(), scene.start);
-  Session& session = probe.session();
+  load_state(probe.connection(), scene.start);
+  Connection& connection = probe.connection();
   constexpr int kBatch = 10;
   double said = 0, empty = 0;
   int steps = 0;
-  for (int i = 0; i < 10; ++i) take_steps(session, 0, scene.dt, 1);
-  const double begin = session.cpu_seconds();
-  for (int i = 0; i < 30; ++i) take_steps(session, 0, scene.dt, 0);
-  const double before = session.cpu_seconds();
+  for (int i = 0; i < 10; ++i) take_steps(connection, 0, scene.dt, 1);
+  const double begin = connection.cpu_seconds();
+  for (int i = 0; i < 30; ++i) take_steps(connection, 0, scene.dt, 0);
+  const double before = connection.cpu_seconds();
   empty = (before - begin) / 30;
-  while (steps < 400 && session.cpu_seconds() - before < 0.3)
-    said += take_steps(session, steps * scene.dt, scene.dt, kBatch), steps += kBatch;
-  const double took = (session.cpu_seconds() - before - steps / kBatch * empty) / steps;
+  while (steps < 400 && connection.cpu_seconds() - before < 0.3)
+    said += take_steps(connection, steps * scene.dt, scene.dt, kBatch), steps += kBatch;
+  const double took = (connection.cpu_seconds() - before - steps / kBatch * empty) / steps;
   const std::string clock = text(1e6 * took) + " us CPU a step of 576 vertices, beside " +
                             text(1e6 * empty) + " us for an empty exchange";
-  if (session.has_helpers())
-    throw Wrong{
+  if (connection.has_helpers())
+    throw CheckFailed{
         "starts processes of its own, whose time its CPU clock does not hold: "
         "cost cannot be measured"};
   if (std::isnan(said)) return clock + "; it says nothing itself";
   const double word = said / steps;
   if (!agrees(word, took, empty))
-    throw Wrong{"says " + text(1e6 * word) + " us a step, but its CPU clock says " + clock};
+    throw CheckFailed{"says " + text(1e6 * word) + " us a step, but its CPU clock says " + clock};
   return clock + "; it says " + text(1e6 * word) + " us";
 }
 

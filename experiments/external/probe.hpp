@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/external/introduction.hpp"
+#include "experiments/external/protocol.hpp"
 
 namespace taut::external {
 

@@ -19,34 +19,34 @@ namespace {
 /// A scene in a program of its own. Solver calls are requests.
 class ExternalSolver final : public Solver {
  public:
-  ExternalSolver(std::unique_ptr<Session> session, int vertices, std::vector<PassCost> plan,
+  ExternalSolver(std::unique_ptr<Connection> connection, int vertices, std::vector<PassCost> plan,
                  std::string unmeasurable)
-      : session_(std::move(session)),
+      : connection_(std::move(connection)),
         vertices_(vertices),
         plan_(std::move(plan)),
         unmeasurable_(std::move(unmeasurable)) {}
 
   void load(const State& state) override {
-    load_state(*session_, state);
-    if (timed_ && unmeasurable_.empty() && session_->has_helpers())
+    load_state(*connection_, state);
+    if (timed_ && unmeasurable_.empty() && connection_->has_helpers())
       unmeasurable_ = "it starts processes of its own, whose time its CPU clock does not hold";
   }
 
   void step(double t, double dt) override {
     if (!timed_) {
-      take_steps(*session_, t, dt, 1);
+      take_steps(*connection_, t, dt, 1);
       return;
     }
-    const double before = session_->cpu_seconds();
-    said_ += take_steps(*session_, t, dt, 1);
-    clock_ += session_->cpu_seconds() - before - empty_;
+    const double before = connection_->cpu_seconds();
+    said_ += take_steps(*connection_, t, dt, 1);
+    clock_ += connection_->cpu_seconds() - before - empty_;
     ++steps_;
   }
 
-  void store(State& state) const override { store_state(*session_, vertices_, state); }
+  void store(State& state) const override { store_state(*connection_, vertices_, state); }
   std::vector<PassCost> step_cost() const override { return plan_; }
-  std::size_t peak_bytes() const override { return session_->peak_bytes(); }
-  std::string log() const override { return session_->log(); }
+  std::size_t peak_bytes() const override { return connection_->peak_bytes(); }
+  std::string log() const override { return connection_->log(); }
 
   double cpu_seconds() const override {
     if (!unmeasurable_.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -72,13 +72,13 @@ class ExternalSolver final : public Solver {
     timed_ = true;
     empty_ = std::numeric_limits<double>::infinity();
     for (int round = 0; round < 3; ++round) {
-      const double before = session_->cpu_seconds();
-      for (int i = 0; i < kExchanges; ++i) take_steps(*session_, 0, 1, 0);
-      empty_ = std::min(empty_, (session_->cpu_seconds() - before) / kExchanges);
+      const double before = connection_->cpu_seconds();
+      for (int i = 0; i < kExchanges; ++i) take_steps(*connection_, 0, 1, 0);
+      empty_ = std::min(empty_, (connection_->cpu_seconds() - before) / kExchanges);
     }
   }
 
-  std::unique_ptr<Session> session_;
+  std::unique_ptr<Connection> connection_;
   int vertices_;
   std::vector<PassCost> plan_;
   std::string unmeasurable_;
@@ -111,8 +111,8 @@ Program::Program(std::string name, Command command, std::vector<ParamSpec> leadi
                  std::string_view given, const std::vector<std::string>& files)
     : name_(std::move(name)), command_(std::move(command)), specs_(std::move(leading)) {
   try {
-    Session session(command_);
-    hello_ = say_hello(session);
+    Connection connection(command_);
+    hello_ = say_hello(connection);
     specs_.insert(specs_.end(), hello_->params.begin(), hello_->params.end());
   } catch (const SolverFailure& failure) {
     failure_ = failure;
@@ -156,9 +156,9 @@ void Program::introduce(std::string_view given) {
 }
 
 Program::Loaded Program::load(const Scene& scene, const Params& params) const {
-  Loaded loaded{std::make_unique<Session>(command_), {}};
-  say_hello(*loaded.session);
-  loaded.answer = give_scene(*loaded.session, scene, own_params(*hello_, params));
+  Loaded loaded{std::make_unique<Connection>(command_), {}};
+  say_hello(*loaded.connection);
+  loaded.answer = give_scene(*loaded.connection, scene, own_params(*hello_, params));
   return loaded;
 }
 
@@ -198,7 +198,7 @@ std::unique_ptr<Solver> Program::make(const Scene& scene, const Params& params) 
   ResolvedSettings settings{{"program", hello_->name + " " + hello_->version}};
   settings.insert(settings.end(), loaded.answer.settings.begin(), loaded.answer.settings.end());
   settings_[key_of(scene, params)] = settings;
-  return std::make_unique<ExternalSolver>(std::move(loaded.session), scene.mesh.size(),
+  return std::make_unique<ExternalSolver>(std::move(loaded.connection), scene.mesh.size(),
                                           loaded.answer.plan, hello_->unmeasurable);
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/model/solver.hpp"
-#include "experiments/external/introduction.hpp"
+#include "experiments/external/protocol.hpp"
 
 namespace taut::external {
 
@@ -32,7 +32,7 @@ class Program {
 
  private:
   struct Loaded {
-    std::unique_ptr<Session> session;
+    std::unique_ptr<Connection> connection;
     SceneAnswer answer;
   };
   void introduce(std::string_view given);

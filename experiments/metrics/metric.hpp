@@ -83,6 +83,7 @@ struct ValueSpec {
   bool shown_over_time = false;  ///< beside the scene's film; needs in_series
   bool kept = false;             ///< an answer that `taut require` keeps unless asked otherwise
   Floor floor = {};
+  bool falls_with_sweeps = false;  ///< as 1 / sweeps, where theory has the links' stretch do so
 };
 
 /// Watches one run. `observe` sees every step boundary in order, the start included, and must be

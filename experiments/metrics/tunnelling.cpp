@@ -58,9 +58,9 @@ struct Solid {
 };
 
 /// Follows every free vertex past one collider and remembers by which side it came in.
-class Watch {
+class SideTracker {
  public:
-  Watch(Collider collider, std::size_t vertices)
+  SideTracker(Collider collider, std::size_t vertices)
       : collider_(std::move(collider)),
         last_(vertices),
         in_(vertices),
@@ -138,18 +138,18 @@ class Tunnelling final : public Metric {
   static constexpr bool kFollowsPath = true;
   explicit Tunnelling(const Scene& scene) : free_(free_vertices(scene)) {
     for (const Collider& c : scene.colliders)
-      if (!std::holds_alternative<Plane>(c.shape)) watches_.emplace_back(c, free_.size());
+      if (!std::holds_alternative<Plane>(c.shape)) trackers_.emplace_back(c, free_.size());
   }
 
   void observe_within(const Snapshot& m) override { observe(m); }
   void observe(const Snapshot& m) override {
-    for (Watch& watch : watches_) {
-      watch.place(m.t);
+    for (SideTracker& tracker : trackers_) {
+      tracker.place(m.t);
       for (std::size_t k = 0; k < free_.size(); ++k) {
         const Vec3& x = m.state.x[free_[k]];
         if (m.step == 0)
-          watch.start(k, x);
-        else if (watch.move(k, x))
+          tracker.start(k, x);
+        else if (tracker.move(k, x))
           ++events_;
       }
     }
@@ -165,18 +165,19 @@ class Tunnelling final : public Metric {
   double count() const {
     int count = 0;
     for (std::size_t k = 0; k < free_.size(); ++k)
-      count += std::any_of(watches_.begin(), watches_.end(),
-                           [k](const Watch& w) { return w.through(k); });
+      count += std::any_of(trackers_.begin(), trackers_.end(),
+                           [k](const SideTracker& w) { return w.through(k); });
     return count;
   }
   std::vector<std::size_t> free_;
-  std::vector<Watch> watches_;
+  std::vector<SideTracker> trackers_;
   int events_ = 0;
 };
 
 }  // namespace
 
 TAUT_METRIC(tunnelling, Tunnelling, "Vertices that pass through a ball or box",
-            "swept side labels in the collider's frame; a plane's solid has no other side");
+            "labels of sides, kept along the path in the collider's frame; a plane's solid has no "
+            "other side");
 
 }  // namespace taut

@@ -22,13 +22,13 @@ std::atomic<int> g_signals{0}, g_graceful{0};
 int g_wake[2] = {-1, -1};  ///< a pipe from the handler to the thread that may do what it may not
 
 /// What goes with the program; never destroyed, for the thread outlives main().
-struct Belongings {
+struct ExitCleanup {
   std::mutex mutex;
   std::multiset<std::filesystem::path> paths;
   std::multiset<pid_t> groups;
 };
-Belongings& belongings() {
-  static Belongings& all = *new Belongings;
+ExitCleanup& exit_cleanup() {
+  static ExitCleanup& all = *new ExitCleanup;
   return all;
 }
 
@@ -54,7 +54,7 @@ void end_children(const std::string& mark) {
   for (bool found = true; found;) {
     found = false;
     for (const pid_t child : children()) {
-      if (belongings().groups.contains(child)) continue;
+      if (exit_cleanup().groups.contains(child)) continue;
       const bool ours = has_mark(child, mark);
       if (ours) kill(child, SIGKILL);
       found = found || ours;
@@ -64,7 +64,7 @@ void end_children(const std::string& mark) {
 }
 
 [[noreturn]] void end_program() {
-  Belongings& all = belongings();
+  ExitCleanup& all = exit_cleanup();
   const std::lock_guard lock(all.mutex);  // kept: nothing new is registered any more
   for (const pid_t group : all.groups) kill(-group, SIGKILL);
   for (const pid_t group : all.groups)
@@ -86,7 +86,7 @@ void install_handler() {
   static std::once_flag once;
   std::call_once(once, [] {
     if (pipe2(g_wake, O_CLOEXEC) != 0) return;
-    belongings();
+    exit_cleanup();
     std::thread(serve_signals).detach();
     struct sigaction action {};
     action.sa_handler = on_signal;
@@ -116,7 +116,7 @@ const std::string& descent() {
 }
 
 void end_orphans(const std::string& mark) {
-  const std::lock_guard lock(belongings().mutex);
+  const std::lock_guard lock(exit_cleanup().mutex);
   end_children(mark);
 }
 
@@ -131,22 +131,22 @@ bool GracefulStop::requested() { return g_signals > 0; }
 
 EndsWithProgram::EndsWithProgram(std::filesystem::path path) : path_(std::move(path)) {
   install_handler();
-  const std::lock_guard lock(belongings().mutex);
-  belongings().paths.insert(path_);
+  const std::lock_guard lock(exit_cleanup().mutex);
+  exit_cleanup().paths.insert(path_);
 }
 
 EndsWithProgram::EndsWithProgram(pid_t group) : group_(group) {
   install_handler();
-  const std::lock_guard lock(belongings().mutex);
-  belongings().groups.insert(group_);
+  const std::lock_guard lock(exit_cleanup().mutex);
+  exit_cleanup().groups.insert(group_);
 }
 
 EndsWithProgram::~EndsWithProgram() {
-  const std::lock_guard lock(belongings().mutex);
+  const std::lock_guard lock(exit_cleanup().mutex);
   if (group_ > 0)
-    belongings().groups.extract(group_);
+    exit_cleanup().groups.extract(group_);
   else
-    belongings().paths.extract(path_);
+    exit_cleanup().paths.extract(path_);
 }
 
 }  // namespace taut

@@ -12,6 +12,7 @@
 #include "experiments/report/stored.hpp"
 #include "experiments/require/answers.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/study/extremes/extreme_settings.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {
@@ -175,6 +176,22 @@ TEST(Added, WhatTakesLongestIsKnownBeforehand) {
   };
   EXPECT_GT(work("made-up:passes=16"), 3 * work("made-up:passes=1"));
   EXPECT_EQ(work("made-up:passes=16"), work("made-up:slices=16,passes=1"));
+}
+
+TEST(Added, ItsSubstepsAreThoseOfFrontiers) {
+  std::size_t found = 0;
+  for (const ExtremeSetting& one : extreme_settings("made-up:slices=4")) {
+    if (one.name == "sweeps") {
+      ++found;
+      const Params params = parse_solver(one.question.base.solver).params;
+      EXPECT_EQ(params.integer("slices"), 1) << "they matter in whole steps";
+    }
+    if (one.name == "wind") {
+      ++found;
+      EXPECT_NEAR(one.theory->value, 2 * 0.2 * 240 * 4, 1e-9) << "of the substep";
+    }
+  }
+  EXPECT_EQ(found, 2U);
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ colour = "red"
                           "'iteratons'; did you mean 'iterations'?", "bad.toml:9:1: unknown key 'colour' in [[plot]]"])
         plot = '[[plot]]\nkind = "error-iteration"\ny = "stretch.rmss"\n'
         self.refuse("run", self.study(rest=plot),
-                    says=["study.toml:5:8: unknown kind of plot 'error-iteration'; did you mean 'error-iterations'?",
+                    says=["study.toml:5:8: unknown kind of plot 'error-iteration'; did you mean 'convergence'?",
                           "study.toml:6:5: unknown value 'stretch.rmss' for y; did you mean 'stretch.rms'?"])
         nothing = self.taut("run", self.study(rest='exclude = [{ solver = "jakobsen" }]\n'), expect=4)
         self.assertIn("no case", nothing.err)
@@ -140,7 +140,7 @@ colour = "red"
 
 class Verbs(CommandLine):
     def test_plots_of_values_over_time_and_what_is_held_is_said(self):
-        plot = '[[plot]]\nkind = "error-iterations"\nfile = "mine"\n'
+        plot = '[[plot]]\nkind = "convergence"\nfile = "mine"\n'
         few = self.study("few.toml", rest="axes.iterations = [1, 2]\naxes.time.dt = [0.02, 0.01]\n" + plot)
         self.taut("run", few)
         drawn = self.taut("plot", few)
@@ -156,8 +156,17 @@ class Verbs(CommandLine):
         series = self.taut("plot", study, "--kind", "series", "--y", "stretch.rms")
         self.assertIn("Jakobsen 5 × 2", (self.folder / series.out.split()[0]).with_suffix(".csv").read_text())
 
+    def test_theory_is_drawn_beside_what_it_speaks_of(self):
+        study = self.study(rest="axes.iterations = [1, 2, 4]\n")
+        self.taut("run", study)
+        for value, drawn in (("stretch.max", True), ("compression.max", False)):
+            figure = self.folder / self.taut("plot", study, "--kind", "convergence", "--y", value).out.split()[0]
+            self.assertEqual("theory: slope -1" in figure.with_suffix(".gp").read_text(), drawn, value)
+        self.assertIn("set title 'Largest stretch over sweeps per substep, small",
+                      (figure.parent / "small-convergence-stretch.max-over-iterations.gp").read_text())
+
     def test_a_run_ends_with_commands_that_work(self):
-        self.study("a study.toml", rest="axes.iterations = [1, 2]\n" + '[[plot]]\nkind = "error-iterations"\n')
+        self.study("a study.toml", rest="axes.iterations = [1, 2]\n" + '[[plot]]\nkind = "convergence"\n')
         said = self.taut("run", "./a study.toml", "--out", "other results").err
         commands = [shlex.split(line) for line in said.partition("next: ")[2].splitlines()]
         self.assertEqual([words[:2] for words in commands], [["taut", "report"], ["taut", "plot"], ["taut", "export"]])
@@ -166,7 +175,7 @@ class Verbs(CommandLine):
         self.assertEqual(len((self.folder / "table.csv").read_text().splitlines()), 3)
 
     def test_unequal_work_is_said_wherever_it_is_compared(self):
-        plot = '[[plot]]\nkind = "error-iterations"\n'
+        plot = '[[plot]]\nkind = "convergence"\n'
         unequal = self.study("unequal.toml", solvers=["jakobsen:substeps=2", "bullet"], rest="axes.iterations = [1, 4]\n" + plot)
         equal = self.study("equal.toml", solvers=["jakobsen", "bullet:substeps=1", "jakobsen:substeps=1"], rest="axes.iterations = [1, 4]\n" + plot)
         words = "unequal work: Jakobsen 2 × 1 to 2 × 4, Bullet 1 × 1 to 1 × 4 (substeps × sweeps)"

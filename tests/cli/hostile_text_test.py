@@ -48,7 +48,7 @@ class HostileText(CommandLine):
 
     def hostile_study(self, **more):
         plots = "".join(f'[[plot]]\nkind = "{kind}"\ntitle = {json.dumps(title)}\nfile = {json.dumps(title)}\n'
-                        for kind, title in [("error-iterations", GNUPLOT), ("stability", SHELL + "../../canary")])
+                        for kind, title in [("convergence", GNUPLOT), ("stability", SHELL + "../../canary")])
         study = self.folder / self.study(scenes=self.scenes, rest="axes.iterations = [1, 2]\naxes.omega = [0.9, 1]\n" + plots, **more)
         study.write_text(study.read_text().replace("Does it?", (MARKUP + GNUPLOT).replace('"', '\\"') + "\u202e" + LONG))
         name = "a study; touch canary `touch canary`.toml"

@@ -100,7 +100,7 @@ class Toys(Programs):
         self.assertEqual(solvers["mine"]["summary"], "Jakobsen's algorithm in C++")
         self.assertEqual([p["name"] for p in solvers["mine"]["params"]], ["iterations"])
         study = self.study(solvers=["mine", "jakobsen:substeps=1,order=mesh"], rest="[axes]\niterations = [1, 4]\n"
-                           '[[plot]]\nkind = "error-iterations"\n')
+                           '[[plot]]\nkind = "convergence"\n')
         self.taut("run", study)
         records = self.records()
         self.assertEqual([r["status"]["kind"] for r in records], ["ok"] * 4)
@@ -153,7 +153,7 @@ class Everywhere(Programs):
             shutil.copy(SDK / name, self.folder)
         (self.folder / "other.py").write_text((self.folder / "toy.py").read_text().replace("self.sweeps = ", "self.sweeps = 3 * "))
         study = self.study(solvers=["external:cmd='python3 toy.py'", "external:cmd='python3 other.py'", "named:cmd='python3 other.py -v'"],
-                           rest='[axes]\niterations = [1, 2]\n[[plot]]\nkind = "error-iterations"\n')
+                           rest='[axes]\niterations = [1, 2]\n[[plot]]\nkind = "convergence"\n')
         self.taut("run", study)
         names = {r["solver"]: r["params"]["cmd"] for r in self.records()}
         self.assertEqual(len(self.records()), 6)
@@ -162,7 +162,7 @@ class Everywhere(Programs):
         for name in set(names) - {"named"}:
             self.assertRegex(name, "^toy-python-[0-9a-f]{4}$")
         self.taut("plot", study)
-        curves = (self.folder / "results/runs/figures/study/small-error-iterations-stretch.rms-over-iterations.csv").read_text()
+        curves = (self.folder / "results/runs/figures/study/small-convergence-stretch.rms-over-iterations.csv").read_text()
         self.assertEqual({line.split(",")[1] for line in curves.splitlines()[1:]}, set(names))
         model, page = self.report(study)
         self.assertEqual({s["id"] for s in model["solvers"]}, set(names))
@@ -175,7 +175,7 @@ class Everywhere(Programs):
             self.skipTest("perl is not here")
         perl = f"external:cmd='perl {HERE}/relax.pl'"
         self.assertIn("It may be scored.", self.taut("external", "probe", f"perl {HERE}/relax.pl").out)
-        study = self.study(solvers=[perl, "bullet"], rest='[axes]\niterations = [1, 2]\n[[plot]]\nkind = "error-iterations"\n')
+        study = self.study(solvers=[perl, "bullet"], rest='[axes]\niterations = [1, 2]\n[[plot]]\nkind = "convergence"\n')
         self.taut("run", study)
         self.assertEqual([r["status"]["kind"] for r in self.records()], ["ok"] * 4)
         self.taut("plot", study)
@@ -196,7 +196,7 @@ class Everywhere(Programs):
         self.taut("case", "./small.toml", LISTING + "4", "--trajectory", "run.pc2")
         self.taut("case", "./small.toml", LISTING + "4", "--trajectory", "other.npy")
         study = self.study(solvers=["bullet", LISTING + "4", "positions:file=run.pc2", "named:file=other.npy"],
-                           rest='[axes]\niterations = [1, 4]\n[[plot]]\nkind = "error-iterations"\n'
+                           rest='[axes]\niterations = [1, 4]\n[[plot]]\nkind = "convergence"\n'
                            '[[plot]]\nkind = "series"\ny = "stretch.rms"\n[[plot]]\nkind = "work-precision"\n')
         self.taut("run", study)
         records = {r["solver"]: r for r in self.records()}
@@ -210,11 +210,11 @@ class Everywhere(Programs):
                 self.assertAlmostEqual(records["named"]["values"][name], value, delta=1e-12, msg=name)
         self.taut("plot", study)
         figures = self.folder / "results/runs/figures/study"
-        error = (figures / "small-error-iterations-stretch.rms-over-iterations.csv").read_text().splitlines()
+        error = (figures / "small-convergence-stretch.rms-over-iterations.csv").read_text().splitlines()
         level = [line.split(",") for line in error if f",{file}," in line]
         self.assertEqual([row[3] for row in level], ["1", "4"], "a level across the chart")
         self.assertEqual(len({row[6] for row in level}), 1)
-        for drawn in ("small-error-iterations-stretch.rms-over-iterations.svg", "small-series-stretch.rms-over-t.svg"):
+        for drawn in ("small-convergence-stretch.rms-over-iterations.svg", "small-series-stretch.rms-over-t.svg"):
             self.assertIn("rounding of the file of positions", (figures / drawn).read_text())
         model, page = self.report(study)
         fairness = model["scenes"][0]["fairness"]

@@ -12,7 +12,7 @@
 #include "core/solver/layout/order.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/external/external.hpp"
-#include "experiments/external/introduction.hpp"
+#include "experiments/external/protocol.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut::external {
@@ -80,13 +80,13 @@ std::vector<Point> listing(const Scene& scene, int substeps, int steps) {
 }
 
 std::vector<Vec3> run_jolt(const Scene& scene, int substeps, int steps) {
-  Session session(command_of("jolt"));
-  say_hello(session);
-  give_scene(session, scene, {{"substeps", substeps}});
-  load_state(session, scene.start);
-  for (int n = 0; n < steps; ++n) take_steps(session, n * scene.dt, scene.dt, 1);
+  Connection connection(command_of("jolt"));
+  say_hello(connection);
+  give_scene(connection, scene, {{"substeps", substeps}});
+  load_state(connection, scene.start);
+  for (int n = 0; n < steps; ++n) take_steps(connection, n * scene.dt, scene.dt, 1);
   State state;
-  store_state(session, scene.mesh.size(), state);
+  store_state(connection, scene.mesh.size(), state);
   return state.x;
 }
 

@@ -29,7 +29,7 @@ SECONDS = 60  # of one command: more is a hang
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
 SMALL = ('[cloth]\ngrid = [3, 3]\nsize = [1, 1]\nmass = 0.1\npins = ["top-left"]\n'
          '[time]\ndt = "1/32"\nduration = 0.1\n')
-PLOTS = '[[plot]]\nkind = "error-iterations"\n[[plot]]\nkind = "series"\ny = "stretch.rms"\n'
+PLOTS = '[[plot]]\nkind = "convergence"\n[[plot]]\nkind = "series"\ny = "stretch.rms"\n'
 STUDY = 'question = "?"\nscenes = ["./small.toml"]\nsolvers = ["jakobsen", "xpbd"]\n[axes]\niterations = [1, 2]\n' + PLOTS
 
 

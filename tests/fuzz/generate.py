@@ -164,7 +164,7 @@ class Maker:
     def study(self, scenes, solvers):
         lines = [f'question = {toml(self.text())}', f'scenes = {toml(scenes)}', f'solvers = {toml(solvers)}', 'set = ["time.duration=0.1"]', '[axes]',
                  f'"time.dt" = {toml(self.random.sample(["1/64", "1/32", 0.1, 0.02, 1e-3], 2))}']
-        kinds = ['error-iterations', 'work-precision', 'penetration', 'stability', 'scaling', 'series']
+        kinds = ['convergence', 'work-precision', 'contact', 'stability', 'scaling', 'series']
         for _ in range(self.random.randint(0, 2)):
             lines += ['[[plot]]', f'kind = "{self.random.choice(kinds)}"', f'title = {toml(self.text())}']
             if self.maybe(0.3):

@@ -17,7 +17,7 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
-#include "experiments/external/introduction.hpp"
+#include "experiments/external/protocol.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/bench.hpp"

@@ -87,13 +87,15 @@ class CostReader {
     EXPECT_EQ(named, works);
   }
 
-  /// "on hang 2.1 ms, 1/10 of without; on ball 3 ms, the same as without".
+  /// "on hang 2.1 ms, 1/10 of without; on ball 3 ms, not to be told apart
+  /// from without (1.02, 95 % interval 0.97 to 1.08)".
   void only(const std::string& other) const {
     EXPECT_EQ(text_.find("With tethers, which " + label_of(other) + " does not have, Jakobsen "),
               0U);
     const auto clauses = matches(
-        text_,
-        pattern("on ([a-z]+) #\u00A0ms, (#(\u00A0%)? of|more than|the same as|without not)"));
+        text_, pattern("on ([a-z]+) #\u00A0ms, (#(\u00A0%)? of|more than|not to be told apart from|"
+                       "too noisy to be told from|without not)( without \\(#, 95\u00A0% interval # "
+                       "to #\\))?"));
     Scenes named, expected, missed;
     double noise = 0;
     for (const SceneBench& scene : input_.bench->scenes) {
@@ -120,7 +122,12 @@ class CostReader {
       if (!without) continue;
       const Ratio ratio = ratio_of(*with, *without);
       const Certainty sure = told(ratio, noise_of(bench(m[1])));
-      EXPECT_EQ(m[3] == "the same as", sure == Certainty::none || sure == Certainty::too_noisy);
+      EXPECT_EQ(m[3] == "not to be told apart from", sure == Certainty::none);
+      EXPECT_EQ(m[3] == "too noisy to be told from", sure == Certainty::too_noisy);
+      EXPECT_EQ(m[6].empty(), sure == Certainty::clear || sure == Certainty::likely);
+      constexpr std::size_t kEnds[] = {1, 0, 2};  // the sentence has the middle first
+      for (std::size_t k = 0; k < 3 && !m[6].empty(); ++k)
+        EXPECT_PRED2(near, number_in(m[7 + k]), ratio[kEnds[k]]);
       EXPECT_EQ(m[3] == "more than",
                 (sure == Certainty::clear || sure == Certainty::likely) && ratio[1] > 1);
       if (m[4].empty()) continue;

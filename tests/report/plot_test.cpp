@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/system/files.hpp"
@@ -52,7 +53,7 @@ TEST_F(Plots, EveryKindGivesFourFilesAndACsvWithOneHeader) {
     if (kind.name == "series" || kind.name == "scaling" || kind.name == "profile")
       continue;  // these records have no such
     const PlotFiles plot = draw({.kind = std::string(kind.name),
-                                 .y = kind.name == "penetration" ? "penetration.max" : "",
+                                 .y = kind.name == "contact" ? "penetration.max" : "",
                                  .file = "one"},
                                 records);
     for (const fs::path& path : {plot.svg, plot.pdf, plot.gp, plot.csv})
@@ -69,7 +70,7 @@ TEST_F(Plots, EveryKindGivesFourFilesAndACsvWithOneHeader) {
 }
 
 TEST_F(Plots, AFailedCaseIsAMarkAndARowNeverAGap) {
-  const PlotFiles plot = draw({.kind = "error-iterations"}, synthetic::iterations("hang"));
+  const PlotFiles plot = draw({.kind = "convergence"}, synthetic::iterations("hang"));
   EXPECT_EQ(count(read_text(plot.csv), ",exploded,nonfinite,yes,"), 1U);
   EXPECT_NE(read_text(plot.svg).find("Bullet: failed"), std::string::npos);
   EXPECT_EQ(read_text(plot.svg).find("Jakobsen: failed"), std::string::npos);
@@ -77,7 +78,7 @@ TEST_F(Plots, AFailedCaseIsAMarkAndARowNeverAGap) {
 
 TEST_F(Plots, ExactZerosStayOnTheFloorOfALogarithmicAxis) {
   const PlotFiles plot =
-      draw({.kind = "penetration", .y = "penetration.max"}, synthetic::iterations("ball"));
+      draw({.kind = "contact", .y = "penetration.max"}, synthetic::iterations("ball"));
   EXPECT_NE(read_text(plot.svg).find("exactly zero"), std::string::npos);
 }
 
@@ -85,11 +86,11 @@ TEST_F(Plots, AllZeroAllFailedAndNan) {
   auto records = synthetic::iterations("hang");
   for (Record& r : records)
     if (r.status.kind == Status::Kind::ok) r.values["stretch.rms"] = 0;
-  EXPECT_NO_THROW(draw({.kind = "error-iterations"}, records));
+  EXPECT_NO_THROW(draw({.kind = "convergence"}, records));
   for (Record& r : records) r.values["stretch.rms"] = std::nan("");
-  EXPECT_THROW(draw({.kind = "error-iterations"}, records), InputError);
+  EXPECT_THROW(draw({.kind = "convergence"}, records), InputError);
   for (Record& r : records) synthetic::fail(r, Status::Kind::timeout, "60 s");
-  EXPECT_THROW(draw({.kind = "error-iterations"}, records), InputError);
+  EXPECT_THROW(draw({.kind = "convergence"}, records), InputError);
 }
 
 TEST_F(Plots, AMapHasARowForEveryCase) {
@@ -105,7 +106,7 @@ TEST_F(Plots, NamesWithQuotesCommasAndLineBreaksReachNobodysSyntax) {
     r.status.reason = "a,b\n\"c\"";
   }
   const PlotFiles plot =
-      draw({.kind = "error-iterations", .title = "'; system 'date `id`\n~{x}_y @a"}, records);
+      draw({.kind = "convergence", .title = "'; system 'date `id`\n~{x}_y @a"}, records);
   EXPECT_NE(read_text(plot.svg).find("'; system 'date `id` ~{x}_y @a"), std::string::npos);
 }
 
@@ -134,7 +135,7 @@ TEST_F(Plots, UnknownKindsAndValuesAreInputErrorsWithASuggestion) {
   EXPECT_THROW(draw({.kind = "series"}, records), InputError);
   EXPECT_THROW(draw({.kind = "stability"}, {}), InputError);
   try {
-    draw({.kind = "error-iterations", .y = "stretch.rsm"}, records);
+    draw({.kind = "convergence", .y = "stretch.rsm"}, records);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("did you mean 'stretch.rms'"), std::string::npos);
@@ -169,6 +170,20 @@ TEST(Curves, TwoTimeStepsAreTwoSetsOfCurvesManyAreHeldAtOne) {
   EXPECT_EQ(labels, (std::set<std::string>{"Jakobsen 1.00\u00A0ms", "Jakobsen 2.00\u00A0ms",
                                            "Bullet 1.00\u00A0ms", "Bullet 2.00\u00A0ms"}));
   EXPECT_EQ(make_curves(one.records, "iterations", "stretch.rms", "iterations").size(), 2U);
+}
+
+TEST(Curves, SweepsAreSaidInWords) {
+  const auto records = synthetic::time_steps("hang");
+  std::set<std::string> labels;
+  for (const Curve& c : make_curves(records, "dt", "stretch.rms", "dt")) labels.insert(c.label);
+  EXPECT_EQ(labels.size(), 14U);
+  EXPECT_TRUE(labels.contains("Jakobsen 8 sweeps"));
+  EXPECT_TRUE(labels.contains("Bullet 64 sweeps"));
+}
+
+TEST(PlotKinds, ContactShowsWhatAMetricDeclaresAsADepth) {
+  EXPECT_EQ(find_plot_kind("contact").y, "penetration.peak");
+  EXPECT_EQ(find_value(find_plot_kind("contact").y).second->role, Role::vertex_depth);
 }
 
 TEST(Curves, SolversStandAsTheRecordsHaveThem) {

@@ -26,9 +26,9 @@ struct Options {
 };
 
 /// What keeps the motion: taut's own trajectory, or a format of other programs.
-class Keeper {
+class MotionWriter {
  public:
-  Keeper(const std::string& file, const Case& one) {
+  MotionWriter(const std::string& file, const Case& one) {
     if (file.empty()) return;
     if (!file.ends_with(".traj"))
       positions_ = create_positions(file, one.scene->mesh);
@@ -81,15 +81,15 @@ int run(const Options& options) try {
   continue_in_right_program(one.choice);
   if (!options.into.empty()) return run_into(one, options.into, options.frames);
 
-  Keeper keeper(options.trajectory, one);
+  MotionWriter writer(options.trajectory, one);
   SlowRun slow(one.scene->steps);
   const CaseRun result = run_case(
       one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Snapshot& m) {
-              keeper.append(m);
+              writer.append(m);
               slow.at(m.step);
               if (options.verbose) tell(m, one.scene->steps);
             }});
-  keeper.finish();
+  writer.finish();
   if (!options.final_state.empty()) write_durably(options.final_state, to_csv(result.last));
   if (!options.series.empty()) write_durably(options.series, to_csv(result.series));
   if (options.json)

@@ -14,6 +14,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/stored.hpp"
@@ -107,7 +108,8 @@ std::string hold_other(const PlotSpec& spec, report::Records& records, const std
   return ", " + setting;
 }
 
-/// One figure per scene; a setting that is neither axis nor swept along is held at its commonest.
+/// One figure per scene; a setting that is neither on an axis nor what orders the curves is held at
+/// its commonest.
 report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const std::string& scene,
                        const Store& store, const std::filesystem::path& out) {
   const report::PlotKind& kind = report::find_plot_kind(spec.kind);
@@ -119,11 +121,15 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
   const std::string held = spec.kind == "stability" ? "" : hold_other(spec, records, scene);
   std::vector<report::TimeSeries> series;
   if (spec.kind == "series") series = report::stored_series(records, spec.y, store);
+  const ValueSpec* value = find_value(spec.y).second;
   if (const auto slope = study.slopes.find(scene);
-      slope != study.slopes.end() && spec.kind == "error-iterations" && spec.x == report::kSweeps &&
-      !spec.slope && spec.y.starts_with("stretch."))
+      slope != study.slopes.end() && spec.kind == "convergence" && spec.x == report::kSweeps &&
+      !spec.slope && value && value->falls_with_sweeps)
     spec.slope = slope->second;
-  spec.title = (spec.title.empty() ? spec.y + " over " + spec.x : spec.title) + ", " + scene + held;
+  if (spec.title.empty())
+    spec.title = report::capitalised(report::quantity(spec.y).title) + " over " +
+                 report::quantity(spec.x).title;
+  spec.title += ", " + scene + held;
   if (const std::string unequal = report::unequal_work(records); !unequal.empty())
     spec.title += "; unequal work: " + unequal;
   spec.file = report::slug(

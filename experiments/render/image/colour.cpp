@@ -70,24 +70,24 @@ std::string trimmed(double value) {
 }
 
 /// How each of them is named and shown, in the order of the enumeration.
-struct Look {
+struct Style {
   const char *name, *title;
   double shown;  ///< number of units in one of SI
   const char* unit;
   const ColourMap& (*map)();
 };
-constexpr Look kLooks[] = {
+constexpr Style kStyles[] = {
     {"strain", "mean edge strain ε at each vertex", 100, "%", ColourMap::diverging},
     {"penetration", "depth below a collider's surface", 1e3, "mm", ColourMap::violet},
     {"speed", "speed", 1, "m/s", ColourMap::teal}};
 
-const Look& look(ColourBy by) { return kLooks[static_cast<std::size_t>(by)]; }
+const Style& style(ColourBy by) { return kStyles[static_cast<std::size_t>(by)]; }
 
 }  // namespace
 
 ColourBy parse_colour_by(const std::string& name) {
-  const auto found = std::ranges::find(kLooks, name, &Look::name);
-  if (found != std::end(kLooks)) return static_cast<ColourBy>(found - std::begin(kLooks));
+  const auto found = std::ranges::find(kStyles, name, &Style::name);
+  if (found != std::end(kStyles)) return static_cast<ColourBy>(found - std::begin(kStyles));
   throw InputError("unknown colour '" + name + "': strain, penetration or speed" +
                    suggestion(name, {"strain", "penetration", "speed"}));
 }
@@ -120,16 +120,16 @@ Rgb8 ColourMap::at(double s) const {
   return table_[static_cast<std::size_t>(std::lround(clamped * (kSize - 1)))];
 }
 
-const ColourMap& ColourScale::map() const { return look(colour_by).map(); }
+const ColourMap& ColourScale::map() const { return style(colour_by).map(); }
 
-std::string ColourScale::title() const { return look(colour_by).title; }
+std::string ColourScale::title() const { return style(colour_by).title; }
 
-double ColourScale::shown() const { return look(colour_by).shown; }
+double ColourScale::shown() const { return style(colour_by).shown; }
 
 std::string ColourScale::text(double value) const {
   if (colour_by == ColourBy::strain && value == 0) return "0";
   const char* sign = colour_by != ColourBy::strain ? "" : value < 0 ? "\u2212" : "+";
-  return sign + trimmed(std::abs(shown() * value)) + " " + look(colour_by).unit;
+  return sign + trimmed(std::abs(shown() * value)) + " " + style(colour_by).unit;
 }
 
 std::vector<double> ColourScale::ticks() const {

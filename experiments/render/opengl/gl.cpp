@@ -43,14 +43,14 @@ class Library {
 };
 
 /// A context that is current, who ends it, and where its functions are asked for.
-struct Made {
+struct Created {
   void* context;
   void (*destroy)(void*);
   void* (*function)(const char*);
 };
 
 /// Mesa's off-screen library (dropped from Mesa in 25.1). Names and values: GL/osmesa.h.
-Made make_osmesa() {
+Created make_osmesa() {
   const Library library("TAUT_OSMESA", "libOSMesa.so.8");
   constexpr int kFormat = 0x22, kProfile = 0x33, kCore = 0x34, kMajor = 0x36, kMinor = 0x37;
   const int wanted[] = {kFormat, GL_RGBA, kProfile, kCore, kMajor, 3, kMinor, 3, 0};
@@ -68,7 +68,7 @@ Made make_osmesa() {
 }
 
 /// EGL without a surface (EGL_MESA_platform_surfaceless).
-Made make_egl() {
+Created make_egl() {
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
   static const Library library("TAUT_EGL", "libEGL.so.1");
   static const auto get = library.get<decltype(&eglGetProcAddress)>("eglGetProcAddress");
@@ -96,7 +96,7 @@ Made make_egl() {
   return {context, destroy, [](const char* name) { return reinterpret_cast<void*>(get(name)); }};
 }
 
-void load_functions(const Made& made) {
+void load_functions(const Created& made) {
   static std::once_flag once;  // every context of a process is of the same library
   std::call_once(once, [&] {
 #define TAUT_GL_LOAD(name)                                       \
@@ -111,11 +111,11 @@ void load_functions(const Made& made) {
 
 GlContext::GlContext() {
   std::string tried;
-  const std::pair<Made (*)(), const char*> ways[] = {
+  const std::pair<Created (*)(), const char*> ways[] = {
       {make_osmesa, "OSMesa (package libosmesa6)"},
       {make_egl, "EGL (packages libegl1, libgl1-mesa-dri)"}};
   for (const auto& [make, what] : ways) try {
-      const Made made = make();
+      const Created made = make();
       context_ = made.context, destroy_ = made.destroy;
       load_functions(made);
       return;

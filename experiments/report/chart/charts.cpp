@@ -227,7 +227,8 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
     const std::string y(value->name);
     if (!add(id_of(*value), "convergence", kSweeps, y, kSweeps, caption_of(*value))) continue;
     for (const StudyResult& study : input.studies)
-      if (const auto at = study.slopes.find(scene); y == kErrorMetric && at != study.slopes.end())
+      if (const auto at = study.slopes.find(scene);
+          value->falls_with_sweeps && at != study.slopes.end())
         charts.back().slope = at->second;
   }
   const bool timed =

@@ -20,7 +20,7 @@ struct Chart {
   std::string along = {};  ///< the setting that orders a curve
   std::vector<Curve> curves = {};
   std::vector<TimeSeries> series = {};  ///< instead of curves: values over time
-  std::vector<double> ticks = {};       ///< of x: the values of a swept setting, SI, ascending
+  std::vector<double> ticks = {};       ///< of x: the values of a study's setting, SI, ascending
   bool join = true;                     ///< the points of a curve by a line
   std::optional<double> slope = {};     ///< the theory's exponent
   /// Below it a value says nothing: why, and how much.

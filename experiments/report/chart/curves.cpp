@@ -32,10 +32,13 @@ Settings settings(const Record& record, const std::vector<std::string>& free) {
   return all;
 }
 
-/// "mesh" speaks for itself; "4" and "on" do not.
-bool needs_its_key(const std::string& value) {
-  return value == "on" || value == "off" ||
-         value.find_first_not_of("0123456789.+-e/") == std::string::npos;
+/// What a setting adds to a label: "mesh" speaks for itself, "4" and "on" do not.
+std::string in_label(const Record& record, const std::string& key, const std::string& value) {
+  for (const auto& [name, counted] : {std::pair{kSweeps, " sweeps"}, {kSubsteps, " substeps"}})
+    if (key == parameter_of(record.solver, name)) return value + counted;
+  const bool word = value != "on" && value != "off" &&
+                    value.find_first_not_of("0123456789.+-e/") != std::string::npos;
+  return word ? value : key + "=" + value;
 }
 
 }  // namespace
@@ -67,8 +70,7 @@ std::vector<Curve> make_curves(const Records& records, const std::string& x, con
     if (fresh) {
       Curve curve{solver_title(record.solver), record.solver, variants[record.solver]++, {}};
       for (const auto& [key, value] : all)
-        if (varies(record, key))
-          curve.label += " " + (needs_its_key(value) ? key + "=" + value : value);
+        if (varies(record, key)) curve.label += " " + in_label(record, key, value);
       curves.push_back(std::move(curve));
     }
     Point point{value_of(record, x), value_of(record, y), value_of(record, along), &record};

@@ -11,7 +11,7 @@ namespace taut::report {
 /// One case on a curve, in SI units.
 struct Point {
   double x = 0, y = 0;
-  double along = 0;  ///< the swept setting that orders the curve
+  double along = 0;  ///< the setting that orders the curve
   const Record* record = nullptr;
   std::string name =
       {};  ///< under "setting": the accuracy parameters, "16 × 2" for substeps x sweeps
@@ -20,7 +20,7 @@ struct Point {
   bool measured() const;
 };
 
-/// One solver with one choice of its settings, ordered along the swept setting.
+/// One solver with one choice of its settings, ordered along one more setting.
 struct Curve {
   std::string label;   ///< "Jakobsen sqrt-free"
   std::string solver;  ///< the entry's name

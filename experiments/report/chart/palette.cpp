@@ -31,22 +31,22 @@ Colour colour(std::string_view name) {
   return *found;
 }
 
-struct Look {
+struct Style {
   std::string_view colour, shape;
   int marker;
   std::string_view dash;
 };
 /// By the solver's place among those of this program. Most lines are dashed because a correct pair
 /// coincides: the lower one must show through.
-constexpr std::array kLooks{
-    Look{"s-orange", "square", 5, "9 4"},
-    Look{"s-magenta", "diamond", 13, "9 3 2 3"},
-    Look{"s-blue", "circle", 7, ""},
-    Look{"s-purple", "triangle", 9, "3 3"},
-    Look{"s-green", "triangle-down", 11, "9 3 2 3"},
-    Look{"s-teal", "pentagon", 15, "12 3"},
-    Look{"s-brown", "triangle", 9, "5 3"},
-    Look{"s-slate", "square", 5, "6 2"},
+constexpr std::array kStyles{
+    Style{"s-orange", "square", 5, "9 4"},
+    Style{"s-magenta", "diamond", 13, "9 3 2 3"},
+    Style{"s-blue", "circle", 7, ""},
+    Style{"s-purple", "triangle", 9, "3 3"},
+    Style{"s-green", "triangle-down", 11, "9 3 2 3"},
+    Style{"s-teal", "pentagon", 15, "12 3"},
+    Style{"s-brown", "triangle", 9, "5 3"},
+    Style{"s-slate", "square", 5, "6 2"},
 };
 
 /// What stands for a status whose name is its colour's.
@@ -77,10 +77,10 @@ SolverStyle solver_style(std::string_view solver) {
   if (place == known.size()) {
     std::size_t hash = 0;
     for (const char c : solver) hash = 31 * hash + static_cast<unsigned char>(c);
-    place += hash % (kLooks.size() - std::min(place, kLooks.size() - 1));
+    place += hash % (kStyles.size() - std::min(place, kStyles.size() - 1));
   }
-  const Look& look = kLooks[place % kLooks.size()];
-  return {colour(look.colour), look.shape, look.marker, look.dash};
+  const Style& style = kStyles[place % kStyles.size()];
+  return {colour(style.colour), style.shape, style.marker, style.dash};
 }
 
 StatusStyle status_style(Status::Kind kind) {

@@ -150,7 +150,8 @@ struct Titled {
 };
 constexpr std::array kTitles{
     Titled{"dt", "time step", kMilliseconds},
-    Titled{kSweeps, "sweeps per substep", kNumber},
+    Titled{kSweeps, "sweeps per substep", kNumber,
+           "passes over all links; most solvers call the parameter iterations"},
     Titled{kSubsteps, "substeps per step", kNumber},
     Titled{"steps", "steps", kNumber},
     Titled{"t", "simulated time", kTime},

@@ -53,7 +53,7 @@ struct Quantity {
   std::string name;
   std::string title;  ///< "RMS stretch"
   Unit unit = kNumber;
-  std::string help = {};         ///< its definition; "" of settings
+  std::string help = {};         ///< its definition; "" of most settings
   Window window = Window::none;  ///< Window::none of settings
 
   /// "RMS stretch [%]"

@@ -72,6 +72,10 @@ std::string share_interval(const Interval& r) {
   return "95\u00A0% interval " + share_text(r.low) + " to " + share_text(r.high);
 }
 
+std::string ratio_text(const Interval& r) {
+  return fixed(r.mid, 2) + ", 95\u00A0% interval " + fixed(r.low, 2) + " to " + fixed(r.high, 2);
+}
+
 Interval inverse(const Interval& r) { return {1 / r.high, 1 / r.mid, 1 / r.low}; }
 
 /// Why a solver's cases do not reach the level: the search went to the end, or it did not.
@@ -131,9 +135,8 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
   } else {
     verdicts.text = std::string(judged == Certainty::too_noisy ? "too noisy to judge"
                                                                : "no difference that can be told") +
-                    " (" + pair.first_label + " over " + pair.other_label + " " +
-                    fixed(mean.mid, 2) + ", 95\u00A0% interval " + fixed(mean.low, 2) + " to " +
-                    fixed(mean.high, 2) + over + ".";
+                    " (" + pair.first_label + " over " + pair.other_label + " " + ratio_text(mean) +
+                    over + ".";
   }
   verdicts.text += sentence_if(" Less with " + pair.first_label + " on ", ours) +
                    sentence_if(" Less with " + pair.other_label + " on ", theirs) +
@@ -293,11 +296,12 @@ void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
       const Interval ratio = *scene.ratio(*with, *without);
       const Certainty judged = judge(ratio, scene.control);
       sure = less_sure(sure.value_or(Certainty::none), judged);
-      const bool told = is_difference(judged);
-      const std::string than = told && ratio.mid > 1 ? ", more than" : ", the same as";
-      text += told && ratio.mid < 1 ? ", " + share_text(ratio.mid) + " of" : than;
-      text += std::string(" without") +
-              (judged == Certainty::too_noisy ? " as far as the noise lets tell" : "");
+      text += !is_difference(judged)
+                  ? (judged == Certainty::too_noisy ? ", too noisy to be told from without ("
+                                                    : ", not to be told apart from without (") +
+                        ratio_text(ratio) + ")"
+              : ratio.mid < 1 ? ", " + share_text(ratio.mid) + " of without"
+                              : ", more than without";
     } else {
       text += ", without not reached by the settings tried";
     }

@@ -40,7 +40,7 @@ function scaleOf(kind, values, range) {
   return d3.scaleLinear().domain([low === 0 ? 0 : low - air, high + air]).range(range);
 }
 
-/** Ticks that can be read: the values of a swept setting, or 1, 2 and 5 of each power of ten as far as they fit; of many powers every second. */
+/** Ticks that can be read: the values of a study's setting, or 1, 2 and 5 of each power of ten as far as they fit; of many powers every second. */
 function ticksOf(scale, axis, kind, wanted) {
   const [low, high] = scale.domain(), inside = (v) => v >= low && v <= high;
   if (axis.values) return axis.values.map((v) => v * axis.scale).filter(inside);

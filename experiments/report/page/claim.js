@@ -1,5 +1,6 @@
 'use strict';
-// A sentence or a tile and what it rests on: the basis shows at the pointer, at the focus and in print.
+// The answer on the first screen: sentences and tiles. What each rests on, its basis, shows at the pointer, at the
+// focus and in print.
 
 /** A solver's mark: its colour and its marker, so that hue is not the only carrier. */
 function mark(id) {
@@ -114,4 +115,16 @@ const placed = new Set();
 function claimList(list) {
   const fresh = list.filter(({id}) => !placed.has(id) && placed.add(id));
   return fresh.length ? el('div', {className: 'claims'}, fresh.map(claimNode)) : null;
+}
+
+/** The first screen: the question, the headlines, the tiles, and what else is to be known. */
+function answerSection() {
+  const {meta} = model, of = meta.cases < meta.planned ? ` of ${meta.planned}` : '';
+  return el('section', {id: 'answer'},
+    note(el('b', {}, 'taut'), ' report · ',
+         [`${meta.cases}${of} cases`, meta.preset, meta.made, meta.machine].filter(Boolean).join(' · ')),
+    el('h1', {}, meta.question || meta.title), meta.question && note(meta.title),
+    claimList(model.claims.filter((claim) => claim.kind === 'headline')),
+    el('div', {className: 'tiles'}, model.claims.filter((claim) => claim.kind === 'tile').map(tileNode)),
+    claimList(claimsAbout(['note'], ['all', 'only', 'failures'])));
 }

@@ -1,5 +1,5 @@
 'use strict';
-// The sections about all scenes. One without content is not made.
+// The sections about all scenes but the answer, which is in claim.js. One without content is not made.
 
 const section = (id, title, ...content) => el('section', {id}, el('h2', {}, title), content);
 const list = (title, items) => items?.length ? [el('h3', {}, title), el('ul', {}, items)] : null;
@@ -15,18 +15,6 @@ function tableNode(table, heading = 'h4') {
   const rows = table.rows.map((cells) => row(...cells.map(tableCell)));
   return el('div', {className: 'card', id: `table-${table.id}`}, el(heading, {}, short(table.title, 120)),
             note(table.caption), tableOf(`${table.title} (${table.id})`, table.columns.map((c) => c.title), rows));
-}
-
-/** The first screen: the question, the headlines, the tiles, and what else is to be known. */
-function answerSection() {
-  const {meta} = model, of = meta.cases < meta.planned ? ` of ${meta.planned}` : '';
-  return el('section', {id: 'answer'},
-    note(el('b', {}, 'taut'), ' report · ',
-         [`${meta.cases}${of} cases`, meta.preset, meta.made, meta.machine].filter(Boolean).join(' · ')),
-    el('h1', {}, meta.question || meta.title), meta.question && note(meta.title),
-    claimList(model.claims.filter((claim) => claim.kind === 'headline')),
-    el('div', {className: 'tiles'}, model.claims.filter((claim) => claim.kind === 'tile').map(tileNode)),
-    claimList(claimsAbout(['note'], ['all', 'only', 'failures'])));
 }
 
 function differencesSection() {

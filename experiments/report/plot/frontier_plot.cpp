@@ -54,8 +54,7 @@ std::filesystem::path plot_frontiers(const std::vector<ParameterFrontier>& all,
   }
   std::string script =
       "# How far each parameter goes on the standard scene.\n# Again: gnuplot -e \"set terminal "
-      "svg "
-      "noenhanced; set output '" +
+      "svg noenhanced; set output '" +
       stem + ".svg'\" " + stem +
       ".gp\nset encoding utf8\nset datafile separator ','\nset key outside top center horizontal\n"
       "set border 3\nset tics nomirror\nset grid x lc rgb '#E5E7EB'\nset logscale x\n"

@@ -18,15 +18,12 @@ namespace taut::report {
 
 namespace {
 
-constexpr std::array kKinds{
-    PlotKind{"error-iterations", kSweeps, kErrorMetric, kSweeps},
-    PlotKind{"penetration", kSweeps, "penetration.peak", kSweeps},
-    PlotKind{"profile", "cpu.per_second", kErrorMetric, "setting"},  // Dolan and More
-    PlotKind{"scaling", "vertices", "cpu.per_step", "vertices"},
-    PlotKind{"series", "t", kErrorMetric, "t"},
-    PlotKind{"stability", "dt", kSweeps, "dt"},
-    PlotKind{"work-precision", "projections", kErrorMetric, "setting"},
-};
+/// The first value with this role.
+std::string_view value_with(Role role) {
+  const std::vector<const ValueSpec*> all = values_with_role();
+  const auto at = std::ranges::find(all, role, &ValueSpec::role);
+  return at == all.end() ? "" : (*at)->name;
+}
 
 std::string colour_of(std::string_view solver) {
   return std::string(solver_style(solver).colour.light);
@@ -297,11 +294,22 @@ PlotFiles write_plot(const PlotSpec& spec, const Sheet& sheet,
 
 }  // namespace
 
-std::span<const PlotKind> plot_kinds() { return kKinds; }
+std::span<const PlotKind> plot_kinds() {
+  static const std::array kKinds{
+      PlotKind{"contact", kSweeps, value_with(Role::vertex_depth), kSweeps},
+      PlotKind{"convergence", kSweeps, kErrorMetric, kSweeps},
+      PlotKind{"profile", "cpu.per_second", kErrorMetric, "setting"},  // Dolan and More
+      PlotKind{"scaling", "vertices", "cpu.per_step", "vertices"},
+      PlotKind{"series", "t", kErrorMetric, "t"},
+      PlotKind{"stability", "dt", kSweeps, "dt"},
+      PlotKind{"work-precision", "projections", kErrorMetric, "setting"},
+  };
+  return kKinds;
+}
 
 const PlotKind& find_plot_kind(std::string_view name) {
   std::vector<std::string> names;
-  for (const PlotKind& kind : kKinds) {
+  for (const PlotKind& kind : plot_kinds()) {
     if (kind.name == name) return kind;
     names.emplace_back(kind.name);
   }

@@ -15,7 +15,7 @@ namespace taut::report {
 
 /// A kind of plot and what it shows unless asked otherwise.
 struct PlotKind {
-  std::string_view name;         ///< "error-iterations"
+  std::string_view name;         ///< "convergence"
   std::string_view x, y, along;  ///< defaults; `along`: the setting that orders a curve
 };
 std::span<const PlotKind> plot_kinds();

@@ -19,8 +19,8 @@ bool ran(const Record& record) {
          kind == Status::Kind::extreme;
 }
 
-Seen look(const Case& one, const Record& record, const Store& store) {
-  Seen seen{one, record, {}};
+JudgedRun look(const Case& one, const Record& record, const Store& store) {
+  JudgedRun seen{one, record, {}};
   if (!ran(record) || !store.has_frames(one.key)) return seen;
   TrajectoryReader motion(store.folder(one.key) / kFramesFile);
   if (motion.frames() > 0) seen.end = motion.read(motion.frames() - 1).state.x;
@@ -98,7 +98,7 @@ class ParameterSearch {
 
   ExtremeSetting setting_;
   const Store& store_;
-  std::optional<Seen> start_;
+  std::optional<JudgedRun> start_;
   std::vector<std::string> known_;  ///< symptoms at the start of the range
   ParameterFrontier found_;
 };

@@ -68,7 +68,7 @@ double asymmetry(const Scene& scene, const std::vector<Vec3>& end) {
   return apart(end);
 }
 
-std::vector<std::string> symptoms(const Seen& seen, const Seen* start) {
+std::vector<std::string> symptoms(const JudgedRun& seen, const JudgedRun* start) {
   const Status& status = seen.record.status;
   const Scene& scene = *seen.one.scene;
   if (status.kind == Status::Kind::exploded)

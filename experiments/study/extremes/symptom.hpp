@@ -8,7 +8,7 @@
 namespace taut {
 
 /// What there is to judge a run by.
-struct Seen {
+struct JudgedRun {
   Case one;
   Record record;
   std::vector<Vec3> end;  ///< positions at the end [m]; empty: it did not come to its end
@@ -31,7 +31,7 @@ struct Seen {
 ///                       image
 ///   loses energy        a passive scene lost over half of that (energy.mean)
 /// `start`: the run at the start of the range; nullptr: this is it.
-std::vector<std::string> symptoms(const Seen&, const Seen* start);
+std::vector<std::string> symptoms(const JudgedRun&, const JudgedRun* start);
 
 /// What a pinned cloth's swing can set free [J]: from where it starts to hanging straight below its
 /// pins, each vertex its distance at rest from the nearest pin. 0: not passive, or not pinned.

@@ -18,8 +18,8 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-Seen swing(const std::map<std::string, double>& values, Status status = {}) {
-  Seen seen{make_case({"swing", {"cloth.grid=[9, 9]"}, "jakobsen"}), {}, {}};
+JudgedRun swing(const std::map<std::string, double>& values, Status status = {}) {
+  JudgedRun seen{make_case({"swing", {"cloth.grid=[9, 9]"}, "jakobsen"}), {}, {}};
   seen.record.status = status;
   seen.record.values = values;
   seen.end = seen.one.scene->start.x;
@@ -27,7 +27,7 @@ Seen swing(const std::map<std::string, double>& values, Status status = {}) {
 }
 
 TEST(Symptoms, EachIsSeenInItsOwnMetricAndNowhereElse) {
-  const Seen start = swing({{"drift.max", 1}, {"popping.max", 30}});
+  const JudgedRun start = swing({{"drift.max", 1}, {"popping.max", 30}});
   const auto of = [&](const std::map<std::string, double>& values, Status status = {}) {
     std::map<std::string, double> all{{"drift.max", 1}, {"popping.max", 30}};
     for (const auto& [name, value] : values) all[name] = value;
@@ -57,8 +57,8 @@ TEST(Symptoms, EachIsSeenInItsOwnMetricAndNowhereElse) {
 }
 
 TEST(Symptoms, ASmallClothIsNotFrozenForMovingLess) {
-  const Seen start = swing({{"drift.max", 1}});
-  Seen small = swing({{"drift.max", 0.02}});
+  const JudgedRun start = swing({{"drift.max", 1}});
+  JudgedRun small = swing({{"drift.max", 0.02}});
   small.one = make_case({"swing", {"cloth.size=[0.1, 0.1]"}, "jakobsen"});
   EXPECT_EQ(symptoms(small, &start), Names{});
   small.record.values["drift.max"] = 0.009;
@@ -66,7 +66,7 @@ TEST(Symptoms, ASmallClothIsNotFrozenForMovingLess) {
 }
 
 TEST(Symptoms, AsymmetryIsTheDistanceFromTheMirrorImage) {
-  Seen seen = swing({});
+  JudgedRun seen = swing({});
   const double size = extent(*seen.one.scene);
   EXPECT_NEAR(asymmetry(*seen.one.scene, seen.end), 0, 1e-12);
   seen.end[9 * 8].z() += 0.05 * size;
@@ -79,7 +79,7 @@ TEST(Symptoms, AsymmetryIsTheDistanceFromTheMirrorImage) {
 }
 
 TEST(Symptoms, WhatASwingSetsFreeIsItsFallToThePlumbLine) {
-  const Seen seen = swing({});
+  const JudgedRun seen = swing({});
   const Scene& scene = *seen.one.scene;
   // Rows at distance r from the top fall by r (1 - cos 45 degrees).
   double expected = 0;
@@ -140,7 +140,7 @@ TEST(ExtremeSettings, TheoriesAreClosedForms) {
       EXPECT_NE(far / 2 + fall, far / 2) << "and it does at half of it";
     }
   }
-  EXPECT_FALSE(extreme_settings("jakobsen")[5].theory) << "swept tests know no limit";
+  EXPECT_FALSE(extreme_settings("jakobsen")[5].theory) << "continuous detection knows no limit";
   for (const ExtremeSetting& setting : extreme_settings("mass-spring"))
     if (setting.name == "time step") {
       // Below 2/w: a 20 x 20 grid with both diagonals holds to 0.71 sqrt(m/k) without its borders.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/model/solver.hpp"
-#include "experiments/external/session.hpp"
+#include "experiments/external/connection.hpp"
 
 namespace taut::external {
 
@@ -33,10 +33,10 @@ double read_step(const Json&);  ///< s of CPU time by its own word; NaN: it does
 std::size_t read_store(const Json&, int vertices);  ///< bytes of a state that follow
 
 /// Says hello. Throws SolverFailure with what is wrong in the answer.
-std::unique_ptr<const Hello> say_hello(Session&);
+std::unique_ptr<const Hello> say_hello(Connection&);
 
 /// Gives the program a scene and the values of its own parameters.
-SceneAnswer give_scene(Session&, const Scene&, const Json& params);
+SceneAnswer give_scene(Connection&, const Scene&, const Json& params);
 
 /// The values of the program's own parameters: numbers for numbers, texts for the others.
 Json own_params(const Hello&, const Params&);
@@ -44,13 +44,13 @@ Json own_params(const Hello&, const Params&);
 Json default_params(const Hello&);
 
 /// load, step and store.
-void load_state(Session&, const State&);
+void load_state(Connection&, const State&);
 /// Advances `count` steps of dt from t; gives the CPU seconds that the program says it took, NaN if
 /// it does not say.
-double take_steps(Session&, double t, double dt, int count);
+double take_steps(Connection&, double t, double dt, int count);
 /// Whether a program's word about its time agrees with its CPU clock: within a tenth and two empty
 /// exchanges, what a busy machine's caches cost. [s] a step.
 bool agrees(double word, double clock, double empty);
-void store_state(Session&, int vertices, State&);
+void store_state(Connection&, int vertices, State&);
 
 }  // namespace taut::external

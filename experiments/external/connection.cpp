@@ -1,4 +1,4 @@
-#include "experiments/external/session.hpp"
+#include "experiments/external/connection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,11 +48,11 @@ bool names_memory(const std::string& log) {
 
 }  // namespace
 
-Session::Session(Command command)
+Connection::Connection(Command command)
     : command_(std::move(command)),
       process_(command_.words, options(command_, scratch_.path() / "stderr.txt")) {}
 
-std::string Session::log() const {
+std::string Connection::log() const {
   std::ifstream in(scratch_.path() / "stderr.txt", std::ios::binary | std::ios::ate);
   const auto size = static_cast<std::size_t>(std::max<std::streamoff>(0, in.tellg()));
   std::string text(std::min(size, kLog), '\0');
@@ -61,12 +61,12 @@ std::string Session::log() const {
   return text;
 }
 
-void Session::fail(const std::string& status, const std::string& reason) {
+void Connection::fail(const std::string& status, const std::string& reason) {
   process_.wait(0);  // and all that it started
   throw SolverFailure(status, reason, log());
 }
 
-void Session::ended() {
+void Connection::ended() {
   const auto end = process_.wait(1);
   const std::string during = " during '" + op_ + "'", said = last_line(std::istringstream(log()));
   const std::string why = said.empty() ? "" : ": " + said;
@@ -77,14 +77,14 @@ void Session::ended() {
   fail("crash", end->text() + during + why);
 }
 
-void Session::silent(SteadyClock::time_point deadline) {
+void Connection::silent(SteadyClock::time_point deadline) {
   if (SteadyClock::now() < deadline) ended();
   const std::size_t some = process_.unread().size();
   fail("timeout", "no answer to '" + op_ + "' within " + shortest(command_.seconds) + " s" +
                       (some == 0 ? "" : ", only " + std::to_string(some) + " bytes"));
 }
 
-std::string Session::take_line() {
+std::string Connection::take_line() {
   const auto deadline = in_seconds(command_.seconds);
   std::string line;
   if (process_.read_line(line, command_.seconds, kLongestLine)) return line;
@@ -94,14 +94,14 @@ std::string Session::take_line() {
   silent(deadline);
 }
 
-std::string Session::take(std::size_t bytes) {
+std::string Connection::take(std::size_t bytes) {
   const auto deadline = in_seconds(command_.seconds);
   std::string taken;
   if (!process_.read_bytes(taken, bytes, command_.seconds)) silent(deadline);
   return taken;
 }
 
-void Session::send(const std::string& line, std::string_view bytes) {
+void Connection::send(const std::string& line, std::string_view bytes) {
   if (!process_.unread().empty())
     fail("protocol",
          "said more than it was asked for, after '" + op_ + "': " + excerpt(process_.unread()));
@@ -121,7 +121,7 @@ Json parse_answer(const std::string& line) {
   throw InputError("no JSON object: " + excerpt(line));
 }
 
-Json Session::answer() {
+Json Connection::answer() {
   const std::string said = take_line();
   if (ticks_at_start_ < 0) ticks_at_start_ = children_ticks();  // those of a script that became it
   try {
@@ -131,13 +131,13 @@ Json Session::answer() {
   }
 }
 
-Json Session::ask_line(const std::string& line) {
+Json Connection::ask_line(const std::string& line) {
   op_ = line.substr(0, 60);
   send(line + "\n", {});
   return answer();
 }
 
-Json Session::ask(const Json& request, std::string_view bytes) {
+Json Connection::ask(const Json& request, std::string_view bytes) {
   op_ = request.at("op").get<std::string>();
   send(to_text(request) + "\n", bytes);
   Json answer = this->answer();
@@ -147,7 +147,7 @@ Json Session::ask(const Json& request, std::string_view bytes) {
   fail(names_memory(why) ? "oom" : "error", "refused '" + op_ + "': " + why.substr(0, 500));
 }
 
-double Session::cpu_seconds() const {
+double Connection::cpu_seconds() const {
   clockid_t clock{};
   timespec now{};
   if (clock_getcpuclockid(process_.pid(), &clock) != 0 || clock_gettime(clock, &now) != 0)
@@ -155,7 +155,7 @@ double Session::cpu_seconds() const {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-std::size_t Session::peak_bytes() const {
+std::size_t Connection::peak_bytes() const {
   std::ifstream in("/proc/" + std::to_string(process_.pid()) + "/status");
   std::size_t kilobytes = 0;
   for (std::string word; in >> word;)
@@ -163,7 +163,7 @@ std::size_t Session::peak_bytes() const {
   return kilobytes * 1024;
 }
 
-long Session::children_ticks() const {
+long Connection::children_ticks() const {
   std::ifstream in("/proc/" + std::to_string(process_.pid()) + "/stat");
   std::string text;
   std::getline(in, text);
@@ -175,11 +175,11 @@ long Session::children_ticks() const {
   return user + system;
 }
 
-bool Session::has_helpers() const {
+bool Connection::has_helpers() const {
   return children_ticks() > ticks_at_start_ || process_.has_descendants();
 }
 
-std::optional<ProcessEnd> Session::close(double seconds) {
+std::optional<ProcessEnd> Connection::close(double seconds) {
   process_.close_input();
   return process_.wait(seconds);
 }

@@ -1,4 +1,4 @@
-#include "experiments/external/introduction.hpp"
+#include "experiments/external/protocol.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -24,11 +24,11 @@ constexpr double kLargestInteger = 2147483647;
 
 /// Calls `read`; whatever it finds wrong in an answer breaks the protocol.
 template <class Read>
-auto judged(Session& session, Read read) {
+auto judged(Connection& connection, Read read) {
   try {
     return read();
   } catch (const InputError& error) {
-    session.fail("protocol", error.what());
+    connection.fail("protocol", error.what());
   }
 }
 
@@ -123,9 +123,9 @@ std::unique_ptr<const Hello> read_hello(const Json& answer) {
   return hello;
 }
 
-std::unique_ptr<const Hello> say_hello(Session& session) {
-  const Json answer = session.ask({{"op", "hello"}, {"protocol", kProtocol}});
-  return judged(session, [&] { return read_hello(answer); });
+std::unique_ptr<const Hello> say_hello(Connection& connection) {
+  const Json answer = connection.ask({{"op", "hello"}, {"protocol", kProtocol}});
+  return judged(connection, [&] { return read_hello(answer); });
 }
 
 Json own_params(const Hello& hello, const Params& params) {
@@ -165,21 +165,22 @@ SceneAnswer read_scene_answer(const Json& answer, int vertices) {
   return told;
 }
 
-SceneAnswer give_scene(Session& session, const Scene& scene, const Json& params) {
-  const auto file = session.folder() / "scene.json";
+SceneAnswer give_scene(Connection& connection, const Scene& scene, const Json& params) {
+  const auto file = connection.folder() / "scene.json";
   write_file(file, scene_file(scene));
-  const Json answer = session.ask({{"op", "scene"}, {"file", file.string()}, {"params", params}});
-  return judged(session, [&] { return read_scene_answer(answer, scene.mesh.size()); });
+  const Json answer =
+      connection.ask({{"op", "scene"}, {"file", file.string()}, {"params", params}});
+  return judged(connection, [&] { return read_scene_answer(answer, scene.mesh.size()); });
 }
 
-void load_state(Session& session, const State& state) {
+void load_state(Connection& connection, const State& state) {
   const std::size_t half = state.x.size() * sizeof(Vec3);
   std::string bytes(2 * half, '\0');
   if (half > 0) {
     std::memcpy(bytes.data(), state.x.data(), half);
     std::memcpy(bytes.data() + half, state.v.data(), half);
   }
-  session.ask({{"op", "load"}, {"bytes", bytes.size()}}, bytes);
+  connection.ask({{"op", "load"}, {"bytes", bytes.size()}}, bytes);
 }
 
 double read_step(const Json& answer) {
@@ -187,9 +188,9 @@ double read_step(const Json& answer) {
   return said ? 1e-9 * said->number() : std::numeric_limits<double>::quiet_NaN();
 }
 
-double take_steps(Session& session, double t, double dt, int count) {
-  const Json answer = session.ask({{"op", "step"}, {"t", t}, {"dt", dt}, {"count", count}});
-  return judged(session, [&] { return read_step(answer); });
+double take_steps(Connection& connection, double t, double dt, int count) {
+  const Json answer = connection.ask({{"op", "step"}, {"t", t}, {"dt", dt}, {"count", count}});
+  return judged(connection, [&] { return read_step(answer); });
 }
 
 bool agrees(double word, double clock, double empty) {
@@ -205,11 +206,11 @@ std::size_t read_store(const Json& answer, int vertices) {
   return all;
 }
 
-void store_state(Session& session, int vertices, State& state) {
-  const Json answer = session.ask({{"op", "store"}});
-  const std::size_t half = judged(session, [&] { return read_store(answer, vertices); }) / 2,
+void store_state(Connection& connection, int vertices, State& state) {
+  const Json answer = connection.ask({{"op", "store"}});
+  const std::size_t half = judged(connection, [&] { return read_store(answer, vertices); }) / 2,
                     n = to_index(vertices);
-  const std::string bytes = session.take(2 * half);
+  const std::string bytes = connection.take(2 * half);
   state.x.resize(n), state.v.resize(n);
   if (half == 0) return;
   std::memcpy(static_cast<void*>(state.x.data()), bytes.data(), half);

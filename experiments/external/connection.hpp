@@ -18,9 +18,9 @@ Json parse_answer(const std::string& line);
 /// A running program that speaks taut-solver/1 over its standard input and output
 /// (experiments/external/README.md). Whatever it does wrong is a SolverFailure with the end of its
 /// standard error; it and all that it started die then, and with this object.
-class Session {
+class Connection {
  public:
-  explicit Session(Command);  ///< throws InputError if it cannot be started
+  explicit Connection(Command);  ///< throws InputError if it cannot be started
 
   /// Sends a request, and bytes after its line, and gives the answer: an object without "error".
   Json ask(const Json& request, std::string_view bytes = {});
