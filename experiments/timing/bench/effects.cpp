@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <variant>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/join.hpp"
 #include "core/model/solver.hpp"
 #include "core/solver/thread_pool.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/timing/bench/kernels.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -42,6 +44,17 @@ std::string effects_of(const Scene& scene) {
 
 Scene without_effects(Scene scene) {
   scene.wind.reset(), scene.colliders.clear(), scene.self_collision.reset();
+  return scene;
+}
+
+/// Every particle still looks for its colliders, in vain.
+Scene touching_nothing(Scene scene) {
+  constexpr double kFar = 1000;  // m
+  for (Collider& c : scene.colliders) {
+    if (auto* const plane = std::get_if<Plane>(&c.shape)) plane->offset -= kFar;
+    if (auto* const ball = std::get_if<Ball>(&c.shape)) ball->center.y() -= kFar;
+    if (auto* const box = std::get_if<Box>(&c.shape)) box->center.y() -= kFar;
+  }
   return scene;
 }
 
@@ -79,13 +92,20 @@ class TimedScene {
             .refused = {},
             .whole = {},
             .bare = {},
-            .copies = {}};
+            .copies = {},
+            .looking = {}};
     if (const auto reasons = choice.entry->unsupported(scene, choice.params); !reasons.empty()) {
       row_.refused = reasons.front();
       return;
     }
     whole_ = choice.entry->make(scene, choice.params);
     bare_ = choice.entry->make(without_effects(scene), choice.params);
+    if (!scene.colliders.empty())
+      looking_ = choice.entry->make(touching_nothing(scene), choice.params);
+    if (!scene.mesh.grid)
+      row_.traffic = 1e9 * seconds_per_link_traffic(scene, true) *
+                     static_cast<double>(projections_per_step(*whole_)) /
+                     static_cast<double>(row_.vertices);
     if (options.copies > 0) copies_ = std::make_unique<Copies>(scene, choice, options.copies);
     run_.emplace(scene, *whole_, scene.steps);
     State end;
@@ -103,6 +123,7 @@ class TimedScene {
     if (!row_.refused.empty()) return;
     row_.whole.push_back(time(*whole_));
     row_.bare.push_back(time(*bare_));
+    if (looking_) row_.looking.push_back(time(*looking_));
     if (copies_) row_.copies.push_back(time(*copies_));
   }
 
@@ -116,7 +137,7 @@ class TimedScene {
 
   EffectRow row_;
   bool wall_;
-  std::unique_ptr<Solver> whole_, bare_, copies_;
+  std::unique_ptr<Solver> whole_, bare_, looking_, copies_;
   std::optional<CheckpointedRun> run_;
   int steps_ = 1;
 };
