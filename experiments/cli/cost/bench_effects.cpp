@@ -52,10 +52,9 @@ void print(const std::vector<EffectRow>& rows, const Options& options, int side)
   }
   print_columns(table, 2);
   for (const EffectRow& row : rows) {
-    if (row.traffic > 0)
+    if (!row.traffic.empty())
       std::cout << row.scene << ": to load and store the ends of its links alone would cost "
-                << number_text(row.traffic) << " ns, " << number_text(row.traffic / unit.cost().mid)
-                << " x hang\n";
+                << interval_text(row.traffic_times(unit)) << " x hang\n";
     if (!row.refused.empty()) std::cout << row.scene << " not timed: " << row.refused << '\n';
   }
   std::cout << std::flush;

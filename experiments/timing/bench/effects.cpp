@@ -93,7 +93,8 @@ class TimedScene {
             .whole = {},
             .bare = {},
             .copies = {},
-            .looking = {}};
+            .looking = {},
+            .traffic = {}};
     if (const auto reasons = choice.entry->unsupported(scene, choice.params); !reasons.empty()) {
       row_.refused = reasons.front();
       return;
@@ -102,10 +103,7 @@ class TimedScene {
     bare_ = choice.entry->make(without_effects(scene), choice.params);
     if (!scene.colliders.empty())
       looking_ = choice.entry->make(touching_nothing(scene), choice.params);
-    if (!scene.mesh.grid)
-      row_.traffic = 1e9 * seconds_per_link_traffic(scene, true) *
-                     static_cast<double>(projections_per_step(*whole_)) /
-                     static_cast<double>(row_.vertices);
+    if (!scene.mesh.grid) any_mesh_ = scene;
     if (options.copies > 0) copies_ = std::make_unique<Copies>(scene, choice, options.copies);
     run_.emplace(scene, *whole_, scene.steps);
     State end;
@@ -124,6 +122,7 @@ class TimedScene {
     row_.whole.push_back(time(*whole_));
     row_.bare.push_back(time(*bare_));
     if (looking_) row_.looking.push_back(time(*looking_));
+    if (any_mesh_) row_.traffic.push_back(traffic());
     if (copies_) row_.copies.push_back(time(*copies_));
   }
 
@@ -135,9 +134,15 @@ class TimedScene {
     return 1e9 * (wall_ ? step.wall : step.cpu) / static_cast<double>(row_.vertices);
   }
 
+  double traffic() const {
+    return 1e9 * seconds_per_link_traffic(*any_mesh_, true) *
+           static_cast<double>(projections_per_step(*whole_)) / static_cast<double>(row_.vertices);
+  }
+
   EffectRow row_;
   bool wall_;
   std::unique_ptr<Solver> whole_, bare_, looking_, copies_;
+  std::optional<Scene> any_mesh_;
   std::optional<CheckpointedRun> run_;
   int steps_ = 1;
 };

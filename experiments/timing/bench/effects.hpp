@@ -20,9 +20,9 @@ struct EffectRow {
   std::vector<double> copies;  ///< likewise: all copies of it on two threads, one step of each
   /// Likewise: with its colliders so far away that nothing touches them. Empty: it has none.
   std::vector<double> looking;
-  /// Likewise, of the steps' links: loading and storing their ends as colour batches do, in float,
-  /// with an addition in the place of the projection; 0: a sheet.
-  double traffic = 0;
+  /// Likewise, of the links alone: loading and storing their ends as colour batches do, in float,
+  /// with an addition in the place of the projection, at its fastest. Empty: a sheet.
+  std::vector<double> traffic;
 
   Interval cost() const { return bootstrap_median(whole); }
   /// The copies over one sheet alone.
@@ -32,6 +32,9 @@ struct EffectRow {
   Interval times(const EffectRow& other) const { return interleaved_ratio(whole, other.whole); }
   Interval looking_times(const EffectRow& other) const {
     return interleaved_ratio(looking, other.whole);
+  }
+  Interval traffic_times(const EffectRow& other) const {
+    return interleaved_ratio(traffic, other.whole);
   }
 };
 
