@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/model/index.hpp"
+#include "core/solver/simd/distance.hpp"
 
 namespace taut {
 
