@@ -88,6 +88,7 @@ class Build:
             self.command[os.path.normpath(words[words.index("-o") + 1])] = words
         linker = next((f"-fuse-ld={name}" for name in ("lld", "gold") if shutil.which(f"ld.{name}")), "-fuse-ld=bfd")
         self.link_command = {}
+        self.beside(folder / "programs")
         for program in (UNIT, TAUT):
             lines = [line for line in self.ninja(ordinary, "-t", "commands", program).splitlines() if f"-o {program} " in line]
             words = shlex.split(lines[-1].removeprefix(": && ").split(" && ")[0])
@@ -105,7 +106,15 @@ class Build:
 
     def program(self, program):
         """Where the program without any error is."""
-        return self.folder / pathlib.Path(program).name
+        return self.folder / "programs" / pathlib.Path(program).name
+
+    def beside(self, folder):
+        """A folder with all that BUILD holds but the programs with errors: these are linked into it."""
+        folder.mkdir(exist_ok=True)
+        for entry in self.ordinary.iterdir():
+            if entry.name not in (TAUT, "tests", "mutants") and not (folder / entry.name).is_symlink():
+                (folder / entry.name).symlink_to(entry)
+        return folder
 
     @staticmethod
     def ninja(where, *words):
@@ -178,20 +187,17 @@ def checks_of(build):
     return checks
 
 
-def run(build, checks, program, where, seconds=600.0, **environment):
+def run(checks, program, where, seconds=600.0, **environment):
     """(name of a red check or None, CPU seconds) of checks of one program; red if they take more CPU time, or hang"""
     # A folder of its own for what the tests write: several run at the same time.
     environment = {**os.environ, "TMPDIR": f"{where}/", "TEST_TMPDIR": f"{where}/", **environment}
     names = [check.name for check in checks]
-    if checks[0].script:  # it wants a folder with all programs: BUILD, with one program in the place of its own
-        folder = pathlib.Path(where) / "build"
-        folder.mkdir()
-        for entry in build.ordinary.iterdir():
-            (folder / entry.name).symlink_to(program if entry.name == TAUT else entry)
-        words = [sys.executable, checks[0].script, folder, *names]
+    if checks[0].script:
+        words = [sys.executable, checks[0].script, program.parent, *names]
+    elif checks[0].program == UNIT:
+        words = [program, "--gtest_filter=" + ":".join(names), "--gtest_fail_fast"]
     else:
-        words = [program, *(["--gtest_filter=" + ":".join(names), "--gtest_fail_fast"] if checks[0].program == UNIT else
-                            ["verify", "-j1", "--quiet", *names])]
+        words = [program, "verify", "-j1", "--quiet", *names]
     with open(f"{where}/output", "w+") as output:
         process = subprocess.Popen(words, cwd=where, env=environment, start_new_session=True,
                                    stdin=subprocess.DEVNULL, stdout=output, stderr=output)
@@ -256,8 +262,7 @@ class Coverage:
 
     def measure(self, check):
         with tempfile.TemporaryDirectory() as where:
-            red, check.seconds = run(self.build, [check], self.build.program(check.program), where,
-                                     TAUT_EXECUTED=f"{where}/executed")
+            red, check.seconds = run([check], self.build.program(check.program), where, TAUT_EXECUTED=f"{where}/executed")
             check.green = red is None
             marked = pathlib.Path(f"{where}/executed.{pathlib.Path(check.program).name}")
             places, names, begin = self.functions[check.program]
@@ -372,11 +377,11 @@ class Mutant:
             running = [check for check in running if check not in batch]
             program = batch[0].program
             if program not in programs:
-                programs[program] = folder / pathlib.Path(program).name
+                programs[program] = build.beside(folder / "programs") / pathlib.Path(program).name
                 if not build.link(program, self.objects, programs[program]):
                     return False
             with tempfile.TemporaryDirectory(dir=folder) as where:
-                self.by, seconds = run(build, batch, programs[program], where, 5 + 4 * sum(check.seconds for check in batch))
+                self.by, seconds = run(batch, programs[program], where, 5 + 4 * sum(check.seconds for check in batch))
             self.tried, self.seconds = self.tried + len(batch), self.seconds + seconds
             if self.by:
                 break
