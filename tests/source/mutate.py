@@ -54,7 +54,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 EQUIVALENT = pathlib.Path(__file__).with_name("equivalent_mutants.txt")
 EXECUTED = pathlib.Path(__file__).with_name("executed.c")
 UNIT, TAUT = "tests/taut_tests", "taut"  # the programs whose checks notice
-SCRIPTS = [file for folder in ("cli", "study/cluster", "external") for file in (ROOT / "tests" / folder).glob("*_test.py")
+SCRIPTS = [file for folder in ("cli", "study/cluster", "external", "truths") for file in (ROOT / "tests" / folder).glob("*_test.py")
            if file.stem not in ("launcher_test", "contributing_test", "schedulers_test")]  # which build, or need a scheduler
 
 # Layers and their libraries; the tests of each are in the folder of tests/ with its last name.
