@@ -145,6 +145,13 @@ TEST(Plan, ContactOfFacesOfParticlesAndOfSolidsHasItsLines) {
   EXPECT_EQ(visits("bullet:reorder=on," + sweeps, "links, reordered").second, 12u);
   EXPECT_EQ(visits("bullet-deformable:newton=2,substeps=3", "springs (Newton steps)"),
             times(links, 6));
+  const auto bytes = [&](std::size_t balls) {
+    scene.colliders.assign(balls, {.shape = Ball{{0.5, -9, 0}, 0.1}});
+    return plan(scene, "bullet")["detect contacts"].bytes;
+  };
+  EXPECT_EQ(bytes(3) - bytes(2), bytes(2) - bytes(1)) << "a body and a shape each";
+  EXPECT_GT(bytes(2) - bytes(1), 500u);
+  EXPECT_LT(bytes(2) - bytes(1), 2000u);
 }
 
 struct Memory {

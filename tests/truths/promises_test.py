@@ -43,7 +43,7 @@ class Promises(unittest.TestCase):
         self.assertEqual(["\t".join(words) for words, _ in made], ["\t".join(line[:5]) for line in kept])
         for (words, numbers), line in zip(made, kept):
             for number, text in zip(numbers, line[5:]):
-                same = math.isnan(number) if text == "nan" else math.isclose(number, float(text), rel_tol=1e-9, abs_tol=1e-300)
+                same = math.isnan(number) if text == "nan" else math.isclose(number, float(text), rel_tol=1e-6, abs_tol=1e-300)
                 self.assertTrue(same, f"{words}: {number} was promised as {text}")
         for truth, f in findings:
             if f["expected"] == 0 and f["tolerance"] > 0 and f["quantity"] not in ZERO:
