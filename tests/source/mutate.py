@@ -112,7 +112,7 @@ class Build:
         """A folder with all that BUILD holds but the programs with errors: these are linked into it."""
         folder.mkdir(exist_ok=True)
         for entry in self.ordinary.iterdir():
-            if entry.name not in (TAUT, "tests", "mutants") and not (folder / entry.name).is_symlink():
+            if entry.name not in (TAUT, "mutants") and not (folder / entry.name).is_symlink():
                 (folder / entry.name).symlink_to(entry)
         return folder
 
