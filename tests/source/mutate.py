@@ -187,6 +187,14 @@ def checks_of(build):
     return checks
 
 
+def cpu_seconds(pid):
+    """Of a process and those of its children that have ended; 0: it is gone."""
+    with contextlib.suppress(OSError):
+        times = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[11:15]
+        return sum(map(int, times)) / os.sysconf("SC_CLK_TCK")
+    return 0
+
+
 def run(checks, program, where, seconds=600.0, **environment):
     """(name of a red check or None, CPU seconds) of checks of one program; red if they take more CPU time, or hang"""
     # A folder of its own for what the tests write: several run at the same time.
@@ -205,12 +213,18 @@ def run(checks, program, where, seconds=600.0, **environment):
         def kill():
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
-        for limit, most in ((resource.RLIMIT_CPU, math.ceil(seconds)), (resource.RLIMIT_DATA, 8 << 30)):
-            with contextlib.suppress(ProcessLookupError):
-                resource.prlimit(process.pid, limit, (most, most))
+        with contextlib.suppress(ProcessLookupError):
+            resource.prlimit(process.pid, resource.RLIMIT_DATA, (8 << 30, 8 << 30))
         hangs = threading.Timer(60 + 10 * seconds, kill)
         hangs.start()
-        _, status, usage = os.wait4(process.pid, 0)
+        # Not RLIMIT_CPU: where it is set, Linux counts a process's CPU time in ticks, and what is shorter takes none.
+        ended, nap = 0, 0.001
+        while not ended:
+            ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+            if not ended and cpu_seconds(process.pid) > seconds:
+                kill()
+            time.sleep(0 if ended else nap)
+            nap = min(0.1, 1.5 * nap)
         process.returncode = os.waitstatus_to_exitcode(status)
         hangs.cancel()
         kill()  # what it left behind
@@ -238,7 +252,7 @@ class Coverage:
         unused = itertools.count(1 + max((bit for _, bit, _, _ in known.values()), default=-1))
         for check in checks:
             source, self.bit[check], check.seconds, check.green = known.get(check.name, (None, 0, 0.0, True))
-            if source != check.source:
+            if source != check.source or not check.green:
                 self.bit[check] = next(unused)
                 new.append(check)
         for first in range(0, len(new), 100):  # kept now and then: an interruption costs little
@@ -445,6 +459,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--list", action="store_true", help="only print what would be planted")
     options = parser.parse_args()
+    # Ignored where this runs in the background; what it runs would inherit that.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     build = Build(options.build.resolve(), options.folder.resolve())
     layers = options.layer or list(LAYERS)
     mutants = written(options.planted) if options.planted else draw(layers, options.seed, build, options.widest)
