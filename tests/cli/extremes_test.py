@@ -36,6 +36,7 @@ class AllFrontiers(CommandLine):
         answered = [knob for knob in found if not knob["lacks"]]
         self.assertGreaterEqual(len(answered), 8)
         for knob in answered:
+            self.assertEqual(knob["downwards"], knob["to"] < knob["from"], knob)
             if knob["bad"] is None:
                 self.assertEqual((knob["good"], knob["symptom"]), (knob["to"], ""))
                 continue

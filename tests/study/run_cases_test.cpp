@@ -217,6 +217,26 @@ TEST_F(Runs, OfAStudyWhatIsStoredIsCollectedInThePlansOrder) {
   EXPECT_EQ(found.records[1].id, scripted_case(2).id);
 }
 
+TEST(FrontierOfCases, LooksAtFourPlacesAboveEvenlySpread) {
+  const Frontier found = find_frontier({.from = 1, .to = 100, .tolerance = 1e-3, .coarse = 2},
+                                       [](const std::vector<double>& values) {
+                                         std::vector<Outcome> all;
+                                         for (const double value : values)
+                                           all.push_back({{value < 3 ? Kind::ok : Kind::exploded}});
+                                         return all;
+                                       });
+  std::vector<double> above;
+  for (const auto& probe : found.probes)
+    if (probe.value >= found.unstable) above.push_back(probe.value);
+  ASSERT_GE(above.size(), 6u);
+  EXPECT_EQ(found.above, above.size() - 1);
+  const double next = above[5];  // the smallest beyond the bracket that was tried before
+  for (std::size_t i = 1; i < 5; ++i)
+    EXPECT_NEAR(above[i], above[0] * std::pow(next / above[0], static_cast<double>(i) / 5),
+                1e-4 * above[i])
+        << i;
+}
+
 // Cases of the test program itself: a mass on a spring, whose longest stable step is known.
 TEST(FrontierOfCases, BracketsWhatTheoryPredictsAndRunsNothingTwice) {
   const Scratch scratch;
