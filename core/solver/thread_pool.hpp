@@ -41,6 +41,16 @@ class ThreadPool {
               count});
   }
 
+  /// Calls work(n, begin, end) for the n-th of so many parts of [0, count), each once: for what has
+  /// to be kept apart. One part is the caller's.
+  template <class Work>
+  void run_parts(std::size_t parts, std::size_t count, const Work& work) {
+    run(parts, [&](std::size_t first, std::size_t last) {
+      for (std::size_t n = first; n < last; ++n)
+        work(n, count * n / parts, count * (n + 1) / parts);
+    });
+  }
+
  private:
   struct Job {
     const void* work = nullptr;

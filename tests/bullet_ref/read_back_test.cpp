@@ -28,7 +28,7 @@ Scene sheet(int nu, int nv) {
 Scene everything() {
   Scene scene = sheet(9, 7);
   for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
-    scene.mesh.mass[i] *= 1 + 0.1 * static_cast<double>(i);
+    scene.mesh.mass[i] *= 1 + 20 * static_cast<double>(i);      // from grams to kilograms
     scene.start.x[i] = 1.1 * scene.start.x[i] + Vec3(0, 2, 0);  // a stretched start
     scene.start.v[i] = {0.1, -0.2, 0.01 * static_cast<double>(i)};
   }

@@ -223,5 +223,65 @@ TEST(Digest, MatchesTheStandardsTestVector) {
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
+TEST(RunCase, SeriesAreEvenlySpreadWithTheStartAndTheEnd) {
+  Scene scene = chain(2, 1.0 / 64);
+  const auto steps = [&](int all, int rows) {
+    scene.steps = all;
+    std::vector<double> seen;
+    for (const auto& row :
+         run_scripted(scene, [](int, State&) {}, {.series_rows = rows}).series.rows) {
+      seen.push_back(row[0]);
+      EXPECT_EQ(row[1], row[0] / 64);
+    }
+    return seen;
+  };
+  EXPECT_EQ(steps(10, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+  EXPECT_EQ(steps(11, 5), (std::vector<double>{0, 2, 4, 6, 8, 10, 11}));
+  EXPECT_EQ(steps(3, 100), (std::vector<double>{0, 1, 2, 3}));
+  EXPECT_EQ(steps(3, 1), (std::vector<double>{0, 3}));
+  EXPECT_TRUE(steps(3, 0).empty());
+  const CaseRun run = run_scripted(scene, [](int, State&) {}, {.series_rows = 1});
+  EXPECT_EQ(run.series.columns[0], "step");
+  EXPECT_EQ(run.series.columns[1], "t");
+  for (const MetricEntry* entry : metrics())
+    for (const ValueSpec& value : entry->values)
+      EXPECT_LE(std::ranges::count(run.series.columns, value.name), value.in_series) << value.name;
+  EXPECT_EQ(std::ranges::count(run.series.columns, "stretch.rms"), 1);
+}
+
+TEST(RunCase, WhoWatchesSeesEveryStableBoundary) {
+  Scene scene = chain(2, 1.0 / 64);
+  scene.steps = 6;
+  std::vector<int> steps;
+  std::vector<double> heights;
+  const RunOptions options{.measure = false, .watch = [&](const Snapshot& m) {
+                             EXPECT_EQ(m.t, m.step / 64.0);
+                             steps.push_back(m.step), heights.push_back(m.state.x[2].z());
+                           }};
+  const CaseRun run = run_scripted(
+      scene, [](int step, State& s) { s.x[2].z() = step == 5 ? std::nan("") : 1e-3 * step; },
+      options);
+  EXPECT_EQ(steps, (std::vector{0, 1, 2, 3, 4}));
+  EXPECT_EQ(heights, (std::vector<double>{0, 1e-3, 2e-3, 3e-3, 4e-3}));
+  EXPECT_TRUE(run.record.values.empty());
+  EXPECT_EQ(run.record.digest, digest(run.last));
+  EXPECT_EQ(run.last.x[2].z(), 4e-3);
+}
+
+TEST(RunCase, AFailingSolverEndsAtItsLastWholeStep) {
+  Scene scene = chain(2, 1.0 / 64);
+  scene.steps = 6;
+  const CaseRun run = run_scripted(scene, [](int step, State& s) {
+    if (step == 4) throw SolverFailure("oom", "2 GiB", "its last words");
+    s.x[2].z() = step;
+  });
+  EXPECT_EQ(run.record.status.kind, Status::Kind::oom);
+  EXPECT_EQ(run.record.status.reason, "2 GiB");
+  EXPECT_EQ(run.record.status.step, 3);
+  EXPECT_EQ(run.record.status.vertex, -1);
+  EXPECT_EQ(run.record.log, "its last words");
+  EXPECT_TRUE(run.record.values.empty());
+}
+
 }  // namespace
 }  // namespace taut

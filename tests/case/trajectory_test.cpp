@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <iostream>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
@@ -141,6 +143,108 @@ TEST_F(TrajectoryTest, TheDocumentedPythonReadsIt) {
   EXPECT_EQ(pclose(python), 0);
   fs::remove(file);
   EXPECT_EQ(output, "1 3 [(0, 1, 2)] 2 0.015625 6.0\n");
+}
+
+/// Bytes from hexadecimal digits; blanks are for the reader.
+std::string bytes(const std::string& digits) {
+  std::string all, pair;
+  for (const char c : digits) {
+    if (c == ' ') continue;
+    pair += c;
+    if (pair.size() == 2) all += static_cast<char>(std::stoi(pair, nullptr, 16)), pair.clear();
+  }
+  return all;
+}
+
+/// A trajectory of three vertices and one triangle, of "ab" by "xyz", as the format has it.
+std::string by_hand() {
+  return "TAUTTRAJ" +
+         bytes(
+             "01000000 44000000 03000000 01000000 04000000 01000000 02000000 03000000"
+             "000000000000d03f") +
+         "abxyz" + std::string(3, '\0') + bytes("00000000 02000000 01000000") +
+         bytes("000000000000e03f 0000803f 00000040 00004040") + std::string(24, '\0');
+}
+
+TEST_F(TrajectoryTest, IsWrittenAsItIsDocumented) {
+  const TrajectoryHeader h{"ab", "xyz", 0.25, 3, {{0, 2, 1}}, TrajectoryHeader::Real::f32, false};
+  const std::vector<Vec3> zero(3, Vec3::Zero());
+  State one{zero, zero};
+  one.x[0] = {1, 2, 3};
+  TrajectoryWriter(path_, h).append(0.5, one);
+  std::ifstream in(path_, std::ios::binary);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), by_hand());
+  overwrite(by_hand());
+  const Trajectory read = read_trajectory(path_);
+  EXPECT_EQ(read.header.scene, "ab");
+  EXPECT_EQ(read.header.solver, "xyz");
+  EXPECT_EQ(read.header.frame_dt, 0.25);
+  EXPECT_EQ(read.header.triangles, (std::vector<Triangle>{{0, 2, 1}}));
+  ASSERT_EQ(read.frames.size(), 1u);
+  EXPECT_EQ(read.frames[0].t, 0.5);
+  EXPECT_EQ(read.frames[0].state.x, one.x);
+}
+
+TEST_F(TrajectoryTest, EachNumberOfTheHeaderIsJudged) {
+  const auto says = [&](std::size_t at, const char* four, const std::string& what) {
+    overwrite(by_hand().replace(at, 4, bytes(four)));
+    EXPECT_EQ(message_of_reading(), path_.string() + ": " + what) << at;
+  };
+  says(8, "00000000", "version 0; this program reads version 1");
+  for (const auto& [at, four] : std::vector<std::pair<std::size_t, const char*>>{{12, "45000000"},
+                                                                                 {16, "00000000"},
+                                                                                 {16, "00000080"},
+                                                                                 {20, "02000000"},
+                                                                                 {24, "05000000"},
+                                                                                 {24, "00000000"},
+                                                                                 {28, "03000000"},
+                                                                                 {28, "00000000"},
+                                                                                 {32, "06000000"},
+                                                                                 {36, "ffffffff"}})
+    says(at, four, "inconsistent header");
+  for (const char* vertex : {"03000000", "ffffffff"})
+    says(60, vertex, "a triangle names a vertex that is absent");
+  overwrite(by_hand().substr(0, 67));
+  EXPECT_EQ(message_of_reading(),
+            path_.string() + ": truncated within its header: it ends at byte 67 of 68");
+  overwrite(by_hand().substr(0, 47));
+  EXPECT_EQ(message_of_reading(),
+            path_.string() + ": truncated within its header: it ends at byte 47 of 48");
+  overwrite(by_hand().substr(0, 111));
+  EXPECT_EQ(message_of_reading(),
+            path_.string() +
+                ": a trajectory without a whole frame: it ends at byte 111, the first "
+                "frame would end at byte 112");
+}
+
+TEST_F(TrajectoryTest, TimesDoNotGoBack) {
+  const auto times = [&](const std::vector<double>& all) {
+    TrajectoryWriter writer(path_, header(TrajectoryHeader::Real::f64, false));
+    for (const double t : all) writer.append(t, state(1));
+    return message_of_reading();
+  };
+  const std::string why = " is at no time, or at an earlier one than the frame before it";
+  EXPECT_EQ(times({-1, 0, 0, 2}), "no error");
+  EXPECT_EQ(times({0, 2, 1}), path_.string() + ": frame 2" + why);
+  EXPECT_EQ(times({std::numeric_limits<double>::infinity()}), path_.string() + ": frame 0" + why);
+}
+
+TEST_F(TrajectoryTest, OnlyATailThatIsDroppedIsSaid) {
+  write(header(TrajectoryHeader::Real::f32, false), 3);
+  const auto whole = fs::file_size(path_);
+  const auto said = [&] {
+    std::ostringstream text;
+    std::streambuf* const before = std::cerr.rdbuf(text.rdbuf());
+    EXPECT_EQ(message_of_reading(), "no error");
+    std::cerr.rdbuf(before);
+    return text.str();
+  };
+  EXPECT_EQ(said(), "");
+  fs::resize_file(path_, whole - 1);
+  const auto frame = 8 + 3 * 3 * 4;
+  EXPECT_EQ(said(), path_.string() + ": the writer was interrupted; dropped the last " +
+                        std::to_string(frame - 1) + " bytes, an unfinished frame from byte " +
+                        std::to_string(whole - frame) + " on, after 2 whole ones\n");
 }
 
 }  // namespace

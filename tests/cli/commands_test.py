@@ -113,9 +113,9 @@ colour = "red"
         self.refuse("run", "./bad.toml",
                     says=["bad.toml:4:14: nothing that this study varies is called 'scen'; did you mean 'scene'?",
                           "'iteratons'; did you mean 'iterations'?", "bad.toml:9:1: unknown key 'colour' in [[plot]]"])
-        plot = '[[plot]]\nkind = "error-iteration"\ny = "stretch.rmss"\n'
+        plot = '[[plot]]\nkind = "convergance"\ny = "stretch.rmss"\n'
         self.refuse("run", self.study(rest=plot),
-                    says=["study.toml:5:8: unknown kind of plot 'error-iteration'; did you mean 'convergence'?",
+                    says=["study.toml:5:8: unknown kind of plot 'convergance'; did you mean 'convergence'?",
                           "study.toml:6:5: unknown value 'stretch.rmss' for y; did you mean 'stretch.rms'?"])
         nothing = self.taut("run", self.study(rest='exclude = [{ solver = "jakobsen" }]\n'), expect=4)
         self.assertIn("no case", nothing.err)

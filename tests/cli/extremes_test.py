@@ -36,6 +36,7 @@ class AllFrontiers(CommandLine):
         answered = [one for one in found if not one["lacks"]]
         self.assertGreaterEqual(len(answered), 8)
         for one in answered:
+            self.assertEqual(one["downwards"], one["to"] < one["from"], one)
             if one["bad"] is None:
                 self.assertEqual((one["good"], one["symptom"]), (one["to"], ""))
                 continue

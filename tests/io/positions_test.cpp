@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -241,6 +242,204 @@ TEST_F(Positions, ObjHoldsWhatAModellingProgramWants) {
   const std::string chain = written({.nu = 3, .nv = 1, .width = 1, .height = 0, .mass = 1});
   EXPECT_NE(chain.find("\nl 1 2 3\n"), std::string::npos) << chain;
   EXPECT_EQ(chain.find("vt "), std::string::npos) << chain;
+}
+
+/// Bytes from hexadecimal digits; blanks are for the reader.
+std::string bytes(const std::string& digits) {
+  std::string all, pair;
+  for (const char c : digits) {
+    if (c == ' ') continue;
+    pair += c;
+    if (pair.size() == 2) all += static_cast<char>(std::stoi(pair, nullptr, 16)), pair.clear();
+  }
+  return all;
+}
+
+// Two frames of a face with corners at 1 2 3, 0 0 0 and 0 0 -4 and twice that, at 0 s and 0.5 s.
+TEST_F(Positions, AreWrittenAsTheFormatsSay) {
+  Mesh mesh;
+  mesh.triangles = {{0, 2, 1}};
+  const std::vector<Vec3> one{{1, 2, 3}, {0, 0, 0}, {0, 0, -4}},
+      two{{2, 4, 6}, {0, 0, 0}, {0, 0, -8}};
+  const auto text_of = [&](const std::string& name, const std::string& first) {
+    const auto writer = create_positions(folder_ / name, mesh);
+    writer->append(0, one), writer->append(0.5, two), writer->finish();
+    return read_text(folder_ / first);
+  };
+  const std::string none4(8, '0'), none8(16, '0'), little_1 = "0000803f", little_2 = "00000040",
+                                                   little_3 = "00004040", little_4 = "00008040";
+  const std::string floats =
+      little_1 + little_2 + little_3 + none4 + none4 + none4 + none4 + none4 + "000080c0" +  // -4
+      little_2 + little_4 + "0000c040" + none4 + none4 + none4 + none4 + none4 + "000000c1";
+  EXPECT_EQ(text_of("f.pc2", "f.pc2"),
+            std::string("POINTCACHE2\0", 12) +
+                bytes("01000000 03000000 00000000 0000803f 02000000" + floats));
+  EXPECT_EQ(text_of("f.mdd", "f.mdd"), bytes("00000002 00000003 00000000 3f000000"
+                                             "3f800000 40000000 40400000" +
+                                             none8 + none8 + none4 +
+                                             "c0800000"
+                                             "40000000 40800000 40c00000" +
+                                             none8 + none8 + none4 + "c1000000"));
+  const std::string doubles_1 = "000000000000f03f 0000000000000040 0000000000000840" + none8 +
+                                none8 + none8 + none8 + none8 + "00000000000010c0",
+                    doubles_2 = "0000000000000040 0000000000001040 0000000000001840" + none8 +
+                                none8 + none8 + none8 + none8 + "00000000000020c0";
+  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3, 3), }";
+  header.resize(117, ' ');
+  EXPECT_EQ(text_of("f.npy", "f.npy"), bytes("93") + "NUMPY" + bytes("0100 7600") + header + "\n" +
+                                           bytes(doubles_1 + doubles_2));
+  text_of("f.obj", "f_00000.obj");
+  EXPECT_EQ(read_text(folder_ / "f_00001.obj"),
+            "# t = 0.5 s, metres\nv 2 4 6\nv 0 0 0\nv 0 0 -8\nf 1 3 2\n");
+  text_of("f.ply", "f_00000.ply");
+  EXPECT_EQ(read_text(folder_ / "f_00001.ply"),
+            "ply\nformat binary_little_endian 1.0\ncomment t = 0.5 s, metres\nelement vertex 3\n"
+            "property double x\nproperty double y\nproperty double z\nelement face 1\n"
+            "property list uchar int vertex_indices\nend_header\n" +
+                bytes(doubles_2 + "03 00000000 02000000 01000000"));
+  EXPECT_FALSE(fs::exists(folder_ / "f_00002.ply"));
+}
+
+TEST_F(Positions, ArraysOfEveryVersionAndTheirErrors) {
+  std::string dictionary = "{'shape': (1, 1, 3), 'fortran_order': False,   'descr':   '<f4', }";
+  dictionary.resize(70, ' ');
+  const std::string body = bytes("0000803f 00000040 00004040");
+  const auto array = [&](char version, const std::string& length, const std::string& all) {
+    return file("v.npy", bytes("93") + "NUMPY" + version + '\0' + bytes(length) + all);
+  };
+  for (const char version : {'\2', '\3'})
+    EXPECT_EQ(all_of(array(version, "46000000", dictionary + body)).at(0).at(0), Vec3(1, 2, 3));
+  EXPECT_EQ(all_of(array('\1', "4600", dictionary + body)).at(0).at(0), Vec3(1, 2, 3));
+  EXPECT_EQ(open_positions(folder_ / "v.npy")->header().rounding, Rounding::binary32);
+  const auto says = [&](const fs::path& path, const std::string& what) {
+    EXPECT_EQ(message(path), path.string() + ": " + what);
+  };
+  for (const char version : {'\0', '\4'})
+    says(array(version, "46000000", dictionary + body),
+         "byte 6: version " + std::to_string(int{version}) + "; known are 1 to 3");
+  says(array('\2', "ffff0000", dictionary),
+       "byte 8: a header of 65535 bytes, but the file has 82, or no header is so long");
+  says(
+      array('\1', "4600", dictionary + body.substr(4)),
+      "the header says 1 frames of 1 vertices from byte 80 on, but the file ends at byte 88, after "
+      "0 whole frames");
+  says(array('\1', "4600", dictionary + body + "x"),
+       "the header says 1 frames of 1 vertices, which end at byte 92, but the file has 93 bytes");
+  says(file("v.npy", bytes("93") + "NUMPY" + bytes("0100")),
+       "byte 0: an array of NumPy begins with \\x93NUMPY and its version");
+}
+
+TEST_F(Positions, PointCachesOfOtherPrograms) {
+  std::string pc2 = std::string("POINTCACHE2\0", 12) +
+                    bytes("01000000 01000000 00000000 00002040 02000000") + std::string(24, '\0');
+  EXPECT_EQ(open_positions(file("o.pc2", pc2))->header().spacing, 2.5);
+  EXPECT_EQ(open_positions(file("o.pc2", pc2))->header().frames, 2);
+  const auto says = [&](const std::string& text, const std::string& what) {
+    EXPECT_EQ(message(file("o.pc2", text)), (folder_ / "o.pc2").string() + ": " + what);
+  };
+  says(pc2.substr(0, 31), "ends at byte 31, within its header");
+  pc2[12] = 2;
+  says(pc2, "byte 12: version 2; known is 1");
+  pc2[12] = 1;
+  says(
+      pc2.substr(0, 55),
+      "the header says 2 frames of 1 vertices from byte 32 on, but the file ends at byte 55, after "
+      "1 whole frames");
+  pc2.replace(24, 4, bytes("000020c0"));
+  says(pc2, "byte 24: a frame every -2.5 frames; expected a number above 0");
+  pc2.replace(24, 4, bytes("0000807f"));
+  says(pc2, "byte 24: a frame every inf frames; expected a number above 0");
+  const fs::path mdd = file("o.mdd", bytes("00000002 00000001 3e800000 40100000 3f800000 40000000 "
+                                           "40400000 40800000 40a00000 40c00000"));
+  EXPECT_EQ(open_positions(mdd)->header().times, (std::vector<double>{0.25, 2.25}));
+  EXPECT_EQ(all_of(mdd).at(1).at(0), Vec3(4, 5, 6));
+}
+
+TEST_F(Positions, PolygonFilesMayHoldAnythingBesideTheirVertices) {
+  const std::string properties =
+      "property char a\nproperty int8 b\nproperty uchar c\nproperty uint8 d\nproperty short e\n"
+      "property int16 f\nproperty ushort g\nproperty uint16 h\nproperty int i\nproperty int32 j\n"
+      "property uint k\nproperty uint32 l\nproperty float m\nproperty float32 y\n"
+      "property double n\nproperty float64 z\nproperty float32 x\n";
+  const std::string before(1 * 4 + 2 * 4 + 4 * 4 + 4, 'q');
+  const fs::path path =
+      file("p.ply",
+           "ply\nobj_info made by hand\nformat binary_little_endian 1.0\n\ncomment x y\nelement "
+           "vertex 1\n" +
+               properties + "end_header\n" + before + bytes("00000040") + std::string(8, 'q') +
+               bytes("0000000000000840 0000803f"));
+  EXPECT_EQ(all_of(path).at(0).at(0), Vec3(1, 2, 3));
+  const auto rounding = [&](const std::string& type, const std::string& format) {
+    std::string text = "ply\nformat " + format + " 1.0\nelement vertex 1\n";
+    for (const char* axis : {"x", "y", "z"}) text += "property " + type + " " + axis + "\n";
+    text += "end_header\n" + (format == "ascii" ? std::string("1 2 3\n") : std::string(24, '\0'));
+    return open_positions(file("r.ply", text))->header().rounding;
+  };
+  EXPECT_EQ(rounding("float", "binary_big_endian"), Rounding::binary32);
+  EXPECT_EQ(rounding("double", "binary_little_endian"), Rounding::binary64);
+  EXPECT_EQ(rounding("double", "ascii"), Rounding::decimal);
+  const auto says = [&](const std::string& text, const std::string& what) {
+    EXPECT_EQ(message(file("w.ply", text)), (folder_ / "w.ply").string() + what);
+  };
+  const std::string start = "ply\nformat ascii 1.0\nelement vertex 1\n";
+  says("plx\n", ":1:1: a PLY file begins with the line 'ply'");
+  says("ply\nformat binary 1.0\n", ":2:1: format 'binary' is not known");
+  says("ply\nelement vertex -1\n", ":2:1: '-1' is no number of vertices");
+  says(start + "property int x\n", ":4:1: a coordinate is float or double");
+  says(start + "property half x\n", ":4:1: type 'half' is not known");
+  says(start + "vertices\n", ":4:1: expected format, element, property, comment or end_header");
+  says(start + "property float x\n", ":4:1: ends within its header");
+  says("ply\nelement vertex 1\nend_header\n", ":3:1: its header has no format");
+  says("ply\nformat ascii 1.0\nend_header\n", ":3:1: its header has no element vertex");
+  std::string flat =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\n"
+      "property float y\nproperty float z\nend_header\n";
+  const std::size_t header = flat.size();
+  EXPECT_EQ(message(file("w.ply", flat + std::string(24, '\0'))), "no error");
+  says(flat + std::string(23, '\0'), ": 2 vertices of 12 bytes begin at byte " +
+                                         std::to_string(header) + ", but the file ends at byte " +
+                                         std::to_string(header + 23));
+}
+
+TEST_F(Positions, FramesMayCountInStepsAndBeSetApartByASign) {
+  for (const char* sign : {"", "_", ".", "-"}) {
+    const std::string name = std::string("s") + sign;
+    for (const char* number : {"0100", "0105", "0110"})
+      file(name + number + ".obj", std::string("v ") + number + " 0 0\n");
+    EXPECT_EQ(all_of(folder_ / (name + "0105.obj")).size(), 3u) << sign;
+    fs::remove(folder_ / (name + "0105.obj"));
+    EXPECT_EQ(all_of(folder_ / (name + "0100.obj")).size(), 2u) << "ten apart";
+    EXPECT_EQ(
+        message(folder_ / (name + "0105.obj")),
+        (folder_ / (name + "0105.obj")).string() + ": no such file, and no frames of that name");
+    for (const char* number : {"0100", "0110"}) fs::remove(folder_ / (name + number + ".obj"));
+  }
+  file("7.obj", "v 7 0 0\n"), file("8.obj", "v 8 0 0\n"), file("one.obj", "v 1 0 0\n");
+  EXPECT_EQ(all_of(folder_ / "8.obj").at(0).at(0).x(), 7) << "a number is name enough";
+  EXPECT_EQ(all_of(folder_ / "one.obj").size(), 1u);
+}
+
+TEST_F(Positions, TextFilesAreReadWholeUpToTheirLimitOrRefused) {
+  const std::string text(70000, 'x');
+  const fs::path path = file("t", text);
+  errno = EINTR;  // of somebody else
+  EXPECT_EQ(read_text(path, 70000), text);
+  const auto says = [](const fs::path& file, std::size_t most, const std::string& what) {
+    try {
+      read_text(file, most);
+      ADD_FAILURE() << file;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), file.string() + ": " + what);
+    }
+  };
+  says(path, 69999, "is larger than 0 MiB");
+  says(file("large", std::string((3 << 20) + 1, 'x')), 3 << 20, "is larger than 3 MiB");
+  says(folder_, 100, "is a folder, not a file");
+  says("/dev/null", 100, "is no regular file");
+  says(folder_ / "absent", 100, "cannot be read: No such file or directory");
+  if (fs::exists("/proc/self/mem")) {  // nothing lies at address 0
+    says("/proc/self/mem", 100, "cannot be read: Input/output error");
+  }
 }
 
 }  // namespace

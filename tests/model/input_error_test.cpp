@@ -33,6 +33,39 @@ TEST(Printable, EveryErrorIs) {
 TEST(Suggestion, IsForNamesAndNotForDocuments) {
   EXPECT_EQ(suggestion("iteratons", {"iterations"}), "; did you mean 'iterations'?");
   EXPECT_EQ(suggestion(std::string(201, 'x'), {std::string(200, 'x')}), "");
+  EXPECT_NE(suggestion(std::string(200, 'x'), {std::string(199, 'x')}), "");
+}
+
+// Two slips at most, or one for each three letters: a letter too many, too few or another one, or
+// two neighbours swapped.
+TEST(Suggestion, IsTheNearestNameWithinAFewSlips) {
+  const auto near = [](const std::string& word, const std::string& name) {
+    return !suggestion(word, {name}).empty();
+  };
+  EXPECT_TRUE(near("tauuut", "taut"));
+  EXPECT_FALSE(near("tauuuut", "taut"));
+  EXPECT_TRUE(near("ta", "taut"));
+  EXPECT_FALSE(near("t", "taut"));
+  EXPECT_TRUE(near("xyut", "taut"));
+  EXPECT_FALSE(near("xyzt", "taut"));
+  EXPECT_TRUE(near("attu", "taut")) << "two swaps";
+  EXPECT_FALSE(near("attux", "taut"));
+  EXPECT_FALSE(near("abXdeXgX", "abcdefgh"));
+  EXPECT_TRUE(near("abXdeXgXi", "abcdefghi")) << "one more for three letters more";
+  EXPECT_FALSE(near("abXdeXgXX", "abcdefghi"));
+  EXPECT_TRUE(near("abc", "cba")) << "two other letters";
+  EXPECT_FALSE(near("abcd", "dcba"));
+  EXPECT_EQ(suggestion("hnag", {"hung", "hang", "hand"}), "; did you mean 'hang'?");
+  EXPECT_EQ(suggestion("ab", {"ac", "ad"}), "; did you mean 'ac'?") << "the first of equals";
+  EXPECT_EQ(suggestion("ab", {}), "");
+}
+
+TEST(Diagnostics, SayTheirPlaceAsFarAsItIsKnown) {
+  EXPECT_EQ((Diagnostic{"", 3, 4, "m"}.text()), "m");
+  EXPECT_EQ((Diagnostic{"f", 3, 4, "m"}.text()), "f:3:4: m");
+  EXPECT_EQ((Diagnostic{"f", 0, 4, "m"}.text()), "f: column 4: m");
+  EXPECT_EQ((Diagnostic{"f", 0, 0, "m"}.text()), "f: m");
+  EXPECT_STREQ(InputError({{"f", 1, 2, "a"}, {"g", 0, 0, "b"}}).what(), "f:1:2: a\ng: b");
 }
 
 }  // namespace

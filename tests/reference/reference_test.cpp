@@ -112,9 +112,15 @@ TEST(StaticEquilibrium, AFlatSheetOneWidthApartNeedsNoIteration) {
 }
 
 TEST(StaticEquilibrium, RefusesWhatHasNoUniqueAnswer) {
-  EXPECT_FALSE(static_equilibrium(two_corners(6, 0.8, {.shear = true})).unique);  // locks
-  EXPECT_FALSE(static_equilibrium(two_corners(6, 0.8, {.bend = true})).unique);
-  EXPECT_FALSE(static_equilibrium(two_corners(6, 1.2)).unique);  // the pins are too far apart
+  const auto reason = [](const Scene& scene) {
+    const Equilibrium e = static_equilibrium(scene);
+    EXPECT_FALSE(e.unique);
+    return e.reason;
+  };
+  const std::string push = " would have to push: the sheet folds or locks, in more than one way";
+  EXPECT_TRUE(reason(two_corners(6, 0.8, {.shear = true})).ends_with(push));
+  EXPECT_TRUE(reason(two_corners(6, 0.8, {.bend = true})).starts_with("bending links push"));
+  EXPECT_FALSE(reason(two_corners(6, 1.2)).ends_with(push)) << "the pins are too far apart";
   Scene ball = two_corners(6, 0.8);
   ball.colliders.push_back({Ball{Vec3(0.5, -0.5, 0), 0.2}, {}, 0});
   EXPECT_NE(static_equilibrium(ball).reason.find("contact"), std::string::npos);

@@ -116,6 +116,48 @@ TEST(Hierarchy, HalvesTheVerticesAndEveryChildHasParents) {
   }
 }
 
+// 0-1-2-3-4-5-6-7-8 hangs on 0, by links of 1, 2, ... 7 m and one of none. Every other vertex after
+// the pin's neighbour stays, then every other of those.
+TEST(Hierarchy, OfAChainIsThis) {
+  Scene scene;
+  scene.mesh.rest.assign(9, Vec3::Zero());
+  scene.mesh.mass.assign(9, 1);
+  scene.pins = {0};
+  for (int i = 0; i < 8; ++i)
+    scene.links.push_back({i, i + 1, i < 7 ? i + 1.0 : 0, Family::structural});
+  scene.links.push_back({2, 6, 1, Family::bend});  // no way for a hierarchy
+  std::string text;
+  for (const Level& level : make_hierarchy(scene, inverse_masses(scene), 9)) {
+    for (const int v : level.vertices) text += std::to_string(v) + ' ';
+    text += "by";
+    for (const auto& c : level.links)
+      text += ' ' + std::to_string(c.a) + '-' + std::to_string(c.b) + ':' +
+              std::to_string(std::lround(c.rest));
+    for (const Level::Child& child : level.children) {
+      text += "; " + std::to_string(child.vertex) + " with";
+      for (int p = child.first; p < child.end; ++p) {
+        const Level::Parent& parent = level.parents[static_cast<std::size_t>(p)];
+        text += ' ' + std::to_string(parent.vertex) + '*' +
+                std::to_string(std::lround(1000 * parent.weight));
+      }
+    }
+    text += '\n';
+  }
+  EXPECT_EQ(text,
+            "0 1 by 0-1:1; 5 with 1*1000\n"
+            "0 1 5 by 0-1:1 1-5:14; 3 with 1*643 5*357; 7 with 5*1000\n"
+            "0 1 3 5 7 by 0-1:1 1-3:5 3-5:9 5-7:13; 2 with 1*600 3*400; 4 with 3*556 5*444; "
+            "6 with 5*538 7*462\n");
+  EXPECT_EQ(make_hierarchy(scene, inverse_masses(scene), 2).size(), 2u);
+  const SolverChoice choice = parse_solver("jakobsen:order=mesh,levels=9,iterations=4,substeps=3");
+  for (const PassCost& cost : choice.entry->make(scene, choice.params)->step_cost())
+    if (cost.pass == "hierarchy") {
+      EXPECT_EQ(cost.items, 1u + 2 + 4);
+      EXPECT_EQ(cost.repeats, 12u);
+      EXPECT_TRUE(cost.projections);
+    }
+}
+
 TEST(Hierarchy, StiffensAHangingSheetAtFewSweeps) {
   Scene scene = hanging_sheet(17, 17);
   scene.damping = 2;
@@ -170,6 +212,23 @@ TEST(Float, RefusesSubstepsThatGravityCannotMove) {
   scene.pins.clear();
   const State state = simulate(scene, "jakobsen:iterations=0,substeps=600", 4);
   EXPECT_EQ(state.x[0].y(), scene.start.x[0].y());
+}
+
+// Six pins, no two of them linked: each vertex below hangs from the nearest four.
+TEST(Tethers, GoToTheFourNearestGroupsAtMost) {
+  Scene scene = hanging_sheet(11, 2);
+  scene.pins = {0, 2, 4, 6, 8, 10};
+  std::vector<int> pins, of_the_middle;
+  for (const Tether& t : make_tethers(scene)) {
+    if (t.vertex == 11) pins.push_back(t.pin);
+    if (t.vertex == 16) of_the_middle.push_back(t.pin);
+  }
+  EXPECT_EQ(pins, (std::vector{0, 2, 4, 6}));
+  EXPECT_EQ(of_the_middle, (std::vector{4, 6, 2, 8}));
+  EXPECT_EQ(make_tethers(scene).size(), 4u * 16);
+  scene.pins = {0, 1, 4};
+  for (const Tether& t : make_tethers(scene))
+    EXPECT_TRUE(t.pin == 4 || t.pin == (t.vertex % 11 == 0 ? 0 : 1)) << "the nearer of two linked";
 }
 
 }  // namespace

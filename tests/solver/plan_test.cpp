@@ -118,6 +118,42 @@ TEST(Plan, EveryPassVisitsWhatTheSceneHasAsOftenAsItIsAskedTo) {
     EXPECT_EQ(plan(scene, solver).size(), 1u) << solver << ": there is nothing but motion";
 }
 
+TEST(Plan, ContactOfFacesOfParticlesAndOfSolidsHasItsLines) {
+  Scene scene = hanging_sheet(20, 7);
+  scene.colliders = {{.shape = Ball{{0.5, -9, 0}, 0.1}}, {.shape = Box{{0, -9, 0}, {1, 2, 3}}}};
+  scene.self_collision = SelfCollision{.radius = 0.001};
+  const std::size_t faces = scene.mesh.triangles.size(), links = scene.links.size();
+  const auto visits = [&](const std::string& solver, const std::string& pass) {
+    const auto lines = plan(scene, solver);
+    const auto line = lines.find(pass);
+    if (line == lines.end()) return std::pair<std::size_t, std::size_t>();
+    EXPECT_EQ(line->second.projections, pass.starts_with("links")) << pass;
+    return std::pair(line->second.items, line->second.repeats);
+  };
+  const std::string sweeps = "iterations=4,substeps=3";
+  const auto times = [](std::size_t items, std::size_t repeats) {
+    return std::pair(items, repeats);
+  };
+  EXPECT_EQ(visits("jakobsen:self=octree," + sweeps, "self-collide octree"), times(140, 12));
+  EXPECT_EQ(visits("jakobsen:self=grid," + sweeps, "self-collide").second, 12u);
+  EXPECT_EQ(visits("jakobsen:faces=on," + sweeps, "faces on ball"), times(faces, 12));
+  EXPECT_EQ(visits("jakobsen:faces=on," + sweeps, "faces on box"), times(faces, 12));
+  EXPECT_EQ(visits("jakobsen:contact=freeze," + sweeps, "freeze ball"), times(140, 12));
+  EXPECT_EQ(visits("jakobsen:contact=halt," + sweeps, "halt box"), times(140, 3));
+  EXPECT_EQ(visits("bullet:" + sweeps, "detect contacts"), times(280, 3));
+  EXPECT_EQ(visits("bullet:" + sweeps, "contacts"), times(0, 12)) << "none is near";
+  EXPECT_EQ(visits("bullet:reorder=on," + sweeps, "links, reordered").second, 12u);
+  EXPECT_EQ(visits("bullet-deformable:newton=2,substeps=3", "springs (Newton steps)"),
+            times(links, 6));
+  const auto bytes = [&](std::size_t balls) {
+    scene.colliders.assign(balls, {.shape = Ball{{0.5, -9, 0}, 0.1}});
+    return plan(scene, "bullet")["detect contacts"].bytes;
+  };
+  EXPECT_EQ(bytes(3) - bytes(2), bytes(2) - bytes(1)) << "a body and a shape each";
+  EXPECT_GT(bytes(2) - bytes(1), 500u);
+  EXPECT_LT(bytes(2) - bytes(1), 2000u);
+}
+
 struct Memory {
   double held = 0, reported = 0;  ///< bytes
 };
@@ -137,22 +173,26 @@ Memory memory(const Scene& scene, const std::string& solver) {
   return memory;
 }
 
-// Of a larger sheet contact and accelerators hold as much more as their passes say.
-TEST(Plan, MemoryOfContactWindTethersAndLevelsIsWhatTheirPassesReport) {
-  if (mallinfo2().uordblks == 0)
-    GTEST_SKIP() << "this allocator does not say what it holds (sanitizers)";
-  const auto sheet = [](int n, bool contact, bool wind) {
-    Scene scene = hanging_sheet(n, n);
+/// What a sheet of 2n x 2n holds more than one of n x n, by what its passes report more.
+double held_by_reported(const std::string& solver, int n, bool contact, bool wind) {
+  const auto sheet = [&](int vertices) {
+    Scene scene = hanging_sheet(vertices, vertices);
     if (wind) scene.wind = Wind{};
     if (contact) scene.colliders = {{.shape = Ball{{0.5, -9, 0}, 0.1}}};
     return scene;
   };
+  const Scene small = sheet(n), large = sheet(2 * n);
+  memory(small, solver);  // what is made once stays
+  const Memory a = memory(small, solver), b = memory(large, solver);
+  return (b.held - a.held) / (b.reported - a.reported);
+}
+
+// Of a larger sheet contact and accelerators hold as much more as their passes say.
+TEST(Plan, MemoryOfContactWindTethersAndLevelsIsWhatTheirPassesReport) {
+  if (mallinfo2().uordblks == 0)
+    GTEST_SKIP() << "this allocator does not say what it holds (sanitizers)";
   const auto check = [&](const std::string& solver, bool contact, bool wind = false) {
-    const Scene small = sheet(48, contact, wind), large = sheet(96, contact, wind);
-    memory(small, solver);  // what is made once stays
-    const Memory a = memory(small, solver), b = memory(large, solver);
-    const double held = b.held - a.held, reported = b.reported - a.reported;
-    EXPECT_NEAR(held / reported, 1, 0.04) << solver << ": " << held << " against " << reported;
+    EXPECT_NEAR(held_by_reported(solver, 48, contact, wind), 1, 0.04) << solver;
   };
   for (const std::string order : {"coloured", "mesh", "mesh,precision=double"}) {
     const std::string solver = "jakobsen:order=" + order;
@@ -163,6 +203,15 @@ TEST(Plan, MemoryOfContactWindTethersAndLevelsIsWhatTheirPassesReport) {
   check("jakobsen:order=mesh,method=jacobi-averaged", false);
   check("jakobsen:order=mesh,levels=3", false);
   check("jakobsen:order=mesh", false, true);
+}
+
+// Bullet keeps some more beside what its passes visit.
+TEST(Plan, MemoryOfBulletIsMostlyWhatItsPassesReport) {
+  if (mallinfo2().uordblks == 0)
+    GTEST_SKIP() << "this allocator does not say what it holds (sanitizers)";
+  for (const char* solver : {"bullet", "bullet-deformable"})
+    for (const bool windy : {false, true})
+      EXPECT_NEAR(held_by_reported(solver, 24, windy, windy), 1.13, 0.1) << solver;
 }
 
 // Positions now and before, velocities and accelerations, and a weight each; springs need no

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <tuple>
 
 #include "core/model/input_error.hpp"
@@ -168,6 +169,37 @@ TEST(Relaxation, LinksThatCannotMoveOrHaveNoLengthDoNoHarm) {
         for (const Vec3& x : state.x) EXPECT_TRUE(x.allFinite());
         EXPECT_EQ(state.x[1], scene.start.x[1]);
       }
+}
+
+TEST(Order, ListsPhaseAfterPhaseTileAfterTileColourAfterColour) {
+  const auto link = [](int a) { return Link{a, a + 1, 1}; };
+  const std::vector<Phase> phases{{{{link(0), link(1)}, {link(2)}}, {{link(3)}}},
+                                  {{{link(4)}, {link(5), link(6)}}}};
+  int next = 0;
+  for (const Link& l : flatten(phases)) EXPECT_EQ(l.a, next++);
+  EXPECT_EQ(next, 7);
+  Scene scene = hanging_sheet(3, 2);
+  const std::vector<Link> backwards = ordered(scene, Order::reversed, 1);
+  for (std::size_t k = 0; k < backwards.size(); ++k)
+    EXPECT_EQ(backwards[k].a, scene.links[backwards.size() - 1 - k].a);
+}
+
+/// The vertices of each tile, by their places in memory: those that lie at 0 to 1023 and so on.
+TEST(Order, TilesAreSquaresOfAGridAndNeighbourhoodsOfAnyOtherMesh) {
+  const Scene grid = hanging_sheet(70, 35);
+  const std::vector<std::uint32_t> rank = tile_ranks(grid.mesh);
+  std::vector<std::uint32_t> expected;  // squares of 32, row after row, each vertex by vertex
+  std::uint32_t next = 0;
+  expected.resize(rank.size());
+  for (const auto& [v0, v1] : {std::pair{0, 32}, {32, 35}})
+    for (const auto& [u0, u1] : {std::pair{0, 32}, {32, 64}, {64, 70}})
+      for (int j = v0; j < v1; ++j)
+        for (int i = u0; i < u1; ++i) expected[static_cast<std::size_t>(70 * j + i)] = next++;
+  EXPECT_EQ(rank, expected);
+  Mesh loose = make_sheet({.nu = 90, .nv = 30, .width = 9, .height = 3, .mass = 1});
+  loose.grid.reset();  // 2700 vertices: three tiles of 900, side by side along the longer side
+  const std::vector<std::uint32_t> places = tile_ranks(loose);
+  for (std::size_t v = 0; v < places.size(); ++v) EXPECT_EQ(places[v] / 900, v % 90 / 30) << v;
 }
 
 }  // namespace

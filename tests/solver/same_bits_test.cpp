@@ -148,6 +148,23 @@ TEST(SameBits, OfWindAndContactThatThreadsShare) {
   }
 }
 
+TEST(SameBits, OfSelfCollisionThatThreadsShare) {
+  Scene scene = crumpled(hanging_sheet(92, 90), 0.005);
+  const double middle = (scene.start.x.front().y() + scene.start.x.back().y()) / 2;
+  for (Vec3& x : scene.start.x)  // folded
+    if (x.y() < middle) x = {x.x(), 2 * middle - x.y(), x.z() + 0.01};
+  scene.self_collision = SelfCollision{.radius = 0.008};
+  for (const char* layout : {"auto", "batches"})
+    for (const char* substeps : {"1", "15"}) {  // searched for one step, and for several
+      const std::string method =
+          std::string("jakobsen:iterations=2,layout=") + layout + ",substeps=" + substeps;
+      const State want = simulate(scene, method, 4);
+      EXPECT_FALSE(same_bits(simulate(scene, method + ",self=off", 4), want)) << method;
+      for (const char* threads : {",threads=2", ",threads=3"})
+        EXPECT_TRUE(same_bits(simulate(scene, method + threads, 4), want)) << method << threads;
+    }
+}
+
 /// Runs the scene's links in the given order through the generic path, one link at a time.
 State one_by_one(Scene scene, std::vector<Link> order, const std::string& more) {
   scene.links = std::move(order);

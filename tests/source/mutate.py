@@ -24,7 +24,6 @@ The tests ask for 0.7 until a whole sample has been judged: of 70 errors that so
 were noticed (69 %), before tests were strengthened.
 """
 import argparse
-import ast
 import bisect
 import concurrent.futures
 import contextlib
@@ -48,14 +47,11 @@ import threading
 import time
 
 sys.dont_write_bytecode = True
+from mutation_checks import ROOT, TAUT, UNIT, checks_of, run  # noqa: E402
 from mutation_operators import sites  # noqa: E402
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 EQUIVALENT = pathlib.Path(__file__).with_name("equivalent_mutants.txt")
 EXECUTED = pathlib.Path(__file__).with_name("executed.c")
-UNIT, TAUT = "tests/taut_tests", "taut"  # the programs whose checks notice
-SCRIPTS = [file for folder in ("cli", "study/cluster", "external") for file in (ROOT / "tests" / folder).glob("*_test.py")
-           if file.stem not in ("launcher_test", "contributing_test", "schedulers_test")]  # which build, or need a scheduler
 
 # Layers and their libraries; the tests of each are in the folder of tests/ with its last name.
 LAYERS = {"core/model": "taut_model", "core/io": "taut_io", "core/solver": "taut_solver", "core/reference": "taut_reference",
@@ -88,6 +84,7 @@ class Build:
             self.command[os.path.normpath(words[words.index("-o") + 1])] = words
         linker = next((f"-fuse-ld={name}" for name in ("lld", "gold") if shutil.which(f"ld.{name}")), "-fuse-ld=bfd")
         self.link_command = {}
+        self.beside(folder / "programs")
         for program in (UNIT, TAUT):
             lines = [line for line in self.ninja(ordinary, "-t", "commands", program).splitlines() if f"-o {program} " in line]
             words = shlex.split(lines[-1].removeprefix(": && ").split(" && ")[0])
@@ -105,7 +102,15 @@ class Build:
 
     def program(self, program):
         """Where the program without any error is."""
-        return self.folder / pathlib.Path(program).name
+        return self.folder / "programs" / pathlib.Path(program).name
+
+    def beside(self, folder):
+        """A folder with all that BUILD holds but the programs with errors: these are linked into it."""
+        folder.mkdir(exist_ok=True)
+        for entry in self.ordinary.iterdir():
+            if entry.name not in (TAUT, "mutants") and not (folder / entry.name).is_symlink():
+                (folder / entry.name).symlink_to(entry)
+        return folder
 
     @staticmethod
     def ninja(where, *words):
@@ -147,73 +152,6 @@ def code(object_, out):
     return out.read_bytes()
 
 
-class Check:
-    """A unit test, a truth, or a test of a script."""
-
-    def __init__(self, program, name, file=None):
-        self.program, self.name = program, name
-        self.script = file if file in SCRIPTS else None
-        self.folder = file.relative_to(ROOT / "tests").parts[0] if file else "truths"
-        self.source = hashlib.sha256(file.read_bytes()).digest() if file else b""
-        self.seconds, self.green = 0.0, True  # CPU time that it takes
-
-
-def checks_of(build):
-    file_of = {suite: file for file in (ROOT / "tests").rglob("*_test.cpp")
-               for suite in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", file.read_text(), re.MULTILINE)}
-    listed = subprocess.run([build.program(UNIT), "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
-                            text=True, capture_output=True).stdout
-    checks, suite = [], ""
-    for line in listed.splitlines():
-        name = line.split("#")[0].strip()
-        if line.startswith(" "):
-            checks.append(Check(UNIT, suite + name, file_of.get(suite[:-1].split("/")[-1])))
-        elif name.endswith("."):
-            suite = name
-    truths = subprocess.run([build.program(TAUT), "verify", "--list"], check=True, text=True, capture_output=True).stdout
-    checks += [Check(TAUT, line.split("\t")[1]) for line in truths.splitlines()]
-    for script in SCRIPTS:
-        checks += [Check(TAUT, f"{of.name}.{test.name}", script) for of in ast.parse(script.read_text()).body
-                   if isinstance(of, ast.ClassDef) for test in of.body if getattr(test, "name", "").startswith("test")]
-    return checks
-
-
-def run(build, checks, program, where, seconds=600.0, **environment):
-    """(name of a red check or None, CPU seconds) of checks of one program; red if they take more CPU time, or hang"""
-    # A folder of its own for what the tests write: several run at the same time.
-    environment = {**os.environ, "TMPDIR": f"{where}/", "TEST_TMPDIR": f"{where}/", **environment}
-    names = [check.name for check in checks]
-    if checks[0].script:  # it wants a folder with all programs: BUILD, with one program in the place of its own
-        folder = pathlib.Path(where) / "build"
-        folder.mkdir()
-        for entry in build.ordinary.iterdir():
-            (folder / entry.name).symlink_to(program if entry.name == TAUT else entry)
-        words = [sys.executable, checks[0].script, folder, *names]
-    else:
-        words = [program, *(["--gtest_filter=" + ":".join(names), "--gtest_fail_fast"] if checks[0].program == UNIT else
-                            ["verify", "-j1", "--quiet", *names])]
-    with open(f"{where}/output", "w+") as output:
-        process = subprocess.Popen(words, cwd=where, env=environment, start_new_session=True,
-                                   stdin=subprocess.DEVNULL, stdout=output, stderr=output)
-
-        def kill():
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
-        for limit, most in ((resource.RLIMIT_CPU, math.ceil(seconds)), (resource.RLIMIT_DATA, 8 << 30)):
-            with contextlib.suppress(ProcessLookupError):
-                resource.prlimit(process.pid, limit, (most, most))
-        hangs = threading.Timer(60 + 10 * seconds, kill)
-        hangs.start()
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        hangs.cancel()
-        kill()  # what it left behind
-        output.seek(0)
-        told = re.findall(r"^\[ ( FAILED |RUN     ) \] ([^\s,]+)", output.read(), re.MULTILINE)
-    named = [name for word, name in told if "FAILED" in word] or [name for _, name in reversed(told)] or names
-    return named[0] if process.returncode else None, usage.ru_utime + usage.ru_stime
-
-
 class Coverage:
     """Which check runs which line, and how long each check takes."""
 
@@ -232,7 +170,7 @@ class Coverage:
         unused = itertools.count(1 + max((bit for _, bit, _, _ in known.values()), default=-1))
         for check in checks:
             source, self.bit[check], check.seconds, check.green = known.get(check.name, (None, 0, 0.0, True))
-            if source != check.source:
+            if source != check.source or not check.green:
                 self.bit[check] = next(unused)
                 new.append(check)
         for first in range(0, len(new), 100):  # kept now and then: an interruption costs little
@@ -256,8 +194,7 @@ class Coverage:
 
     def measure(self, check):
         with tempfile.TemporaryDirectory() as where:
-            red, check.seconds = run(self.build, [check], self.build.program(check.program), where,
-                                     TAUT_EXECUTED=f"{where}/executed")
+            red, check.seconds = run([check], self.build.program(check.program), where, TAUT_EXECUTED=f"{where}/executed")
             check.green = red is None
             marked = pathlib.Path(f"{where}/executed.{pathlib.Path(check.program).name}")
             places, names, begin = self.functions[check.program]
@@ -372,11 +309,11 @@ class Mutant:
             running = [check for check in running if check not in batch]
             program = batch[0].program
             if program not in programs:
-                programs[program] = folder / pathlib.Path(program).name
+                programs[program] = build.beside(folder / "programs") / pathlib.Path(program).name
                 if not build.link(program, self.objects, programs[program]):
                     return False
             with tempfile.TemporaryDirectory(dir=folder) as where:
-                self.by, seconds = run(build, batch, programs[program], where, 5 + 4 * sum(check.seconds for check in batch))
+                self.by, seconds = run(batch, programs[program], where, 5 + 4 * sum(check.seconds for check in batch))
             self.tried, self.seconds = self.tried + len(batch), self.seconds + seconds
             if self.by:
                 break
@@ -440,6 +377,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--list", action="store_true", help="only print what would be planted")
     options = parser.parse_args()
+    # Ignored where this runs in the background; what it runs would inherit that.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     build = Build(options.build.resolve(), options.folder.resolve())
     layers = options.layer or list(LAYERS)
     mutants = written(options.planted) if options.planted else draw(layers, options.seed, build, options.widest)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "core/solver/layout/particles.hpp"
@@ -38,15 +39,21 @@ class NeighbourGrid {
     for (Coordinates* c : {&now_, &moved_, &at_rest_})
       for (auto& array : *c) array.resize(particles + kSearchLanes);
     parts_.resize(shared() ? pool.threads() : 1);
-    for (Part& part : parts_) part.blocks.resize(particles + 10);
+    for (Part& part : parts_) {
+      part.blocks.resize(particles + 10);
+      if (&part != parts_.data()) part.ends.resize(bucket_count_);
+      part.before.resize(parts_.size());
+    }
   }
 
   std::size_t size() const { return particles_.size(); }  ///< particles
+  std::size_t parts() const { return parts_.size(); }     ///< that threads search in
   std::size_t bytes() const {
     std::size_t sum = (3 * particles_.size() + starts_.size()) * sizeof starts_[0] +
                       9 * now_[0].size() * sizeof(Real) + rest_.size() * sizeof rest_[0];
     for (const Part& part : parts_)
-      sum += part.blocks.size() * sizeof(SearchBlock) + part.found.size() * sizeof(CandidatePair);
+      sum += part.blocks.size() * sizeof(SearchBlock) + part.found.size() * sizeof(CandidatePair) +
+             (part.ends.size() + part.before.size()) * sizeof part.ends[0];
     return sum;
   }
 
@@ -58,7 +65,8 @@ class NeighbourGrid {
     });
   }
 
-  /// Calls visit(a, b) once for every pair less than `reach` [m], > 0, apart.
+  /// Calls visit(a, b) once for every pair less than `reach` [m], > 0, apart; or visit(n, a, b),
+  /// n < parts(), at the same time for different n: part after part it is the same order.
   template <class Visit>
   void pairs(const Points<Real>& x, Real reach, const Visit& visit) {
     find(x, nullptr, reach, reach, visit);
@@ -78,10 +86,17 @@ class NeighbourGrid {
     std::vector<SearchBlock> blocks;
     std::vector<CandidatePair> found;
     std::size_t count = 0;  ///< of these
+    Vec4T<Real> least, most;
+    /// [bucket_count] where those of this part end in each bucket; the first part's are starts_.
+    std::vector<std::uint32_t> ends;
+    std::vector<std::uint32_t> before;  ///< [parts] how many are in a bucket before each share
   };
   using Coordinates = std::array<std::vector<Real>, 3>;
 
   static constexpr Real kCells = 1000000;
+  template <class Visit>
+  static constexpr bool kInParts =
+      std::is_invocable_v<Visit, std::size_t, std::uint32_t, std::uint32_t>;
 
   /// previous: null if none has moved.
   template <class Visit>
@@ -101,44 +116,43 @@ class NeighbourGrid {
                                  .ignored = ignored_,
                                  .moving = previous != nullptr};
     point_to(now_, search.now), point_to(moved_, search.moved), point_to(at_rest_, search.rest);
-    pool_.run(
-        parts_.size(),
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t n = begin; n < end; ++n) find_part(search, n);
-        },
-        shared());
-    for (const Part& part : parts_)
-      for (std::size_t f = 0; f < part.count; ++f)
-        visit(particles_[part.found[f].a], particles_[part.found[f].b]);
+    const auto visit_part = [&](std::size_t n) {
+      for (std::size_t f = 0; f < parts_[n].count; ++f) {
+        const CandidatePair& pair = parts_[n].found[f];
+        if constexpr (kInParts<Visit>)
+          visit(n, particles_[pair.a], particles_[pair.b]);
+        else
+          visit(particles_[pair.a], particles_[pair.b]);
+      }
+    };
+    for_each_part([&](std::size_t n, std::size_t begin, std::size_t end) {
+      find_part(search, n, begin, end);
+      if constexpr (kInParts<Visit>) visit_part(n);
+    });
+    if constexpr (!kInParts<Visit>)
+      for (std::size_t n = 0; n < parts_.size(); ++n) visit_part(n);
   }
 
   /// The pairs of the n-th part of the particles: parts one after the other give the order of one.
-  void find_part(NeighbourSearch<Real> search, std::size_t n) {
+  void find_part(NeighbourSearch<Real> search, std::size_t n, std::size_t begin, std::size_t end) {
     Part& part = parts_[n];
-    const auto first = [&](std::size_t k) {
-      return static_cast<std::uint32_t>(particles_.size() * k / parts_.size());
-    };
+    const auto last = static_cast<std::uint32_t>(end);
     part.count = 0, search.blocks = part.blocks.data();
-    for (std::uint32_t next = first(n); next < first(n + 1);) {
+    for (auto next = static_cast<std::uint32_t>(begin); next < last;) {
       search.found = part.found.data() + part.count, search.room = part.found.size() - part.count;
-      const std::size_t count = find_pairs_(search, next, first(n + 1));
+      const std::size_t count = find_pairs_(search, next, last);
       part.count += count;
-      if (next < first(n + 1))  // no room for what the next one might find
+      if (next < last)  // no room for what the next one might find
         part.found.resize(std::max<std::size_t>(1024, 2 * part.found.size()));
     }
   }
 
   bool shared() const { return particles_.size() >= ThreadPool::kWorthSharing; }
 
-  /// Calls f(i) for every particle, in any order.
+  /// Calls f(n, begin, end) for every part, n, of the particles.
   template <class F>
-  void for_each(const F& f) {
-    pool_.run(
-        particles_.size(),
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) f(i);
-        },
-        shared());
+  void for_each_part(const F& f) {
+    pool_.run_parts(parts_.size(), particles_.size(), f);
   }
 
   [[gnu::always_inline]] static void set(Coordinates& to, std::size_t k, const Vec4T<Real>& p) {
@@ -149,9 +163,15 @@ class NeighbourGrid {
   /// extent of x best. At most a million cells along an axis, so that their numbers are exact.
   template <class At>
   void fit_grid(const Points<Real>& x, Real reach, const At& at) {
-    Vec4T<Real> least = at(x, 0), most = least;
-    for (std::size_t i = 1; i < particles_.size(); ++i)
-      least = lesser(least, at(x, i)), most = greater(most, at(x, i));
+    for_each_part([&](std::size_t n, std::size_t begin, std::size_t end) {
+      Vec4T<Real> least = at(x, begin), most = least;
+      for (std::size_t i = begin; i < end; ++i)
+        least = lesser(least, at(x, i)), most = greater(most, at(x, i));
+      parts_[n].least = least, parts_[n].most = most;
+    });
+    Vec4T<Real> least = parts_[0].least, most = parts_[0].most;
+    for (const Part& part : parts_)
+      least = lesser(least, part.least), most = greater(most, part.most);
     const Vec4T<Real> extent = most - least;
     const Real widest = std::max({extent.v[0], extent.v[1], extent.v[2]});
     origin_ = least, per_metre_ = 1 / std::max(reach, widest / kCells);
@@ -173,24 +193,49 @@ class NeighbourGrid {
     return (number(0) + row_ * number(1) + layer_ * number(2)) & (bucket_count_ - 1);
   }
 
+  std::uint32_t* ends(std::size_t part) {
+    return part == 0 ? starts_.data() : parts_[part].ends.data();
+  }
+
+  /// By counting: every part of the particles for itself, then every share of the buckets.
   template <class At>
   void sort(const Points<Real>& x, const Points<Real>* previous, Real reach, const At& at) {
     fit_grid(x, reach, at);
-    for_each([&](std::size_t i) { buckets_[i] = bucket_of(at(x, i)); });
-    std::uint32_t* const starts = starts_.data();
-    std::fill(starts_.begin(), starts_.end(), 0);
-    for (const std::uint32_t bucket : buckets_) ++starts[bucket];
-    std::uint32_t sum = 0;
-    for (std::size_t b = 0; b <= bucket_count_; ++b) sum += starts[b], starts[b] = sum;  // ends
-    for (std::size_t i = buckets_.size(); i-- > 0;)
-      particles_[--starts[buckets_[i]]] = static_cast<std::uint32_t>(i);
-    for_each([&](std::size_t k) {
-      const std::size_t i = particles_[k];
-      sorted_buckets_[k] = buckets_[i];
-      const Vec4T<Real> p = at(x, i);
-      set(now_, k, p);
-      if (previous) set(moved_, k, p - at(*previous, i));
-      if (!rest_.empty()) set(at_rest_, k, rest_[i]);
+    const std::size_t parts = parts_.size();
+    for_each_part([&](std::size_t n, std::size_t begin, std::size_t end) {
+      std::uint32_t* const count = ends(n);
+      std::fill_n(count, bucket_count_, 0);
+      for (std::size_t i = begin; i < end; ++i) ++count[buckets_[i] = bucket_of(at(x, i))];
+      for (std::size_t share = 1; share < parts; ++share)
+        parts_[n].before[share] = static_cast<std::uint32_t>(std::count_if(
+            buckets_.data() + begin, buckets_.data() + end,
+            [bound = bucket_count_ * share / parts](std::uint32_t b) { return b < bound; }));
+    });
+    pool_.run_parts(parts, bucket_count_,
+                    [&](std::size_t share, std::size_t begin, std::size_t end) {
+                      std::uint32_t sum = 0;
+                      for (const Part& part : parts_) sum += part.before[share];
+                      std::uint32_t* const starts = starts_.data();
+                      for (std::size_t b = begin; b < end; ++b) {
+                        sum += starts[b], starts[b] = sum;
+                        for (std::size_t n = 1; n < parts; ++n) sum += ends(n)[b], ends(n)[b] = sum;
+                      }
+                    });
+    starts_[bucket_count_] = static_cast<std::uint32_t>(particles_.size());
+    for_each_part([&](std::size_t n, std::size_t begin, std::size_t end) {
+      std::uint32_t* const to = ends(n);  // in the end, of the first part, where the buckets start
+      for (std::size_t i = end; i-- > begin;)
+        particles_[--to[buckets_[i]]] = static_cast<std::uint32_t>(i);
+    });
+    for_each_part([&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::size_t i = particles_[k];
+        sorted_buckets_[k] = buckets_[i];
+        const Vec4T<Real> p = at(x, i);
+        set(now_, k, p);
+        if (previous) set(moved_, k, p - at(*previous, i));
+        if (!rest_.empty()) set(at_rest_, k, rest_[i]);
+      }
     });
   }
 

@@ -34,7 +34,9 @@ class SelfCollidePass final : public Pass<Real> {
   SelfCollidePass(const Scene& scene, Simd simd, ThreadPool& pool)
       : diameter_(static_cast<Real>(2 * scene.self_collision->radius)),
         kernels_(kernels<Real>(simd)),
-        grid_(scene.start.x.size(), pool, simd) {
+        pool_(pool),
+        grid_(scene.start.x.size(), pool, simd),
+        parts_(grid_.parts()) {
     find_close_at_rest(scene);
   }
 
@@ -42,8 +44,7 @@ class SelfCollidePass final : public Pass<Real> {
 
   void begin(Particles<Real>& p, double, double) override {
     if (!placed_) place(p);
-    const auto [step, search] =
-        kernels_.motion_boxes(span_of(p, p.x), searched_ ? searched_at_.data() : p.previous.data());
+    const auto [step, search] = motion_boxes(p, searched_ ? searched_at_ : p.previous);
     const auto motion = [&](const auto& box) { return largest_motion(p, p.previous, box); };
     if (moved_more(p, p.previous, step, diameter_ / 8)) {
       stride_ == 1 ? search_step<true>(p, motion(step)) : search_step<false>(p, motion(step));
@@ -58,11 +59,14 @@ class SelfCollidePass final : public Pass<Real> {
   }
 
   std::vector<PassCost> cost() const override {
-    return {{.pass = "self-collide",
-             .items = pairs_.size(),
-             .bytes = sizeof(*this) + grid_.bytes() + searched_at_.bytes() +
-                      (close_.capacity() + pairs_.capacity()) * sizeof(Pair) +
-                      crossing_.capacity() * sizeof(Crossing)}};
+    std::size_t pairs = 0, bytes = sizeof(*this) + grid_.bytes() + searched_at_.bytes() +
+                                   close_.capacity() * sizeof(Pair);
+    for (const Part& part : parts_) {
+      pairs += part.pairs.size();
+      bytes += sizeof part + part.pairs.capacity() * sizeof(Pair) +
+               part.crossing.capacity() * sizeof(Crossing);
+    }
+    return {{.pass = "self-collide", .items = pairs, .bytes = bytes}};
   }
 
  private:
@@ -75,17 +79,27 @@ class SelfCollidePass final : public Pass<Real> {
   struct Crossing : Pair {
     Vec4T<Real> before;  ///< from a to b when the step began [m]
   };
+  /// What one thread has found, and in which bounds the motions lie that it has seen.
+  struct alignas(64) Part {
+    std::vector<Pair> pairs;
+    std::vector<Crossing> crossing;
+    MotionBoxes<Real> boxes;
+    Real motion2;  ///< m^2
+  };
+
   template <bool packed>
   void sweep(Points<Real>& x) const {
-    for (const Crossing& pair : crossing_) {
-      const Vec4T<Real> now = between<packed>(x, pair);
-      if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
-        separate<packed>(x, pair, pair.before);
-    }
-    for (const Pair& pair : pairs_) {
-      const Vec4T<Real> now = between<packed>(x, pair);
-      if (squared_norm(now) < pair.least * pair.least) separate<packed>(x, pair, now);
-    }
+    for (const Part& part : parts_)
+      for (const Crossing& pair : part.crossing) {
+        const Vec4T<Real> now = between<packed>(x, pair);
+        if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
+          separate<packed>(x, pair, pair.before);
+      }
+    for (const Part& part : parts_)
+      for (const Pair& pair : part.pairs) {
+        const Vec4T<Real> now = between<packed>(x, pair);
+        if (squared_norm(now) < pair.least * pair.least) separate<packed>(x, pair, now);
+      }
   }
 
   template <bool packed>
@@ -128,20 +142,21 @@ class SelfCollidePass final : public Pass<Real> {
   void search_step(const Particles<Real>& p, Real motion) {
     forget_pairs();
     const Real within = kNearby * diameter_;
-    const auto consider = [&](const Pair& pair) __attribute__((always_inline)) {
+    const auto consider = [&](Part & part, const Pair& pair) __attribute__((always_inline)) {
       const Vec4T<Real> now = between<packed>(p.x, pair),
                         before = between<packed>(p.previous, pair);
       const Real way2 = squared_norm(now - before);
       if (!less(squared_norm(now), within * within, way2)) return;
-      pairs_.push_back(pair);
+      part.pairs.push_back(pair);
       if (less(squared_norm(before), diameter_ * diameter_, 16 * way2))
-        crossing_.push_back({pair, before});
+        part.crossing.push_back({pair, before});
     };
-    for (const Pair& pair : close_) consider(pair);
+    for (const Pair& pair : close_) consider(parts_.front(), pair);
     const Real reach = within + std::min(2 * motion, 4 * diameter_);
-    grid_.moving_pairs(p.x, p.previous, within, reach, [&](std::uint32_t a, std::uint32_t b) {
-      if (p.w[a] + p.w[b] != 0) consider(pair_of(p, a, b, diameter_));
-    });
+    grid_.moving_pairs(p.x, p.previous, within, reach,
+                       [&](std::size_t n, std::uint32_t a, std::uint32_t b) {
+                         if (p.w[a] + p.w[b] != 0) consider(parts_[n], pair_of(p, a, b, diameter_));
+                       });
   }
 
   /// Of this step and those that follow.
@@ -150,13 +165,17 @@ class SelfCollidePass final : public Pass<Real> {
     skin_ = diameter_ / 2 + 2 * motion;
     const Real reach = diameter_ + skin_;
     for (const Pair& pair : close_)
-      if (squared_norm(between<false>(p.x, pair)) < reach * reach) pairs_.push_back(pair);
-    grid_.pairs(p.x, reach, [&](std::uint32_t a, std::uint32_t b) {
-      if (p.w[a] + p.w[b] != 0) pairs_.push_back(pair_of(p, a, b, diameter_));
+      if (squared_norm(between<false>(p.x, pair)) < reach * reach)
+        parts_.front().pairs.push_back(pair);
+    grid_.pairs(p.x, reach, [&](std::size_t n, std::uint32_t a, std::uint32_t b) {
+      if (p.w[a] + p.w[b] != 0) parts_[n].pairs.push_back(pair_of(p, a, b, diameter_));
     });
   }
 
-  void forget_pairs() { pairs_.clear(), crossing_.clear(), searched_ = false; }
+  void forget_pairs() {
+    for (Part& part : parts_) part.pairs.clear(), part.crossing.clear();
+    searched_ = false;
+  }
 
   /// Whether a < b + c, of which the squares are given.
   static bool less(Real a2, Real b2, Real c2) {
@@ -172,23 +191,49 @@ class SelfCollidePass final : public Pass<Real> {
             wa == wb ? Real(0.5) : wa / (wa + wb)};
   }
 
+  /// Since the step began, and since they were at `then`.
+  MotionBoxes<Real> motion_boxes(Particles<Real>& p, const Points<Real>& then) {
+    const ParticleSpan<Real> span = span_of(p, p.x);
+    pool_.run_parts(parts_.size(), span.parts(),
+                    [&](std::size_t n, std::size_t begin, std::size_t end) {
+                      parts_[n].boxes = kernels_.motion_boxes(span, then.data(), begin, end);
+                    });
+    MotionBoxes<Real> all = parts_.front().boxes;
+    const auto add = [](MotionBox<Real>& to, const MotionBox<Real>& box) {
+      const auto& [least, most] = box;
+      to.least = {lesser(to.least.x, least.x), lesser(to.least.y, least.y),
+                  lesser(to.least.z, least.z)};
+      to.most = {greater(to.most.x, most.x), greater(to.most.y, most.y),
+                 greater(to.most.z, most.z)};
+    };
+    for (const Part& part : parts_)
+      add(all.since_previous, part.boxes.since_previous),
+          add(all.since_then, part.boxes.since_then);
+    return all;
+  }
+
   /// Square of the largest motion of a particle against the cloth as a whole since it was at `then`
   /// [m^2]: no two move by more than twice that against each other. The cloth moves as the middle
   /// of the box of all motions.
-  Real largest_motion2(Particles<Real>& p, const Points<Real>& then,
-                       const MotionBox<Real>& box) const {
-    return kernels_.largest_motion2({p.x.data(), then.data(), p.layout->sheet(), p.size()},
-                                    Real(0.5) * (box.least + box.most));
+  Real largest_motion2(Particles<Real>& p, const Points<Real>& then, const MotionBox<Real>& box) {
+    const ParticleSpan<Real> span{p.x.data(), then.data(), p.layout->sheet(), p.size()};
+    const Vec3T<Real> middle = Real(0.5) * (box.least + box.most);
+    pool_.run_parts(parts_.size(), span.parts(),
+                    [&](std::size_t n, std::size_t begin, std::size_t end) {
+                      parts_[n].motion2 = kernels_.largest_motion2(span, middle, begin, end);
+                    });
+    Real largest = 0;
+    for (const Part& part : parts_) largest = greater(largest, part.motion2);
+    return largest;
   }
-  Real largest_motion(Particles<Real>& p, const Points<Real>& then,
-                      const MotionBox<Real>& box) const {
+  Real largest_motion(Particles<Real>& p, const Points<Real>& then, const MotionBox<Real>& box) {
     return std::sqrt(largest_motion2(p, then, box));
   }
 
   /// Whether that is at least `distance`. Mostly the box alone says so: it is at most half the
   /// diagonal and at least half the longest side.
   bool moved_more(Particles<Real>& p, const Points<Real>& then, const MotionBox<Real>& box,
-                  Real distance) const {
+                  Real distance) {
     const Vec3T<Real> sides = box.most - box.least;
     if (norm(sides) * Real(0.5001) < distance) return false;
     if (greater(greater(sides.x, sides.y), sides.z) * Real(0.4999) >= distance) return true;
@@ -215,14 +260,14 @@ class SelfCollidePass final : public Pass<Real> {
   Real diameter_;                             ///< m
   std::size_t stride_ = 1;                    ///< of the particles' layout
   const Kernels<Real>& kernels_;
+  ThreadPool& pool_;
   NeighbourGrid<Real> grid_;
+  std::vector<Part> parts_;
   std::vector<Pair> close_;   ///< at rest within kNearby diameters and not linked
   bool placed_ = false;       ///< until then by numbers of particles, not slots
   Real skin_ = 0;             ///< m
   Points<Real> searched_at_;  ///< m
   bool searched_ = false;
-  std::vector<Pair> pairs_;
-  std::vector<Crossing> crossing_;
 };
 
 /// Self-collision as published in Vasilovici, Cloth Simulation Report, section 4.2.4: an octree

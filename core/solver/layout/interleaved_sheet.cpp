@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/model/index.hpp"
+#include "core/solver/simd/distance.hpp"
 
 namespace taut {
 
@@ -151,9 +152,11 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
     for (int j = 0; j < sweep_.direction[d].rows; ++j) {
       const std::vector<Real>& shares = shares_[table[next++]];
       const auto equal = [&](int k) {
+        // Padding alone is at one place for ever, and nobody looks at it.
+        const int real = std::min(lanes, (grid.columns - k + sweep_.vectors - 1) / sweep_.vectors);
         const auto* s = shares.data() + 2 * lanes * k;
-        return std::all_of(s, s + 2 * lanes,
-                           [&](Real share) { return share == sweep_.direction[d].equal_share; });
+        const auto has = [&](Real share) { return share == sweep_.direction[d].equal_share; };
+        return std::all_of(s, s + real, has) && std::all_of(s + lanes, s + lanes + real, has);
       };
       int begin = 0;
       while (begin < sweep_.vectors && !equal(begin)) ++begin;

@@ -56,7 +56,9 @@ struct Contact {
   [[gnu::always_inline]] Mask project_continuous(Vec3T<T>& x, const Vec3T<T>& previous,
                                                  Mask near) const {
     const Vec3T<T> from = motion(previous);
-    const auto passing = near && !surface.misses(from, x);
+    // Hardly ever does a path come so near that it takes more to say that it misses the collider.
+    auto passing = near && !surface.beyond(x, squared_norm(x - from), T(thickness / 2));
+    if (any(passing)) passing = near && !surface.misses(from, x);
     near = near && !clear(x);
     if (!any(near || passing)) return near;
     Tangent<T> tangent = surface.nearest(x);

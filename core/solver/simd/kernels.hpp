@@ -35,7 +35,8 @@ struct SheetRows {
 template <class Real>
 struct SheetRow {
   const Real* shares;          ///< [K][2][lanes] of the left and of the right end; 0: no link
-  int equal_begin, equal_end;  ///< vectors whose shares are all SheetDirection::equal_share
+  int equal_begin, equal_end;  ///< vectors whose links all have SheetDirection::equal_share, but
+                               ///< for those between padding, which may have any
 };
 
 /// Links (i, j) - (i + columns, j + ..) of one direction; `left` is the end in the lesser column.
@@ -215,10 +216,13 @@ struct Kernels {
   /// Pulls particles that are farther than their length from their pin to it, table after table; by
   /// Projection.
   void (*tethers[2])(const ParticleSpan<Real>&, std::span<const TetherTable<Real>>);
-  /// Of all particles since the span's `previous` and since they were at `then`, laid out alike.
-  MotionBoxes<Real> (*motion_boxes)(const ParticleSpan<Real>&, const Real* then);
-  /// Square of the largest motion against `middle` [m^2].
-  Real (*largest_motion2)(const ParticleSpan<Real>&, const Vec3T<Real>& middle);
+  /// Of the parts [begin, end), and of the first particle, since the span's `previous` and since
+  /// they were at `then`, laid out alike.
+  MotionBoxes<Real> (*motion_boxes)(const ParticleSpan<Real>&, const Real* then, std::size_t begin,
+                                    std::size_t end);
+  /// Square of the largest motion against `middle` of the parts [begin, end) [m^2].
+  Real (*largest_motion2)(const ParticleSpan<Real>&, const Vec3T<Real>& middle, std::size_t begin,
+                          std::size_t end);
   FindPairs<Real> find_pairs;
   /// Projects independent pairs without loading or storing anything: what the arithmetic alone
   /// costs, for benchmarks. Says how many projections that were.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "core/solver/simd/collide_impl.hpp"
 #include "core/solver/simd/distance.hpp"
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/lanes.hpp"
@@ -243,67 +244,6 @@ void load_and_store(const BatchRun<Real>& run, Real* x) {
       });
 }
 
-/// Calls f(place, present) for kWidth<T> particles after the other, of the parts [begin, end):
-/// `present` leaves out padding.
-template <class T, int lanes, class Real, class F>
-[[gnu::always_inline]] inline void visit_particles(const ParticleSpan<Real> span, std::size_t begin,
-                                                   std::size_t end, const F& f) {
-  static constexpr Real kNumbers[kWide] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  const auto from = [](std::size_t first, int l) __attribute__((always_inline)) {
-    return T(static_cast<Real>(first)) + load<T>(kNumbers + l);
-  };
-  if constexpr (lanes == kPackedLanes) {
-    const T all(static_cast<Real>(span.particles));
-    for (std::size_t i = begin * kLanes; i < end * kLanes; i += kWidth<T>)
-      f(4 * i, from(i, 0) < all);
-  } else {
-    const SheetRows& sheet = span.sheet;
-    const T columns(static_cast<Real>(sheet.columns)), strip(static_cast<Real>(sheet.vectors));
-    for (std::size_t row = begin; row < end; ++row)
-      for (int k = 0; k < sheet.vectors; ++k)
-        for (int l = 0; l < lanes; l += kWidth<T>)
-          f(row * sheet.stride + static_cast<std::size_t>(3 * lanes * k + l),
-            strip * from(0, l) + T(static_cast<Real>(k)) < columns);
-  }
-}
-
-/// Calls f with a lane type and the lanes of the span's layout as a constant.
-template <class Narrow, class Wide, class P, class Real, class F>
-[[gnu::always_inline]] inline void with_lanes(const ParticleSpan<Real>& span, const F& f) {
-  if (span.sheet.lanes == kWide)
-    f(Wide(0), std::integral_constant<int, kWide>{});
-  else if (span.sheet.lanes == kNarrow)
-    f(Narrow(0), std::integral_constant<int, kNarrow>{});
-  else
-    f(P(0), std::integral_constant<int, kPackedLanes>{});
-}
-
-template <class Narrow, class Wide, class P, bool continuous, class Real,
-          template <class> class SurfaceOf>
-void collide(const Contact<Real, SurfaceOf>& contact_in, const ParticleSpan<Real>& span_in,
-             std::size_t begin, std::size_t end) {
-  const Contact<Real, SurfaceOf> contact = contact_in;  // copies, which no store changes
-  const ParticleSpan<Real> span = span_in;
-  with_lanes<Narrow, Wide, P>(
-      span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
-        using T = decltype(t);
-        constexpr int lanes = of_layout;
-        const auto one = [&](std::size_t at, const auto& present) __attribute__((always_inline)) {
-          Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
-          const Vec3T<T> previous = load_vec3<T, lanes>(span.previous + at);
-          const auto near = present && contact.template near<continuous>(x, previous);
-          if (!any(near)) return;
-          bool moved;
-          if constexpr (continuous)
-            moved = any(contact.project_continuous(x, previous, near));
-          else
-            moved = any(contact.project(x, previous, near));
-          if (moved) store_vec3<T, lanes>(span.x + at, x);
-        };
-        visit_particles<T, lanes>(span, begin, end, one);
-      });
-}
-
 template <class Narrow, class Wide, class P, Projection kind, class Real>
 void tethers(const ParticleSpan<Real>& span_in, std::span<const TetherTable<Real>> tables) {
   const ParticleSpan<Real> span = span_in;  // a copy, which no store changes
@@ -311,10 +251,14 @@ void tethers(const ParticleSpan<Real>& span_in, std::span<const TetherTable<Real
       span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
         using T = decltype(t);
         constexpr int lanes = of_layout;
+        // Table after table: a particle's second tether waits for its first, and meanwhile there is
+        // more to do for other particles. Packed ones would have to be transposed each time.
+        const std::size_t at_once = lanes == kPackedLanes ? tables.size() : 1;
+        std::span<const TetherTable<Real>> some;
         const auto one = [&](std::size_t at, const auto&) __attribute__((always_inline)) {
           Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
           bool moved = false;
-          for (const TetherTable<Real>& table : tables) {
+          for (const TetherTable<Real>& table : some) {
             Vec3T<T> pin = load_vec3<T, lanes>(table.pin + at), end = x;
             const T length = load_vec3<T, lanes>(table.length + at).x;
             const auto tight = length > T(0) && squared_norm(x - pin) > length * length;
@@ -325,7 +269,10 @@ void tethers(const ParticleSpan<Real>& span_in, std::span<const TetherTable<Real
           }
           if (moved) store_vec3<T, lanes>(span.x + at, x);
         };
-        visit_particles<T, lanes>(span, 0, span.parts(), one);
+        for (std::size_t n = 0; n < tables.size(); n += at_once) {
+          some = tables.subspan(n, at_once);
+          visit_particles<T, lanes>(span, 0, span.parts(), one);
+        }
       });
 }
 
@@ -341,10 +288,13 @@ template <class T, class Real, class F>
 
 /// Of packed particles, x y z 0 after x y z 0: as they lie there, in vectors of whole particles.
 template <class T, class Real>
-MotionBox<Real> packed_motion_box(const Real* x, const Real* then, std::size_t particles) {
-  const std::size_t last = 4 * particles - kWidth<T>;  // what is seen twice changes nothing
+MotionBox<Real> packed_motion_box(const ParticleSpan<Real>& span, const Real* then,
+                                  std::size_t begin, std::size_t end) {
+  const Real* const x = span.x;
+  const std::size_t last = 4 * span.particles - kWidth<T>;  // what is seen twice changes nothing
+  const std::size_t part_end = 4 * kLanes * end;
   T least = load<T>(x) - load<T>(then), most = least;
-  for (std::size_t i = 0; i < last + kWidth<T>; i += kWidth<T>) {
+  for (std::size_t i = 4 * kLanes * begin; i < part_end && i < last + kWidth<T>; i += kWidth<T>) {
     const std::size_t at = i < last ? i : last;
     const T moved = load<T>(x + at) - load<T>(then + at);
     least = lesser(least, moved), most = greater(most, moved);
@@ -357,11 +307,12 @@ MotionBox<Real> packed_motion_box(const Real* x, const Real* then, std::size_t p
 }
 
 template <class Narrow, class Wide, class P, class Real>
-MotionBoxes<Real> motion_boxes(const ParticleSpan<Real>& span, const Real* then) {
+MotionBoxes<Real> motion_boxes(const ParticleSpan<Real>& span, const Real* then, std::size_t begin,
+                               std::size_t end) {
   if constexpr (kWidth<P> >= 4)
     if (span.sheet.lanes == kPackedLanes && 4 * span.particles >= kWidth<P>)
-      return {packed_motion_box<P>(span.x, span.previous, span.particles),
-              packed_motion_box<P>(span.x, then, span.particles)};
+      return {packed_motion_box<P>(span, span.previous, begin, end),
+              packed_motion_box<P>(span, then, begin, end)};
   MotionBoxes<Real> boxes{};
   with_lanes<Narrow, Wide, P>(
       span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
@@ -382,7 +333,7 @@ MotionBoxes<Real> motion_boxes(const ParticleSpan<Real>& span, const Real* then)
           };
           add(0, span.previous), add(1, then);
         };
-        visit_particles<T, lanes>(span, 0, span.parts(), one);
+        visit_particles<T, lanes>(span, begin, end, one);
         const auto low = [](const T& all) { return over_lanes<T, Real>(all, lesser<Real>); };
         const auto high = [](const T& all) { return over_lanes<T, Real>(all, greater<Real>); };
         const auto box = [&](int k) -> MotionBox<Real> {
@@ -395,7 +346,8 @@ MotionBoxes<Real> motion_boxes(const ParticleSpan<Real>& span, const Real* then)
 }
 
 template <class Narrow, class Wide, class P, class Real>
-Real largest_motion2(const ParticleSpan<Real>& span, const Vec3T<Real>& middle) {
+Real largest_motion2(const ParticleSpan<Real>& span, const Vec3T<Real>& middle, std::size_t begin,
+                     std::size_t end) {
   Real largest = 0;
   with_lanes<Narrow, Wide, P>(
       span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
@@ -407,7 +359,7 @@ Real largest_motion2(const ParticleSpan<Real>& span, const Vec3T<Real>& middle) 
               load_vec3<T, lanes>(span.x + at) - load_vec3<T, lanes>(span.previous + at);
           most = greater(most, select(present, squared_norm(moved - spread_out<T>(middle)), T(0)));
         };
-        visit_particles<T, lanes>(span, 0, span.parts(), one);
+        visit_particles<T, lanes>(span, begin, end, one);
         largest = over_lanes<T, Real>(most, greater<Real>);
       });
   return largest;

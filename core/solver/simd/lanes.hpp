@@ -100,6 +100,16 @@ struct Lanes {
   [[gnu::always_inline]] Half lower() const { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
   [[gnu::always_inline]] Half upper() const { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
 
+#if defined(__AVX2__)
+  /// Lane l of the result is lane index[l], of eight floats.
+  [[gnu::always_inline]] Lanes permuted(__m256i index) const {
+    return Lanes(V(_mm256_permutevar8x32_ps(__m256(v), index)));
+  }
+  [[gnu::always_inline]] static __m256i indices(const std::uint8_t (&bytes)[8]) {
+    return _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(bytes)));
+  }
+#endif
+
   [[gnu::always_inline]] friend Lanes sqrt(Lanes a) {
 #if defined(__x86_64__)
     constexpr bool single = sizeof(Real) == sizeof(float);
@@ -124,6 +134,14 @@ template <class T>
 inline constexpr int kWidth = 1;
 template <class Real, int width, class Isa>
 inline constexpr int kWidth<Lanes<Real, width, Isa>> = width;
+
+/// Whether T has permuted(): one instruction, which the narrower sets lack.
+template <class T>
+inline constexpr bool kPermutes = false;
+#if defined(__AVX2__)
+template <class Isa>
+inline constexpr bool kPermutes<Lanes<float, 8, Isa>> = true;
+#endif
 
 /// From and to any address of numbers.
 template <class T, class Real>

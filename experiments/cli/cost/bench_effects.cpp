@@ -29,10 +29,10 @@ void print(const std::vector<EffectRow>& rows, const Options& options, int side)
   std::cout << '\n' << options.solver;
   if (side > 0) std::cout << ", " << side << " x " << side;
   std::cout << "; ns a vertex and step, " << (options.wall ? "wall" : "CPU")
-            << " time; times hang's, a step and a simulated second, and times the same cloth's "
-               "links alone, 95 %\n";
-  std::vector<Row> table{
-      {"scene", "effects", "vertices", "ns", "x hang, a step", "a second", "x links alone"}};
+            << " time; times hang's, a step and a simulated second, times the same cloth's links "
+               "alone, and times hang's if the colliders are too far away to be touched, 95 %\n";
+  std::vector<Row> table{{"scene", "effects", "vertices", "ns", "x hang, a step", "a second",
+                          "x links alone", "x hang, touching nothing"}};
   const double half = options.copies / 2.0;
   if (options.copies > 0)
     table[0].push_back(std::to_string(options.copies) + " on two threads / " + number_text(half) +
@@ -44,14 +44,19 @@ void print(const std::vector<EffectRow>& rows, const Options& options, int side)
       const Interval times = row.times(unit);
       line.insert(line.end(),
                   {number_text(row.cost().mid), interval_text(times),
-                   number_text(times.mid * unit.dt / row.dt), interval_text(row.times_bare())});
+                   number_text(times.mid * unit.dt / row.dt), interval_text(row.times_bare()),
+                   row.looking.empty() ? "-" : interval_text(row.looking_times(unit))});
       if (options.copies > 0) line.push_back(interval_text(row.times_one(), half));
     }
     line.resize(table[0].size(), "-");
   }
   print_columns(table, 2);
-  for (const EffectRow& row : rows)
+  for (const EffectRow& row : rows) {
+    if (!row.traffic.empty())
+      std::cout << row.scene << ": to load and store the ends of its links alone would cost "
+                << interval_text(row.traffic_times(unit)) << " x hang\n";
     if (!row.refused.empty()) std::cout << row.scene << " not timed: " << row.refused << '\n';
+  }
   std::cout << std::flush;
 }
 
@@ -66,6 +71,8 @@ Json json_of(const std::vector<EffectRow>& rows, int side) {
                    {"refused", row.refused},
                    {"ns", row.whole},
                    {"links_alone_ns", row.bare},
+                   {"touching_nothing_ns", row.looking},
+                   {"link_traffic_ns", row.traffic},
                    {"copies_ns", row.copies}});
   return all;
 }

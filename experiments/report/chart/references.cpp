@@ -7,7 +7,8 @@ namespace taut::report {
 std::vector<std::size_t> places_of(std::size_t n, std::size_t most) {
   const std::size_t count = std::min(n, most);
   std::vector<std::size_t> places(count);
-  for (std::size_t i = 0; i < count; ++i) places[i] = n <= most ? i : i * (n - 1) / (most - 1);
+  for (std::size_t i = 0; i < count; ++i)
+    places[i] = n <= most ? i : i * (n - 1) / std::max<std::size_t>(1, most - 1);
   return places;
 }
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <variant>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/solver/thread_pool.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/timing/bench/kernels.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -42,6 +44,17 @@ std::string effects_of(const Scene& scene) {
 
 Scene without_effects(Scene scene) {
   scene.wind.reset(), scene.colliders.clear(), scene.self_collision.reset();
+  return scene;
+}
+
+/// Every particle still looks for its colliders, in vain.
+Scene touching_nothing(Scene scene) {
+  constexpr double kFar = 1000;  // m
+  for (Collider& c : scene.colliders) {
+    if (auto* const plane = std::get_if<Plane>(&c.shape)) plane->offset -= kFar;
+    if (auto* const ball = std::get_if<Ball>(&c.shape)) ball->center.y() -= kFar;
+    if (auto* const box = std::get_if<Box>(&c.shape)) box->center.y() -= kFar;
+  }
   return scene;
 }
 
@@ -79,13 +92,18 @@ class TimedScene {
             .refused = {},
             .whole = {},
             .bare = {},
-            .copies = {}};
+            .copies = {},
+            .looking = {},
+            .traffic = {}};
     if (const auto reasons = choice.entry->unsupported(scene, choice.params); !reasons.empty()) {
       row_.refused = reasons.front();
       return;
     }
     whole_ = choice.entry->make(scene, choice.params);
     bare_ = choice.entry->make(without_effects(scene), choice.params);
+    if (!scene.colliders.empty())
+      looking_ = choice.entry->make(touching_nothing(scene), choice.params);
+    if (!scene.mesh.grid) any_mesh_ = scene;
     if (options.copies > 0) copies_ = std::make_unique<Copies>(scene, choice, options.copies);
     run_.emplace(scene, *whole_, scene.steps);
     State end;
@@ -103,6 +121,8 @@ class TimedScene {
     if (!row_.refused.empty()) return;
     row_.whole.push_back(time(*whole_));
     row_.bare.push_back(time(*bare_));
+    if (looking_) row_.looking.push_back(time(*looking_));
+    if (any_mesh_) row_.traffic.push_back(traffic());
     if (copies_) row_.copies.push_back(time(*copies_));
   }
 
@@ -114,9 +134,15 @@ class TimedScene {
     return 1e9 * (wall_ ? step.wall : step.cpu) / static_cast<double>(row_.vertices);
   }
 
+  double traffic() const {
+    return 1e9 * seconds_per_link_traffic(*any_mesh_, true) *
+           static_cast<double>(projections_per_step(*whole_)) / static_cast<double>(row_.vertices);
+  }
+
   EffectRow row_;
   bool wall_;
-  std::unique_ptr<Solver> whole_, bare_, copies_;
+  std::unique_ptr<Solver> whole_, bare_, looking_, copies_;
+  std::optional<Scene> any_mesh_;
   std::optional<CheckpointedRun> run_;
   int steps_ = 1;
 };

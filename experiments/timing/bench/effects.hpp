@@ -18,6 +18,11 @@ struct EffectRow {
   /// self-collision, from the same states.
   std::vector<double> whole, bare;
   std::vector<double> copies;  ///< likewise: all copies of it on two threads, one step of each
+  /// Likewise: with its colliders so far away that nothing touches them. Empty: it has none.
+  std::vector<double> looking;
+  /// Likewise, of the links alone: loading and storing their ends as colour batches do, in float,
+  /// with an addition in the place of the projection, at its fastest. Empty: a sheet.
+  std::vector<double> traffic;
 
   Interval cost() const { return bootstrap_median(whole); }
   /// The copies over one sheet alone.
@@ -25,6 +30,12 @@ struct EffectRow {
   Interval times_bare() const { return interleaved_ratio(whole, bare); }
   /// A step of a vertex over one of `other`, which was timed in the same rounds.
   Interval times(const EffectRow& other) const { return interleaved_ratio(whole, other.whole); }
+  Interval looking_times(const EffectRow& other) const {
+    return interleaved_ratio(looking, other.whole);
+  }
+  Interval traffic_times(const EffectRow& other) const {
+    return interleaved_ratio(traffic, other.whole);
+  }
 };
 
 struct EffectBenchOptions {

@@ -389,5 +389,38 @@ TEST(Contact, ClosedFormsAgreeWithTheModelAndWithMarching) {
   expect_first_hit<BoxSurface>(box);
 }
 
+// The deepest point b of a level face moves by c = s n less the friction, at most mu s against its
+// slip d: its corners by w_i b_i c / sum of w_j b_j^2.
+TEST(FaceContact, RubsAgainstTheSlipOfItsDeepestPoint) {
+  const Vec3 d(0.01, 0, 0.005);  // m, a step's way of the face
+  struct Case {
+    double friction;
+    Vec3 velocity, rubbed;  ///< of the ball [m/s]; of its deepest point [m]
+  };
+  const double depth = 0.01;
+  for (const auto& [friction, velocity, rubbed] :
+       {Case{0, Vec3::Zero(), Vec3::Zero()}, Case{0.3, Vec3::Zero(), 0.3 * depth * d.normalized()},
+        Case{2, Vec3::Zero(), d}, Case{2, Vec3(0.01, 0, 0) / kDt, Vec3(0, 0, 0.005)},
+        Case{0.3, Vec3(0.01, 0, 0) / kDt, Vec3(0, 0, 0.3 * depth)}}) {
+    const Vec3 end(0.05, -0.19, 0.02);
+    Scene scene = one_face({.shape = Ball{end - kDt * velocity, 0.2},
+                            .motion = {.velocity = velocity},
+                            .friction = friction});
+    for (Vec3& v : scene.start.v) v = d / kDt;
+    Corners moved;
+    for (std::size_t i = 0; i < 3; ++i) moved[i] = scene.start.x[i] + d;
+    const Vec3 b = closest_point(moved, end).weights;
+    const Vec3 correction = Vec3(0, depth, 0) - rubbed;
+    double sum = 0;
+    for (Eigen::Index i = 0; i < 3; ++i) sum += b[i] * b[i] / (1.0 + static_cast<double>(i));
+    const State state = Runner(scene, ",faces=on,iterations=1").step();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double share = b[static_cast<Eigen::Index>(i)] / (1 + static_cast<double>(i)) / sum;
+      EXPECT_LT((state.x[i] - moved[i] - share * correction).norm(), 1e-12)
+          << friction << " corner " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace taut

@@ -251,19 +251,20 @@ TEST(NeighbourGrid, MovingPairsAreThoseWithinTheirOwnWay) {
 TEST(NeighbourGrid, ComeInOneOrderFromEveryInstructionSetAndAnyThreads) {
   constexpr std::size_t all = ThreadPool::kWorthSharing + 1000;
   const Points<float> x = points<float>(anywhere(all, 2, 6));
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> first;
-  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
-    for (const int threads : {1, 2, 3}) {
-      if (!available(simd)) continue;
-      ThreadPool pool(threads);
-      std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
-      NeighbourGrid<float>(all, pool, simd).pairs(x, 0.4F, [&](std::uint32_t a, std::uint32_t b) {
-        found.emplace_back(a, b);
-      });
-      if (first.empty()) first = found;
-      EXPECT_GT(found.size(), 10 * all);
-      EXPECT_TRUE(found == first) << to_string(simd) << ", threads " << threads;
-    }
+  for (const float reach : {0.4F, 0.1F}) {  // few of the buckets are used, and most of them
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> first;
+    for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
+      for (const int threads : {1, 2, 3}) {
+        if (!available(simd)) continue;
+        ThreadPool pool(threads);
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+        NeighbourGrid<float>(all, pool, simd)
+            .pairs(x, reach, [&](std::uint32_t a, std::uint32_t b) { found.emplace_back(a, b); });
+        if (first.empty()) first = found;
+        EXPECT_GT(found.size(), 1000u);
+        EXPECT_TRUE(found == first) << to_string(simd) << ", threads " << threads;
+      }
+  }
 }
 
 TEST(SelfCollision, CrumpleEndsWithoutSelfIntersectionsByDefault) {
@@ -273,6 +274,54 @@ TEST(SelfCollision, CrumpleEndsWithoutSelfIntersectionsByDefault) {
   };
   EXPECT_EQ(crossings("jakobsen", "time.duration=3"), 0);
   EXPECT_GT(crossings("jakobsen:self=off", "time.duration=1"), 100);
+}
+
+// Links that pull in a step's sweeps bring together what was apart when its pairs were searched: by
+// up to the way that each has made.
+TEST(SelfCollision, ParticlesThatALinkPullsTogetherInAFastStepStayApart) {
+  for (const double mass : {1.0, 4.0}) {
+    Scene scene = particles({{0, 0, 0}, {0.2, -0.05, 0}, {-0.5, 0.05, 0}},
+                            {{0, 0, 0}, {0, 6.4, 0}, {0, 0, 0}});  // 0.1 m a step, to (0.2, 0.05)
+    scene.mesh.mass[0] = mass;
+    scene.pins = {2};
+    scene.links = {{1, 2, 0.55}};  // to x = 0.05, inside the first
+    const State state = run(scene, "self=grid,iterations=1,projection=exact", 1);
+    EXPECT_NEAR((state.x[1] - state.x[0]).norm(), 0.1, 1e-12);
+    const Vec3 a = state.x[0], b = state.x[1] - Vec3(0.05, 0.05, 0);
+    EXPECT_LT((mass * a + b).norm(), 1e-12) << "each by its share";
+    EXPECT_LT(run(scene, "self=off,iterations=1,projection=exact", 1).x[1].norm(), 0.08);
+  }
+}
+
+// Pairs far from each other, slow and fast, for ten steps: none comes nearer than a diameter, the
+// middle of each goes its way, and those that never meet are left alone.
+TEST(SelfCollision, PairsOfEverySpeedMeetAndPart) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<> number(-1, 1);
+  for (const double fastest : {0.1, 1.0, 8.0}) {
+    std::vector<Vec3> x, v;
+    for (int i = 0; i < 60; ++i) {
+      const Vec3 at(7 * (i % 8), 7 * (i / 8), 0);
+      const Vec3 apart = Vec3(number(random), number(random), number(random)).normalized();
+      x.push_back(at), x.push_back(at + (0.1 + 0.2 * std::abs(number(random))) * apart);
+      for (int end : {0, 1})
+        v.push_back(fastest * (Vec3(number(random), number(random), number(random)) +
+                               (end == 0 ? 1 : -1) * apart));
+    }
+    Scene scene = particles(x, v);
+    for (std::size_t i = 0; i < x.size(); i += 2) scene.mesh.mass[i] = 3;
+    int met = 0;
+    for (int steps = 1; steps <= 10; ++steps) {
+      const State state = run(scene, "self=grid", steps), free = run(scene, "self=off", steps);
+      for (std::size_t i = 0; i < x.size(); i += 2) {
+        ASSERT_GE((state.x[i + 1] - state.x[i]).norm(), 0.1 - 1e-12) << i << " step " << steps;
+        EXPECT_LT((3 * state.x[i] + state.x[i + 1] - 3 * free.x[i] - free.x[i + 1]).norm(), 1e-11);
+        met += (state.x[i] - free.x[i]).norm() > 1e-9;
+      }
+    }
+    EXPECT_GT(met, 50) << fastest;
+    EXPECT_LT(met, 550) << fastest;
+  }
 }
 
 }  // namespace

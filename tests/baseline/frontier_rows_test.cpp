@@ -1,0 +1,129 @@
+// Frontiers that belong to a baseline: questions from a file, rows from what was found.
+#include <gtest/gtest.h>
+
+#include "core/model/input_error.hpp"
+#include "experiments/baseline/assertions_baseline.hpp"
+#include "experiments/baseline/frontier_baseline.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut {
+namespace {
+
+const std::string kTwo = R"([[frontier]]
+scene = "hang"
+solver = "jakobsen:iterations=2"
+of = "dt"
+from = 0.001
+to = 0.25
+[[frontier]]
+scene = "hang"
+solver = "mass-spring"
+set = ["cloth.grid=[4, 4]", "time.duration=1"]
+of = "substeps"
+from = 2
+to = 64
+tolerance = 0.125
+)";
+
+class FrontierFiles : public testing::Test {
+ protected:
+  std::vector<FrontierQuestion> read(const std::string& text) const {
+    write_file(scratch_.path() / "frontiers.toml", text);
+    return read_frontiers(scratch_.path());
+  }
+  const Scratch scratch_;
+};
+
+TEST_F(FrontierFiles, AreQuestionsInOrder) {
+  EXPECT_TRUE(read_frontiers(scratch_.path()).empty());
+  const auto questions = read(kTwo);
+  ASSERT_EQ(questions.size(), 2u);
+  const FrontierQuestion &first = questions[0], &second = questions[1];
+  EXPECT_EQ(
+      (std::tuple{first.base.scene, first.base.solver, first.of}),
+      (std::tuple{std::string("hang"), std::string("jakobsen:iterations=2"), std::string("dt")}));
+  EXPECT_TRUE(first.base.overrides.empty());
+  EXPECT_EQ(
+      (std::tuple{first.range.from, first.range.to, first.range.tolerance, first.range.whole}),
+      (std::tuple{0.001, 0.25, 0.01, false}));
+  EXPECT_EQ(second.base.overrides,
+            (std::vector<std::string>{"cloth.grid=[4, 4]", "time.duration=1"}));
+  EXPECT_EQ(
+      (std::tuple{second.range.from, second.range.to, second.range.tolerance, second.range.whole}),
+      (std::tuple{2.0, 64.0, 0.125, true}));
+  EXPECT_EQ(frontier_id(second),
+            "hang cloth.grid=[4,4] duration=1 mass-spring, frontier of substeps");
+}
+
+TEST_F(FrontierFiles, ThatAreWrongAreRefused) {
+  const auto changed = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"of = \"dt\"\n", ""},
+                                 {"from = 0.001\n", ""},
+                                 {"to = 0.25\n", ""},
+                                 {"solver = \"mass-spring\"\n", ""},
+                                 {"to = 0.25", "to = 0.001"},
+                                 {"tolerance = 0.125", "tolerance = 0.6"},
+                                 {"tolerance = 0.125", "tolerance = 0"},
+                                 {"tolerance", "tolerence"},
+                                 {"[\"cloth.grid=[4, 4]\"", "[3"},
+                                 {"of = \"substeps\"", "of = \"substep\""},
+                                 {"[[frontier]]", "more = 1\n[[frontier]]"}})
+    EXPECT_THROW(read(changed(kTwo, from, to)), InputError) << to;
+}
+
+TEST_F(FrontierFiles, WhatWasFoundIsARowOfItsBaseline) {
+  const FrontierQuestion question = read(kTwo)[1];
+  CaseFrontier found;
+  found.frontier.kind = Frontier::Kind::bracketed;
+  found.frontier.stable = 5, found.frontier.unstable = 6, found.frontier.stable_above = {8, 9};
+  BaselineRow row = frontier_row(question, found);
+  const Case base = make_case(question.base);
+  EXPECT_EQ(row.id, frontier_id(question));
+  EXPECT_EQ((std::tuple{row.spec.scene, row.spec.solver, row.spec.overrides}),
+            (std::tuple{std::string("hang"), std::string("mass-spring"), question.base.overrides}));
+  EXPECT_EQ(row.scene, digest(*base.scene));
+  EXPECT_EQ(row.frontier, "--of substeps --from 2 --to 64 --tolerance 0.125");
+  EXPECT_EQ(row.status, "bracketed");
+  EXPECT_EQ(row.values,
+            (std::map<std::string, double>{
+                {"frontier.stable", 5}, {"frontier.unstable", 6}, {"frontier.stable_above", 2}}));
+  found.frontier.kind = Frontier::Kind::all_stable, found.frontier.stable_above.clear();
+  row = frontier_row(question, found);
+  EXPECT_EQ(row.status, "all stable");
+  EXPECT_EQ(row.values, (std::map<std::string, double>{{"frontier.stable_above", 0}}));
+}
+
+TEST(ClaimFigures, AreTheNumberThatSpeaksForTheClaim) {
+  const auto finding = [](const char* quantity, double measured, double expected, double tolerance,
+                          TruthVerdict verdict, const char* unit = "1") {
+    return Finding{
+        "jakobsen:iterations=3", quantity, unit, measured, expected, tolerance, 0, verdict, ""};
+  };
+  /// Verdict and figure of the claim that the truth of this name holds, from these findings.
+  const auto judged = [](const std::vector<Finding>& findings) {
+    const VasiloviciAssertion& claim =
+        *std::ranges::find_if(vasilovici_assertions(),
+                              [](const auto& c) { return !c.truth.empty() && c.figure.empty(); });
+    for (const JudgedAssertion& one : judge_assertions(
+             [&](std::string_view truth) { return truth == claim.truth ? &findings : nullptr; }))
+      if (one.assertion == claim.assertion)
+        return std::pair(one.verdict == to_string(claim.verdict) ? "as before" : one.verdict,
+                         one.figure);
+    return std::pair(std::string("none"), std::string());
+  };
+  using Both = std::pair<std::string, std::string>;
+  const auto a = finding("RMS stretch", 0.061234, 0.06, 0.0123, TruthVerdict::passed),
+             b = finding("depth", 0.00312345, 0, 0.005, TruthVerdict::passed, "m"),
+             c = finding("speed", 3, 1, 0.5, TruthVerdict::broken, "m/s"),
+             d = finding("nothing", 0, 0, 0, TruthVerdict::not_applicable);
+  EXPECT_EQ(judged({d, a, b}), Both("as before", "jakobsen: RMS stretch 0.06123 (0.06 +- 0.0123)"));
+  EXPECT_EQ(judged({b, a}), Both("as before", "jakobsen: depth 0.003123 m (at most 0.005)"));
+  EXPECT_EQ(judged({a, b, c}), Both("overturned", "jakobsen: speed 3 m/s (1 +- 0.5)"));
+  EXPECT_EQ(judged({d}), Both("overturned", ""));
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,227 @@
+// What is kept of a case: its name and address, its text, its values over time, its end.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/case.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/case/reference_store.hpp"
+#include "experiments/system/files.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+std::string problems(const CaseSpec& spec) {
+  try {
+    make_case(spec);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(CaseText, IsCalledByWhatWasAskedAndAddressedByWhatItIs) {
+  const Case one = make_case(
+      {"hang", {"cloth.grid=[4, 3]", "time.dt=\"1/32\"", "time.duration=2"}, "xpbd:iterations=4"});
+  EXPECT_EQ(one.id, "hang cloth.grid=[4,3] dt=1/32 duration=2 xpbd:iterations=4");
+  EXPECT_EQ(one.spec.solver,
+            "xpbd:substeps=8,iterations=4,structural=0,shear=0,bend=0,precision=float");
+  EXPECT_EQ(one.spec.overrides.size(), 3u);
+  EXPECT_EQ(one.scene->steps, 64);
+  EXPECT_EQ(one.key, case_key(*one.scene, digest(*one.scene), one.choice));
+  std::set<std::string> keys{one.key};
+  for (const CaseSpec& other :
+       {CaseSpec{"hang",
+                 {"cloth.grid=[4, 3]", "time.dt=\"1/32\"", "time.duration=3"},
+                 "xpbd:iterations=4"},
+        {"hang", {"cloth.grid=[4, 3]", "time.dt=\"1/16\"", "time.duration=4"}, "xpbd:iterations=4"},
+        {"hang", {"cloth.grid=[3, 4]", "time.dt=\"1/32\"", "time.duration=2"}, "xpbd:iterations=4"},
+        {"hang", {"cloth.grid=[4, 3]", "time.dt=\"1/32\"", "time.duration=2"}, "xpbd:iterations=5"},
+        {"hang",
+         {"cloth.grid=[4, 3]", "time.dt=\"1/32\"", "time.duration=2"},
+         "jakobsen:iterations=4"}})
+    EXPECT_TRUE(keys.insert(make_case(other).key).second) << other.solver;
+  EXPECT_EQ(make_case({"hang",
+                       {"cloth.grid=[4, 3]", "summary='x'", "time.dt=0.03125", "time.duration=2.0"},
+                       "xpbd:precision=float,iterations=4"})
+                .key,
+            one.key)
+      << "the same simulation";
+  const std::string both = problems({"hung", {}, "xpdb"});
+  EXPECT_NE(both.find("hung"), std::string::npos) << both;
+  EXPECT_NE(both.find("unknown solver 'xpdb'"), std::string::npos) << both;
+}
+
+TEST(CaseText, ThatDidNotRunHasAllButResults) {
+  const Case one = make_case({"hang", {"cloth.grid=[4, 3]"}, "xpbd"});
+  const Record r = unfinished(one, {Status::Kind::timeout, "60 s", 7, -1});
+  EXPECT_EQ(r.key, one.key);
+  EXPECT_EQ(r.id, one.id);
+  EXPECT_EQ(r.spec.overrides, one.spec.overrides);
+  EXPECT_EQ(r.vertices, 12);
+  EXPECT_EQ(r.links, 17 + 12);
+  EXPECT_EQ(r.steps, 640);
+  EXPECT_EQ(r.params.at("iterations"), "1");
+  EXPECT_EQ(r.status.kind, Status::Kind::timeout);
+  EXPECT_TRUE(r.values.empty());
+  EXPECT_TRUE(std::isnan(r.value("stretch.rms")));
+}
+
+TEST(StateDigest, OfAStateKnowsEveryBit) {
+  const State state{{Vec3(1, 2, 3), Vec3(4, 5, 6)}, {Vec3(0, 0, 0), Vec3(0, 0, 0)}};
+  State other = state;
+  std::set<std::string> digests{digest(state)};
+  other.v[1].z() = -0.0;
+  EXPECT_TRUE(digests.insert(digest(other)).second) << "-0 is not 0";
+  other = state, other.x[1].z() = std::nextafter(6, 7);
+  EXPECT_TRUE(digests.insert(digest(other)).second);
+  other = state, std::swap(other.x, other.v);
+  EXPECT_TRUE(digests.insert(digest(other)).second);
+  EXPECT_EQ(digest(State{{Vec3::Zero()}, {}}) == digest(State{{}, {Vec3::Zero()}}), false);
+  EXPECT_EQ(sha256("").substr(0, 16), "e3b0c44298fc1c14");
+  EXPECT_EQ(program_digest().size(), 64u);
+}
+
+TEST(Status, HasANameAndIsAResultOrAFailure) {
+  using enum Status::Kind;
+  const std::vector<std::pair<Status::Kind, std::string>> all{{ok, "ok"},
+                                                              {exploded, "exploded"},
+                                                              {unsettled, "unsettled"},
+                                                              {extreme, "extreme"},
+                                                              {unsupported, "unsupported"},
+                                                              {timeout, "timeout"},
+                                                              {oom, "oom"},
+                                                              {crash, "crash"},
+                                                              {protocol, "protocol"},
+                                                              {error, "error"},
+                                                              {interrupted, "interrupted"}};
+  for (const auto& [kind, name] : all) {
+    EXPECT_EQ(to_string(kind), name);
+    EXPECT_EQ(status_kind(name), kind);
+    EXPECT_TRUE(is_status(name));
+    EXPECT_EQ(Status{kind}.is_result(), kind <= unsupported) << name;
+    EXPECT_EQ(completed({kind}), kind == ok || kind == unsettled) << name;
+  }
+  EXPECT_FALSE(is_status("okay"));
+  EXPECT_THROW(status_kind("okay"), InputError);
+  EXPECT_EQ(describe(Status{}), "ok");
+  EXPECT_EQ(describe(Status{exploded, "energy", 0, 0}), "exploded (energy) at step 0, vertex 0");
+  EXPECT_EQ(describe(Status{crash, "SIG\x1b", -1, 12}), "crash (SIG?), vertex 12");
+  EXPECT_EQ(describe(Status{extreme, "", 3, -1}), "extreme at step 3");
+}
+
+Record small_record() {
+  Record r;
+  r.key.assign(63, '0'), r.key.push_back('f');
+  r.id = "an id", r.spec = {"file", {"a=1", "b=2"}, "text"};
+  r.scene = "hang", r.solver = "xpbd", r.params = {{"p", "q"}};
+  r.dt = 0.25, r.steps = 6, r.vertices = 4, r.links = 5;
+  r.status = {Status::Kind::exploded, "energy", 17, 3};
+  r.values = {{"a", 0.5}, {"b", std::nan("")}};
+  r.projections = 60;
+  r.step_cost = {{"links", 7, 8, 9, true}, {"wind", 1, 2, 3, false}};
+  r.resolved_settings = {{"time step", "1/4 s"}};
+  r.digest = "beef";
+  return r;
+}
+
+TEST(RecordLine, IsThisOneLine) {
+  const std::string text =
+      R"({"status":{"kind":"exploded","reason":"energy","step":17,"vertex":3},)"
+      R"("values":{"a":0.5,"b":null},"projections":60,)"
+      R"("step_cost":[{"pass":"links","items":7,"repeats":8,"bytes":9,"projections":true},)"
+      R"({"pass":"wind","items":1,"repeats":2,"bytes":3,"projections":false}],)"
+      R"("resolved_settings":[["time step","1/4 s"]],"digest":"beef","schema":1,"key":")" +
+      std::string(63, '0') +
+      R"(f","id":"an id","spec":{"scene":"file","overrides":["a=1","b=2"],"solver":"text"},)"
+      R"("scene":"hang","solver":"xpbd","params":{"p":"q"},"dt":0.25,"steps":6,"vertices":4,)"
+      R"("links":5})";
+  EXPECT_EQ(to_json(small_record()), text);
+  const Record r = record_from_json(text, "file");
+  EXPECT_EQ(to_json(r), text);
+  EXPECT_EQ(r.status.vertex, 3);
+  EXPECT_EQ(r.steps, 6);
+  EXPECT_EQ(r.vertices, 4);
+  EXPECT_EQ(r.links, 5);
+  EXPECT_EQ(r.step_cost[0].repeats, 8u);
+  EXPECT_EQ(r.log, "");
+  Record with_log = r;
+  with_log.log = "said";
+  EXPECT_EQ(to_json(with_log), text.substr(0, text.size() - 1) + R"(,"log":"said"})");
+  EXPECT_EQ(record_from_json(to_json(with_log), "file").log, "said");
+  EXPECT_EQ(result_digest(with_log), result_digest(r)) << "no result";
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string other = text;
+    other.replace(other.find(from), from.size(), to);
+    try {
+      record_from_json(other, "file");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_NE(changed("\"dt\":0.25", "\"dt\":0").find("expected a time step greater than 0"),
+            std::string::npos);
+  EXPECT_NE(changed("0f\"", "0F\"").find("expected 64 hexadecimal digits"), std::string::npos);
+  EXPECT_NE(changed("00f\"", "0f\"").find("expected 64 hexadecimal digits"), std::string::npos);
+  EXPECT_NE(changed("\"exploded\"", "\"burst\"").find("unknown status 'burst'"), std::string::npos);
+  for (const char* key : {"steps\":6", "vertices\":4", "links\":5"}) {
+    const std::string all = key, name = all.substr(0, all.find('"'));
+    EXPECT_NE(changed(all, name + "\":-1").find(name), std::string::npos);
+    EXPECT_EQ(changed(all, name + "\":0"), "none");
+  }
+  EXPECT_NE(changed("\"step\":17", "\"step\":-2").find("step"), std::string::npos);
+  EXPECT_EQ(changed("\"step\":17", "\"step\":-1"), "none");
+}
+
+TEST(CsvText, OfSeriesAndStatesAreTheseLines) {
+  const Series series{{"step", "t", "a"}, {{0, 0, std::nan("")}, {7, 0.1, -2}}};
+  EXPECT_EQ(to_csv(series), "step,t,a\n0,0,\n7,0.1,-2\n");
+  const Series back = series_from_csv("step,t,a\n0,0,\n7,0.1,-2");
+  EXPECT_EQ(back.columns, series.columns);
+  ASSERT_EQ(back.rows.size(), 2u);
+  EXPECT_EQ(back.rows[1], series.rows[1]);
+  EXPECT_EQ(to_csv(State{{Vec3(1, 2, 3), Vec3(0.5, 0, -1)}, {Vec3(4, 5, 6), Vec3(0, 0, 7)}}),
+            "vertex,x,y,z,vx,vy,vz\n0,1,2,3,4,5,6\n1,0.5,0,-1,0,0,7\n");
+}
+
+TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
+  const Scratch scratch;
+  Scene scene = hanging_sheet(2, 2);
+  scene.name = "small", scene.damping = 0.5;
+  const auto reference = [&](const std::string& kind, double t) {
+    return Reference{"small",      reference_digest(scene, kind), kind, t, "by hand", 1e-9,
+                     scene.start.x};
+  };
+  write_reference(reference("static", 0), scratch.path() / "small");
+  write_reference(reference("motion", 0.5), scratch.path() / "small");
+  write_file(scratch.path() / "small" / "notes.txt", "not read");
+  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "small" / "static.json"));
+  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "small" / "motion-0.5s.json"));
+  const auto found = [&] { return find_references(scene, scratch.path()); };
+  ASSERT_TRUE(found().rest && found().motion);
+  EXPECT_EQ(found().rest->kind, "static");
+  EXPECT_EQ(found().motion->t, 0.5);
+  EXPECT_EQ(found().motion->derivation, "by hand");
+  scene.start.v[3].x() = 1;
+  EXPECT_TRUE(found().rest && !found().motion) << "rest does not depend on where it came from";
+  scene.start.v[3].x() = 0, scene.damping = 1;
+  EXPECT_TRUE(found().rest && !found().motion);
+  scene.damping = 0.5, scene.dt /= 2, scene.steps *= 3;
+  EXPECT_TRUE(found().rest && found().motion);
+  scene.gravity.x() = 1;
+  EXPECT_FALSE(found().rest || found().motion);
+  scene.gravity.x() = 0, scene.name = "";
+  EXPECT_FALSE(found().rest || found().motion);
+}
+
+}  // namespace
+}  // namespace taut

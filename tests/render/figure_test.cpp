@@ -1,0 +1,132 @@
+// What is ruled and written around a picture, pixel by pixel.
+#include "experiments/render/picture/figure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "experiments/render/image/colour.hpp"
+
+namespace taut {
+namespace {
+
+constexpr Rgb8 kPaper = rgb(0xFFFFFF);
+
+/// How many pixels from the left, right, top and bottom have the colour of the corner, along the
+/// middle.
+std::array<int, 4> border_of(const Image& panel) {
+  const Rgb8 colour = panel.at(0, 0);
+  std::array<int, 4> edges{};
+  const int w = panel.width(), h = panel.height();
+  while (edges[0] < w && panel.at(edges[0], h / 2) == colour) ++edges[0];
+  while (edges[1] < w && panel.at(w - 1 - edges[1], h / 2) == colour) ++edges[1];
+  while (edges[2] < h && panel.at(w / 2, edges[2]) == colour) ++edges[2];
+  while (edges[3] < h && panel.at(w / 2, h - 1 - edges[3]) == colour) ++edges[3];
+  return edges;
+}
+
+TEST(MarkOfAStop, IsAFrameOfFivePointsAndOfThreePixelsAtLeast) {
+  for (const auto& [unit, edge] : {std::pair{2.0, 10}, {1.0, 5}, {0.4, 3}}) {
+    Image panel(700, 500, kPaper);
+    mark_stop(panel, {1.25, "exploded"}, unit);
+    EXPECT_EQ(border_of(panel), (std::array<int, 4>{edge, edge, edge, edge})) << unit;
+    EXPECT_FALSE(panel.at(0, 0) == kPaper);
+    EXPECT_EQ(panel.at(edge, edge), kPaper);
+    EXPECT_EQ(panel.at(699 - edge, edge), kPaper);
+  }
+}
+
+/// Share of the sheet that is covered, in pixels, and where its middle lies.
+struct Ink {
+  double area = 0, x = 0, y = 0;
+  explicit Ink(const Image& image) {
+    for (int y1 = 0; y1 < image.height(); ++y1)
+      for (int x1 = 0; x1 < image.width(); ++x1) {
+        const double dark = (255 - image.at(x1, y1).g) / 255.0;
+        area += dark, x += dark * (x1 + 0.5), y += dark * (y1 + 0.5);
+      }
+    x /= area, y /= area;
+  }
+};
+
+TEST(RoundedRectangles, HaveTheirAreaWithoutAnyRadiusToo) {
+  for (const double radius : {0.0, 0.3, 4.0}) {
+    Image image(40, 30, kPaper);
+    Canvas(image).fill_rounded(8, 6, 20, 12, radius, rgb(0));
+    const Ink ink(image);
+    EXPECT_NEAR(ink.area, 20 * 12 - (4 - std::acos(-1.0)) * radius * radius, 1.0) << radius;
+    EXPECT_NEAR(ink.x, 18, 1e-6);
+    EXPECT_NEAR(ink.y, 12, 1e-6);
+  }
+  Image image(40, 30, kPaper);
+  Canvas(image).fill_rounded(8, 6, 20, 12, 0, rgb(0));
+  EXPECT_EQ(image.at(8, 6), rgb(0)) << "a sharp corner";
+  EXPECT_EQ(image.at(27, 17), rgb(0));
+  EXPECT_EQ(image.at(7, 6), kPaper);
+  EXPECT_EQ(image.at(28, 17), kPaper);
+  EXPECT_EQ(image.at(8, 5), kPaper);
+  Image between(40, 30, kPaper);
+  Canvas(between).fill_rounded(8.3, 6.2, 20.4, 12.6, 0, rgb(0));
+  EXPECT_NEAR(Ink(between).area, 20.4 * 12.6, 0.8) << "edges between pixels";
+  EXPECT_NEAR(between.at(8, 12).g, 0.3 * 255, 1);
+  Image half(40, 30, kPaper);
+  Canvas(half).fill_rounded(8, 6, 20, 12, 2, rgb(0), 0.5);
+  EXPECT_NEAR(half.at(18, 12).g, 128, 1);
+}
+
+TEST(Figure, StrainsHaveThreeDigitsAndASignIfWanted) {
+  for (const auto& [value, text] : {std::pair<double, std::string>{0.041, "4.10 %"},
+                                    {0.0999, "9.99 %"},
+                                    {0.09996, "10.0 %"},
+                                    {0.1001, "10.0 %"},
+                                    {0.274, "27.4 %"},
+                                    {0.9994, "99.9 %"},
+                                    {0.9996, "100 %"},
+                                    {11.53, "1153 %"},
+                                    {0, "0.00 %"}}) {
+    EXPECT_EQ(strain_text(value, false), text);
+  }
+  EXPECT_EQ(strain_text(0.05, true), "+5.00 %");
+  EXPECT_EQ(strain_text(-0.05, true), "\u22125.00 %");
+  EXPECT_EQ(strain_text(-0.05, false), "5.00 %");
+}
+
+TEST(Figure, PanelsStandSideBySideFourInTwoRows) {
+  struct Page {
+    int width, height, panels, columns, rows;
+    double unit;
+    int header, footer, panel_width, panel_height;
+  };
+  for (const Page& page : {Page{1920, 1080, 1, 1, 1, 1, 118, 126, 1920, 836},
+                           Page{1920, 1080, 2, 2, 1, 1, 118, 126, 960, 836},
+                           Page{1920, 1080, 3, 3, 1, 1, 118, 126, 640, 836},
+                           Page{1920, 1080, 4, 2, 2, 1, 96, 126, 960, 381},
+                           Page{960, 1080, 2, 2, 1, 0.5, 59, 63, 480, 958},
+                           Page{960, 1080, 1, 1, 1, 0.8, 94, 101, 960, 885},
+                           Page{1920, 540, 1, 1, 1, 0.5, 59, 63, 1920, 418}}) {
+    const PageLayout is(page.width, page.height, page.panels);
+    SCOPED_TRACE(page.panels);
+    EXPECT_EQ(is.columns, page.columns);
+    EXPECT_EQ(is.rows, page.rows);
+    EXPECT_DOUBLE_EQ(is.unit, page.unit);
+    EXPECT_EQ(is.header, page.header);
+    EXPECT_EQ(is.footer, page.footer);
+    EXPECT_EQ(is.panel_width, page.panel_width);
+    EXPECT_EQ(is.panel_height, page.panel_height);
+  }
+}
+
+TEST(Figure, WhatIsWrittenBelowIsInUnitsOfPeople) {
+  LiveFigures live;
+  live.max_strain = 0.0412, live.mean_strain = -0.0072, live.max_depth = 0.00152,
+  live.max_speed = 2.5;
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(caption_of(ColourBy::strain, live),
+            (Lines{"max |ε| = 4.12 %", "mean ε = \u22120.72 %"}));
+  EXPECT_EQ(caption_of(ColourBy::penetration, live), Lines{"max depth = 1.52 mm"});
+  EXPECT_EQ(caption_of(ColourBy::speed, live), Lines{"max |v| = 2.5 m/s"});
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,214 @@
+// The surfaces that are drawn, the light on them, and where camera and ground stand, by their
+// geometry.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiments/render/image/colour.hpp"
+#include "experiments/render/picture/placing.hpp"
+#include "tests/render/render_scenes.hpp"
+
+namespace taut {
+namespace {
+
+/// What the faces enclose around the origin, which sees all of them [m^3].
+double volume(const RenderMesh& mesh) {
+  double six = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    six += double{std::abs(mesh.position[a].cross(mesh.position[b]).dot(mesh.position[c]))};
+  return six / 6;
+}
+
+double area(const RenderMesh& mesh) {
+  double two = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    two += double{
+        (mesh.position[b] - mesh.position[a]).cross(mesh.position[c] - mesh.position[a]).norm()};
+  return two / 2;
+}
+
+TEST(DrawnSheet, PassesThroughItsParticlesAndItsValuesAreLinear) {
+  const Scene scene = test::level_sheet(5);
+  const ClothMesher mesher(scene, 16);  // 4 pieces a quad
+  std::vector<Vec3> x = scene.start.x;
+  std::vector<double> values, depths;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i].y() = x[i].x() * x[i].x();
+    values.push_back(2 * x[i].x() + 3 * x[i].z()), depths.push_back(x[i].z());
+  }
+  const RenderMesh mesh = mesher.mesh(x, values, depths);
+  ASSERT_EQ(mesh.position.size(), 17u * 17u);
+  EXPECT_EQ(mesh.triangles.size(), 2u * 16u * 16u);
+  EXPECT_EQ(mesher.grid_spacing(), 1);
+  EXPECT_EQ(ClothMesher(test::level_sheet(25), 16).grid_spacing(), 2);
+  for (std::size_t j = 0; j < 17; ++j)
+    for (std::size_t i = 0; i < 17; ++i) {
+      const std::size_t k = j * 17 + i;
+      const Vec3f& p = mesh.position[k];
+      if (i % 4 == 0 && j % 4 == 0) {
+        EXPECT_LT((p - x[j / 4 * 5 + i / 4].cast<float>()).norm(), 1e-6);
+      }
+      EXPECT_NEAR(mesh.value[k], 2 * p.x() + 3 * p.z(), 1e-5);
+      EXPECT_NEAR(mesh.hidden[k], p.z(), 1e-5);
+      EXPECT_NEAR(mesh.uv[k].x(), static_cast<float>(i) / 4, 1e-6);
+      EXPECT_NEAR(mesh.uv[k].y(), static_cast<float>(j) / 4, 1e-6);
+      // A parabola of rows is drawn exactly between the outermost quads.
+      if (i >= 4 && i <= 12) {
+        EXPECT_NEAR(p.y(), p.x() * p.x(), 1e-6);
+      }
+      EXPECT_NEAR(mesh.normal[k].norm(), 1, 1e-5);
+    }
+  EXPECT_NEAR(
+      mesher.mean_rest_length(),
+      [&] {
+        double sum = 0;
+        for (const Link& link : scene.links) sum += link.rest;
+        return sum / static_cast<double>(scene.links.size());
+      }(),
+      1e-12);
+}
+
+TEST(DrawnColliders, HaveTheirSizesLessTheInset) {
+  const double pi = std::numbers::pi;
+  const RenderMesh ball = collider_mesh({Ball{Vec3(1, 2, 3), 0.5}, {}, 0}, 0, {.inset = 0.1});
+  for (const Vec3f& p : ball.position) EXPECT_NEAR((p - Vec3f(1, 2, 3)).norm(), 0.4, 1e-5);
+  EXPECT_NEAR(area(ball), 4 * pi * 0.16, 0.01);
+  const RenderMesh kept = collider_mesh({Ball{Vec3::Zero(), 0.5}, {}, 0}, 0, {.inset = 0.4});
+  EXPECT_NEAR(kept.position.front().norm(), 0.25, 1e-6) << "half of it at least";
+  Box box;
+  box.center = Vec3(1, 0, 0), box.half_extents = Vec3(0.5, 0.4, 0.3);
+  RenderMesh sharp = collider_mesh({box, {}, 0}, 0, {.inset = 0.1});
+  for (Vec3f& p : sharp.position) p -= Vec3f(1, 0, 0);
+  EXPECT_NEAR(volume(sharp), 8 * 0.4 * 0.3 * 0.2, 1e-5);
+  EXPECT_NEAR(area(sharp), 8 * (0.4 * 0.3 + 0.3 * 0.2 + 0.2 * 0.4), 1e-4);
+  RenderMesh round = collider_mesh({box, {}, 0}, 0, {.inset = 0.1, .rounding = 0.05});
+  for (Vec3f& p : round.position) p -= Vec3f(1, 0, 0);
+  const double r = 0.05, a = 0.7, b = 0.5, c = 0.3;  // sides of the core
+  EXPECT_NEAR(volume(round),
+              a * b * c + 2 * r * (a * b + b * c + c * a) + pi * r * r * (a + b + c) +
+                  4 * pi / 3 * r * r * r,
+              1e-3);
+  Plane plane;
+  plane.normal = Vec3(0.6, 0.8, 0), plane.offset = 2;
+  const Vec3 above(3, 4, 5);
+  const RenderMesh ground =
+      collider_mesh({plane, {}, 0}, 0, {.inset = 0.1, .centre = above, .reach = 1.5});
+  Vec3f mean = Vec3f::Zero();
+  for (const Vec3f& p : ground.position) {
+    EXPECT_NEAR(p.dot(plane.normal.cast<float>()), 1.9, 1e-5);
+    mean += p / static_cast<float>(ground.position.size());
+  }
+  EXPECT_LT((mean - (above - plane.normal * (plane.normal.dot(above) - 1.9)).cast<float>()).norm(),
+            1e-4);
+  EXPECT_NEAR(area(ground), 9, 1e-4);
+}
+
+TEST(DrawnCloth, IsLiftedOutOfACollidersSkinButNotOutOfItsInside) {
+  Scene scene = test::level_sheet(3);
+  scene.colliders.push_back({Ball{Vec3::Zero(), 1}, {}, 0});
+  RenderMesh mesh;
+  for (const float r : {1.2f, 1.05f, 0.9f, 0.81f, 0.79f, 0.5f})
+    mesh.position.emplace_back(r, 0.0f, 0.0f);
+  mesh.triangles = {{0, 1, 2}};
+  lift_out_of_colliders(mesh, scene, 0, 0.1);
+  const float after[] = {1.2f, 1.1f, 1.1f, 1.1f, 0.79f, 0.5f};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(mesh.position[i].x(), after[i], 1e-5);
+  EXPECT_EQ(mesh.normal.size(), 6u);
+}
+
+Camera camera_in_front() {
+  const std::vector<Vec3> points{Vec3(-1, -1, 0), Vec3(1, 1, 0)};
+  return fit_camera(points, Vec3::UnitY(), View{}, 1, FitRegion{});
+}
+
+TEST(Lights, AreAKeyFromTheLeftAFillFromTheRightAndTheSky) {
+  const Camera camera = camera_in_front();
+  const std::vector<Light> lights = light_set(36, Vec3f::UnitY(), camera);
+  ASSERT_EQ(lights.size(), 36u);
+  const auto part = [&](std::size_t from, std::size_t to) {
+    Light sum{Vec3f::Zero(), 0};
+    for (std::size_t i = from; i < to; ++i) {
+      EXPECT_NEAR(lights[i].direction.norm(), 1, 1e-5);
+      sum.direction += lights[i].direction * lights[i].weight, sum.weight += lights[i].weight;
+    }
+    sum.direction.normalize();
+    return sum;
+  };
+  const Light key = part(0, 12), fill = part(12, 18), sky = part(18, 36);
+  EXPECT_NEAR(key.weight, 0.72, 1e-5);
+  EXPECT_NEAR(fill.weight, 0.24, 1e-5);
+  EXPECT_NEAR(sky.weight, 0.52, 1e-5);
+  const float degree = std::numbers::pi_v<float> / 180;
+  EXPECT_NEAR(std::asin(key.direction.y()) / degree, 52, 1.5);
+  EXPECT_NEAR(std::asin(fill.direction.y()) / degree, 34, 5);
+  EXPECT_GT(sky.direction.y(), 0.95);
+  EXPECT_LT(key.direction.dot(camera.right), -0.4);
+  EXPECT_GT(fill.direction.dot(camera.right), 0.5);
+  EXPECT_GT(key.direction.dot(camera.back), 0);
+  for (std::size_t i = 0; i < 12; ++i)
+    EXPECT_GT(lights[i].direction.dot(key.direction), std::cos(11 * degree));
+  for (std::size_t i = 18; i < 36; ++i) EXPECT_GT(lights[i].direction.y(), 0);
+}
+
+TEST(Lights, OpenGroundIsOneAndWhatLiesBelowACanopyIsDark) {
+  const std::vector<Light> lights = light_set(24, Vec3f::UnitY(), camera_in_front());
+  const Scene scene = test::level_sheet(9);
+  std::vector<double> none(scene.start.x.size(), 0);
+  std::vector<Vec3> canopy = scene.start.x, patch = scene.start.x;
+  for (Vec3& p : canopy) p.y() = 0.12;
+  for (Vec3& p : patch) p = 0.2 * p + Vec3(0, 0.001, 0);
+  const ClothMesher mesher(scene, 8);
+  GroundLight ground;
+  ground.half_side = 2;
+  const Sphere casters{Vec3f::Zero(), 1};
+  const LightQuality quality{24, 256, 40};
+  std::vector<RenderMesh> meshes;
+  bake_light(lights, quality, casters, meshes, ground);
+  ASSERT_EQ(ground.light.size(), 1600u);
+  for (const float light : ground.light) EXPECT_NEAR(light, 1, 1e-4);
+  meshes = {mesher.mesh(canopy, none, none), mesher.mesh(patch, none, none)};
+  bake_light(lights, quality, casters, meshes, ground);
+  EXPECT_LT(ground.light[20 * 40 + 20], 0.35) << "below the canopy";
+  EXPECT_NEAR(ground.light[0], 1, 1e-3) << "far from it";
+  const auto middle = [](const std::vector<float>& side) { return side[side.size() / 2]; };
+  const bool up = meshes[0].normal[0].y() > 0;
+  EXPECT_NEAR(middle(up ? meshes[0].front : meshes[0].back), 1, 0.02) << "the canopy's upper side";
+  EXPECT_NEAR(middle(up ? meshes[0].back : meshes[0].front), 0, 0.02) << "its lower side";
+  EXPECT_LT(middle(up ? meshes[1].front : meshes[1].back), 0.35) << "the patch in its shade";
+}
+
+TEST(Places, FollowClothThatNothingHoldsAndPutTheGroundBelow) {
+  Scene scene = test::level_sheet(5);
+  const std::vector<RecordedRun> runs{test::stretched(scene, 0)};
+  const Placing loose = place(scene, runs, {0}, View{}, FitRegion{}, 1, 0.01);
+  EXPECT_TRUE(loose.follows);
+  EXPECT_NEAR(loose.radius, std::sqrt(0.5), 1e-6);
+  EXPECT_LT(loose.centre.norm(), 1e-9);
+  EXPECT_NEAR(loose.ground, -0.08 * loose.radius, 1e-6);
+  EXPECT_EQ(loose.floor, nullptr);
+  EXPECT_GE(loose.cell, 0.3 * loose.radius);
+  EXPECT_LE(loose.cell, loose.radius);
+  EXPECT_LT(centroid(runs, 0).norm(), 1e-9);
+  const GroundLight below = loose.floor_below(Vec3(1, 5, 2));
+  EXPECT_NEAR(below.origin.y(), loose.ground, 1e-6);
+  EXPECT_NEAR(below.origin.x(), 1, 1e-6);
+  EXPECT_NEAR(below.half_side, 2.6 * loose.radius, 1e-5);
+  EXPECT_NEAR(below.u.cross(below.v).dot(below.up), 1, 1e-5);
+  const Vec3 high(0, 10.3 * loose.cell, 0);
+  const GroundLight wall = loose.wall(high);
+  EXPECT_NEAR(wall.origin.y(), 10 * loose.cell, 1e-5) << "its lines stay where they are";
+  EXPECT_NEAR(wall.half_side, 2.2 * loose.radius, 1e-5);
+  EXPECT_LT((wall.origin - high.cast<float>()).dot(loose.camera.back), 0);
+  scene.pins = {0};
+  EXPECT_FALSE(place(scene, runs, {0}, View{}, FitRegion{}, 1, 0.01).follows);
+  Plane plane;
+  plane.normal = Vec3::UnitY(), plane.offset = -0.7;
+  scene.colliders.push_back({plane, {}, 0});
+  const Placing floored = place(scene, runs, {0}, View{}, FitRegion{}, 1, 0.01);
+  EXPECT_NE(floored.floor, nullptr);
+  EXPECT_NEAR(floored.ground, -0.71, 1e-9);
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,262 @@
+// Curves and the words for them: what a chart holds fixed, orders, fits and names.
+#include "experiments/report/chart/curves.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiments/report/chart/charts.hpp"
+#include "experiments/report/chart/references.hpp"
+#include "experiments/report/chart/wording.hpp"
+#include "tests/support/synthetic_records.hpp"
+
+namespace taut::report {
+namespace {
+
+using Names = std::vector<std::string>;
+
+Record at_step(double dt) { return synthetic::record("hang", "jakobsen", 16, dt); }
+
+std::vector<Record> at_steps(const std::vector<double>& steps) {
+  std::vector<Record> all;
+  for (const double dt : steps) all.push_back(at_step(dt));
+  return all;
+}
+
+double held(const std::vector<double>& steps, double preferred) {
+  const std::vector<Record> all = at_steps(steps);
+  return hold(all, "dt", preferred).value;
+}
+
+TEST(Slices, HoldTheCommonestValueAndOfEqualsTheNearest) {
+  EXPECT_EQ(held({.004, .004, .02, .02, .05, .1}, 1.0 / 64), .02) << "the later of equals";
+  EXPECT_EQ(held({.014, .014, .06, .06, .1, .2}, 1.0 / 64), .014) << "the earlier of equals";
+  EXPECT_EQ(held({.014, .06, .06, .1, .2}, 1.0 / 64), .06) << "common before near";
+  EXPECT_EQ(held({.014, .014}, 1.0 / 64), .014);
+  EXPECT_TRUE(std::isnan(held({.01, .02}, 1.0 / 64)));
+  EXPECT_TRUE(std::isnan(held({.01, .02, .04, .04}, 1.0 / 64))) << "three sets of curves";
+  EXPECT_TRUE(std::isnan(held({}, 1.0 / 64)));
+}
+
+TEST(Slices, KeepWhatHasNoSuchSetting) {
+  std::vector<Record> all;
+  for (const int sweeps : {1, 4, 4, 16, 64})
+    all.push_back(synthetic::record("hang", "jakobsen", sweeps, 0.01));
+  all.push_back(synthetic::record("hang", "mass-spring", 1, 0.01));
+  all.back().params.erase("iterations");
+  const Slice slice = hold(all, "iterations", 16);
+  EXPECT_EQ(slice.value, 4);
+  ASSERT_EQ(slice.records.size(), 3u);
+  EXPECT_EQ(slice.records[0], &all[1]);
+  EXPECT_EQ(slice.records[2], &all[5]);
+}
+
+TEST(Fits, AreOfTheMeasuredPositivePointsFromAPlaceOn) {
+  Record fine = at_step(0.01), bad = fine;
+  bad.status.kind = Status::Kind::exploded;
+  Curve curve{"", "jakobsen", 0, {}};
+  const auto add = [&](double x, double y, const Record& r) {
+    curve.points.push_back({x, y, x, &r});
+  };
+  for (const double x : {2.0, 4.0, 8.0}) add(x, 3 * std::pow(x, -0.7), fine);
+  add(1, 1000, fine);
+  add(16, 1000, bad);
+  add(16, 0, fine);
+  add(16, std::nan(""), fine);
+  EXPECT_NEAR(fitted_slope(curve, 2), -0.7, 1e-12);
+  EXPECT_TRUE(std::isnan(fitted_slope(curve, 3))) << "two are no fit";
+  EXPECT_LT(fitted_slope(curve, 0), -2);
+  for (Point& p : curve.points) p.x = 1;
+  EXPECT_TRUE(std::isnan(fitted_slope(curve, 0))) << "all above one place";
+}
+
+TEST(Curves, NameASettingWhereItsValueAloneSaysNothing) {
+  std::vector<Record> all;
+  const auto add = [&](const char* name, const char* value, const char* override_) {
+    Record r = at_step(0.01);
+    r.params["omega"] = "1", r.params["tethers"] = "off", r.params["order"] = "mesh";
+    r.params[name] = value;
+    if (*override_) r.spec.overrides = {"time.dt=0.01", override_};
+    r.values["stretch.rms"] = 1;
+    all.push_back(r);
+  };
+  add("omega", "1", "wind.strength=2");
+  add("omega", "1.5", "wind.strength=2");
+  add("tethers", "on", "wind.strength=2");
+  add("order", "coloured", "wind.strength=2");
+  add("omega", "1", "wind.strength=2.5");
+  const auto curves = make_curves(all, "iterations", "stretch.rms", "iterations");
+  Names labels;
+  for (const Curve& c : curves) labels.push_back(c.label);
+  EXPECT_EQ(labels, (Names{"Jakobsen omega=1 mesh tethers=off wind.strength=2",
+                           "Jakobsen omega=1.5 mesh tethers=off wind.strength=2",
+                           "Jakobsen omega=1 mesh tethers=on wind.strength=2",
+                           "Jakobsen omega=1 coloured tethers=off wind.strength=2",
+                           "Jakobsen omega=1 mesh tethers=off wind.strength=2.5"}));
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    EXPECT_EQ(curves[i].variant, static_cast<int>(i));
+    EXPECT_EQ(curves[i].points.size(), 1u);
+  }
+}
+
+TEST(Curves, AreOrderedAlongTheirSettingWhatHasNoneLast) {
+  std::vector<Record> all;
+  for (const char* sweeps : {"8", "", "2", "4"}) {
+    Record r = at_step(0.01);
+    r.params["iterations"] = sweeps;
+    r.values["stretch.rms"] = 1;
+    if (!*sweeps) r.params.erase("iterations");
+    all.push_back(r);
+  }
+  const auto curves = make_curves(all, "dt", "stretch.rms", "iterations");
+  ASSERT_EQ(curves.size(), 1u);
+  std::vector<const Record*> order;
+  for (const Point& p : curves[0].points) order.push_back(p.record);
+  EXPECT_EQ(order, (std::vector<const Record*>{&all[2], &all[3], &all[0], &all[1]}));
+  for (Record& r : all) r.values["stretch.max"] = static_cast<double>(r.params.size());
+  const auto free = make_curves(all, "stretch.max", "stretch.rms", "setting");
+  ASSERT_EQ(free.size(), 1u);
+  for (std::size_t i = 1; i < free[0].points.size(); ++i)
+    EXPECT_GE(free[0].points[i].along, free[0].points[i - 1].along);
+  EXPECT_EQ(free[0].points.back().name, "1 × 4") << "the settings that vary";
+}
+
+TEST(Quantities, ReadARecordsSettingsSizesAndValues) {
+  Record r = at_step(0.01);
+  r.steps = 7, r.vertices = 5, r.links = 6, r.projections = 9;
+  r.values["stretch.rms"] = 0.5;
+  r.spec.overrides = {"wind.strength=2", "wind.strength=3", "wind.strengths=4", "a=1x"};
+  r.resolved_settings = {{"time step", "1"}, {"floor of strain", "1.5e-7, of binary32"}};
+  for (const auto& [name, value] : {std::pair<std::string, double>{"dt", 0.01},
+                                    {"steps", 7},
+                                    {"vertices", 5},
+                                    {"links", 6},
+                                    {"projections", 9},
+                                    {"iterations", 16},
+                                    {"stretch.rms", 0.5},
+                                    {"wind.strength", 3},
+                                    {"strain.floor", 1.5e-7}})
+    EXPECT_EQ(value_of(r, name), value) << name;
+  for (const char* none : {"a", "substeps", "precision", "nothing"})
+    EXPECT_TRUE(std::isnan(value_of(r, none))) << none;
+  EXPECT_EQ(shown(kNumber, 3), "3");
+  EXPECT_EQ(shown(kNumber, 9999999), "9999999");
+  EXPECT_EQ(shown(kNumber, 1e7), "10⁷");
+  EXPECT_EQ(shown(kNumber, 1.26), "1.3");
+  EXPECT_EQ(shown(kErrorShare, 0.0123), "1.2\u00A0%");
+  EXPECT_EQ(shown(kErrorLength, 3.26e-4, 1), "0.3\u00A0mm");
+  EXPECT_EQ(shown(kErrorShare, std::nan("")), "–");
+  EXPECT_EQ(quantity("dt").label(), "time step [ms]");
+  EXPECT_EQ(quantity("iterations").label(), "sweeps per substep");
+  EXPECT_EQ(quantity("memory.peak").text(3e6), "3.0\u00A0MB");
+  EXPECT_EQ(quantity("cpu.per_step").text(0.002), "2.0\u00A0ms");
+  EXPECT_EQ(quantity("penetration.box.max").title, "largest penetration box");
+  EXPECT_EQ(quantity("no.such").title, "no.such");
+}
+
+TEST(Settings, ArePutIntoFewWords) {
+  EXPECT_EQ(solver_title("my_own-solver"), "My own solver");
+  EXPECT_EQ(solver_title("bullet-deformable"), "Bullet deformable");
+  EXPECT_EQ(accuracy_parameters("jakobsen"),
+            (Names{"substeps", "iterations", "omega", "order", "tethers", "levels", "precision"}));
+  EXPECT_EQ(accuracy_parameters("nobody's"), (Names{"substeps", "iterations"}));
+  EXPECT_EQ(brief_settings("jakobsen:substeps=2,iterations=8,order=mesh"), "2 × 8, order=mesh");
+  EXPECT_EQ(brief_settings("mass-spring:substeps=4,drag=2"), "4 substeps, drag=2");
+  EXPECT_EQ(brief_settings("nosuch:abc"), "abc");
+  EXPECT_EQ(brief_settings("nosuch"), "");
+  EXPECT_EQ((Work{-1, -1}).text(), "defaults");
+  EXPECT_EQ((Work{-1, 4}).text(), "4 sweeps");
+  EXPECT_EQ((Work{0, 0}).text(), "0 × 0");
+  Record r = at_step(0.01);
+  EXPECT_EQ(work_of(r), (Work{1, 16})) << "whole steps are one substep";
+  r.params["substeps"] = "5";
+  EXPECT_EQ(work_of(r), (Work{5, 16}));
+  r.params.erase("iterations");
+  EXPECT_EQ(work_of(r), (Work{5, -1}));
+}
+
+TEST(Settings, AcceleratorsThatTheOtherLacksAreExtras) {
+  Record r = at_step(0.01);
+  r.params["tethers"] = "on", r.params["omega"] = "1", r.params["levels"] = "3";
+  EXPECT_EQ(extras(r, {}), (Names{"tethers", "levels"})) << "omega is at its default";
+  EXPECT_EQ(extras(r, {{"tethers", "off"}}), Names{"levels"});
+  r.solver = "bullet";
+  EXPECT_EQ(extras(r, {}), Names{});
+}
+
+/// Records of two solvers at these substeps and sweeps.
+std::vector<Record> at_work(const std::vector<std::pair<std::string, std::vector<Work>>>& all) {
+  std::vector<Record> records;
+  for (const auto& [solver, works] : all)
+    for (const Work& work : works) {
+      records.push_back(synthetic::record("hang", solver, work.sweeps, 0.01));
+      records.back().params["substeps"] = std::to_string(work.substeps);
+    }
+  return records;
+}
+
+TEST(Settings, WorkIsUnequalIfNoneIsCommonToAll) {
+  const auto common = at_work({{"jakobsen", {{1, 4}, {5, 16}}}, {"bullet", {{5, 16}, {1, 64}}}}),
+             apart = at_work({{"jakobsen", {{5, 64}, {5, 1}}}, {"bullet", {{1, 16}}}}),
+             alone = at_work({{"jakobsen", {{5, 64}, {5, 1}}}}),
+             none = at_work({{"jakobsen", {{5, 0}}}, {"bullet", {{1, 16}}}});
+  EXPECT_EQ(unequal_work(common), "");
+  EXPECT_EQ(unequal_work(apart), "Jakobsen 5 × 1 to 5 × 64, Bullet 1 × 16 (substeps × sweeps)");
+  EXPECT_EQ(unequal_work(alone), "");
+  EXPECT_EQ(unequal_work(none), "") << "no sweeps, no work to compare";
+}
+
+TEST(Settings, LabelsHaveWhatVariesAndNoMore) {
+  std::vector<Record> all = at_work({{"jakobsen", {{1, 4}, {1, 8}, {1, 8}}}, {"bullet", {{1, 8}}}});
+  for (Record& r : all) r.params["tethers"] = "off", r.params["order"] = "mesh";
+  all[1].params["tethers"] = "on";
+  all[2].params["order"] = "coloured";
+  const SettingLabels labels(all);
+  EXPECT_EQ(labels.of(all[0]), "1 × 4, mesh");
+  EXPECT_EQ(labels.of(all[1]), "1 × 8, mesh, tethers");
+  EXPECT_EQ(labels.of(all[2]), "1 × 8, coloured");
+  EXPECT_EQ(labels.of(all[3]), "") << "nothing varies of Bullet's";
+}
+
+TEST(Charts, ATheoryLineLiesBelowTheLowestPointAndAFrontAboveNone) {
+  std::vector<Record> all = at_work({{"jakobsen", {{1, 1}, {1, 2}, {1, 4}}}});
+  for (const auto& [i, y] : {std::pair{0, 8.0}, {1, 3.0}, {2, 2.0}})
+    all[static_cast<std::size_t>(i)].values["stretch.rms"] = y;
+  Chart chart = make_chart("x", all, "iterations", "stretch.rms", "iterations");
+  EXPECT_TRUE(std::isnan(theory_factor(chart)));
+  chart.slope = -1;  // y x: 8, 6, 8
+  EXPECT_NEAR(theory_factor(chart), 0.6 * 6, 1e-12);
+  EXPECT_EQ(chart.ticks, (std::vector<double>{1, 2, 4}));
+  chart.curves[0].points[0].x = 0;  // nobody knows its work
+  EXPECT_EQ(pareto_front(chart).size(), 2u);
+  EXPECT_NEAR(theory_factor(chart), 0.6 * 6, 1e-12);
+  EXPECT_EQ(tick_of(quantity("dt"), 0.004), "4");
+  EXPECT_EQ(tick_of(quantity("dt"), 0.0042), "4.2");
+  EXPECT_EQ(tick_of(quantity("iterations"), 99999), "99999");
+  EXPECT_EQ(tick_of(quantity("iterations"), 100000), "100000");
+  EXPECT_EQ(tick_of(quantity("iterations"), 1e6), "10⁶");
+}
+
+TEST(Maps, HaveTheirCellsByAscendingSettingsAndShowTheWorse) {
+  std::vector<Record> all;
+  for (const double dt : {0.02, 0.01})
+    for (const int sweeps : {4, 1})
+      all.push_back(synthetic::record("hang", "jakobsen", sweeps, dt));
+  all.push_back(all[0]);
+  all[0].status.kind = Status::Kind::crash;
+  all.push_back(all[1]);
+  all.back().status.kind = Status::Kind::exploded;
+  const auto maps = make_maps(all, "hang", "dt", "iterations");
+  ASSERT_EQ(maps.size(), 1u);
+  EXPECT_EQ(maps[0].columns, (std::vector<double>{0.01, 0.02}));
+  EXPECT_EQ(maps[0].rows, (std::vector<double>{1, 4}));
+  std::map<std::pair<std::size_t, std::size_t>, const Record*> cells;
+  for (const auto& cell : maps[0].cells) cells[{cell.column, cell.row}] = cell.record;
+  EXPECT_EQ((cells[{1, 1}]), &all[0]);
+  EXPECT_EQ((cells[{1, 0}]), &all[5]);
+  EXPECT_EQ((cells[{0, 1}]), &all[2]);
+  EXPECT_EQ((cells[{0, 0}]), &all[3]);
+}
+
+}  // namespace
+}  // namespace taut::report

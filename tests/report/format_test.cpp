@@ -1,0 +1,139 @@
+// Text for people and for other programs, at the borders of its rules.
+#include "experiments/report/chart/format.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "experiments/report/chart/references.hpp"
+#include "experiments/report/chart/wording.hpp"
+#include "experiments/report/claims/claim.hpp"
+
+namespace taut::report {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Significant, HasNoExponentFromATenThousandthUpToAMillion) {
+  EXPECT_EQ(significant(1e-4), "0.00010");
+  EXPECT_EQ(significant(9.94e-5), "9.9×10⁻⁵");
+  EXPECT_EQ(significant(123456), "123456");
+  EXPECT_EQ(significant(999999), "10⁶") << "rounded first";
+  EXPECT_EQ(significant(994999), "994999");
+  EXPECT_EQ(significant(12.34, 3), "12.3");
+  EXPECT_EQ(significant(0.05, 1), "0.05");
+  EXPECT_EQ(significant(3e-13, 1), "3×10⁻¹³");
+  EXPECT_EQ(significant(1.2e-13, 3), "1.2×10⁻¹³") << "no zeros at the end";
+  EXPECT_EQ(significant(1e-13, 3), "10⁻¹³");
+  EXPECT_EQ(significant(2.5e10), "2.5×10¹⁰");
+  EXPECT_EQ(significant(0), "0");
+  EXPECT_EQ(significant(kInfinity), "∞");
+  EXPECT_EQ(significant(-kInfinity), "−∞");
+}
+
+TEST(Fixed, HasTheDecimalsThatItsWidthDeserves) {
+  EXPECT_EQ(decimals_for(0.29), 2);
+  EXPECT_EQ(decimals_for(0.31), 1);
+  EXPECT_EQ(decimals_for(1), 1);
+  EXPECT_EQ(decimals_for(5), 0);
+  EXPECT_EQ(decimals_for(25), 0);
+  EXPECT_EQ(decimals_for(2e-4), 5);
+  EXPECT_EQ(decimals_for(1e-9), 6);
+  EXPECT_EQ(decimals_for(kInfinity), 6);
+  EXPECT_EQ(decimals_for(-1), 6);
+  EXPECT_EQ(decimals_for(std::nan("")), 6);
+  EXPECT_EQ(fixed(12.4, 0), "12");
+  EXPECT_EQ(fixed(-12.5, 1), "−12.5");
+  EXPECT_EQ(fixed(0, 1), "0.0");
+  EXPECT_EQ(fixed(std::nan(""), 2), "–");
+  EXPECT_EQ(fixed(-kInfinity, 2), "−∞");
+}
+
+TEST(Escapes, LeaveEveryTextAText) {
+  using std::string_literals::operator""s;
+  EXPECT_EQ(escape_html("a<b & \"c\" > 'd'"), "a&lt;b &amp; &quot;c&quot; &gt; &#39;d&#39;");
+  EXPECT_EQ(escape_html("\x1f \n\t\r\0é"s), "\xEF\xBF\xBD \n\t\xEF\xBF\xBD\xEF\xBF\xBDé");
+  EXPECT_EQ(csv_field("a\x1f b\nc"), "a  b c");
+  for (const char* text : {"=1", "+1", "-1", "@x"}) EXPECT_EQ(csv_field(text), "'"s + text);
+  EXPECT_EQ(csv_field("a=1"), "a=1");
+  EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_field("a\"b"), "\"a\"\"b\"");
+  EXPECT_EQ(csv_field("=\"x\""), "\"'=\"\"x\"\"\"");
+  EXPECT_EQ(csv_field(""), "");
+  EXPECT_EQ(gnuplot_string("a b~"), "'a b~'");
+  EXPECT_EQ(gnuplot_string("it's"), "\"it\\047s\"");
+  EXPECT_EQ(gnuplot_string("\"\\`@$"), "\"\\042\\134\\140\\100\\044\"");
+  EXPECT_EQ(gnuplot_string("a\x1f\nb"), "'a  b'");
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("Ma"), "TWE=");
+  EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
+  EXPECT_EQ(base64("Many"), "TWFueQ==");
+}
+
+TEST(Slug, KeepsLettersAndDigitsAndReplacesTheirNeighboursInTheCodeTable) {
+  EXPECT_EQ(slug("azAZ09-._"), "azAZ09-._");
+  EXPECT_EQ(slug("_x"), "_x");
+  for (const char* text : {"a`b", "a{b", "a@b", "a[b", "a/b", "a:b", "a  b"})
+    EXPECT_TRUE(slug(text).starts_with("a-b-")) << text;
+  EXPECT_TRUE(slug(".x").starts_with("x-"));
+  EXPECT_TRUE(slug("ab.").starts_with("ab-"));
+  EXPECT_TRUE(slug("ab-").starts_with("ab-"));
+  EXPECT_EQ(slug("a--b"), "a--b");
+  const std::string most(120, 'a');
+  EXPECT_EQ(slug(most), most);
+  EXPECT_EQ(slug(most + "a").size(), 129u);
+  EXPECT_EQ(slug(""), slug(""));
+  EXPECT_EQ(slug("é").size(), 10u) << "x and the digest";
+}
+
+TEST(Words, AreJoinedAndCapitalisedAsInASentence) {
+  EXPECT_EQ(joined({}), "");
+  EXPECT_EQ(joined({"a"}), "a");
+  EXPECT_EQ(joined({"a", "b"}), "a and b");
+  for (const auto& [plain, capital] : {std::pair<std::string, std::string>{"", ""},
+                                       {"a", "A"},
+                                       {"zebra x", "Zebra x"},
+                                       {"`a", "`a"},
+                                       {"{a", "{a"},
+                                       {"é", "é"}})
+    EXPECT_EQ(capitalised(plain), capital);
+  EXPECT_EQ(sentence_if("Not: ", {}), "");
+  EXPECT_EQ(sentence_if("Not: ", {"a", "b"}), "Not: a and b.");
+  EXPECT_EQ(typeset("(-3) x^3 <= 1e+06, e-5, 2e5x, 3-4, a - b"),
+            "(−3) x³ ≤ 1×10⁶, e-5, 2e5x, 3-4, a − b");
+}
+
+TEST(Shares, AreFractionsUpToALittleOverHalf) {
+  EXPECT_EQ(share_text(0.55), "1/1.8");
+  EXPECT_EQ(share_text(0.56), "56\u00A0%");
+  EXPECT_EQ(share_text(0.1), "1/10");
+  EXPECT_EQ(share_text(0.994), "99\u00A0%");
+}
+
+/// 2^n.
+double power(double n) { return std::exp2(n); }
+
+TEST(GeometricMean, AddsErrorsAsSquaresOfLogarithms) {
+  // 3 and 4 powers of two below, 6 and 8 above: 5 and 10 together.
+  const Interval mean =
+      geometric_mean({{power(-1), power(2), power(8)}, {power(0), power(4), power(12)}});
+  EXPECT_NEAR(mean.low, power(0.5), 1e-12);
+  EXPECT_NEAR(mean.mid, power(3), 1e-12);
+  EXPECT_NEAR(mean.high, power(8), 1e-9);
+  EXPECT_NEAR(geometric_mean(std::vector<double>{1, 4, 16}), 4, 1e-12);
+}
+
+TEST(Places, AreSpreadFromTheFirstToTheLast) {
+  using Places = std::vector<std::size_t>;
+  EXPECT_EQ(places_of(10, 4), (Places{0, 3, 6, 9}));
+  EXPECT_EQ(places_of(3, 3), (Places{0, 1, 2}));
+  EXPECT_EQ(places_of(3, 5), (Places{0, 1, 2}));
+  EXPECT_EQ(places_of(5, 2), (Places{0, 4}));
+  EXPECT_EQ(places_of(0, 4), Places{});
+  EXPECT_EQ(places_of(4, 0), Places{});
+  EXPECT_EQ(places_of(4, 1), Places{0});
+}
+
+}  // namespace
+}  // namespace taut::report

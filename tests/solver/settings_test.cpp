@@ -1,0 +1,199 @@
+// What solvers say of themselves on a scene: what they make of each setting, what they refuse and
+// why, and which theory holds for them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
+#include "core/reference/linear_stability.hpp"
+#include "core/solver/simd/kernels.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+using Lines = std::vector<std::pair<std::string, std::string>>;
+
+Lines settings(const Scene& scene, const std::string& solver) {
+  const SolverChoice choice = parse_solver(solver);
+  return choice.entry->resolved_settings(scene, choice.params);
+}
+
+std::vector<std::string> refused(const Scene& scene, const std::string& solver) {
+  const SolverChoice choice = parse_solver(solver);
+  return choice.entry->unsupported(scene, choice.params);
+}
+
+Scene with_contact() {
+  Scene scene = hanging_sheet(3, 3);
+  scene.damping = 0.5;
+  scene.colliders = {{.shape = Ball{{9, 9, 9}, 1}, .friction = 0.5}};
+  scene.self_collision = SelfCollision{0.01};
+  return scene;
+}
+
+TEST(SolverSettings, OfJakobsenAreTheseLines) {
+  const Lines plain{{"time step", "0.00390625 s x 4"},
+                    {"integration", "Verlet"},
+                    {"projection", "exact, weighted by inverse mass"},
+                    {"gravity", "the scene's"},
+                    {"precision", "double"},
+                    {"link order", "the scene's"}};
+  EXPECT_EQ(settings(hanging_sheet(3, 3),
+                     "jakobsen:substeps=4,projection=exact,precision=double,order=mesh"),
+            plain);
+  const Lines all{{"time step", "0.0078125 s x 2"},
+                  {"integration", "Verlet"},
+                  {"projection", "sqrt-free, weighted by inverse mass"},
+                  {"gravity", "the scene's"},
+                  {"precision", "float"},
+                  {"link order", "coloured"},
+                  {"damping", "velocity x " + shortest(std::exp(-0.5 / 128)) + " per substep"},
+                  {"contact response", "discrete"},
+                  {"friction", "Coulomb: tangential correction at most mu times the depth"},
+                  {"contact distance", "the scene's thickness"},
+                  {"contact of faces", "on"},
+                  {"self-collision", "octree"}};
+  EXPECT_EQ(settings(with_contact(), "jakobsen:substeps=2,contact=discrete,faces=on,self=octree"),
+            all);
+}
+
+TEST(SolverSettings, OfTheOthersAreTheseLines) {
+  EXPECT_EQ(settings(with_contact(), "mass-spring:structural=7,bend=0.5"),
+            (Lines{{"precision", "float"},
+                   {"links", "Hooke springs: structural 7 N/m, shear 50 N/m, bend 0.5 N/m"},
+                   {"work unit", "spring evaluations, not projections"}}));
+  EXPECT_EQ(settings(hanging_sheet(3, 3), "xpbd:precision=double"),
+            (Lines{{"precision", "double"}, {"link order", "the scene's, mesh order"}}));
+  EXPECT_EQ(settings(with_contact(), "xpbd"), (Lines{{"precision", "float"},
+                                                     {"link order", "the scene's, mesh order"},
+                                                     {"order of passes", "links, then contacts"}}));
+}
+
+TEST(SolverRefusals, AreSaidForEachThingThatASolverWouldMisread) {
+  Scene scene = with_contact();
+  EXPECT_TRUE(refused(scene, "jakobsen").empty());
+  EXPECT_EQ(refused(scene, "xpbd"), (std::vector<std::string>{"self-collision is not modelled",
+                                                              "friction is not modelled"}));
+  scene.colliders.push_back(scene.colliders[0]);
+  EXPECT_EQ(refused(scene, "xpbd").size(), 2u) << "once";
+  scene.colliders = {{.shape = Plane{}}};
+  EXPECT_EQ(refused(scene, "xpbd").size(), 1u);
+  scene.self_collision.reset();
+  EXPECT_TRUE(refused(scene, "xpbd").empty());
+  EXPECT_EQ(refused(scene, "mass-spring"),
+            std::vector<std::string>{"springs alone do not model contact"});
+  scene.colliders.clear(), scene.self_collision = SelfCollision{0.01};
+  EXPECT_EQ(refused(scene, "mass-spring"),
+            std::vector<std::string>{"self-collision is not modelled"});
+  scene.self_collision.reset();
+  EXPECT_TRUE(refused(scene, "mass-spring:drag-at=central").empty());
+  EXPECT_EQ(refused(scene, "mass-spring:drag-at=central,integrator=symplectic-euler"),
+            std::vector<std::string>{"drag-at=central needs integrator=verlet"});
+}
+
+// A coordinate of 1 m has units of 2^-23 m in the last place below it, half of one being 2^-25 m:
+// g (dt/n)^2 is more up to n = 283.
+TEST(SolverRefusals, OfSubstepsThatFloatLosesSayHowManyItKeeps) {
+  Scene scene = hanging_sheet(3, 3);
+  const auto reason = [&](int substeps) {
+    const auto reasons = refused(scene, "jakobsen:substeps=" + std::to_string(substeps));
+    return reasons.empty() ? "" : reasons.front();
+  };
+  EXPECT_EQ(reason(283), "");
+  EXPECT_NE(reason(284), "");
+  EXPECT_EQ(reason(400),
+            "in float, gravity's move of 14.968872 nm a substep is lost in coordinates of 1.000000 "
+            "m: at most 283 substeps, or precision=double");
+  for (Vec3& x : scene.start.x) x.z() -= 1e6;
+  EXPECT_NE(reason(2).find("at most 1 substeps"), std::string::npos);
+  scene.gravity.setZero();
+  EXPECT_EQ(reason(400), "") << "nothing to lose";
+}
+
+TEST(SolverSettings, AnInstructionSetThatTheMachineLacksIsAnError) {
+  const Scene scene = hanging_sheet(3, 3);
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+    const std::string name(to_string(simd));
+    const SolverChoice choice = parse_solver("jakobsen:simd=" + name);
+    try {
+      choice.entry->make(scene, choice.params);
+      EXPECT_TRUE(available(simd)) << name;
+    } catch (const InputError& error) {
+      EXPECT_FALSE(available(simd)) << name;
+      EXPECT_EQ(error.what(), "jakobsen: simd=" + name + ": this machine does not have it; its " +
+                                  "widest is " + std::string(to_string(widest())));
+    }
+  }
+}
+
+/// A chain that hangs from its first vertex, without gravity or damping.
+Scene chain(int links) {
+  Scene scene = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
+  scene.gravity.setZero();
+  return scene;
+}
+
+TEST(LinearTheory, HoldsForSweepsInTheScenesOrderWhateverSolverMakesThem) {
+  const auto growth = [](const Scene& scene, const std::string& solver) -> double {
+    const auto theory = linear_stability(scene, parse_solver(solver));
+    return theory ? theory->growth : -1;
+  };
+  const Scene scene = chain(9);
+  const double three = growth(scene, listing("iterations=3"));
+  EXPECT_NEAR(three, std::pow(std::cos(std::acos(-1.0) / 18), 3), 1e-6) << "rho^(k/2)";
+  EXPECT_NEAR(growth(scene, "xpbd:iterations=3,substeps=1"), three, 1e-12);
+  EXPECT_NEAR(growth(scene, "bullet:iterations=3"), three, 1e-12);
+  const double relaxed = growth(scene, listing("iterations=2,omega=1.2"));
+  EXPECT_GT(std::abs(relaxed - growth(scene, listing("iterations=2"))), 1e-3);
+  EXPECT_NEAR(growth(scene, "bullet:iterations=2,stiffness=1.2"), relaxed, 1e-12);
+  Scene damped = scene, fine = scene;
+  damped.damping = fine.damping = 3, fine.dt = scene.dt / 4;
+  for (const std::string solver : {"jakobsen:order=mesh,iterations=2", "xpbd:iterations=2"}) {
+    EXPECT_NEAR(growth(damped, solver + ",substeps=4"), growth(fine, solver + ",substeps=1"),
+                1e-12);
+    EXPECT_LT(growth(damped, solver + ",substeps=1"), growth(damped, solver + ",substeps=4"));
+  }
+  EXPECT_GT(growth(scene, listing("iterations=1,method=jacobi")), 2);
+  for (const char* unknown :
+       {"jakobsen", "jakobsen:order=reversed", "xpbd:bend=1", "xpbd:structural=0.1",
+        "bullet:reorder=on", "bullet-deformable", "jakobsen:order=mesh,method=jacobi-averaged"})
+    EXPECT_EQ(growth(scene, unknown), -1) << unknown;
+  EXPECT_EQ(growth(damped, "bullet"), -1);
+  EXPECT_GT(growth(chain(128), listing()), 0);
+  EXPECT_EQ(growth(chain(129), listing()), -1) << "too many links for a dense sweep";
+}
+
+TEST(LinearTheory, OfSpringsKnowsTheirFamiliesAndTheirDrag) {
+  Scene scene = hanging_sheet(4, 5);
+  scene.gravity.setZero();
+  const auto theory = [&](const std::string& more) {
+    return linear_stability(scene, parse_solver("mass-spring:substeps=1," + more));
+  };
+  const double all = theory("structural=40,shear=20,bend=10")->margin;
+  EXPECT_NEAR(theory("structural=80,shear=40,bend=20")->margin, 2 * all, 1e-9 * all);
+  for (const char* other : {"structural=20,shear=40,bend=10", "structural=40,shear=10,bend=20",
+                            "structural=10,shear=20,bend=40"})
+    EXPECT_GT(std::abs(theory(other)->margin / all - 1), 1e-4) << other;
+  EXPECT_EQ(theory("structural=40")->law, "substep < 2/w, w the fastest mode of the springs");
+  EXPECT_EQ(theory("structural=40,drag=1,drag-at=central")->law, theory("structural=40")->law);
+  EXPECT_EQ(theory("structural=40,drag=1")->law,
+            "substep < (2/w)(sqrt(1 + zeta^2) - zeta), w the fastest mode of the springs");
+  const auto euler = theory("structural=40,shear=20,bend=10,integrator=explicit-euler");
+  EXPECT_NEAR(euler->growth, std::sqrt(1 + 4 * all), 1e-9) << "margin is w^2 h^2/4";
+  EXPECT_EQ(euler->law, "explicit Euler grows by sqrt(1 + w^2 dt^2) at any dt");
+  EXPECT_FALSE(theory("integrator=explicit-euler,drag=1"));
+  EXPECT_FALSE(theory("structural=0,shear=0,bend=0"));
+  scene.wind = Wind{};
+  EXPECT_FALSE(theory("structural=40"));
+  EXPECT_TRUE((LinearStability{1, 1, ""}).stable());
+  EXPECT_FALSE((LinearStability{1.00001, 1, ""}).stable());
+}
+
+}  // namespace
+}  // namespace taut

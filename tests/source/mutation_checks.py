@@ -1,0 +1,96 @@
+"""What notices the errors that mutate.py plants: unit tests, truths and tests of the command line, each alone or in a batch."""
+import ast
+import contextlib
+import hashlib
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+UNIT, TAUT = "tests/taut_tests", "taut"  # the programs whose checks notice
+SCRIPTS = [file for folder in ("cli", "study/cluster", "external", "truths") for file in (ROOT / "tests" / folder).glob("*_test.py")
+           if file.stem not in ("launcher_test", "contributing_test", "schedulers_test")]  # which build, or need a scheduler
+
+
+class Check:
+    """A unit test, a truth, or a test of a script."""
+
+    def __init__(self, program, name, file=None):
+        self.program, self.name = program, name
+        self.script = file if file in SCRIPTS else None
+        self.folder = file.relative_to(ROOT / "tests").parts[0] if file else "truths"
+        self.source = hashlib.sha256(file.read_bytes()).digest() if file else b""
+        self.seconds, self.green = 0.0, True  # CPU time that it takes
+
+
+def checks_of(build):
+    file_of = {suite: file for file in (ROOT / "tests").rglob("*_test.cpp")
+               for suite in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", file.read_text(), re.MULTILINE)}
+    listed = subprocess.run([build.program(UNIT), "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
+                            text=True, capture_output=True).stdout
+    checks, suite = [], ""
+    for line in listed.splitlines():
+        name = line.split("#")[0].strip()
+        if line.startswith(" "):
+            checks.append(Check(UNIT, suite + name, file_of.get(suite[:-1].split("/")[-1])))
+        elif name.endswith("."):
+            suite = name
+    truths = subprocess.run([build.program(TAUT), "verify", "--list"], check=True, text=True, capture_output=True).stdout
+    checks += [Check(TAUT, line.split("\t")[1]) for line in truths.splitlines()]
+    for script in SCRIPTS:
+        checks += [Check(TAUT, f"{of.name}.{test.name}", script) for of in ast.parse(script.read_text()).body
+                   if isinstance(of, ast.ClassDef) for test in of.body if getattr(test, "name", "").startswith("test")]
+    return checks
+
+
+def cpu_seconds(pid):
+    """Of a process and those of its children that have ended; 0: it is gone."""
+    with contextlib.suppress(OSError):
+        times = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[11:15]
+        return sum(map(int, times)) / os.sysconf("SC_CLK_TCK")
+    return 0
+
+
+def run(checks, program, where, seconds=600.0, **environment):
+    """(name of a red check or None, CPU seconds) of checks of one program; red if they take more CPU time, or hang"""
+    # A folder of its own for what the tests write: several run at the same time.
+    environment = {**os.environ, "TMPDIR": f"{where}/", "TEST_TMPDIR": f"{where}/", **environment}
+    names = [check.name for check in checks]
+    if checks[0].script:
+        words = [sys.executable, checks[0].script, program.parent, *names]
+    elif checks[0].program == UNIT:
+        words = [program, "--gtest_filter=" + ":".join(names), "--gtest_fail_fast"]
+    else:
+        words = [program, "verify", "-j1", "--quiet", *names]
+    with open(f"{where}/output", "w+") as output:
+        process = subprocess.Popen(words, cwd=where, env=environment, start_new_session=True,
+                                   stdin=subprocess.DEVNULL, stdout=output, stderr=output)
+
+        def kill():
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):
+            resource.prlimit(process.pid, resource.RLIMIT_DATA, (8 << 30, 8 << 30))
+        hangs = threading.Timer(60 + 10 * seconds, kill)
+        hangs.start()
+        # Not RLIMIT_CPU: where it is set, Linux counts a process's CPU time in ticks, and what is shorter takes none.
+        ended, nap = 0, 0.001
+        while not ended:
+            ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+            if not ended and cpu_seconds(process.pid) > seconds:
+                kill()
+            time.sleep(0 if ended else nap)
+            nap = min(0.1, 1.5 * nap)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        hangs.cancel()
+        kill()  # what it left behind
+        output.seek(0)
+        told = re.findall(r"^\[ ( FAILED |RUN     ) \] ([^\s,]+)", output.read(), re.MULTILINE)
+    named = [name for word, name in told if "FAILED" in word] or [name for _, name in reversed(told)] or names
+    return named[0] if process.returncode else None, usage.ru_utime + usage.ru_stime

@@ -1,0 +1,58 @@
+// What `taut run` without a study runs: the keys of main-job.toml, and what is said of one that is
+// wrong.
+#include "experiments/study/main_job.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "core/model/input_error.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut {
+namespace {
+
+class MainJobFile : public testing::Test {
+ protected:
+  MainJobFile() { setenv("TAUT_DATA", folder_.path().c_str(), 1); }
+  ~MainJobFile() override { unsetenv("TAUT_DATA"); }
+  MainJob read(const std::string& text) const {
+    write_file(folder_.path() / "main-job.toml", text);
+    return main_job();
+  }
+  /// Line, column and message of each thing that is wrong.
+  std::vector<std::string> wrong(const std::string& text) const {
+    std::vector<std::string> all;
+    try {
+      read(text);
+    } catch (const InputError& error) {
+      for (const Diagnostic& d : error.diagnostics())
+        all.push_back(std::to_string(d.line) + ":" + std::to_string(d.column) + ": " + d.message);
+    }
+    return all;
+  }
+  const Scratch folder_;
+};
+
+TEST_F(MainJobFile, HasEveryPartOfTheJob) {
+  const MainJob job =
+      read("preset = \"p\"\nstudies = [\"b\", \"a\"]\nmaps = [\"m\"]\nbench = \"t\"\n");
+  EXPECT_EQ(job.preset, "p");
+  EXPECT_EQ(job.studies, (std::vector<std::string>{"b", "a"}));
+  EXPECT_EQ(job.maps, std::vector<std::string>{"m"});
+  EXPECT_EQ(job.bench, "t");
+}
+
+TEST_F(MainJobFile, WhatIsWrongIsNamedAllAtOnce) {
+  const auto all = wrong("studies = [\"b\", 3]\nmaps = \"m\"\nbenhc = \"t\"\n");
+  ASSERT_EQ(all.size(), 5u);
+  std::string text;
+  for (const std::string& one : all) text += one + "\n";
+  for (const char* said :
+       {"1:17: expected the name of a study", "missing key 'preset'", "missing key 'maps'",
+        "missing key 'bench'", "3:1: unknown key 'benhc' in the main job; did you mean 'bench'?"})
+    EXPECT_NE(text.find(said), std::string::npos) << said << " in\n" << text;
+}
+
+}  // namespace
+}  // namespace taut

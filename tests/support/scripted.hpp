@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/model/solver.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut {
+
+/// As long as it lives there is a solver "scripted" with jakobsen's parameters, and the program
+/// that runs its cases and times them is a shell script. In the script $folder is a folder that the
+/// test reads; of a case $3 is the solver's text and $5 where its files go.
+class Scripted {
+ public:
+  explicit Scripted(const std::string& body) {
+    write(body);
+    set_solver_source(
+        {.all = [] { return std::vector<const SolverEntry*>{&entry()}; },
+         .find = [](std::string_view name,
+                    std::string_view) { return name == "scripted" ? &entry() : nullptr; }});
+  }
+  ~Scripted() { set_solver_source({}); }
+  Scripted(const Scripted&) = delete;
+  Scripted& operator=(const Scripted&) = delete;
+
+  /// From now on the script is this one.
+  void write(const std::string& body) {
+    file() = (scratch_.path() / "script").string();
+    write_file(file(), "#!/bin/sh\nfolder='" + folder().string() + "'\n" + body);
+    std::filesystem::permissions(file(), std::filesystem::perms::owner_all);
+    make_folder(folder());
+  }
+  std::filesystem::path folder() const { return scratch_.path() / "told"; }
+  /// What the script has left there; "": nothing.
+  std::string told(const std::string& name) const {
+    return std::filesystem::exists(folder() / name) ? read_text(folder() / name) : "";
+  }
+
+ private:
+  static std::string& file() {
+    static std::string path;
+    return path;
+  }
+  static const SolverEntry& entry() {
+    static const SolverEntry scripted = [] {
+      SolverEntry one = find_solver("jakobsen");
+      one.name = "scripted";
+      one.program = [](const Params&) { return std::string_view(file()); };
+      return one;
+    }();
+    return scripted;
+  }
+  Scratch scratch_;
+};
+
+}  // namespace taut

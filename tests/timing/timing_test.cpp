@@ -1,0 +1,226 @@
+// How times are taken: where samples begin, who is asked for how many steps in which order, and
+// what is made of the answers.
+#include "experiments/timing/timing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <thread>
+
+#include "experiments/system/clock.hpp"
+#include "experiments/system/data.hpp"
+#include "tests/support/scripted.hpp"
+
+namespace taut {
+namespace {
+
+/// Its state is how many steps it has made; its clock shows half a second for each.
+class Counting final : public Solver {
+ public:
+  void load(const State& state) override {
+    steps_ = state.x[0].x();
+    log << "load " << steps_ << "; ";
+  }
+  void step(double t, double dt) override {
+    log << std::lround(t / dt) << " ";
+    steps_ += 1, ++all_;
+  }
+  void store(State& state) const override { state = {{Vec3(steps_, 0, 0)}, {Vec3::Zero()}}; }
+  std::vector<PassCost> step_cost() const override { return {}; }
+  double cpu_seconds() const override { return 0.5 * all_; }
+  std::ostringstream log;
+
+ private:
+  double steps_ = 0;
+  int all_ = 0;
+};
+
+/// What is asked of a solver for samples of so many steps of a run of so many.
+std::string asked(int run_steps, int sample_steps) {
+  Scene scene;
+  scene.dt = 0.25;
+  scene.start = {{Vec3::Zero()}, {Vec3::Zero()}};
+  Counting solver;
+  const CheckpointedRun run(scene, solver, run_steps);
+  EXPECT_EQ(run.whole().cpu, run_steps > 0 ? 0.5 : 0);
+  EXPECT_GE(run.whole().wall, 0);
+  EXPECT_LT(run.whole().wall, 1);
+  solver.log.str("");
+  EXPECT_EQ(run.sample(solver, sample_steps).cpu, 0.5) << "the step that warms up is not in it";
+  return solver.log.str();
+}
+
+TEST(CheckpointedRuns, SamplesBeginEvenlySpacedAndAreWarmedUpByAStep) {
+  EXPECT_EQ(asked(20, 7), "load 0; 0 load 0; 0 1 2 load 10; 10 load 10; 10 11 12 ")
+      << "three from each of two starts";
+  EXPECT_EQ(asked(20, 1), "load 0; 0 load 0; 0 load 10; 10 load 10; 10 ");
+  EXPECT_EQ(asked(16, 100),
+            "load 0; 0 load 0; 0 1 2 3 4 5 6 7 load 8; 8 load 8; 8 9 10 11 12 13 14 15 ")
+      << "none runs into the next";
+  EXPECT_EQ(asked(15, 2), "load 0; 0 load 0; 0 1 ") << "eight steps apart at least";
+  EXPECT_EQ(
+      asked(33, 4),
+      "load 0; 0 load 0; 0 load 8; 8 load 8; 8 load 16; 16 load 16; 16 load 24; 24 load 24; 24 ")
+      << "four starts at most";
+  EXPECT_EQ(asked(3, 9), "load 0; 0 load 0; 0 1 2 ");
+}
+
+TEST(TimedSteps, AsManyAsFit) {
+  EXPECT_EQ(times_within(1, 0.25, 100), 4);
+  EXPECT_EQ(times_within(1, 0.26, 100), 3);
+  EXPECT_EQ(times_within(1, 7, 100), 1);
+  EXPECT_EQ(times_within(1, 0.001, 100), 100);
+  EXPECT_EQ(times_within(1, 0, 12345), 12345);
+  Record record;
+  record.steps = 90;
+  EXPECT_EQ(steps_done(record), 90);
+  record.status.step = 12;
+  EXPECT_EQ(steps_done(record), 12);
+  record.status.step = 0;
+  EXPECT_EQ(steps_done(record), 90);
+}
+
+TEST(TimedSteps, TheMachineIsNamedByItsProcessorAndItsCores) {
+  std::ifstream info("/proc/cpuinfo");
+  const std::string all{std::istreambuf_iterator<char>(info), {}};
+  std::smatch model;
+  if (!std::regex_search(all, model, std::regex("model name\\s*: (.*)")))
+    GTEST_SKIP() << "no model name";
+  EXPECT_EQ(machine_name(),
+            model[1].str() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores");
+}
+
+const CaseSpec kSpec{"hang", {"cloth.grid=[4, 4]", "time.duration=0.5"}, "scripted:iterations=2"};
+
+/// Answers as a timing worker. The k-th sample of worker w is 0.00wk s of CPU and 0.1wk s in all; a
+/// pilot run 0.002 s.
+const std::string kWorker = R"(w=$(ls $folder | wc -l); : >$folder/w.$w
+echo "$*" >>$folder/w.$w
+echo ready
+k=0
+while read word n; do
+  echo "$w $word $n" >>$folder/.log
+  case $word in
+    pilot_run) echo 0.002 0.004;;
+    time) k=$((k + 1)); echo 0.00$w$k 0.1$w$k;;
+    memory) echo 40$w;;
+    remark) echo remark $w;;
+  esac
+done
+)";
+
+std::string failure(const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TimingWorkers, AreAskedLineByLine) {
+  const Scripted scripted(kWorker);
+  TimingWorker worker(program_of(kSpec), kSpec);
+  const StepTime pilot = worker.pilot_run(31), sample = worker.sample(5);
+  EXPECT_EQ(pilot.cpu, 0.002);
+  EXPECT_EQ(pilot.wall, 0.004);
+  EXPECT_EQ(sample.cpu, 0.0001);
+  EXPECT_EQ(sample.wall, 0.101);
+  EXPECT_EQ(worker.peak_bytes(), 400u);
+  EXPECT_EQ(worker.remark(), "remark 0");
+  EXPECT_EQ(scripted.told(".log"), "0 pilot_run 31\n0 time 5\n0 memory \n0 remark \n");
+  EXPECT_EQ(scripted.told("w.0"),
+            "bench --worker hang scripted:iterations=2 --set cloth.grid=[4, 4] --set "
+            "time.duration=0.5\n");
+}
+
+TEST(TimingWorkers, WhatTheyRefuseAndThatTheyDieIsSaid) {
+  Scripted scripted("echo ready; read a; echo '! it has no clock'; read a; exit 1");
+  TimingWorker worker(program_of(kSpec), kSpec);
+  EXPECT_EQ(failure([&] { worker.pilot_run(3); }), "it has no clock");
+  EXPECT_EQ(failure([&] { worker.sample(3); }), "the timing worker died");
+  for (const char* script : {"exit 0", "echo reddy; sleep 1000"}) {
+    scripted.write(script);
+    EXPECT_EQ(failure([] { TimingWorker(program_of(kSpec), kSpec); }),
+              "the timing worker of hang scripted:iterations=2 did not start");
+  }
+  scripted.write("echo ready; exec sleep 1000");
+  TimingWorker silent(program_of(kSpec), kSpec);
+  const auto start = SteadyClock::now();
+  silent.give_up_at(in_seconds(0.15));
+  EXPECT_THROW(silent.pilot_run(3), TimeIsUp);
+  EXPECT_GE(seconds_since(start), 0.149);
+  EXPECT_LT(seconds_since(start), 5);
+}
+
+TEST(Benches, GoForthAndBackAndTheFirstCaseIsItsOwnControl) {
+  const Scripted scripted(kWorker);
+  CaseSpec other = kSpec;
+  other.solver = "scripted:iterations=9";
+  std::vector<std::pair<std::size_t, std::size_t>> told;
+  const TimingSession bench =
+      time_cases({{kSpec, 100}, {other, 7}},
+                 {.rounds = 2, .seconds = 0.05, .progress = [&](std::size_t k, std::size_t n) {
+                    told.emplace_back(k, n);
+                  }});
+  std::string expected = "0 pilot_run 100\n1 pilot_run 7\n2 pilot_run 100\n";
+  for (int round = 0; round < 2; ++round)
+    expected += "0 time 25\n1 time 7\n2 time 25\n2 time 25\n1 time 7\n0 time 25\n";
+  for (const char* w : {"0", "1", "2"})
+    expected += w + std::string(" memory \n") + w + " remark \n";
+  EXPECT_EQ(scripted.told(".log"), expected);
+  EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{1, 2}, {2, 2}}));
+  ASSERT_EQ(bench.timings.size(), 2u);
+  const Timing &first = bench.timings[0], &second = bench.timings[1];
+  EXPECT_EQ(first.samples, (std::vector<double>{0.0001, 0.0002, 0.0003, 0.0004}));
+  EXPECT_EQ(second.samples, (std::vector<double>{0.0011, 0.0012, 0.0013, 0.0014}));
+  EXPECT_EQ(second.wall, (std::vector<double>{0.111, 0.112, 0.113, 0.114}));
+  EXPECT_EQ(second.peak_bytes, 401u);
+  EXPECT_EQ(second.remark, "remark 1");
+  EXPECT_EQ(first.failure, "");
+  const Interval control =
+      interleaved_ratio(first.samples, std::vector{0.0021, 0.0022, 0.0023, 0.0024});
+  EXPECT_EQ((std::tuple{bench.control.low, bench.control.mid, bench.control.high}),
+            (std::tuple{control.low, control.mid, control.high}));
+  EXPECT_EQ(bench.ratio(1, 0).mid, interleaved_ratio(second.samples, first.samples).mid);
+  EXPECT_TRUE(time_cases({}, {}).timings.empty());
+}
+
+TEST(Benches, AFailureCostsItsOwnCaseAndADeadlineTheRoundsThatWouldNotEnd) {
+  const Scripted scripted(
+      "case $4 in *iterations=2*) echo ready; read a; echo '! no clock'; cat >/dev/null;; *) :; " +
+      kWorker + " esac");
+  CaseSpec other = kSpec;
+  other.solver = "scripted:iterations=9";
+  const TimingSession bench =
+      time_cases({{other, 50}, {kSpec, 100}, {other, 0}}, {.rounds = 3, .seconds = 0.01});
+  EXPECT_EQ(bench.timings[0].samples.size(), 6u);
+  EXPECT_EQ(bench.timings[1].failure, "no clock");
+  EXPECT_TRUE(bench.timings[1].samples.empty());
+  EXPECT_EQ(bench.timings[2].samples.size(), 6u);
+  EXPECT_NE(scripted.told(".log").find("pilot_run 1\n"), std::string::npos) << "one step at least";
+  const TimingSession late =
+      time_cases({{other, 50}}, {.rounds = 3, .deadline = SteadyClock::now()});
+  EXPECT_EQ(late.timings[0].failure, "time is up");
+  EXPECT_TRUE(late.timings[0].samples.empty());
+}
+
+// The test program is the worker (tests/support/main.cpp).
+TEST(Benches, TimeTheStepsOfASolver) {
+  const CaseSpec real{"hang", {"cloth.grid=[8, 8]", "time.duration=0.5"}, "jakobsen"};
+  EXPECT_EQ(program_of(real), this_program());
+  TimingWorker worker(program_of(real), real);
+  const StepTime pilot = worker.pilot_run(32), sample = worker.sample(16);
+  EXPECT_GT(pilot.cpu, 1e-7);
+  EXPECT_LT(pilot.cpu, 0.1);
+  EXPECT_GT(sample.cpu, 1e-7);
+  EXPECT_GT(sample.wall, 1e-7);
+  EXPECT_GT(worker.peak_bytes(), std::size_t{1} << 20);
+  EXPECT_NE(failure([&] { TimingWorker(this_program(), {"hang", {}, "nobody"}); }), "");
+}
+
+}  // namespace
+}  // namespace taut

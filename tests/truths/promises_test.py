@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""`taut verify` as a whole: no truth is broken, each promises what promises.tsv says, and each compares something.
+
+A promise is what a truth expects of whom, and how exactly; what was measured is none. Whoever loosens a tolerance or
+leaves a solver out changes a line there: promises_test.py BUILD --write. A truth that is new has none yet.
+"""
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROMISES = pathlib.Path(__file__).with_name("promises.tsv")
+BUILD = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/default").resolve()
+
+# Errors that are exactly 0 by what is done, and not because nothing was compared.
+ZERO = ("strain of 1 % after ten passes", "speed two steps after the impact", "height at rest", "depth at rest in a box",
+        "largest acceleration at rest, without gravity's", "their overlap", "face.excess of the same face",
+        "distance from the side, for it is put out there, not where it came in", "the same where its way is tested")
+
+
+def verify():
+    environment = {**os.environ, "TAUT_DATA": str(ROOT / "experiments")}
+    done = subprocess.run([BUILD / "taut", "verify", "--json"], cwd=ROOT, env=environment, text=True, capture_output=True)
+    return done, [(truth["name"], f) for truth in json.loads(done.stdout)["truths"] for f in truth["findings"]]
+
+
+def promise(truth, finding):
+    """Its line: everything but numbers, and the numbers."""
+    words = truth, finding["subject"], finding["quantity"], finding["unit"], finding["verdict"]
+    return words, [math.nan if number is None else number for number in (finding["expected"], finding["tolerance"])]
+
+
+class Promises(unittest.TestCase):
+    def test_every_truth_holds_what_is_promised_and_compares_something(self):
+        done, findings = verify()
+        self.assertEqual(done.returncode, 0, done.stderr + done.stdout[-2000:])
+        kept = [line.split("\t") for line in PROMISES.read_text().splitlines()]
+        made = [made for made in (promise(*one) for one in findings) if made[0][0] in {line[0] for line in kept}]
+        self.assertEqual(["\t".join(words) for words, _ in made], ["\t".join(line[:5]) for line in kept])
+        for (words, numbers), line in zip(made, kept):
+            for number, text in zip(numbers, line[5:]):
+                same = math.isnan(number) if text == "nan" else math.isclose(number, float(text), rel_tol=1e-6, abs_tol=1e-300)
+                self.assertTrue(same, f"{words}: {number} was promised as {text}")
+        for truth, f in findings:
+            if f["expected"] == 0 and f["tolerance"] > 0 and f["quantity"] not in ZERO:
+                self.assertNotEqual(f["measured"], 0, f"{truth}, {f['subject']}, {f['quantity']}: was anything compared?")
+
+
+if __name__ == "__main__":
+    if "--write" in sys.argv:
+        lines = ["\t".join([*words, *map(repr, numbers)]) for words, numbers in (promise(*one) for one in verify()[1])]
+        PROMISES.write_text("\n".join(lines) + "\n")
+    else:
+        unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
