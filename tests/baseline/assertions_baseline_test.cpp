@@ -6,7 +6,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::assertions_baseline_test {
 namespace {
 
 std::vector<JudgedAssertion> judged(TruthVerdict of_three_sweeps) {
@@ -69,4 +69,4 @@ TEST(AssertionsBaseline, IsReadBackAndDamageIsNamedByLine) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::assertions_baseline_test

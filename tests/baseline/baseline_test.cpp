@@ -9,7 +9,7 @@
 
 #include "core/model/input_error.hpp"
 
-namespace taut {
+namespace taut::baseline_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -219,4 +219,4 @@ TEST_F(BaselineFiles, TolerancesNeedAReason) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::baseline_test

@@ -9,7 +9,7 @@
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::comparison_test {
 namespace {
 
 using Kind = Change::Kind;
@@ -238,4 +238,4 @@ TEST(BaselineFolders, KeepEveryFieldAndRefuseWhatTheyShould) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::comparison_test

@@ -7,7 +7,7 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::frontier_rows_test {
 namespace {
 
 const std::string kTwo = R"([[frontier]]
@@ -126,4 +126,4 @@ TEST(ClaimFigures, AreTheNumberThatSpeaksForTheClaim) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::frontier_rows_test

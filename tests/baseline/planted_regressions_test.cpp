@@ -6,7 +6,7 @@
 
 #include "experiments/baseline/baseline.hpp"
 
-namespace taut {
+namespace taut::planted_regressions_test {
 namespace {
 
 /// hang under two solvers, dt x iterations; whatever is beyond dt/k = 1/60 explodes.
@@ -83,4 +83,4 @@ TEST(PlantedRegressions, EachOfTenIsCaughtAndANoOpIsNot) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::planted_regressions_test

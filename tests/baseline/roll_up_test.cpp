@@ -6,7 +6,7 @@
 
 #include "experiments/baseline/baseline.hpp"
 
-namespace taut {
+namespace taut::roll_up_test {
 namespace {
 
 Change moved(const char* scene, const char* value, double before, double now) {
@@ -48,4 +48,4 @@ TEST(RollUp, FromNothingIsWorseThanAnyPerCent) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::roll_up_test

@@ -8,7 +8,7 @@
 
 #include "core/model/solver.hpp"
 
-namespace taut {
+namespace taut::bullet_ref_contact_test {
 namespace {
 
 constexpr double kThickness = 0.02;  // m
@@ -221,4 +221,4 @@ TEST(BulletLimits, SaysWhatItWouldMisread) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::bullet_ref_contact_test

@@ -8,7 +8,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/case/run_case.hpp"
 
-namespace taut {
+namespace taut::deformable_test {
 namespace {
 
 Scene sheet(const SheetShape& shape, const LinkChoice& links) {
@@ -144,4 +144,4 @@ TEST(BulletDeformable, RefusesSelfCollision) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::deformable_test

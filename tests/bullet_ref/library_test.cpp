@@ -17,7 +17,7 @@
 #define TAUT_BULLET_PRECISION "double"
 #endif
 
-namespace taut {
+namespace taut::library_test {
 namespace {
 
 const std::string kPrecision = TAUT_BULLET_PRECISION;
@@ -100,4 +100,4 @@ TEST(BulletLibrary, TheOtherPrecisionNeedsTheOtherProgram) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::library_test

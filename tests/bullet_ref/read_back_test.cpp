@@ -10,7 +10,7 @@
 
 #include "tests/bullet_ref/differences.hpp"
 
-namespace taut {
+namespace taut::read_back_test {
 namespace {
 
 Scene sheet(int nu, int nv) {
@@ -173,4 +173,4 @@ TEST(BulletReadBack, ComparisonSeesEveryMember) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::read_back_test

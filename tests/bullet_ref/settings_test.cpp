@@ -11,7 +11,7 @@
 #include "core/model/solver.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::bullet_ref_settings_test {
 namespace {
 
 using Lines = std::vector<std::pair<std::string, std::string>>;
@@ -197,4 +197,4 @@ TEST(BulletWorld, APlaneReachesFiftyMetresFromTheMiddleOfTheCloth) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::bullet_ref_settings_test

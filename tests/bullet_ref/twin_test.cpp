@@ -8,7 +8,7 @@
 #include "core/model/solver.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::twin_test {
 namespace {
 
 struct Cloth {
@@ -118,4 +118,4 @@ INSTANTIATE_TEST_SUITE_P(Hang, Twin,
                          name_of);
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::twin_test

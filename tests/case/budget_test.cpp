@@ -11,7 +11,7 @@
 #include "experiments/case/divergence.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::budget_test {
 namespace {
 
 constexpr double kG = 9.81;
@@ -215,4 +215,4 @@ TEST(Verdict, TheFastestVertexIsNamedAndASecondExtremeIsNot) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::budget_test

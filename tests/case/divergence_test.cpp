@@ -10,7 +10,7 @@
 #include "experiments/study/frontier.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::divergence_test {
 namespace {
 
 Scene chain() { return hanging_sheet(1, 9, {true, false, false}, Lumping::equal); }
@@ -203,4 +203,4 @@ TEST(StoredEnergy, IsThatOfTheStiffestSpringThatAStepCanHold) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::divergence_test

@@ -16,7 +16,7 @@
 #include "experiments/system/files.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::records_test {
 namespace {
 
 std::string problems(const CaseSpec& spec) {
@@ -224,4 +224,4 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::records_test

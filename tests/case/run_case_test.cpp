@@ -11,7 +11,7 @@
 #include "experiments/case/record_io.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::run_case_test {
 namespace {
 
 Scene at_rest(const SheetShape& shape) {
@@ -284,4 +284,4 @@ TEST(RunCase, AFailingSolverEndsAtItsLastWholeStep) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::run_case_test

@@ -12,7 +12,7 @@
 
 #include "core/model/input_error.hpp"
 
-namespace taut {
+namespace taut::trajectory_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -248,4 +248,4 @@ TEST_F(TrajectoryTest, OnlyATailThatIsDroppedIsSaid) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::trajectory_test

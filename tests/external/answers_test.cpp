@@ -9,7 +9,7 @@
 #include "experiments/external/protocol.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut::external {
+namespace taut::external::answers_test {
 namespace {
 
 /// What the reader says against the answer; "": nothing.
@@ -170,4 +170,4 @@ TEST(SolverNames, StartWithALetterAndAreShort) {
 }
 
 }  // namespace
-}  // namespace taut::external
+}  // namespace taut::external::answers_test

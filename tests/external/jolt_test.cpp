@@ -15,7 +15,7 @@
 #include "experiments/external/protocol.hpp"
 #include "experiments/system/data.hpp"
 
-namespace taut::external {
+namespace taut::external::jolt_test {
 namespace {
 
 Scene scene_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
@@ -144,4 +144,4 @@ TEST_F(JoltTwin, JakobsenInItsOrderIsItsTwin) {
 }
 
 }  // namespace
-}  // namespace taut::external
+}  // namespace taut::external::jolt_test

@@ -13,7 +13,7 @@
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 
-namespace taut::external {
+namespace taut::external::motion_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -194,4 +194,4 @@ TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
 }
 
 }  // namespace
-}  // namespace taut::external
+}  // namespace taut::external::motion_file_test

@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/readers.hpp"
 
-namespace taut::fuzz {
+namespace taut::fuzz::corpus_test {
 namespace {
 
 const std::filesystem::path kCorpus = std::filesystem::path(TAUT_SOURCE_DIR) / "tests/fuzz/corpus";
@@ -35,4 +35,4 @@ TEST(FuzzCorpus, EveryInputIsReadOrRefusedAsItsNameSays) {
 }
 
 }  // namespace
-}  // namespace taut::fuzz
+}  // namespace taut::fuzz::corpus_test

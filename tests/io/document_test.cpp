@@ -11,7 +11,7 @@
 #include "core/io/section.hpp"
 #include "core/model/index.hpp"
 
-namespace taut {
+namespace taut::document_test {
 namespace {
 
 using Overrides = std::vector<std::string>;
@@ -216,4 +216,4 @@ TEST(Ranges, HoldTheirBordersAndSaySo) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::document_test

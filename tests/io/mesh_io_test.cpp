@@ -15,7 +15,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 
-namespace taut {
+namespace taut::mesh_io_test {
 namespace {
 
 /// A sheet as the quads of an OBJ file, with every digit.
@@ -181,4 +181,4 @@ TEST(MeshFromObj, TheShippedDiscIsTurnedScaledAndMoved) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::mesh_io_test

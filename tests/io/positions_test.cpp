@@ -14,7 +14,7 @@
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 
-namespace taut {
+namespace taut::positions_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -443,4 +443,4 @@ TEST_F(Positions, TextFilesAreReadWholeUpToTheirLimitOrRefused) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::positions_test

@@ -12,7 +12,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 
-namespace taut {
+namespace taut::scene_fuzz_test {
 namespace {
 
 const std::filesystem::path kScenes = std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes";
@@ -143,4 +143,4 @@ TEST(SceneFuzz, EveryMutantMeshIsReadOrRefusedWithAPlaceInsideTheFile) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::scene_fuzz_test

@@ -13,7 +13,7 @@
 
 #include "core/model/input_error.hpp"
 
-namespace taut {
+namespace taut::scene_io_test {
 namespace {
 
 const std::filesystem::path kScenes = std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes";
@@ -407,4 +407,4 @@ TEST(SceneSchema, TheDocumentedFileLoads) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::scene_io_test

@@ -10,7 +10,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 
-namespace taut {
+namespace taut::scene_values_test {
 namespace {
 
 std::string problems(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -329,4 +329,4 @@ TEST(SceneValues, TheFileComesFirstAndOverridesInTheirOrder) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::scene_values_test

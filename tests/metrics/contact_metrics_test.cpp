@@ -8,7 +8,7 @@
 
 #include "tests/metrics/measured.hpp"
 
-namespace taut {
+namespace taut::contact_metrics_test {
 namespace {
 
 TEST(Penetration, OfOneVertexAMillimetreInsideTheBall) {
@@ -175,4 +175,4 @@ TEST(Tunnelling, SeesTheColliderMoveAndGrazesPardoned) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::contact_metrics_test

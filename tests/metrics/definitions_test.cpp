@@ -17,7 +17,7 @@
 #include "experiments/metrics/reference.hpp"
 #include "tests/metrics/measured.hpp"
 
-namespace taut {
+namespace taut::definitions_test {
 namespace {
 
 /// Masses and rest lengths of every size, pins, and one moving collider of each kind; 140 steps of
@@ -430,4 +430,4 @@ TEST(Definitions, DistanceFromTheReferences) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::definitions_test

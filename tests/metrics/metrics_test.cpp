@@ -14,7 +14,7 @@
 #include "experiments/metrics/reference.hpp"
 #include "tests/metrics/measured.hpp"
 
-namespace taut {
+namespace taut::metrics_test {
 namespace {
 
 TEST(Metrics, HaveUniqueNamesUnitsAndAsManyNumbersNowAsAtTheEnd) {
@@ -409,4 +409,4 @@ TEST(Metrics, DoNotCareHowVerticesAreNumbered) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::metrics_test

@@ -6,7 +6,7 @@
 #include "core/model/index.hpp"
 #include "tests/metrics/measured.hpp"
 
-namespace taut {
+namespace taut::passage_test {
 namespace {
 
 // What was free at the start of a straight way in the collider's own frame goes in by the side that
@@ -78,4 +78,4 @@ TEST(Definitions, Tunnelling) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::passage_test

@@ -6,7 +6,7 @@
 #include "core/io/scene_io.hpp"
 #include "experiments/case/run_case.hpp"
 
-namespace taut {
+namespace taut::path_test {
 namespace {
 
 /// A ball or a box that runs at 32 m/s into the hanging sheet of moving-ball.
@@ -54,4 +54,4 @@ TEST(Path, APlateThinnerThanASubstepsTravelIsPassed) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::path_test

@@ -6,7 +6,7 @@
 
 #include "tests/metrics/measured.hpp"
 
-namespace taut {
+namespace taut::windows_test {
 namespace {
 
 Scene run_of(int steps, double dt) {
@@ -102,4 +102,4 @@ TEST(Metrics, AreFoundByTheirValuesAndRolesInOrder) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::windows_test

@@ -5,7 +5,7 @@
 
 #include "core/model/text.hpp"
 
-namespace taut {
+namespace taut::input_error_test {
 namespace {
 
 TEST(Printable, ControlCharactersDoNotReachATerminal) {
@@ -69,4 +69,4 @@ TEST(Diagnostics, SayTheirPlaceAsFarAsItIsKnown) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::input_error_test

@@ -14,7 +14,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 
-namespace taut {
+namespace taut::params_test {
 namespace {
 
 constexpr ParamSpec kSpecs[] = {
@@ -161,4 +161,4 @@ TEST(SolverDefaults, AreTheProcesssOwnClockAndMemoryAndSilence) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::params_test

@@ -13,7 +13,7 @@
 
 #include "core/model/adjacency.hpp"
 
-namespace taut {
+namespace taut::scene_test {
 namespace {
 
 TEST(Sheet, OfThreeByTwoVerticesAsItIsDocumented) {
@@ -244,4 +244,4 @@ TEST(Scene, PinsHaveNoInverseMassAndTheirPlaceIsKnown) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::scene_test

@@ -5,7 +5,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/params.hpp"
 
-namespace taut {
+namespace taut::solver_text_test {
 namespace {
 
 constexpr ParamSpec kSpecs[] = {
@@ -50,4 +50,4 @@ TEST(SolverText, ErrorsNameTheirColumn) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::solver_text_test

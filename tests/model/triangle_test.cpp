@@ -8,7 +8,7 @@
 
 #include "core/model/crossings.hpp"
 
-namespace taut {
+namespace taut::triangle_test {
 namespace {
 
 class Random {
@@ -219,4 +219,4 @@ TEST(Crossings, CoincidencesAreThosePairsThatAreNearAndDoNotCross) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::triangle_test

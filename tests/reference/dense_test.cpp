@@ -19,7 +19,7 @@
 #include "core/reference/textbook.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut::reference {
+namespace taut::reference::dense_test {
 namespace {
 
 TEST(Dense, EigenvectorsAreTurnedIntoTheirMultiples) {
@@ -188,4 +188,4 @@ TEST(Formulas, OfShapesAndSmallAngles) {
 }
 
 }  // namespace
-}  // namespace taut::reference
+}  // namespace taut::reference::dense_test

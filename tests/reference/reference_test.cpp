@@ -11,7 +11,7 @@
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
 
-namespace taut::reference {
+namespace taut::reference::reference_test {
 namespace {
 
 constexpr double kG = 9.81;
@@ -321,4 +321,4 @@ TEST(Shake, RefusesContactAndLockingLinks) {
 }
 
 }  // namespace
-}  // namespace taut::reference
+}  // namespace taut::reference::reference_test

@@ -8,7 +8,7 @@
 
 #include "experiments/render/image/colour.hpp"
 
-namespace taut {
+namespace taut::figure_test {
 namespace {
 
 constexpr Rgb8 kPaper = rgb(0xFFFFFF);
@@ -129,4 +129,4 @@ TEST(Figure, WhatIsWrittenBelowIsInUnitsOfPeople) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::figure_test

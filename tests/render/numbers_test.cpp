@@ -10,7 +10,7 @@
 #include "experiments/render/picture/vertex_values.hpp"
 #include "tests/render/render_scenes.hpp"
 
-namespace taut {
+namespace taut::numbers_test {
 namespace {
 
 /// How much ink is on a white page, in pixels, and where it is.
@@ -378,4 +378,4 @@ TEST(RecordedRun, ShowsTheNearestFrameAndItsSpeedsWhereTheFileHasNone) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::numbers_test

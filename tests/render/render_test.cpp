@@ -10,7 +10,7 @@
 #include "core/model/input_error.hpp"
 #include "tests/render/render_scenes.hpp"
 
-namespace taut {
+namespace taut::render_test {
 namespace {
 
 using test::difference;
@@ -336,4 +336,4 @@ TEST(Golden, SheetOfSpeedsInTheDarkTheme) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::render_test

@@ -9,7 +9,7 @@
 #include "experiments/render/picture/placing.hpp"
 #include "tests/render/render_scenes.hpp"
 
-namespace taut {
+namespace taut::surfaces_test {
 namespace {
 
 /// What the faces enclose around the origin, which sees all of them [m^3].
@@ -211,4 +211,4 @@ TEST(Places, FollowClothThatNothingHoldsAndPutTheGroundBelow) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::surfaces_test

@@ -12,7 +12,7 @@
 #include "experiments/render/picture/media.hpp"
 #include "tests/render/render_scenes.hpp"
 
-namespace taut {
+namespace taut::video_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -124,4 +124,4 @@ TEST_F(VideoTest, WithoutFfmpegThereIsAPoster) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::video_test

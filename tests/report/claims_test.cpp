@@ -11,7 +11,7 @@
 #include "tests/report/cost_reader.hpp"
 #include "tests/report/made_up.hpp"
 
-namespace taut::report {
+namespace taut::report::claims_test {
 namespace {
 
 using namespace reading;
@@ -473,4 +473,4 @@ TEST(Claims, ADifferenceExceedsTheToleranceAndTheNoise) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::claims_test

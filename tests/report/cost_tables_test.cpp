@@ -13,7 +13,7 @@
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
 
-namespace taut::report {
+namespace taut::report::cost_tables_test {
 namespace {
 
 struct Made {
@@ -214,4 +214,4 @@ TEST(CostTables, NoiseIsThatOfTheControlAndSharesOnlyGrowWithTheFactor) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::cost_tables_test

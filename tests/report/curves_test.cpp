@@ -10,7 +10,7 @@
 #include "experiments/report/chart/wording.hpp"
 #include "tests/support/synthetic_records.hpp"
 
-namespace taut::report {
+namespace taut::report::curves_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -259,4 +259,4 @@ TEST(Maps, HaveTheirCellsByAscendingSettingsAndShowTheWorse) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::curves_test

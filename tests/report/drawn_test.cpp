@@ -12,7 +12,7 @@
 #include "tests/report/made_up.hpp"
 #include "tests/report/raw_records.hpp"
 
-namespace taut::report {
+namespace taut::report::drawn_test {
 namespace {
 
 bool fails(const std::string& status) { return status != "ok" && status != "unsettled"; }
@@ -374,4 +374,4 @@ TEST(Drawn, ChangesBetweenTwoFoldersStandTheLargestFirstAndAreJudgedByTheirSign)
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::drawn_test

@@ -8,7 +8,7 @@
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
-namespace taut::report {
+namespace taut::report::findings_test {
 namespace {
 
 Json finding(const std::string& subject, double expected, double tolerance, double measured,
@@ -157,4 +157,4 @@ TEST(ShownSeries, AreTheColumnsOfTheTableThatAFilmShows) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::findings_test

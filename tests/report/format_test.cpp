@@ -10,7 +10,7 @@
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 
-namespace taut::report {
+namespace taut::report::format_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -136,4 +136,4 @@ TEST(Places, AreSpreadFromTheFirstToTheLast) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::format_test

@@ -11,7 +11,7 @@
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut::report {
+namespace taut::report::frontier_plot_test {
 namespace {
 
 const double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -77,4 +77,4 @@ TEST(FrontierPlot, BarsAreHowManyTimesHarderEachParameterMayBeMade) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::frontier_plot_test

@@ -13,7 +13,7 @@
 #include "tests/report/made_up.hpp"
 #include "tests/support/synthetic_records.hpp"
 
-namespace taut::report {
+namespace taut::report::model_keys_test {
 namespace {
 
 using Keys = std::map<std::string, std::set<std::string>>;  ///< by part of the model
@@ -129,4 +129,4 @@ TEST(ModelKeys, EveryFieldIsDocumentedAndEveryDocumentedFieldIsWritten) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::model_keys_test

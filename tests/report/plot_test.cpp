@@ -15,7 +15,7 @@
 #include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
 
-namespace taut::report {
+namespace taut::report::plot_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -246,4 +246,4 @@ TEST(Format, NumbersReadAsPeopleWriteThem) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::plot_test

@@ -15,7 +15,7 @@
 #include "tests/report/made_up.hpp"
 #include "tests/support/synthetic_records.hpp"
 
-namespace taut::report {
+namespace taut::report::report_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -267,4 +267,4 @@ TEST(Files, WhatCannotBeWrittenIsSaidBeforeAnythingIsDone) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::report_test

@@ -8,7 +8,7 @@
 #include "experiments/report/report.hpp"
 #include "tests/support/synthetic_records.hpp"
 
-namespace taut::report {
+namespace taut::report::sentences_test {
 namespace {
 
 /// One study of two solvers at 1 x 16 on these scenes.
@@ -134,4 +134,4 @@ TEST(Caveats, CountThePlannedCasesThatWereNotRun) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::sentences_test

@@ -9,7 +9,7 @@
 #include "experiments/require/answers.hpp"
 #include "experiments/require/require.hpp"
 
-namespace taut {
+namespace taut::kept_answers_test {
 namespace {
 
 const double kNaN = std::nan("");
@@ -197,4 +197,4 @@ TEST(KeptAnswers, WorkAndMemoryAreSumsOverThePasses) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::kept_answers_test

@@ -10,7 +10,7 @@
 #include "experiments/require/draft.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::reductions_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -227,4 +227,4 @@ TEST(Perturbed, OrdersAreTwoOthersThanTheCases) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::reductions_test

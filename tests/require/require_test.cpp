@@ -15,7 +15,7 @@
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::require_test {
 namespace {
 
 std::vector<std::string> names(const std::vector<Effect>& effects) {
@@ -175,4 +175,4 @@ TEST(Perturbations, MoveOneVertexByARoundingErrorEach) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::require_test

@@ -6,7 +6,7 @@
 #include "experiments/require/require.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::require_search_test {
 namespace {
 
 class Requirements : public testing::Test {
@@ -99,4 +99,4 @@ TEST_F(Requirements, AModelThatDoesNotRunToItsEndRequiresNothing) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::require_search_test

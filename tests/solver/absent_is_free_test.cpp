@@ -17,7 +17,7 @@
 
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::absent_is_free_test {
 namespace {
 
 /// A way to run links: an order, and for the coloured one the layout that suits the mesh.
@@ -186,4 +186,4 @@ TEST(AbsentIsFree, NoFlagIsTestedForEachParticle) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::absent_is_free_test

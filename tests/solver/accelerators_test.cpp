@@ -10,7 +10,7 @@
 #include "core/solver/constraints/tethers.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::accelerators_test {
 namespace {
 
 /// Root mean square strain of the structural links.
@@ -232,4 +232,4 @@ TEST(Tethers, GoToTheFourNearestGroupsAtMost) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::accelerators_test

@@ -8,7 +8,7 @@
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 
-namespace taut {
+namespace taut::accuracy_parameters_test {
 namespace {
 
 TEST(AccuracyParameters, AreParametersAndTheirValuesAreAccepted) {
@@ -47,4 +47,4 @@ TEST(AccuracyParameters, StiffnessesRiseFromTheDefault) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::accuracy_parameters_test

@@ -6,7 +6,7 @@
 #include "experiments/case/run_case.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::default_setting_test {
 namespace {
 
 Record run(const std::string& scene, const std::string& solver,
@@ -37,4 +37,4 @@ TEST(DefaultSetting, StretchesLessThanTheSameWorkWithoutSubsteps) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::default_setting_test

@@ -3,7 +3,7 @@
 
 #include "experiments/truths/simulation.hpp"
 
-namespace taut {
+namespace taut::mass_spring_test {
 namespace {
 
 Scene hanging_sheet() {
@@ -72,4 +72,4 @@ TEST(Xpbd, AConvergedCompliantLinkIsASpring) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::mass_spring_test

@@ -4,7 +4,7 @@
 #include "core/model/solver.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::motion_test {
 namespace {
 
 Scene falling_sheet() {
@@ -33,4 +33,4 @@ TEST(Motion, FreeFallMatchesTheDiscreteParabola) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::motion_test

@@ -8,7 +8,7 @@
 #include "core/model/index.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::plan_test {
 namespace {
 
 std::unique_ptr<Solver> make(const Scene& scene, const std::string& solver) {
@@ -227,4 +227,4 @@ TEST(Plan, MemoryOfPlainSolversIsThatOfTheirArrays) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::plan_test

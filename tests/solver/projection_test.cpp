@@ -5,7 +5,7 @@
 
 #include "core/solver/simd/distance.hpp"
 
-namespace taut {
+namespace taut::projection_test {
 namespace {
 
 /// Length after one projection of a link of rest length `rest` that is `length` long.
@@ -71,4 +71,4 @@ TEST(Projection, CoincidentParticlesStayFinite) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::projection_test

@@ -10,7 +10,7 @@
 #include "core/solver/layout/order.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::relaxation_test {
 namespace {
 
 TEST(Relaxation, InMeshOrderAndDoubleItIsTheListing) {
@@ -203,4 +203,4 @@ TEST(Order, TilesAreSquaresOfAGridAndNeighbourhoodsOfAnyOtherMesh) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::relaxation_test

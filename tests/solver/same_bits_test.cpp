@@ -11,7 +11,7 @@
 #include "core/solver/thread_pool.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::same_bits_test {
 namespace {
 
 struct Case {
@@ -361,4 +361,4 @@ TEST(SameBits, LoadingAndStoringMovesBothEndsOfEachLink) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::same_bits_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::second_implementation_test {
 namespace {
 
 using second::Cloth;
@@ -210,4 +210,4 @@ TEST(SecondImplementation, OfSprings) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::second_implementation_test

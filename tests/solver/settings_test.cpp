@@ -14,7 +14,7 @@
 #include "core/solver/simd/kernels.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::solver_settings_test {
 namespace {
 
 using Lines = std::vector<std::pair<std::string, std::string>>;
@@ -196,4 +196,4 @@ TEST(LinearTheory, OfSpringsKnowsTheirFamiliesAndTheirDrag) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::solver_settings_test

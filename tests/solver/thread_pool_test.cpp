@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-namespace taut {
+namespace taut::thread_pool_test {
 
 namespace {
 
@@ -59,4 +59,4 @@ TEST(ThreadPool, OfOneIsTheCaller) {
 
 }  // namespace
 
-}  // namespace taut
+}  // namespace taut::thread_pool_test

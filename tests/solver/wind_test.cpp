@@ -10,7 +10,7 @@
 #include "core/model/index.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::wind_test {
 namespace {
 
 Scene windy(Scene scene, Wind::Law law) {
@@ -71,4 +71,4 @@ TEST(Wind, AFaceWithoutAreaFeelsNothing) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::wind_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace taut {
+namespace taut::campaign_test {
 namespace {
 
 double work(const std::string& solver, const std::vector<std::string>& more = {}) {
@@ -29,4 +29,4 @@ TEST(EstimatedWork, GrowsByTheLinksOfEverySweepAndWithTheSteps) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::campaign_test

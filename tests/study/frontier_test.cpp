@@ -10,7 +10,7 @@
 #include "core/reference/linear_stability.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::frontier_test {
 namespace {
 
 using Kind = Status::Kind;
@@ -216,4 +216,4 @@ TEST(LinearStability, ASheetOfSpringsBlowsUpWhereItSays) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::frontier_test

@@ -14,7 +14,7 @@
 #include "experiments/system/clock.hpp"
 #include "tests/support/scripted.hpp"
 
-namespace taut {
+namespace taut::isolate_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -206,4 +206,4 @@ TEST(Heartbeats, AreReadWhileTheyBeat) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::isolate_test

@@ -9,7 +9,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::main_job_test {
 namespace {
 
 class MainJobFile : public testing::Test {
@@ -55,4 +55,4 @@ TEST_F(MainJobFile, WhatIsWrongIsNamedAllAtOnce) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::main_job_test

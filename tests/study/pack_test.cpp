@@ -11,7 +11,7 @@
 #include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
 
-namespace taut {
+namespace taut::pack_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,4 +150,4 @@ TEST_F(PackTest, AMarkOfMissingCasesHoldsUntilTheyCome) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::pack_test

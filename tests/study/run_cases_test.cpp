@@ -14,7 +14,7 @@
 #include "experiments/system/clock.hpp"
 #include "tests/support/scripted.hpp"
 
-namespace taut {
+namespace taut::run_cases_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -275,4 +275,4 @@ TEST(FrontierOfCases, BracketsWhatTheoryPredictsAndRunsNothingTwice) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::run_cases_test

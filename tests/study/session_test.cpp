@@ -11,7 +11,7 @@
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
-namespace taut {
+namespace taut::session_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -143,4 +143,4 @@ TEST(MissingCases, AreCountedMarkByMark) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::session_test

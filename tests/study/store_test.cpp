@@ -11,7 +11,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,4 +165,4 @@ TEST_F(StoreTest, ReadingCreatesNothing) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::store_test

@@ -16,7 +16,7 @@
 #include "experiments/timing/recommendation.hpp"
 #include "tests/support/synthetic_records.hpp"
 
-namespace taut {
+namespace taut::stored_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ TEST(StoredFiles, WrongTypesAndMissingKeysAreNamedWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::stored_files_test

@@ -12,7 +12,7 @@
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::study_test {
 namespace {
 
 Study study_of(const std::string& text, const std::string& preset = "") {
@@ -180,4 +180,4 @@ TEST(Key, EverySolverHasAnImplementationDigest) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::study_test

@@ -14,7 +14,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/system/data.hpp"
 
-namespace taut {
+namespace taut::files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,4 +199,4 @@ TEST(ShippedData, AreThoseOfTheTreeUnlessTheEnvironmentSaysOtherwise) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::files_test

@@ -9,7 +9,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::json_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -131,4 +131,4 @@ TEST(JsonLines, AreReadOneAfterTheOtherAndADamagedOneIsNamed) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::json_test

@@ -14,7 +14,7 @@
 #include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::process_test {
 namespace {
 
 using Stream = ProcessOptions::Stream;
@@ -237,4 +237,4 @@ TEST(Clocks, AFutureIsNeverBeforeItsStart) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::process_test

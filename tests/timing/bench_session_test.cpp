@@ -12,7 +12,7 @@
 #include "experiments/timing/bench/kernels.hpp"
 #include "experiments/timing/recommendation.hpp"
 
-namespace taut {
+namespace taut::bench_session_test {
 namespace {
 
 BenchedCase timed(const std::string& solver, std::vector<double> samples, double dt = 0.5) {
@@ -203,4 +203,4 @@ TEST(Answers, ATargetReadsAsItWasAsked) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::bench_session_test

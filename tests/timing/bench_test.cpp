@@ -13,7 +13,7 @@
 #include "experiments/case/case.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::bench_test {
 namespace {
 
 BenchedCase benched(const std::string& solver, double stretch, double cost_per_step,
@@ -148,4 +148,4 @@ TEST(BenchFiles, AJobOnSeveralNodesOrASharedOneDoesNotTime) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::bench_test

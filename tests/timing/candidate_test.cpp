@@ -6,7 +6,7 @@
 
 #include "experiments/timing/bench.hpp"
 
-namespace taut {
+namespace taut::candidate_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -49,4 +49,4 @@ TEST(Candidates, AnExactZeroMeetsAnErrorOfZero) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::candidate_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace taut {
+namespace taut::effects_test {
 namespace {
 
 TEST(BenchEffects, EveryCopyMakesEveryStep) {
@@ -35,4 +35,4 @@ TEST(BenchEffects, LookingInVainCostsLessThanContact) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::effects_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace taut {
+namespace taut::profile_test {
 namespace {
 
 BenchedCase timed(const std::string& solver, double cost, double error,
@@ -69,4 +69,4 @@ TEST(Profiles, ASceneThatASolverCannotDoCountsAgainstIt) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::profile_test

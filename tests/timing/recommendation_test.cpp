@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace taut {
+namespace taut::recommendation_test {
 namespace {
 
 /// A finalist whose samples are `cost` [CPU s per step of 1 s] with a ripple of one per cent.
@@ -162,4 +162,4 @@ TEST(Recommendation, EverySolverSendsItsBestToTheFinal) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::recommendation_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace taut {
+namespace taut::scaling_test {
 namespace {
 
 std::vector<Case> squares(std::initializer_list<int> sides) {
@@ -61,4 +61,4 @@ TEST(Scaling, TwoSizesAreNoExponent) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::scaling_test

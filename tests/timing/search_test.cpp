@@ -7,7 +7,7 @@
 
 #include "core/model/solver.hpp"
 
-namespace taut {
+namespace taut::timing_search_test {
 namespace {
 
 /// error = 1 / (n^2 k), cost = n (a + k): what stiff links do, roughly.
@@ -100,4 +100,4 @@ TEST(Search, LeavesAloneWhatTheUserFixed) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::timing_search_test

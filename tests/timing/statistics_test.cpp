@@ -9,7 +9,7 @@
 
 #include "tests/support/recorded_samples.hpp"
 
-namespace taut {
+namespace taut::statistics_test {
 namespace {
 
 /// A machine shared with others: log-normal noise, a slow drift of its speed and now and then a
@@ -225,4 +225,4 @@ TEST(Statistics, ALinearDriftCancelsInsideABlock) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::statistics_test

@@ -14,7 +14,7 @@
 #include "experiments/system/data.hpp"
 #include "tests/support/scripted.hpp"
 
-namespace taut {
+namespace taut::timing_test {
 namespace {
 
 /// Its state is how many steps it has made; its clock shows half a second for each.
@@ -223,4 +223,4 @@ TEST(Benches, TimeTheStepsOfASolver) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::timing_test

@@ -12,7 +12,7 @@
 #include "core/reference/fit.hpp"
 #include "experiments/truths/simulation.hpp"
 
-namespace taut {
+namespace taut::judging_test {
 namespace {
 
 constexpr ParamSpec kFlaws[] = {ParamSpec::choice(
@@ -253,4 +253,4 @@ TEST(Fit, ASignChangesWhereItDoes) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::judging_test

@@ -13,7 +13,7 @@
 #include "experiments/case/reference_store.hpp"
 #include "experiments/truths/simulation.hpp"
 
-namespace taut {
+namespace taut::truths_test {
 namespace {
 
 const std::filesystem::path kSource = TAUT_SOURCE_DIR;
@@ -136,4 +136,4 @@ TEST(References, TheCommittedOnesBelongToTheShippedScenes) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::truths_test

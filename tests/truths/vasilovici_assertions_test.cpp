@@ -7,7 +7,7 @@
 #include "experiments/truths/truth.hpp"
 #include "experiments/truths/vasilovici/assertions.hpp"
 
-namespace taut {
+namespace taut::vasilovici_assertions_test {
 namespace {
 
 TEST(VasiloviciAssertions, EachIsHeldByATruthUnlessItCannotBeTested) {
@@ -37,4 +37,4 @@ TEST(VasiloviciAssertions, TheTruthsBehindBoxesAndOctreesHold) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::vasilovici_assertions_test

@@ -11,7 +11,7 @@
 #include "core/solver/contact/projector.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::contact_contact_test {
 namespace {
 
 constexpr double kDt = 1.0 / 64;
@@ -423,4 +423,4 @@ TEST(FaceContact, RubsAgainstTheSlipOfItsDeepestPoint) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::contact_contact_test

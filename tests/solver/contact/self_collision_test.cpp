@@ -11,7 +11,7 @@
 #include "experiments/case/run_case.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::self_collision_test {
 namespace {
 
 /// Particles at the given places and velocities, no links, no gravity, 1 kg each, radius 5 cm.
@@ -325,4 +325,4 @@ TEST(SelfCollision, PairsOfEverySpeedMeetAndPart) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::self_collision_test

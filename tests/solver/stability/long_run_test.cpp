@@ -10,7 +10,7 @@
 #include "experiments/case/run_case.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::long_run_test {
 namespace {
 
 constexpr int kSteps = 1'000'000;
@@ -88,4 +88,4 @@ TEST(DISABLED_LongRun, FlagFliesForAMillionSteps) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::long_run_test

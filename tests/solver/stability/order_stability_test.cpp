@@ -20,7 +20,7 @@
 #include "core/solver/simd/distance.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::order_stability_test {
 namespace {
 
 /// The linearised sweep over `links`, in the plane of the sheet.
@@ -187,4 +187,4 @@ TEST(OrderStability, UnderSubstepsSmallerOrExactCorrectionsCureSequentialOrders)
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::order_stability_test

@@ -9,7 +9,7 @@
 #include "core/reference/static_equilibrium.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::swing_energy_test {
 namespace {
 
 /// A sheet that drapes from two corners 0.8 m apart, turned by 45 degrees about them and let go.
@@ -48,4 +48,4 @@ TEST(SwingEnergy, IsKeptByTheReferenceNearlyBySubstepsAndNotBySweeps) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::swing_energy_test

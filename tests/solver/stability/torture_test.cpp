@@ -7,7 +7,7 @@
 
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::torture_test {
 namespace {
 
 /// Draws one extreme after another; the same for the same seed.
@@ -178,4 +178,4 @@ TEST(Torture, TenThousandSweepsAndNone) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::torture_test

@@ -10,7 +10,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut::cluster {
+namespace taut::cluster::attempt_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,4 +75,4 @@ TEST_F(Starts, WhoRunsAlreadyGoesOnWhateverItsName) {
 }
 
 }  // namespace
-}  // namespace taut::cluster
+}  // namespace taut::cluster::attempt_test

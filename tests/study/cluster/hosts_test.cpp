@@ -10,7 +10,7 @@
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut::report {
+namespace taut::report::hosts_test {
 namespace {
 
 Study two_cases() {
@@ -84,4 +84,4 @@ TEST(Hosts, TwoFoldersAreComparedInCostHostByHost) {
 }
 
 }  // namespace
-}  // namespace taut::report
+}  // namespace taut::report::hosts_test

@@ -16,7 +16,7 @@
 #include "experiments/study/cluster/merge.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut::cluster {
+namespace taut::cluster::scale_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,4 +165,4 @@ TEST(StoreScale, ManyCheapCases) {
 }
 
 }  // namespace
-}  // namespace taut::cluster
+}  // namespace taut::cluster::scale_test

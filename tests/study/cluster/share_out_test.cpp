@@ -7,7 +7,7 @@
 #include "experiments/study/cluster/job_script.hpp"
 #include "experiments/study/cluster/manifest.hpp"
 
-namespace taut::cluster {
+namespace taut::cluster::share_out_test {
 namespace {
 
 Manifest of_seconds(const std::vector<double>& seconds, int shards) {
@@ -57,4 +57,4 @@ TEST(JobScript, AsksForWhatTheLongestShardNeeds) {
 }
 
 }  // namespace
-}  // namespace taut::cluster
+}  // namespace taut::cluster::share_out_test

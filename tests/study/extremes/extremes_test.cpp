@@ -13,7 +13,7 @@
 #include "experiments/study/extremes/symptom.hpp"
 #include "experiments/system/files.hpp"
 
-namespace taut {
+namespace taut::extremes_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -173,4 +173,4 @@ TEST(Frontiers, AreReadBackOfTheProgramThatFoundThemAndDamageIsNamed) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::extremes_test

@@ -9,7 +9,7 @@
 #include "experiments/system/files.hpp"
 #include "experiments/system/signals.hpp"
 
-namespace taut {
+namespace taut::interrupted_test {
 namespace {
 
 /// 0: nothing was found and it says that it was interrupted; else what is wrong.
@@ -35,4 +35,4 @@ TEST(Extremes, AreInterruptedIfTheirTimeIsUp) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::interrupted_test
