@@ -82,6 +82,20 @@ TEST_F(Plots, ExactZerosStayOnTheFloorOfALogarithmicAxis) {
   EXPECT_NE(read_text(plot.svg).find("exactly zero"), std::string::npos);
 }
 
+TEST_F(Plots, OnlyASolverThatReachedZeroIsSaidToHave) {
+  auto records = synthetic::iterations("ball");
+  bool first = true;
+  for (Record& r : records) {
+    if (r.status.kind != Status::Kind::ok) continue;
+    const bool ours = r.solver == "jakobsen";
+    r.values["penetration.max"] = ours && first ? 0 : 0.01;
+    first = first && !ours;
+  }
+  const PlotFiles plot = draw({.kind = "contact", .y = "penetration.max"}, records);
+  EXPECT_NE(read_text(plot.svg).find("Jakobsen: exactly zero"), std::string::npos);
+  EXPECT_EQ(read_text(plot.svg).find("Bullet: exactly zero"), std::string::npos);
+}
+
 TEST_F(Plots, AllZeroAllFailedAndNan) {
   auto records = synthetic::iterations("hang");
   for (Record& r : records)
