@@ -7,6 +7,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/case/run_case.hpp"
+#include "tests/support/cloths.hpp"
 
 namespace taut::deformable_test {
 namespace {
@@ -23,12 +24,7 @@ Scene sheet(const SheetShape& shape, const LinkChoice& links) {
 State run(const Scene& scene, const std::string& text, int steps) {
   const SolverChoice choice = parse_solver(text);
   EXPECT_EQ(choice.entry->unsupported(scene, choice.params), std::vector<std::string>{});
-  const auto solver = choice.entry->make(scene, choice.params);
-  solver->load(scene.start);
-  for (int n = 0; n < steps; ++n) solver->step(n * scene.dt, scene.dt);
-  State state;
-  solver->store(state);
-  return state;
+  return simulate(scene, text, steps);
 }
 
 double distance(const State& a, const State& b) {

@@ -1,5 +1,7 @@
 // What the two of Bullet's cloths say of a scene, line by line; what they refuse; how far out a
 // vertex may be, and how wide a plane is.
+#include "tests/support/settings.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,18 +15,6 @@
 
 namespace taut::bullet_ref_settings_test {
 namespace {
-
-using Lines = std::vector<std::pair<std::string, std::string>>;
-
-Lines settings(const Scene& scene, const std::string& solver) {
-  const SolverChoice choice = parse_solver(solver);
-  return choice.entry->resolved_settings(scene, choice.params);
-}
-
-std::vector<std::string> refused(const Scene& scene, const std::string& solver) {
-  const SolverChoice choice = parse_solver(solver);
-  return choice.entry->unsupported(scene, choice.params);
-}
 
 Lines operator+(Lines a, const Lines& b) {
   a.insert(a.end(), b.begin(), b.end());

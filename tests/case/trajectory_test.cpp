@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "core/model/input_error.hpp"
+#include "tests/support/bytes.hpp"
 
 namespace taut::trajectory_test {
 namespace {
@@ -143,17 +144,6 @@ TEST_F(TrajectoryTest, TheDocumentedPythonReadsIt) {
   EXPECT_EQ(pclose(python), 0);
   fs::remove(file);
   EXPECT_EQ(output, "1 3 [(0, 1, 2)] 2 0.015625 6.0\n");
-}
-
-/// Bytes from hexadecimal digits; blanks are for the reader.
-std::string bytes(const std::string& digits) {
-  std::string all, pair;
-  for (const char c : digits) {
-    if (c == ' ') continue;
-    pair += c;
-    if (pair.size() == 2) all += static_cast<char>(std::stoi(pair, nullptr, 16)), pair.clear();
-  }
-  return all;
 }
 
 /// A trajectory of three vertices and one triangle, of "ab" by "xyz", as the format has it.

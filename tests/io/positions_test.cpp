@@ -13,6 +13,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "tests/support/bytes.hpp"
 
 namespace taut::positions_test {
 namespace {
@@ -242,17 +243,6 @@ TEST_F(Positions, ObjHoldsWhatAModellingProgramWants) {
   const std::string chain = written({.nu = 3, .nv = 1, .width = 1, .height = 0, .mass = 1});
   EXPECT_NE(chain.find("\nl 1 2 3\n"), std::string::npos) << chain;
   EXPECT_EQ(chain.find("vt "), std::string::npos) << chain;
-}
-
-/// Bytes from hexadecimal digits; blanks are for the reader.
-std::string bytes(const std::string& digits) {
-  std::string all, pair;
-  for (const char c : digits) {
-    if (c == ' ') continue;
-    pair += c;
-    if (pair.size() == 2) all += static_cast<char>(std::stoi(pair, nullptr, 16)), pair.clear();
-  }
-  return all;
 }
 
 // Two frames of a face with corners at 1 2 3, 0 0 0 and 0 0 -4 and twice that, at 0 s and 0.5 s.

@@ -1,5 +1,7 @@
 // What solvers say of themselves on a scene: what they make of each setting, what they refuse and
 // why, and which theory holds for them.
+#include "tests/support/settings.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,18 +18,6 @@
 
 namespace taut::solver_settings_test {
 namespace {
-
-using Lines = std::vector<std::pair<std::string, std::string>>;
-
-Lines settings(const Scene& scene, const std::string& solver) {
-  const SolverChoice choice = parse_solver(solver);
-  return choice.entry->resolved_settings(scene, choice.params);
-}
-
-std::vector<std::string> refused(const Scene& scene, const std::string& solver) {
-  const SolverChoice choice = parse_solver(solver);
-  return choice.entry->unsupported(scene, choice.params);
-}
 
 Scene with_contact() {
   Scene scene = hanging_sheet(3, 3);

@@ -28,13 +28,7 @@ Scene particles(std::vector<Vec3> x, std::vector<Vec3> v) {
 }
 
 State run(const Scene& scene, const char* params, int steps) {
-  const SolverChoice choice = parse_solver(listing(std::string("precision=double,") + params));
-  const auto solver = choice.entry->make(scene, choice.params);
-  solver->load(scene.start);
-  for (int n = 0; n < steps; ++n) solver->step(n * scene.dt, scene.dt);
-  State state;
-  solver->store(state);
-  return state;
+  return simulate(scene, listing(std::string("precision=double,") + params), steps);
 }
 
 TEST(SelfCollision, TwoParticlesMeetAndKeepTheirMomentum) {
