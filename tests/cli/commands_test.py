@@ -5,6 +5,7 @@ import csv
 import hashlib
 import json
 import math
+import os
 import pathlib
 import re
 import shlex
@@ -136,6 +137,12 @@ colour = "red"
                               "study.toml:7:20: forces.damping=-2: 'damping' in [forces]"])
         self.refuse("run", self.study(rest='axes.order = ["mesh", "messh"]\naxes.iterations = [1, 1e99]\n'),
                     says=["study.toml:4:24: jakobsen: order=messh is not one of", "study.toml:5:23: jakobsen: iterations=1e+99 is not a whole number"])
+
+    def test_a_shipped_scene_that_is_missing_is_named_by_verify(self):
+        (self.folder / "scenes").mkdir()
+        process = self.taut("verify", "-j", 2, "box-freeze", "box-halt", expect=2,
+                            env={**os.environ, "TAUT_DATA": str(self.folder)})
+        self.assertIn("unknown scene 'box'", process.err)
 
 
 class Verbs(CommandLine):

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -61,27 +62,36 @@ std::vector<const TruthEntry*> choose(const Options& options) {
   return chosen;
 }
 
-/// Checks the truths on `jobs` threads; outcomes stay in the order of the truths.
+/// Checks the truths on `jobs` threads; outcomes stay in the order of the truths. Throws what a
+/// truth threw first, as InputError of a shipped scene that is missing.
 std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const Options& options) {
   std::vector<Outcome> outcomes(chosen.size());
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::size_t done = 0;
+  std::exception_ptr failed;
   const Countdown countdown("truth");
   const auto work = [&] {
-    for (std::size_t i = next++; i < chosen.size(); i = next++) {
-      const auto start = SteadyClock::now();
-      Findings findings(options.solvers);
-      chosen[i]->check(findings);
-      outcomes[i] = {chosen[i], findings.all(), seconds_since(start)};
+    try {
+      for (std::size_t i = next++; i < chosen.size(); i = next++) {
+        const auto start = SteadyClock::now();
+        Findings findings(options.solvers);
+        chosen[i]->check(findings);
+        outcomes[i] = {chosen[i], findings.all(), seconds_since(start)};
+        const std::lock_guard lock(mutex);
+        countdown(++done, chosen.size());
+      }
+    } catch (...) {
       const std::lock_guard lock(mutex);
-      countdown(++done, chosen.size());
+      if (!failed) failed = std::current_exception();
+      next = chosen.size();
     }
   };
   std::vector<std::thread> threads;
   for (int j = 1; j < options.jobs; ++j) threads.emplace_back(work);
   work();
   for (std::thread& thread : threads) thread.join();
+  if (failed) std::rethrow_exception(failed);
   return outcomes;
 }
 
