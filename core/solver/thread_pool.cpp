@@ -70,7 +70,8 @@ void ThreadPool::advance(Member& me, std::size_t part, std::uint32_t stages) {
       wait();
       continue;
     }
-    if (!me.owns(part) && me.patience > 0) {
+    const bool alone = gate_.load(std::memory_order_relaxed) == 1;
+    if (!me.owns(part) && me.patience > 0 && !alone) {
       --me.patience, pause();
       continue;
     }
