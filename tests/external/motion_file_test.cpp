@@ -227,6 +227,7 @@ TEST_F(MotionFiles, WhatWasSaidReadOrDerivedIsInTheSettings) {
   EXPECT_EQ(misfit(scene, {.file = turned.file, .up = "y"}).substr(folder_.string().size(), 33),
             "/b.npy does not begin as sheet do");
   EXPECT_EQ(MotionFile(scene, {.file = plain.file, .fps = 50}).frame_dt(), 0.02);
+  EXPECT_EQ(MotionFile(scene, {.file = plain.file, .fps = 0.5}).frame_dt(), 2);
 }
 
 TEST_F(MotionFiles, AFrameMayComeAHundredthOfAFrameEarlyOrLate) {
