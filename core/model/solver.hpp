@@ -170,6 +170,12 @@ struct SolverChoice {
 };
 SolverChoice parse_solver(std::string_view text);
 
+/// The name in "name" or "name:key=value,...".
+std::string solver_name(std::string_view text);
+
+/// The text with `more`, "key=value,...", behind its parameters; "" adds nothing.
+std::string with(std::string_view solver, std::string_view more);
+
 }  // namespace taut
 
 /// Defines the entry under the name by which the generated registry finds it:

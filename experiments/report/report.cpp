@@ -11,6 +11,7 @@
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/input.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/json.hpp"
 

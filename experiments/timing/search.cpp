@@ -101,8 +101,7 @@ class SettingSearch {
  private:
   std::string text(const Values& values) const {
     std::string all = solver_;
-    for (const auto& [name, value] : values)
-      all += (all.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
+    for (const auto& [name, value] : values) all = with(all, name + "=" + value);
     return all;
   }
 

@@ -171,6 +171,8 @@ class Verbs(CommandLine):
             self.assertEqual("theory: slope -1" in figure.with_suffix(".gp").read_text(), drawn, value)
         self.assertIn("set title 'Largest stretch over sweeps per substep, small",
                       (figure.parent / "small-convergence-stretch.max-over-iterations.gp").read_text())
+        figure = self.folder / self.taut("plot", study, "--kind", "convergence", "--title", "Ours").out.split()[0]
+        self.assertIn("set title 'Ours, small", figure.with_suffix(".gp").read_text())
 
     def test_a_run_ends_with_commands_that_work(self):
         self.study("a study.toml", rest="axes.iterations = [1, 2]\n" + '[[plot]]\nkind = "convergence"\n')
@@ -291,6 +293,18 @@ class Verbs(CommandLine):
         self.assertEqual(hashlib.sha256(bits).hexdigest(), record["digest"])
         self.assertEqual(len((self.folder / "series.csv").read_text().splitlines()), 34)
         self.assertEqual((self.folder / "all.traj").read_bytes()[:8], b"TAUTTRAJ")
+
+    def test_a_case_says_how_far_it_is_and_what_the_settings_became(self):
+        words = ["case", "./small.toml", "jakobsen", "--dt", "1/128", "--duration", 0.25, "--json"]
+        verbose, plain = self.taut(*words, "--verbose"), self.taut(*words)
+        self.assertEqual((verbose.out, plain.err), (plain.out, ""))
+        # Of 32 steps each, and at the end: at rest in the first, then falling.
+        steps = re.findall(r"^step (\d+)/32  t (\S+) s  fastest vertex (\S+) m/s$", verbose.err, re.MULTILINE)
+        self.assertEqual([(int(n), float(t)) for n, t, _ in steps], [(n, float(f"{n / 128:.6g}")) for n in range(33)])
+        self.assertEqual(float(steps[0][2]), 0)
+        self.assertGreater(float(steps[3][2]), 0)
+        for name, value in json.loads(plain.out)["resolved_settings"]:
+            self.assertIn(f"{name}: {value}\n", verbose.err)
 
     def test_float_bullet_runs_in_its_own_program(self):
         for precision in ["float", "double"]:

@@ -7,6 +7,7 @@
 
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/report/input.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"

@@ -10,6 +10,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/input.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"

@@ -5,6 +5,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/claims/claim.hpp"
+#include "experiments/report/input.hpp"
 #include "experiments/report/report.hpp"
 #include "tests/support/synthetic_records.hpp"
 

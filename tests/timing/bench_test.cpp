@@ -10,6 +10,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/system/files.hpp"
 
@@ -23,7 +24,7 @@ BenchedCase benched(const std::string& solver, double stretch, double cost_per_s
   c.record.id = "sheet " + solver;
   c.record.spec = {"sheet", {}, solver};
   c.record.scene = "sheet";
-  c.record.solver = solver.substr(0, solver.find(':'));
+  c.record.solver = solver_name(solver);
   c.record.dt = dt;
   c.record.steps = 10;
   c.record.values["stretch.rms"] = stretch;

@@ -3,6 +3,7 @@
 #include "core/io/positions/positions.hpp"
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -115,9 +116,8 @@ Files export_frames(const RunSet& set, const fs::path& folder) {
   const std::size_t stride = std::max(1, static_cast<int>(1 / (30 * set.scene.dt) + 0.5));
   make_folder(folder);
   for (std::size_t k = 0; k < set.runs.size(); ++k) {
-    const std::string& solver = set.runs[k].trajectory.header.solver;
-    const std::string prefix =
-        set.scene.name + "_" + std::to_string(k + 1) + "_" + solver.substr(0, solver.find(':'));
+    const std::string prefix = set.scene.name + "_" + std::to_string(k + 1) + "_" +
+                               solver_name(set.runs[k].trajectory.header.solver);
     const auto writer = create_positions(folder / (prefix + ".obj"), set.scene.mesh);
     const auto& frames = set.runs[k].trajectory.frames;
     const Countdown countdown("file");

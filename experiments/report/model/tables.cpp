@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/solver.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
@@ -21,7 +22,7 @@ Json columns(const std::vector<std::string>& titles) {
 Json required_table(const std::vector<RequiredModel>& required) {
   Json rows = Json::array();
   for (const RequiredModel& one : required)
-    rows.push_back(Json::array({one.scene, solver_title(one.solver.substr(0, one.solver.find(':'))),
+    rows.push_back(Json::array({one.scene, solver_title(solver_name(one.solver)),
                                 one.chaotic.empty() ? "no" : one.chaotic, one.answers, one.drop,
                                 one.keep, one.time}));
   return {
