@@ -70,6 +70,29 @@ TEST(Sentences, TheDeepestOfSeveralScenesIsNamedAndPassagesAreSummed) {
       << said;
 }
 
+TEST(Sentences, SettingsOfASceneAreSaidWhereTheyDiffer) {
+  Reported made;
+  for (const char* grid : {"cloth.grid=[4, 4]", "cloth.grid=[8, 8]"})
+    for (const char* solver : {"jakobsen", "bullet"})
+      made.add("hang", solver, {{"stretch.rms", 0.02}, {"penetration.peak", 0.002}})
+          .spec.overrides = {"time.duration=2", grid};
+  for (const char* solver : {"jakobsen", "bullet"})
+    made.add("ball", solver, {{"stretch.rms", 0.02}, {"penetration.peak", 0.003}})
+        .spec.overrides = {"time.duration=2"};
+  for (std::size_t i = 0; Record & r : made.input.studies.front().records)
+    r.key = std::to_string(i++);
+  EXPECT_NE(made.sentence("stretch").find("geometric mean over hang (cloth.grid=[4, 4]) and ball"),
+            std::string::npos)
+      << made.sentence("stretch");
+  EXPECT_NE(made.sentence("depth").find("deepest of hang (cloth.grid=[4, 4]) and ball"),
+            std::string::npos)
+      << made.sentence("depth");
+  EXPECT_NE(made.sentence("stretch-hang").find(" on hang (cloth.grid=[4, 4]) at 16"),
+            std::string::npos)
+      << made.sentence("stretch-hang");
+  EXPECT_EQ(made.sentence("stretch-ball").find(" on ball"), std::string::npos);
+}
+
 TEST(Sentences, WhoHasLessIsSaidBeyondFivePerCentOnly) {
   Reported made;
   for (const auto& [scene, a, b] : {std::tuple{"ball", 0.02, 0.04},
