@@ -53,7 +53,8 @@ double error_of(const std::string& text) {
 
 Target target_of(const Options& options) {
   if (options.error.empty() == (options.budget <= 0))
-    throw InputError("advise needs one of --error and --budget");
+    throw InputError(std::string("advise needs one of --error and --budget") +
+                     (options.error.empty() ? "" : ", not both"));
   if (!options.error.empty()) return {error_of(options.error), {}};
   return {{}, options.budget * 1e-3 / kFrame};
 }

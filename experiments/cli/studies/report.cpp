@@ -33,7 +33,9 @@ struct Options {
 };
 
 bool is_results_folder(const std::string& name) {
-  return std::filesystem::is_directory(std::filesystem::path(name) / "store");
+  const std::filesystem::path folder(name);
+  return std::filesystem::is_directory(folder / "store") ||
+         std::filesystem::is_directory(folder / "packs");
 }
 
 std::string command_line(const Options& options) {
@@ -128,6 +130,8 @@ int run(Options options) {
   std::vector<Study> studies;
   for (const std::string& name : options.studies)
     studies.push_back(load_study(name, options.preset));
+  if (!std::filesystem::exists(options.results))
+    throw InputError("no results folder " + options.results + "; taut run makes it");
   const Store store(options.results);
   report::ReportInput input = report::stored_results(studies, store);
   std::vector<Study> map_studies;
