@@ -93,7 +93,7 @@ std::string_view program(const Params&);
 /// Throws InputError if that is not this one.
 void require_program(const std::string& solver, const Params&);
 
-/// Reasons and lines of the fairness panel that hold for both.
+/// Reasons and lines of the resolved settings that hold for both.
 std::vector<std::string> unsupported(const Scene&, const Params&);
 ResolvedSettings library_settings(const Scene&, const Params&);
 ResolvedSettings contact_settings(const Scene&, const Params&, const std::string& default_voxel);

@@ -200,6 +200,8 @@ Document parse_document(const std::string& file, const std::string& text,
         found.push_back(document.diagnostic({1, 1, i}, problem));
     } catch (const toml::parse_error& error) {
       found.push_back(syntax_error(error, document, assignment, i));
+      if (found.back().message.starts_with("Error while parsing"))  // the library's words
+        found.back().message += "; a text stands in quotes: key=\"text\"";
     }
   }
   if (!found.empty()) throw InputError(found);

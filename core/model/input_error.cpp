@@ -34,7 +34,7 @@ std::string Diagnostic::text() const {
   if (file.empty()) return printable(message);
   std::string place = file + ":";
   if (line > 0)
-    place += std::to_string(line) + ":" + std::to_string(column) + ":";
+    place += std::to_string(line) + (column > 0 ? ":" + std::to_string(column) : "") + ":";
   else if (column > 0)  // of an argument
     place += " column " + std::to_string(column) + ":";
   return printable(place + " " + message);

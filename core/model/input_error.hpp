@@ -11,7 +11,7 @@ namespace taut {
 struct Diagnostic {
   std::string file;     ///< as the user named it; empty: the command line
   int line = 0;         ///< 1-based; 0: unknown
-  int column = 0;       ///< 1-based; 0: unknown
+  int column = 0;       ///< 1-based; 0: unknown, or the whole line
   std::string message;  ///< names the key
 
   std::string text() const;

@@ -64,7 +64,7 @@ SolverChoice parse_solver(std::string_view text) {
   };
   SolverChoice choice;
   try {
-    choice.entry = &find_solver(text.substr(0, colon), params);
+    choice.entry = &find_solver(solver_name(text), params);
   } catch (const InputError& error) {
     for (const Diagnostic& d : error.diagnostics())
       d.line > 0 ? wrong.push_back(d) : report(0, d.message);
@@ -82,14 +82,19 @@ SolverChoice parse_solver(std::string_view text) {
   return choice;
 }
 
-std::string SolverChoice::canonical() const {
-  const std::string params_text = params.canonical();
-  return std::string(entry->name) + (params_text.empty() ? "" : ":" + params_text);
+std::string solver_name(std::string_view text) {
+  return std::string(text.substr(0, text.find(':')));
 }
 
-std::string SolverChoice::brief() const {
-  const std::string params_text = params.brief();
-  return std::string(entry->name) + (params_text.empty() ? "" : ":" + params_text);
+std::string with(std::string_view solver, std::string_view more) {
+  std::string text(solver);
+  if (more.empty()) return text;
+  text += text.find(':') == std::string::npos ? ':' : ',';
+  return text.append(more);
 }
+
+std::string SolverChoice::canonical() const { return with(entry->name, params.canonical()); }
+
+std::string SolverChoice::brief() const { return with(entry->name, params.brief()); }
 
 }  // namespace taut

@@ -65,7 +65,7 @@ struct SolverFailure : std::runtime_error {
   std::string status, log;
 };
 
-/// A line of the fairness panel: what the solver makes of a setting ("time step", "1/64 s, as
+/// A resolved setting: what the solver makes of a setting ("time step", "1/64 s, as
 /// binary32").
 using ResolvedSettings = std::vector<std::pair<std::string, std::string>>;
 
@@ -169,6 +169,12 @@ struct SolverChoice {
   std::string brief() const;
 };
 SolverChoice parse_solver(std::string_view text);
+
+/// The name in "name" or "name:key=value,...".
+std::string solver_name(std::string_view text);
+
+/// The text with `more`, "key=value,...", behind its parameters; "" adds nothing.
+std::string with(std::string_view solver, std::string_view more);
 
 }  // namespace taut
 

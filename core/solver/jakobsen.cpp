@@ -124,34 +124,48 @@ ContactSettings contact_settings(const Params& params) {
 /// The vertices that are not integrated: held, or moved along the scene's motions.
 class Pins {
  public:
-  explicit Pins(const Scene& scene) : held_(scene.pins), motions_(scene.pin_motions) {
-    for (const PinMotion& group : motions_)
+  Pins(const Scene& scene, const Layout& layout) {
+    std::vector<int> free = scene.pins;
+    std::vector<Moved> moved;
+    for (const PinMotion& group : scene.pin_motions) {
+      motions_.push_back(group.motion);
       for (const int v : group.vertices) {
-        std::erase(held_, v);
-        starts_.push_back(scene.start.x[static_cast<std::size_t>(v)]);
+        std::erase(free, v);
+        moved.push_back({v, motions_.size() - 1, scene.start.x[static_cast<std::size_t>(v)]});
       }
+    }
+    std::vector<Held> held;
+    for (const int v : free) held.push_back({v});
+    held_ = {std::move(held), layout}, moved_ = {std::move(moved), layout};
   }
+  Pins() = default;
 
-  /// Undoes what integration did to them and puts them where they have to be at time t [s].
+  /// Undoes what integration did to those of blocks [begin, end) and puts them where they have to
+  /// be at time t [s].
   template <class Real>
-  void place(Particles<Real>& p, double t) const {
-    for (const int v : held_)
+  void place(Particles<Real>& p, std::size_t begin, std::size_t end, double t) {
+    for (const auto& [v] : held_.of(begin, end))
       p.x.set(static_cast<std::size_t>(v), p.previous[static_cast<std::size_t>(v)]);
-    std::size_t next = 0;
-    for (const PinMotion& group : motions_)
-      for (const int v : group.vertices)
-        p.x.set(static_cast<std::size_t>(v),
-                group.motion.moved(starts_[next++], t).template cast<Real>());
+    for (const auto& [v, motion, start] : moved_.of(begin, end))
+      p.x.set(static_cast<std::size_t>(v), motions_[motion].moved(start, t).template cast<Real>());
   }
 
-  bool empty() const { return held_.empty() && motions_.empty(); }
-  std::size_t size() const { return held_.size() + starts_.size(); }
-  std::size_t bytes() const { return held_.size() * sizeof(int) + starts_.size() * sizeof(Vec3); }
+  bool empty() const { return held_.empty() && moved_.empty(); }
+  std::size_t size() const { return held_.size() + moved_.size(); }
+  std::size_t bytes() const { return held_.bytes() + moved_.bytes(); }
 
  private:
-  std::vector<int> held_;
-  std::vector<PinMotion> motions_;
-  std::vector<Vec3> starts_;  ///< m, of the moved ones, group after group
+  struct Held {
+    int vertex;
+  };
+  struct Moved {
+    int vertex;
+    std::size_t motion;
+    Vec3 start;  ///< m
+  };
+  std::vector<Motion> motions_;
+  ByBlock<Held> held_;
+  ByBlock<Moved> moved_;
 };
 
 /// Thomas Jakobsen, Advanced Character Physics (GDC 2001).
@@ -165,8 +179,7 @@ class Jakobsen final : public Solver {
         gravity_(scene.gravity),
         damping_(scene.damping),
         simd_(simd_of(params)),
-        pool_(params.integer("threads")),
-        pins_(scene) {
+        pool_(params.integer("threads")) {
     const std::vector<double> w = inverse_masses(scene);
     const RelaxationSettings settings = relaxation_settings(params);
     Relaxation<Real> links = make_relaxation<Real>(scene, w, settings, pool_);
@@ -179,7 +192,8 @@ class Jakobsen final : public Solver {
     }
     constraints_ = make_accelerators<Real>(scene, w, settings);
     if (links.pass) constraints_.push_back(std::move(links.pass));
-    contact_ = make_contact<Real>(scene, contact_settings(params), pool_);
+    pins_ = Pins(scene, *p_.layout);
+    contact_ = make_contact<Real>(scene, *p_.layout, contact_settings(params), pool_);
   }
 
   /// The published TimeStep(), substeps times with dt / substeps.
@@ -188,10 +202,9 @@ class Jakobsen final : public Solver {
     prepare_verlet(h);
     for (int s = 0; s < substeps_; ++s, t += h) {
       apply(forces_, t, h);  // AccumulateForces
-      verlet();              // Verlet
-      pins_.place(p_, t + h);
+      verlet(t + h);         // Verlet
       for (const auto* list : {&constraints_, &contact_.before, &contact_.sweep, &contact_.after})
-        for (auto& pass : *list) pass->begin(p_, t, h);
+        for (auto& pass : *list) ready_for(*pass).begin(p_, t, h);
       apply(contact_.before, t, h);
       for (int k = 0; k < iterations_; ++k) {  // SatisfyConstraints
         apply(constraints_, t, h);
@@ -200,6 +213,7 @@ class Jakobsen final : public Solver {
       apply(contact_.after, t, h);
       if (s + 1 < substeps_) substep_ended(t + h);
     }
+    pool_.finish();
   }
 
   void load(const State& state) override {
@@ -213,6 +227,7 @@ class Jakobsen final : public Solver {
   }
 
   void store(State& state) const override {
+    pool_.finish();  // who visits substeps comes while work is queued
     state.x.resize(p_.size()), state.v.resize(p_.size());
     for (std::size_t i = 0; i < p_.size(); ++i) {
       state.x[i] = p_.x[i].template cast<double>();
@@ -245,7 +260,11 @@ class Jakobsen final : public Solver {
   using PassList = std::vector<std::unique_ptr<Pass<Real>>>;
 
   void apply(PassList& passes, double t, double dt) {
-    for (auto& pass : passes) pass->apply(p_, t, dt);
+    for (auto& pass : passes) ready_for(*pass).apply(p_, t, dt);
+  }
+  Pass<Real>& ready_for(Pass<Real>& pass) {
+    if (!pass.queues()) pool_.finish();
+    return pass;
   }
 
   /// Gravity and damping of substeps of dt [s]: as much work as integrating hundreds of particles.
@@ -264,13 +283,16 @@ class Jakobsen final : public Solver {
     prepared_for_ = dt;
   }
 
-  /// x* = x + (x - x') + a dt^2, the velocity x - x' damped.
-  void verlet() {
-    const Kernels<Real>& k = kernels<Real>(simd_);
-    const auto kernel = p_.layout->stride() == kWide ? k.wide_verlet : k.narrow_verlet;
-    pool_.run(
-        p_.layout->length() / kGrain,
-        [&](std::size_t begin, std::size_t end) { kernel(verlet_, begin * kGrain, end * kGrain); },
+  /// x* = x + (x - x') + a dt^2, the velocity x - x' damped; pins as they are at time t.
+  void verlet(double t) {
+    pool_.queue(
+        p_.layout->blocks(),
+        [this, t](std::size_t begin, std::size_t end) {
+          const Kernels<Real>& k = kernels<Real>(simd_);
+          const auto kernel = p_.layout->stride() == kWide ? k.wide_verlet : k.narrow_verlet;
+          kernel(verlet_, p_.layout->place_of_block(begin), p_.layout->place_of_block(end));
+          pins_.place(p_, begin, end, t);
+        },
         p_.size() >= ThreadPool::kWorthSharing);
   }
 
@@ -280,7 +302,7 @@ class Jakobsen final : public Solver {
   Vec3 gravity_;
   double damping_;
   Simd simd_;
-  ThreadPool pool_;
+  mutable ThreadPool pool_;
   Pins pins_;
   Particles<Real> p_;
   alignas(64) Real g_[kGrain];

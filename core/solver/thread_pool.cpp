@@ -1,21 +1,35 @@
 #include "core/solver/thread_pool.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace taut {
 
 namespace {
 
-/// Longer than what a step does between two sweeps. Waiting on a futex from the start would cost
-/// more than a small sweep.
+/// Longer than what is done between two steps. Waiting on a futex from the start would cost more
+/// than a small sweep.
 constexpr std::chrono::microseconds kSpinTime{100};
 constexpr int kPausesPerCheck = 32;
+/// 20 to 70 us, longer than a stage of a part: then its thread is not on a core.
+constexpr int kMostPauses = 1000;
+/// 2 to 7 us: another thread is about as far, and what moves to a core has to move back.
+constexpr int kPatience = 100;
 
 void pause() {
 #if defined(__x86_64__)
   __builtin_ia32_pause();
 #endif
 }
+
+/// Of a thread that waits for what another is doing.
+class Wait {
+ public:
+  void operator()() { ++pauses_ < kMostPauses ? pause() : std::this_thread::yield(); }
+
+ private:
+  int pauses_ = 0;
+};
 
 /// Returns once `value` differs from `old`.
 void wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
@@ -31,9 +45,9 @@ void wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t old)
 
 }  // namespace
 
-ThreadPool::ThreadPool(int threads) : slices_(static_cast<std::size_t>(threads)) {
-  for (std::size_t member = 1; member < slices_.size(); ++member)
-    threads_.emplace_back([this, member] { serve(member); });
+ThreadPool::ThreadPool(int threads) : parts_(static_cast<std::size_t>(threads) * kParts) {
+  for (int member = 1; member < threads; ++member)
+    threads_.emplace_back([this, member] { serve(static_cast<std::size_t>(member)); });
 }
 
 ThreadPool::~ThreadPool() {
@@ -43,32 +57,52 @@ ThreadPool::~ThreadPool() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-void ThreadPool::work_off(std::size_t member) {
-  const std::size_t members = slices_.size(), parts = members * kParts;
-  for (std::size_t k = 0; k < members; ++k) {
-    const std::size_t owner = (member + k) % members;
-    std::atomic<std::uint32_t>& taken = slices_[owner].taken;
-    for (std::uint32_t n = taken.load(std::memory_order_acquire); n < kParts;) {
-      if (!taken.compare_exchange_weak(n, n + 1, std::memory_order_acquire)) continue;
-      const std::size_t part = owner * kParts + n;  // of this round, which ends with its last part
-      const std::size_t begin = job_.count * part / parts, end = job_.count * (part + 1) / parts;
-      if (begin < end) job_.call(job_.work, begin, end);
-      if (left_.fetch_sub(1, std::memory_order_acq_rel) == 1) left_.notify_one();
-      n = taken.load(std::memory_order_acquire);
+/// Returns once the part has done so many stages: does itself what nobody is doing, of its
+/// neighbours too.
+void ThreadPool::advance(Member& me, std::size_t part, std::uint32_t stages) {
+  std::atomic<std::uint32_t>& state = parts_[part].state;
+  Wait wait;
+  for (;;) {
+    std::uint32_t now = state.load(std::memory_order_acquire);
+    const std::uint32_t done = now / 2;
+    if (done >= stages) return;
+    if (now % 2 != 0) {
+      wait();
+      continue;
     }
+    const bool alone = gate_.load(std::memory_order_relaxed) == 1;
+    if (!me.owns(part) && me.patience > 0 && !alone) {
+      --me.patience, pause();
+      continue;
+    }
+    if (part > 0) advance(me, part - 1, done);
+    if (part + 1 < part_count_) advance(me, part + 1, done);
+    if (!state.compare_exchange_strong(now, now + 1, std::memory_order_acquire)) continue;
+    stages_[done](count_ * part / part_count_, count_ * (part + 1) / part_count_);
+    state.store(now + 2, std::memory_order_release);
   }
 }
 
-void ThreadPool::dispatch(const Job& job) {
-  job_ = job;
-  left_.store(static_cast<std::uint32_t>(slices_.size()) * kParts, std::memory_order_relaxed);
-  for (Slice& slice : slices_) slice.taken.store(0, std::memory_order_release);
+ThreadPool::Member ThreadPool::work_off(std::size_t member) {
+  Member me{part_count_ * member / threads(), part_count_ * (member + 1) / threads(), kPatience};
+  for (std::uint32_t stage = 1; stage <= stages_.size(); ++stage)
+    for (std::size_t k = 0; k < me.end - me.begin; ++k)  // both ends first: others wait for them
+      advance(me, k % 2 == 0 ? me.begin + k / 2 : me.end - 1 - k / 2, stage);
+  return me;
+}
+
+void ThreadPool::dispatch() {
+  part_count_ = std::min(count_, parts_.size());
+  for (Part& part : parts_) part.state.store(0, std::memory_order_relaxed);
+  gate_.fetch_or(1, std::memory_order_release);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
-  work_off(0);
-  for (std::uint32_t left = left_.load(std::memory_order_acquire); left != 0;
-       left = left_.load(std::memory_order_acquire))
-    wait_for_change(left_, left);
+  Member me = work_off(0);
+  const auto stages = static_cast<std::uint32_t>(stages_.size());
+  for (std::size_t part = 0; part < part_count_; ++part) advance(me, part, stages);
+  gate_.fetch_and(~1U, std::memory_order_relaxed);
+  for (Wait wait; gate_.load(std::memory_order_acquire) != 0;) wait();
+  stages_.clear();
 }
 
 void ThreadPool::serve(std::size_t member) {
@@ -76,7 +110,8 @@ void ThreadPool::serve(std::size_t member) {
     wait_for_change(round_, seen);
     if (stop_) return;
     seen = round_.load(std::memory_order_acquire);
-    work_off(member);
+    if ((gate_.fetch_add(2, std::memory_order_acquire) & 1) != 0) work_off(member);
+    gate_.fetch_sub(2, std::memory_order_release);
   }
 }
 

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <new>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace taut {
@@ -11,8 +15,8 @@ namespace taut {
 /// then nothing depends on how many there are.
 ///
 /// Each has a slice of its own, the same one every time, so that its data stay in its cache, and
-/// helps the others when that is done. Whoever has not come yet is not waited for: on a busy
-/// machine the caller does the work alone.
+/// does what others have left undone where it would have to wait for them. Whoever has not come yet
+/// is not waited for: on a busy machine the caller does the work alone.
 class ThreadPool {
  public:
   explicit ThreadPool(int threads);  ///< >= 1, the caller included; 1 starts none
@@ -30,15 +34,13 @@ class ThreadPool {
   /// when all are done.
   template <class Work>
   void run(std::size_t count, const Work& work, bool shared = true) {
+    finish();
     if (threads_.empty() || count < 2 || !shared) {
       if (count > 0) work(std::size_t{0}, count);
       return;
     }
-    dispatch({&work,
-              [](const void* w, std::size_t begin, std::size_t end) {
-                (*static_cast<const Work*>(w))(begin, end);
-              },
-              count});
+    queue(count, [&work](std::size_t begin, std::size_t end) { work(begin, end); });
+    finish();
   }
 
   /// Calls work(n, begin, end) for the n-th of so many parts of [0, count), each once: for what has
@@ -51,25 +53,72 @@ class ThreadPool {
     });
   }
 
- private:
-  struct Job {
-    const void* work = nullptr;
-    void (*call)(const void*, std::size_t, std::size_t) = nullptr;
-    std::size_t count = 0;
-  };
-  static constexpr std::uint32_t kParts = 4;  ///< of a slice
-  /// How many of its parts are taken; all, between two rounds.
-  struct alignas(64) Slice {
-    std::atomic<std::uint32_t> taken{kParts};
-  };
-  void dispatch(const Job&);
-  void work_off(std::size_t member);
-  void serve(std::size_t member);
+  /// A stage of work on blocks of particles: calls work(begin, end) on parts of [0, blocks), on
+  /// each block after it and its two neighbours are done with the stage before. So a stage may work
+  /// on a block and, if no two blocks that it works on are neighbours, on the one after it. With
+  /// one thread or not `shared` at once, otherwise not before finish(); `work` is copied.
+  template <class Work>
+  void queue(std::size_t blocks, const Work& work, bool shared = true) {
+    if (threads_.empty() || !shared) {
+      work(std::size_t{0}, blocks);
+      return;
+    }
+    if (blocks != count_ || stages_.size() == kMostStages) finish();
+    count_ = blocks;
+    stages_.emplace_back(work);
+  }
 
-  Job job_;
-  std::vector<Slice> slices_;
-  std::atomic<std::uint32_t> round_{0};
-  std::atomic<std::uint32_t> left_{0};  ///< parts of this round that are not done
+  /// Returns when all that is queued is done.
+  void finish() {
+    if (!stages_.empty()) dispatch();
+  }
+
+ private:
+  class Stage {
+   public:
+    template <class Work>
+    explicit Stage(const Work& work)
+        : call_([](const std::byte* w, std::size_t begin, std::size_t end) {
+            (*std::launder(reinterpret_cast<const Work*>(w)))(begin, end);
+          }) {
+      static_assert(sizeof(Work) <= sizeof work_ && std::is_trivially_copyable_v<Work>);
+      new (work_) Work(work);
+    }
+    void operator()(std::size_t begin, std::size_t end) const { call_(work_, begin, end); }
+
+   private:
+    void (*call_)(const std::byte*, std::size_t, std::size_t);
+    alignas(16) std::byte work_[368];  // a box that moves, in double
+  };
+  /// Twice the number of stages that are done, and 1 while a thread is at the next.
+  struct alignas(64) Part {
+    std::atomic<std::uint32_t> state{0};
+  };
+
+  /// Of a slice, at most. Each costs 0.2 us a stage, and with one a thread would always wait for
+  /// the one beside it.
+  static constexpr std::size_t kParts = 4;
+  static constexpr std::size_t kMostStages = 128;  ///< and depth of advance()
+
+  /// A thread at work: which parts are its own, and for how long it leaves the others' to them.
+  struct Member {
+    std::size_t begin, end;
+    int patience;  ///< pauses
+    bool owns(std::size_t part) const { return begin <= part && part < end; }
+  };
+
+  void dispatch();
+  void serve(std::size_t member);
+  Member work_off(std::size_t member);
+  void advance(Member&, std::size_t part, std::uint32_t stages);
+
+  std::vector<Stage> stages_;
+  std::size_t count_ = 0;    ///< what their parts are parts of
+  std::vector<Part> parts_;  ///< room for those of all threads
+  std::size_t part_count_ = 0;
+  std::atomic<std::uint32_t> round_{0};  ///< how often work has been dispatched
+  /// Whether there is work, 1, and twice the number of threads, besides the caller, that see it.
+  alignas(64) std::atomic<std::uint32_t> gate_{0};
   std::atomic<bool> stop_{false};
   std::vector<std::thread> threads_;
 };

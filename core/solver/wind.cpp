@@ -40,7 +40,7 @@ class SheetWindPass final : public WindPass<Real> {
       : WindPass<Real>(*scene.wind), items_(scene.mesh.triangles.size()), pool_(pool) {
     const auto [rows, columns, lanes, vectors, stride] = layout.sheet();
     blow_ = lanes == kWide ? kernels<Real>(simd).wide_wind : kernels<Real>(simd).narrow_wind;
-    blocks_ = {rows - 1};
+    quad_rows_ = rows - 1;
     const std::size_t row = to_index(lanes * vectors);
     w_.resize(to_index(rows) * row), diagonals_.resize(2 * row);
     const std::size_t lane_count = to_index(lanes);
@@ -58,17 +58,16 @@ class SheetWindPass final : public WindPass<Real> {
 
   void apply(Particles<Real>& p, double, double dt) override {
     const WindStep<Real> step = this->step(p, dt);
-    for (const int parity : {0, 1})
-      pool_.run(
-          blocks_.count(parity),
-          [&](std::size_t begin, std::size_t end) {
-            for (std::size_t block = begin; block < end; ++block) {
-              const auto [from, to] = blocks_.of(parity, block);
-              blow_(step, faces_, from, to);
-            }
+    for (const std::size_t parity : {0U, 1U})
+      pool_.queue(
+          p.layout->blocks(),
+          [this, step, parity](std::size_t begin, std::size_t end) {
+            visit_rows_of(parity, begin, end, quad_rows_,
+                          [&](int from, int to) { blow_(step, faces_, from, to); });
           },
           p.size() >= ThreadPool::kWorthSharing);
   }
+  bool queues() const override { return true; }
 
   std::vector<PassCost> cost() const override {
     return {
@@ -79,7 +78,7 @@ class SheetWindPass final : public WindPass<Real> {
   std::size_t items_;
   ThreadPool& pool_;
   void (*blow_)(const WindStep<Real>&, const SheetFaces<Real>&, int, int);
-  RowBlocks blocks_{};  ///< of quads
+  int quad_rows_ = 0;
   std::vector<Real> w_, diagonals_;
   SheetFaces<Real> faces_{};
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/system/json.hpp"
 
@@ -19,7 +20,7 @@ std::string figure_text(const Finding& f) {
   else
     std::snprintf(text, sizeof text, " %.4g%s (%.4g +- %.3g)", f.measured, unit.c_str(), f.expected,
                   f.tolerance);
-  return f.subject.substr(0, f.subject.find(':')) + ": " + f.quantity + text;
+  return solver_name(f.subject) + ": " + f.quantity + text;
 }
 
 /// What speaks for an assertion: a number that breaks it, else the first that is measured and

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/solver.hpp"
 #include "experiments/case/record.hpp"
 
 namespace taut {
@@ -20,7 +21,7 @@ struct BaselineRow {
   std::string frontier;  ///< options of `taut frontier` if the row is a frontier, else empty
   bool flaky = false;    ///< two runs differed in a bit: only its status is compared
 
-  std::string solver() const { return spec.solver.substr(0, spec.solver.find(':')); }
+  std::string solver() const { return solver_name(spec.solver); }
 };
 /// Sorted by id.
 using Baseline = std::vector<BaselineRow>;

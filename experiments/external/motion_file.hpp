@@ -49,7 +49,6 @@ class MotionFile {
  private:
   void find_time(const Scene&, double fps);
   void find_place(const Scene&, const MotionOptions&);
-  std::vector<Vec3> placed(std::vector<Vec3>) const;
 
   std::unique_ptr<PositionReader> reader_;
   std::string file_, time_said_, place_said_, order_said_;

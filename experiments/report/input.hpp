@@ -8,7 +8,7 @@
 
 #include "experiments/case/record.hpp"
 #include "experiments/study/extremes/extremes.hpp"
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::report {
 

@@ -5,12 +5,13 @@
 #include <stdexcept>
 
 #include "core/model/input_error.hpp"
+#include "experiments/report/chart/citations.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
-#include "experiments/report/chart/references.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/input.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/json.hpp"
 
@@ -230,7 +231,7 @@ class Builder {
           refusals.insert({solver, r->status.reason});
     for (const auto& [solver, reason] : refusals)
       one["refusals"].push_back({{"solver", solver}, {"reason", reason}});
-    add_if(one, "fairness", json_of_fairness(quoted, rivals_, refs_));
+    add_if(one, "resolved_settings", json_of_resolved_settings(quoted, rivals_, refs_));
     return one;
   }
 
@@ -376,7 +377,7 @@ class Builder {
 
   const ReportInput& input_;
   Rivals rivals_;
-  References refs_;
+  Citations refs_;
   std::vector<Claim> claims_;
   Json charts_, maps_, films_, tables_;
   std::map<std::string, std::set<std::string>> film_cases_;  ///< by scene

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/report/input.hpp"
-
 namespace taut::report {
+
+struct ReportInput;
 
 /// The report as one HTML text: page/index.html with its styles, its scripts, d3 and the model in
 /// it. It needs nothing else: no request leaves it. Throws InputError if no study has a record.

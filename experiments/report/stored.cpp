@@ -150,6 +150,7 @@ std::map<std::string, std::vector<BenchedCase>> all_timed(const Store& store, do
       const StudyBench session = bench_from_json(read_text(entry.path()), entry.path().string());
       std::vector<BenchedCase>& here = all[session.host + ", " + session.machine];
       for (const SceneBench& scene : session.scenes) {
+        if (!scene.in_turns) continue;  // nobody knows how far its times stray
         noise = std::max(noise, spread(scene.control));
         here.insert(here.end(), scene.cases.begin(), scene.cases.end());
       }
@@ -293,6 +294,11 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
   std::map<std::string, std::map<std::string, double>> timed;  // values of the bench, by key
   if (input.bench)
     for (const Record& r : input.bench->records()) timed[r.key] = r.values;
+  if (input.bench) {
+    // What was not timed in turns gives values of cases; nothing is concluded from it.
+    std::erase_if(input.bench->scenes, [](const SceneBench& scene) { return !scene.in_turns; });
+    if (input.bench->scenes.empty()) input.bench.reset();
+  }
   for (const Study& study : studies) {
     StudyResult result{study.name, study.question, {}, 0, {}};
     each_record(study, store, [&](const Case& one, std::optional<Record> record) {

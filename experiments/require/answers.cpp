@@ -102,15 +102,19 @@ std::string text(const KeptAnswer& answer, double value) {
          (unit.shown.empty() ? "" : " " + std::string(unit.shown));
 }
 
+std::string name_of_answer(const std::string& asked) {
+  const std::string name = asked.substr(0, asked.find(':'));
+  std::vector<std::string> names = value_names();
+  names.emplace_back(kShapeAnswer);
+  if (std::ranges::find(names, name) == names.end())
+    throw InputError("--keep " + asked + ": unknown metric value '" + name + "'" +
+                     suggestion(name, names));
+  return name;
+}
+
 KeptAnswer parse_answer(const std::string& asked, const Observation& full) {
   const auto colon = asked.find(':');
-  KeptAnswer answer{asked.substr(0, colon), 0};
-  if (!answer.is_shape() && !find_value(answer.name).second) {
-    std::vector<std::string> names = value_names();
-    names.emplace_back(kShapeAnswer);
-    throw InputError("--keep " + asked + ": unknown metric value '" + answer.name + "'" +
-                     suggestion(answer.name, names));
-  }
+  KeptAnswer answer{name_of_answer(asked), 0};
   if (!answer.is_shape() && std::isnan(value_of(answer, full)))
     throw InputError("--keep " + asked + ": has no value on this scene");
   if (colon == std::string::npos) {

@@ -44,6 +44,8 @@ struct Observation {
 /// the duration, counts none, all else 10 % of the value. Throws InputError: unknown name, or no
 /// number of at least 0.
 KeptAnswer parse_answer(const std::string&, const Observation& full);
+/// The METRIC alone. Throws InputError: unknown name.
+std::string name_of_answer(const std::string& asked);
 
 /// What is kept unless something is asked for: shape, largest stretch, depth of vertices (and of
 /// faces, if the solver keeps them out), crossings, settling time; as far as the case has them.

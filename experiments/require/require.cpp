@@ -363,6 +363,7 @@ std::size_t work_of(const std::vector<PassCost>& passes) {
 
 Requirement find_requirement(const RequireOptions& options, const Store& store,
                              const Session& session, const std::filesystem::path& folder) {
+  for (const std::string& asked : options.keep) name_of_answer(asked);  // before anything runs
   return Search(options, store, session, folder).run();
 }
 

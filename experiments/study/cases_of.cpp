@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/study/study.hpp"
 
 namespace taut {
@@ -86,8 +87,7 @@ CaseSpec spec_of(const Study& study, const std::string& scene, const std::string
   for (const StudyAxis& axis : study.axes)
     if (of_scene.contains(axis.name))
       spec.overrides.push_back(axis.name + "=" + of_scene.at(axis.name));
-  for (const auto& [name, value] : of_solver)
-    spec.solver += (spec.solver.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
+  for (const auto& [name, value] : of_solver) spec.solver = with(spec.solver, name + "=" + value);
   return spec;
 }
 
@@ -117,7 +117,7 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
           Settings all = of_scene;
           all.insert(of_solver.begin(), of_solver.end());
           all["scene"] = scene;
-          all["solver"] = solver.substr(0, solver.find(':'));
+          all["solver"] = solver_name(solver);
           if (!excluded(study, all)) add(spec_of(study, scene, solver, of_scene, of_solver));
         });
     });

@@ -8,6 +8,7 @@
 
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/reference/linear_stability.hpp"
 
@@ -164,7 +165,7 @@ void set_parameter(std::string& solver, const std::string& name, const std::stri
     solver.replace(from, std::min(solver.find(',', from), solver.size()) - from, value);
     return;
   }
-  solver += (solver.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
+  solver = with(solver, name + "=" + value);
 }
 
 void set_override(std::vector<std::string>& overrides, const std::string& assignment) {

@@ -296,14 +296,11 @@ Study load_study(const std::string& name_or_path, const std::string& preset) {
   diagnostics.throw_if_any();
   StudyReader(diagnostics, study).read(document.root, preset);
   diagnostics.throw_if_any();
+  if (!preset.empty() && study.preset.empty())
+    throw InputError({{study.file, 0, 0,
+                       "study '" + study.name + "' has no preset '" + preset + "'" +
+                           suggestion(preset, study.presets)}});
   return study;
-}
-
-void require_preset(const Study& study, const std::string& preset) {
-  if (preset.empty() || !study.preset.empty()) return;
-  throw InputError({{study.file, 0, 0,
-                     "study '" + study.name + "' has no preset '" + preset + "'" +
-                         suggestion(preset, study.presets)}});
 }
 
 }  // namespace taut

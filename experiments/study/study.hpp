@@ -50,12 +50,9 @@ struct Study {
   std::map<std::string, SourceLocation> places;
 };
 
-/// Reads a study by name or path; `preset` replaces what it names, and "" or a preset that this
-/// study lacks replaces nothing. Throws InputError with every diagnostic at once.
+/// Reads a study by name or path; `preset` replaces what it names, "" nothing. Throws InputError
+/// with every diagnostic at once, or if the study has no such preset.
 Study load_study(const std::string& name_or_path, const std::string& preset = "");
-
-/// Throws InputError if the study lacks the preset that load_study was asked for.
-void require_preset(const Study&, const std::string& preset);
 
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
 /// wrong with any of the scenes, or if it would be more than 100 000.

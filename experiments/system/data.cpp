@@ -52,6 +52,7 @@ fs::path find_file(const std::string& kind, const std::string& one, const std::s
       fs::is_regular_file(data_folder() / kind / (text + ".toml")))
     return data_folder() / kind / (text + ".toml");  // "torture/wind": a folder of shipped files
   if (text.find('/') != std::string::npos || text.ends_with(".toml")) {
+    if (fs::is_directory(text)) throw InputError(text + " is a folder, not a " + one + " file");
     if (!fs::is_regular_file(text)) throw InputError(text + ": no such " + one + " file");
     return text;
   }

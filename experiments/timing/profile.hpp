@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut {
 

@@ -7,7 +7,7 @@
 
 #include "core/reference/fit.hpp"
 #include "experiments/case/case.hpp"
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut {
 

@@ -98,11 +98,18 @@ class SettingSearch {
     return tried_;
   }
 
+  std::string cheapest() const {
+    const Columns columns = open_.columns();
+    Values values;
+    for (const std::string& name : columns.parameters) values[name] = columns.values.front();
+    if (open_.has_substeps()) values[open_.substeps()] = "1";
+    return text(values);
+  }
+
  private:
   std::string text(const Values& values) const {
     std::string all = solver_;
-    for (const auto& [name, value] : values)
-      all += (all.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
+    for (const auto& [name, value] : values) all = with(all, name + "=" + value);
     return all;
   }
 
@@ -279,6 +286,22 @@ class SettingSearch {
 std::vector<Candidate> search_settings(const std::string& solver, const Target& target,
                                        const Evaluation& run, std::vector<Candidate> known) {
   return SettingSearch(solver, target, run, std::move(known)).run();
+}
+
+std::string cheapest_setting(const std::string& solver) {
+  const Evaluation none;
+  return SettingSearch(solver, {}, none, {}).cheapest();
+}
+
+std::vector<std::string> cheapest_first(std::vector<std::string> solvers, const Evaluation& run) {
+  std::map<std::string, double> cost;
+  for (const std::string& solver : solvers) {
+    const auto candidate = run(cheapest_setting(solver));
+    const bool known = candidate && candidate->cost.mid > 0;
+    cost[solver] = known ? candidate->cost.mid : std::numeric_limits<double>::infinity();
+  }
+  std::ranges::stable_sort(solvers, {}, [&](const std::string& solver) { return cost[solver]; });
+  return solvers;
 }
 
 }  // namespace taut

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut {
 
@@ -23,5 +23,13 @@ using Evaluation = std::function<std::optional<Candidate>(const std::string& set
 ///   3. the entry's alternatives, one at a time; each with as few substeps as it then needs.
 std::vector<Candidate> search_settings(const std::string& solver, const Target&, const Evaluation&,
                                        std::vector<Candidate> known = {});
+
+/// The setting of `solver` that costs least: one substep, and the first of the second parameter's
+/// values, as far as the text leaves them open.
+std::string cheapest_setting(const std::string& solver);
+
+/// The solvers by what their cheapest setting costs, the least first and failures last: a search
+/// whose time is up has then tried what is cheap, and knows whom the dear ones have to beat.
+std::vector<std::string> cheapest_first(std::vector<std::string> solvers, const Evaluation&);
 
 }  // namespace taut

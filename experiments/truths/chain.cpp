@@ -4,9 +4,9 @@
 #include <numeric>
 
 #include "core/model/index.hpp"
+#include "core/reference/chain_sweeps.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/fit.hpp"
-#include "core/reference/relaxation.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
 #include "core/reference/textbook.hpp"

@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "core/model/index.hpp"
+#include "core/reference/chain_sweeps.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/fit.hpp"
-#include "core/reference/relaxation.hpp"
 #include "core/reference/static_equilibrium.hpp"
 #include "experiments/truths/simulation.hpp"
 

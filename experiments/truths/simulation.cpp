@@ -8,13 +8,6 @@
 
 namespace taut {
 
-std::string with(std::string_view solver, std::string_view more) {
-  std::string text(solver);
-  if (more.empty()) return text;
-  text += text.find(':') == std::string::npos ? ':' : ',';
-  return text + std::string(more);
-}
-
 Simulation::Simulation(const Scene& scene, std::string_view solver, int steps)
     : scene_(scene), state_(scene.start) {
   const SolverChoice choice = parse_solver(solver);

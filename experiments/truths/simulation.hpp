@@ -44,8 +44,6 @@ std::string jakobsen(int iterations, std::string_view projection = "exact",
 std::string bullet(int iterations);
 std::string xpbd(int substeps, std::string_view more = "");
 std::string mass_spring(std::string_view integrator, double stiffness, double drag = 0);
-/// "name:key=value,..." with another parameter appended.
-std::string with(std::string_view solver, std::string_view more);
 
 /// Scenes without gravity, damping, wind or contact, dt = 1/64 s, that truths complete.
 namespace bare {

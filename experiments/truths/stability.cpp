@@ -3,9 +3,9 @@
 #include <numbers>
 
 #include "core/model/index.hpp"
+#include "core/reference/chain_sweeps.hpp"
 #include "core/reference/dense.hpp"
 #include "core/reference/fit.hpp"
-#include "core/reference/relaxation.hpp"
 #include "experiments/truths/simulation.hpp"
 
 namespace taut {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/model/solver.hpp"
+
 namespace taut {
 
 std::string_view to_string(TruthVerdict verdict) {
@@ -27,7 +29,7 @@ std::string_view section_title(int section) {
 
 bool Findings::wants(std::string_view subject) const {
   if (only_.empty()) return true;
-  std::string_view name = subject.substr(0, subject.find(':'));
+  const std::string name = solver_name(subject);
   return std::any_of(only_.begin(), only_.end(),
                      [&](const std::string& o) { return o == name || o == subject; });
 }

@@ -125,5 +125,26 @@ TEST(ClaimFigures, AreTheNumberThatSpeaksForTheClaim) {
   EXPECT_EQ(judged({d}), Both("overturned", ""));
 }
 
+TEST(ClaimFigures, AreOfTheQuantityThatTheClaimQuotes) {
+  const auto finding = [](const std::string& quantity, double measured) {
+    return Finding{"bullet", quantity, "1", measured, 1, 0.5, 0, TruthVerdict::passed, ""};
+  };
+  int quoted = 0;
+  for (const VasiloviciAssertion& claim : vasilovici_assertions()) {
+    if (claim.figure.empty()) continue;
+    const std::string own(claim.figure);
+    const std::vector<Finding> findings{finding("not " + own, 0.5), finding(own + " of it", 0.75),
+                                        finding(own, 1.25)};
+    for (const JudgedAssertion& one : judge_assertions(
+             [&](std::string_view truth) { return truth == claim.truth ? &findings : nullptr; })) {
+      if (one.section != claim.section || one.assertion != claim.assertion) continue;
+      EXPECT_EQ(one.figure, "bullet: " + own + " of it 0.75 (1 +- 0.5)") << "the first that is";
+      EXPECT_EQ(one.verdict, to_string(claim.verdict));
+      ++quoted;
+    }
+  }
+  EXPECT_GT(quoted, 0);
+}
+
 }  // namespace
 }  // namespace taut::frontier_rows_test

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "experiments/baseline/baseline.hpp"
@@ -45,6 +46,60 @@ TEST(RollUp, FromNothingIsWorseThanAnyPerCent) {
   EXPECT_EQ(all[1].value, "c");
   EXPECT_EQ(text(all[1], "1"), "1 -> nan");
   EXPECT_EQ(all[2].value, "a");
+}
+
+TEST(RollUp, ChangesAreSharesOfTheSizeOfWhatWasWhateverTheirSign) {
+  Comparison comparison;
+  comparison.findings = {moved("hang", "a", -0.5, -0.25), moved("hang", "b", 2, -4),
+                         moved("hang", "c", 2, 4),        moved("ball", "c", 2, 1.5),
+                         moved("hang", "c", 2, -3),       moved("hang", "c", 2, 2)};
+  const auto all = roll_up(comparison);
+  ASSERT_EQ(all.size(), 4u);
+  std::string order;
+  for (const MovedValue& one : all) order += one.scene + " " + one.value + ", ";
+  EXPECT_EQ(order, "hang b, hang c, hang a, ball c, ");
+  EXPECT_EQ(text(all[0], "J"), "-300 % (2 -> -4 J)");
+  EXPECT_EQ(text(all[1], ""), "-250 % (2 -> -3)");
+  EXPECT_EQ(text(all[2], "1"), "+50 % (-0.5 -> -0.25)");
+  EXPECT_EQ(text(all[3], "m"), "-25 % (2 -> 1.5 m)");
+  EXPECT_EQ((std::tuple{all[1].cases, all[1].less, all[1].more}),
+            (std::tuple{std::size_t{3}, std::size_t{1}, std::size_t{1}}));
+}
+
+TEST(RollUp, OnlyAnotherAnswerIsCounted) {
+  Comparison comparison;
+  for (const auto kind : {Change::Kind::value_moved, Change::Kind::status_changed,
+                          Change::Kind::case_missing, Change::Kind::value_new}) {
+    Change one = moved("hang", "a", 0, 0);
+    one.kind = kind;
+    comparison.findings.push_back(one);
+  }
+  ASSERT_EQ(roll_up(comparison).size(), 1u);
+  EXPECT_EQ(roll_up(comparison)[0].cases, 2u);
+  std::string said;
+  for (const Change& one : comparison.findings)
+    said += one.is_regression() ? 'r' : one.is_mismatch() ? 'm' : '-';
+  EXPECT_EQ(said, "rrm-");
+}
+
+TEST(JUnit, TextsAreNoMarkupAndOnlyFailuresFail) {
+  Baseline now(1);
+  now[0].id = "a & \"b\" <c>";
+  Comparison comparison;
+  const auto add = [&](Change::Kind kind, const char* id, const char* solver, const char* text) {
+    comparison.findings.push_back({kind, id, solver, text});
+  };
+  add(Change::Kind::value_new, "a & \"b\" <c>", "s", "for information");
+  add(Change::Kind::solver_missing, "", "s", "gone");
+  add(Change::Kind::case_missing, "d", "s", "one");
+  add(Change::Kind::value_moved, "d", "s", "two > one");
+  EXPECT_EQ(junit("x", now, comparison),
+            "<testsuite name=\"x\" tests=\"3\" failures=\"2\">\n"
+            "  <testcase classname=\"x\" name=\"a &amp; &quot;b&quot; &lt;c&gt;\"/>\n"
+            "  <testcase classname=\"x\" name=\"d\"><failure>one\ntwo &gt; one\n</failure>"
+            "</testcase>\n"
+            "  <testcase classname=\"x\" name=\"solver s\"><failure>gone\n</failure></testcase>\n"
+            "</testsuite>\n");
 }
 
 }  // namespace

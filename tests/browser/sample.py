@@ -138,7 +138,7 @@ def make():
             "charts": [f"{scene}-{kind}" for kind in ("convergence", "penetration", "zeros", "series")],
             "maps": [f"{scene}-map-jakobsen", f"{scene}-map-bullet"], "statuses": {"jakobsen": {"ok": 23, "unsettled": 1}, "bullet": {"ok": 21, "exploded": 3}},
             "facts": [{"name": "vertices", "value": "81"}],
-            "fairness": {"caption": "Settings each solver used for this scene",
+            "resolved_settings": {"caption": "Settings each solver used for this scene",
                          "columns": [{"solver": s, "case": values[i]["case"], "text": "1 × 8"} for i, s in ((0, "jakobsen"), (-1, "bullet"))],
                          "rows": [{"name": "projection", "values": ["exact", "sqrt-free"], "differs": True}]}})
         model["tables"].append({"id": f"levels-{scene}", "title": "Cost of an error", "caption": "per simulated second",

@@ -157,6 +157,24 @@ TEST(BulletContact, AMovingPlaneCarriesTheCloth) {
   EXPECT_LT(d.most, kThickness + 2 * 9.81 * scene.dt * scene.dt);
 }
 
+// Friction sees the velocity of what moves: with mu = 1 nothing of the slip is kept.
+TEST(BulletContact, AFloorThatRunsTakesTheClothAlong) {
+  const Vec3 runs(0.3, 0, -0.2);
+  const Scene scene =
+      sheet_above({.shape = Plane{Vec3::UnitY(), 0}, .motion = {.velocity = runs}, .friction = 1},
+                  {0, kThickness, 0}, Vec3::UnitX(), Vec3::UnitZ());
+  const SolverChoice choice = parse_solver("bullet:iterations=10");
+  const auto solver = choice.entry->make(scene, choice.params);
+  solver->load(scene.start);
+  for (int n = 0; n < scene.steps; ++n) solver->step(n * scene.dt, scene.dt);
+  State state;
+  solver->store(state);
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    EXPECT_LT((state.v[i] - runs).norm(), 0.01) << i;
+    EXPECT_LT((state.x[i] - scene.start.x[i] - scene.duration() * runs).norm(), 0.02) << i;
+  }
+}
+
 TEST(BulletContact, AFloorThatTiltsAboutAFarPivotStaysUnderTheCloth) {
   Scene scene = sheet_above({.shape = Plane{Vec3::UnitY(), 0},
                              .motion = {.spin = {0, 0, 0.1}, .pivot = {-2, 0, 0}},

@@ -207,6 +207,20 @@ TEST_F(TrajectoryTest, EachNumberOfTheHeaderIsJudged) {
                 "frame would end at byte 112");
 }
 
+TEST_F(TrajectoryTest, WhyItCannotBeWrittenIsSaid) {
+  const auto why = [](const char* path) -> std::string {
+    try {
+      TrajectoryWriter(path, {.scene = "hang", .solver = "xpbd", .vertices = 3});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(why("/dev/full"), "/dev/full: cannot write the trajectory: No space left on device");
+  const std::string absent = why("/dev/null/absent");
+  EXPECT_TRUE(absent.starts_with("/dev/null/absent: cannot write the trajectory: ")) << absent;
+}
+
 TEST_F(TrajectoryTest, TimesDoNotGoBack) {
   const auto times = [&](const std::vector<double>& all) {
     TrajectoryWriter writer(path_, header(TrajectoryHeader::Real::f64, false));

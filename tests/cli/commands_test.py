@@ -12,6 +12,7 @@ import shlex
 import socket
 import struct
 import subprocess
+import time
 import tomllib
 
 from command_line import BINARIES, CommandLine, main
@@ -33,11 +34,15 @@ class BadInput(CommandLine):
         self.refuse("case", "hang", "jakobsen:iteration=3", says="did you mean 'iterations'?")
         self.refuse("run", "iteration", says="unknown study 'iteration'; did you mean 'iterations'?")
         self.refuse("case", "no/such.toml", "jakobsen", says="no/such.toml: no such scene file")
-        self.refuse("run", "iterations", "--preset", "quikc", says="did you mean 'quick'?")
+        for verb in (["run"], ["bench"], ["plot"], ["export"], ["report"]):
+            self.refuse(*verb, "iterations", "--preset", "quikc", says="has no preset 'quikc'; did you mean 'quick'?")
+        self.refuse("case", "/", "jakobsen", says="/ is a folder, not a scene file")
+        self.refuse("bench", "hang", says="'hang' is a scene; --solver says what to time on it")
+        self.refuse("case", "hang", "jakobsen", "--set", "cloth.mesh=none.obj", says='a text stands in quotes: key="text"')
         self.refuse("advise", "hnag", "--error", "1%", says="unknown scene 'hnag'; did you mean 'hang'?")
         self.refuse("advise", "hang", "--error", "1%", "--metric", "stretch.rsm", says="did you mean 'stretch.rms'?")
         self.refuse("advise", "hang", says="one of --error and --budget")
-        self.refuse("advise", "hang", "--error", "1%", "--budget", 4, says="one of --error and --budget")
+        self.refuse("advise", "hang", "--error", "1%", "--budget", 4, says="one of --error and --budget, not both")
         self.refuse("advise", "hang", "--error", "small", says="expected a number above 0 such as 0.01 or 1%")
         self.refuse("advise", "hang", "--error", "1%", "--solver", "bulet", says="did you mean 'bullet'?")
         self.refuse("advise", "hang", "--error", "1%", "--patience", -3, says="'-3' is not a number above 0")
@@ -171,6 +176,8 @@ class Verbs(CommandLine):
             self.assertEqual("theory: slope -1" in figure.with_suffix(".gp").read_text(), drawn, value)
         self.assertIn("set title 'Largest stretch over sweeps per substep, small",
                       (figure.parent / "small-convergence-stretch.max-over-iterations.gp").read_text())
+        figure = self.folder / self.taut("plot", study, "--kind", "convergence", "--title", "Ours").out.split()[0]
+        self.assertIn("set title 'Ours, small", figure.with_suffix(".gp").read_text())
 
     def test_a_run_ends_with_commands_that_work(self):
         self.study("a study.toml", rest="axes.iterations = [1, 2]\n" + '[[plot]]\nkind = "convergence"\n')
@@ -200,7 +207,12 @@ class Verbs(CommandLine):
         self.assertIn("is a folder; name a file in it", self.taut("report", study, "-o", ".", expect=2).err)
         for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"]]:
             self.assertIn("file", self.taut(*words, expect=2).err)
+        for option in ("--final-state", "--series", "--trajectory"):
+            started = time.monotonic()
+            self.assertIn("file: cannot create", self.taut("case", "hang", "bullet:iterations=3000", option, "file/x.csv", expect=2).err)
+            self.assertLess(time.monotonic() - started, 10, "it would take minutes")
         self.assertIn("taut run", self.taut("plot", study, "--results", "nowhere", expect=2).err)
+        self.assertIn("no results folder nowhere; taut run makes it", self.taut("report", study, "--results", "nowhere", expect=2).err)
         self.assertRegex(self.taut("plot", study, "--kind", "pie", expect=2).err, "unknown kind of plot 'pie'.*one of .*stability")
         self.assertIn("--y: unknown value 'strech.rms'; did you mean 'stretch.rms'?",
                       self.taut("plot", study, "--y", "strech.rms", expect=2).err)
@@ -292,6 +304,18 @@ class Verbs(CommandLine):
         self.assertEqual(len((self.folder / "series.csv").read_text().splitlines()), 34)
         self.assertEqual((self.folder / "all.traj").read_bytes()[:8], b"TAUTTRAJ")
 
+    def test_a_case_says_how_far_it_is_and_what_the_settings_became(self):
+        words = ["case", "./small.toml", "jakobsen", "--dt", "1/128", "--duration", 0.25, "--json"]
+        verbose, plain = self.taut(*words, "--verbose"), self.taut(*words)
+        self.assertEqual((verbose.out, plain.err), (plain.out, ""))
+        # Of 32 steps each, and at the end: at rest in the first, then falling.
+        steps = re.findall(r"^step (\d+)/32  t (\S+) s  fastest vertex (\S+) m/s$", verbose.err, re.MULTILINE)
+        self.assertEqual([(int(n), float(t)) for n, t, _ in steps], [(n, float(f"{n / 128:.6g}")) for n in range(33)])
+        self.assertEqual(float(steps[0][2]), 0)
+        self.assertGreater(float(steps[3][2]), 0)
+        for name, value in json.loads(plain.out)["resolved_settings"]:
+            self.assertIn(f"{name}: {value}\n", verbose.err)
+
     def test_float_bullet_runs_in_its_own_program(self):
         for precision in ["float", "double"]:
             run = self.taut("case", "./small.toml", f"bullet:precision={precision}", "--json")
@@ -342,6 +366,24 @@ class Verbs(CommandLine):
         table = json.loads(self.taut("bench", study, "--seconds", 0.002, "--json").out)
         best, rival = (sorted(case["cpu_seconds_per_step"])[5] for case in table["scenes"][0]["cases"])
         self.assertLess(best, rival)
+
+    def test_a_cost_is_compared_on_one_cloth(self):
+        study = self.study(solvers=["jakobsen:iterations=1", "bullet:iterations=1"], rest='axes."cloth.grid" = [[4, 4], [8, 8]]\n')
+        few = ["--rounds", 1, "--seconds", 0.001]
+        for size, scene in zip((16, 64), json.loads(self.taut("bench", study, *few, "--json").out)["scenes"], strict=True):
+            side = round(size ** 0.5)
+            self.assertEqual(scene["scene"], f"small (cloth.grid=[{side}, {side}])")
+            self.assertEqual([case["record"]["vertices"] for case in scene["cases"]], [size, size])
+        cost = json.loads(self.taut("report", study, "--json").out)["cost"]["scenes"]
+        self.assertEqual(len(cost), 2)
+
+    def test_cases_that_were_not_timed_in_turns_are_not_compared(self):
+        study = self.study(solvers=["jakobsen:iterations=1", "bullet:iterations=1"], rest='axes."cloth.grid" = [[4, 4], [5, 5], [6, 6]]\n')
+        self.taut("bench", "scaling", study, "--samples", 2)
+        page = json.loads(self.taut("report", study, "--json").out)
+        self.assertNotIn("cost", page)
+        self.assertEqual([claim["id"] for claim in page["claims"] if "CPU" in claim["sentence"]], [])
+        self.assertTrue(all("cpu.per_step" in case["values"] for case in page["cases"]), "the costs are there")
 
     def test_a_budget_is_kept_and_what_cannot_be_had_is_said(self):
         answer = self.advise("--budget", 0.01, "--solver", "jakobsen")

@@ -32,6 +32,29 @@ ASKED = {
 WITHOUT_RESULTS = {"cluster run", "external scene"}  # they fill a folder or write a file, and print nothing
 
 
+def documented_keys():
+    """verb -> what its row of the README names, with the keys of a record where it speaks of one"""
+    text = (pathlib.Path(__file__).resolve().parents[2] / "experiments/cli/README.md").read_text()
+    table, record = text.split("## A record", 1)
+    of_record, rows = set(re.findall(r"`([\w.]+)`", record)), {}
+    for names, what in re.findall(r"^\| (`.*?) \| (.*) \|$", table, re.MULTILINE):
+        for name in re.findall(r"`([a-z ]+?)(?: [A-Z]+| --\w+)?`", names):
+            rows.setdefault(name, set()).update(re.findall(r"`([\w.]+)`", what))
+            if "record" in what or "session" in what:
+                rows[name] |= of_record
+    return rows
+
+
+def keys_of(value):
+    """Every key of a JSON value, but those of objects whose keys are data (names of metrics, of solvers)."""
+    if isinstance(value, list):
+        return set().union(*map(keys_of, value))
+    if not isinstance(value, dict):
+        return set()
+    named = {"values", "params", "statuses", "resolved_settings", "moved", "accuracy_parameters"}
+    return set(value).union(*(keys_of(inner) for key, inner in value.items() if key not in named))
+
+
 class EveryVerb(CommandLine):
     def verbs(self, *words):
         """{"bench kernels": its help}: of verbs that have verbs and do nothing by themselves only theirs."""
@@ -53,8 +76,10 @@ class EveryVerb(CommandLine):
 
     def test_every_verb_that_prints_results_takes_json_and_quiet(self):
         self.prepare()
-        verbs = self.verbs()
+        verbs, documented = self.verbs(), documented_keys()
         self.assertEqual(sorted(verbs), sorted(ASKED), "every verb is asked here")
+        undocumented = {verb for verb in ASKED if verb not in documented and verb.split()[0] not in documented}
+        self.assertEqual(undocumented - WITHOUT_RESULTS, {"report"}, "its model has a document of its own")
         for number, (verb, words) in enumerate(ASKED.items(), 1):
             with self.subTest(verb):
                 self.assertIn("--quiet", verbs[verb])
@@ -63,7 +88,10 @@ class EveryVerb(CommandLine):
                     continue
                 words = [re.sub("N$", str(number), word) for word in [*verb.split(), *words]]
                 if verb not in WITHOUT_RESULTS:
-                    json.loads(self.taut(*words, "--json").out)
+                    printed = json.loads(self.taut(*words, "--json").out)
+                    names = documented.get(verb, documented.get(verb.split()[0]))
+                    if names is not None and verb not in ("export", "list"):  # their keys are a study's own
+                        self.assertEqual(keys_of(printed) - names, set(), "keys that the README does not name")
                 words = [re.sub(f"(?<=[abc]){number}$", f"{number}q", word) for word in words]
                 quiet = self.taut(*words, "--quiet")
                 self.assertEqual((quiet.out, quiet.err), ("", ""))

@@ -39,6 +39,7 @@ class Pictures(CommandLine):
     def test_what_contradicts_itself_is_refused_before_anything_is_simulated(self):
         for words in [["--video", "--sheet"], ["-o", "a.jpg"], ["--video", "-o", "a.png"], ["-o", "."]]:
             self.taut("render", *SIDE_BY_SIDE, *words, expect=2)
+        self.assertIn("--at 100 is after the end at ", self.render(*SIDE_BY_SIDE, "--at", "0.1", "--at", "100", expect=2).err)
         self.assertEqual(self.files(), [])
 
     def test_a_video_says_what_a_frame_takes(self):

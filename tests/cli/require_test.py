@@ -127,8 +127,9 @@ class Require(CommandLine):
 
     def test_bad_input_runs_nothing(self):
         (self.folder / "made.toml").write_text(CALM)
-        self.assertIn("did you mean 'stretch.max'",
-                      self.taut("require", "./made.toml", "--keep", "strech.max", expect=2).err)
+        refused = self.taut("require", "./made.toml", "--keep", "strech.max", expect=2)
+        self.assertIn("did you mean 'stretch.max'", refused.err)
+        self.assertEqual(sorted(self.folder.rglob("case.json")), [], "nothing ran")
         for words in (["./made.toml", "--keep", "shape:-1"], ["./none.toml"], ["./made.toml", "nobody"],
                       ["./made.toml", "--patience", "0"]):
             self.taut("require", *words, expect=2)

@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "core/model/input_error.hpp"
+#include "experiments/external/connection.hpp"
+#include "experiments/external/probe.hpp"
 #include "experiments/external/protocol.hpp"
+#include "experiments/external/scene_file.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::external::answers_test {
@@ -151,6 +155,218 @@ TEST(Commands, AreSplitAsAShellWouldButRunByNone) {
   EXPECT_NE(said("  ").find("names no program"), std::string::npos);
   EXPECT_NE(said("./no x").find("no program './no'"), std::string::npos);
   EXPECT_NE(said("no-such-program-at-all x").find("no program"), std::string::npos);
+}
+
+TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
+  Scene scene;
+  scene.name = "made up";
+  scene.mesh = make_sheet({.nu = 3, .nv = 2, .width = 1, .height = 0.5, .mass = 0.6});
+  scene.mesh.mass[4] = 0.25;
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(6, Vec3(1, 2, 3))};
+  scene.start.x[5] = Vec3(7, 8, 9);
+  scene.pins = {1, 3};
+  scene.links = {{0, 2, 1.5, Family::bend}, {4, 3, 0.25, Family::shear}};
+  scene.dt = 0.125, scene.steps = 12;
+  scene.gravity = Vec3(1, -2, 3), scene.damping = 0.75, scene.thickness = 0.01;
+  const Motion moving{.velocity = Vec3(1, 2, 3),
+                      .spin = Vec3(4, 5, 6),
+                      .pivot = Vec3(7, 8, 9),
+                      .path = {{0.5, Vec3(1, 0, 2)}}};
+  scene.pin_motions = {{{3}, moving}};
+  Box box;
+  box.center = Vec3(1, 2, 3), box.half_extents = Vec3(4, 5, 6);
+  box.rotation = Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5);
+  scene.colliders = {{Plane{Vec3(0, 0.6, 0.8), -2}, {}, 0.5},
+                     {Ball{Vec3(1, 2, 3), 4}, moving, 0.25},
+                     {box, {}, 0}};
+  scene.wind = Wind{Vec3(3, 2, 1), 0.5, Wind::Law::literal};
+  scene.self_collision.emplace();
+  scene.self_collision->radius = 0.125;
+  const Json motion{{"velocity", {1, 2, 3}},
+                    {"spin", {4, 5, 6}},
+                    {"pivot", {7, 8, 9}},
+                    {"path", {{{"t", 0.5}, {"displacement", {1, 0, 2}}}}}};
+  Json file = parse_json(scene_file(scene));
+  const auto expect = [&](const char* key, const Json& value) {
+    EXPECT_EQ(file[key], value) << key;
+    file.erase(key);
+  };
+  expect("format", "taut-scene/1");
+  expect("name", "made up");
+  expect("vertices", 6);
+  expect("grid", {3, 2});
+  expect("dt", 0.125);
+  expect("steps", 12);
+  expect("gravity", {1, -2, 3});
+  expect("damping", 0.75);
+  expect("thickness", 0.01);
+  Json x = Json::array(), v = Json::array(), mass = Json::array(), inverse = Json::array();
+  for (const Vec3& p : scene.mesh.rest) x.push_back({p.x(), p.y(), p.z()}), v.push_back({1, 2, 3});
+  expect("rest", x);
+  x[5] = {7, 8, 9};
+  expect("x", x);
+  expect("v", v);
+  for (std::size_t i = 0; i < 6; ++i) {
+    mass.push_back(scene.mesh.mass[i]);
+    inverse.push_back(i == 1 || i == 3 ? 0 : 1 / scene.mesh.mass[i]);
+  }
+  expect("mass", mass);
+  expect("inverse_mass", inverse);
+  expect("pins", {1, 3});
+  expect("pin_motions", Json::array({{{"vertices", {3}}, {"motion", motion}}}));
+  expect("links", {{0, 2, 1.5, "bend"}, {4, 3, 0.25, "shear"}});
+  expect("triangles", scene.mesh.triangles);
+  expect("colliders", {{{"type", "plane"},
+                        {"normal", {0, 0.6, 0.8}},
+                        {"offset", -2},
+                        {"friction", 0.5},
+                        {"motion", nullptr}},
+                       {{"type", "ball"},
+                        {"center", {1, 2, 3}},
+                        {"radius", 4},
+                        {"friction", 0.25},
+                        {"motion", motion}},
+                       {{"type", "box"},
+                        {"center", {1, 2, 3}},
+                        {"half_extents", {4, 5, 6}},
+                        {"rotation", {0.5, 0.5, -0.5, 0.5}},
+                        {"friction", 0},
+                        {"motion", nullptr}}});
+  expect("wind", {{"velocity", {3, 2, 1}}, {"strength", 0.5}, {"law", "literal"}});
+  expect("self_collision", {{"radius", 0.125}});
+  EXPECT_EQ(file, Json::object()) << "and nothing else";
+  scene.wind->law = Wind::Law::relative, scene.self_collision.reset(), scene.mesh.grid.reset();
+  file = parse_json(scene_file(scene));
+  EXPECT_EQ(file["wind"]["law"], "relative");
+  EXPECT_TRUE(file["self_collision"].is_null() && file["grid"].is_null());
+}
+
+/// Exact free fall with pins, by symplectic Euler, off in some respects by the values of
+/// parameters.
+constexpr const char* kSlightlyWrong = R"(
+import sys
+sys.path.insert(0, sys.argv[1])
+import taut_solver
+class Slightly:
+    name, version = "slightly", "1"
+    def __init__(self, scene, params):
+        self.w, self.g = scene["inverse_mass"], scene["gravity"]
+        self.off = lambda what: params.get(what, 0)
+        self.held = min(self.w) == 0
+    def load(self, x, v):
+        self.x, self.v, self.fresh = list(x), list(v), True
+    def step(self, t, dt):
+        self.fresh = False
+        for k in range(len(self.x)):
+            if self.w[k // 3] > 0:
+                self.v[k] += dt * self.g[k % 3] * (1 + self.off("gravity"))
+                self.x[k] += dt * self.v[k]
+    def store(self):
+        x, v = list(self.x), list(self.v)
+        if not self.fresh:
+            x[11] += self.off("pin" if self.held else "shape")
+            if not self.held:
+                v = [c + self.off("velocity") * (k % 3 == 0) for k, c in enumerate(v)]
+        elif self.held:
+            x[25] += self.off("place after load")
+            v[25] += self.off("velocity after load")
+        return x, v
+taut_solver.serve(Slightly)
+)";
+
+// |g| is 9.75 m/s^2 and t 0.5 s: a velocity may be off by (1.05 / 2n + 0.001) g t, 0.0848 m/s in 32
+// steps and 0.0449 m/s in 64; a way by (1.05 / n + 0.001) g t^2 / 2, of which the integrator takes
+// 1 / n.
+TEST(Probe, DrawsEveryLineWhereItSaysItDoes) {
+  const Scratch scratch;
+  write_file(scratch.path() / "slightly.py", kSlightlyWrong);
+  const std::string sdk = std::string(TAUT_SOURCE_DIR) + "/experiments/external/sdk";
+  const Command command = split_command(
+      "python3 " + (scratch.path() / "slightly.py").string() + " " + sdk, scratch.path());
+  const auto failed = [&](const Json& off) {
+    std::string all;
+    for (const Check& check : quick_probe(command, off)) {
+      EXPECT_NE(check.verdict, Check::Verdict::skipped) << check.said;
+      if (check.verdict == Check::Verdict::failed) all += check.name + ", ";
+    }
+    return all;
+  };
+  EXPECT_EQ(failed({{"pin", 9e-7},
+                    {"shape", 9e-4},
+                    {"velocity", 0.0447},
+                    {"place after load", 9e-6},
+                    {"velocity after load", 9e-4}}),
+            "");
+  EXPECT_EQ(failed({{"pin", 1.1e-6}, {"shape", 1.1e-3}}), "free fall, time step, pins, ");
+  EXPECT_EQ(failed({{"velocity", 0.0451}, {"place after load", 1.1e-5}}), "time step, restart, ");
+  EXPECT_EQ(failed({{"velocity", 0.0850}, {"velocity after load", 1.1e-3}}),
+            "free fall, time step, restart, ");
+  EXPECT_EQ(failed({{"gravity", 1.7e-3}}), "");
+  EXPECT_EQ(failed({{"gravity", 1.9e-3}}), "time step, ");
+  EXPECT_EQ(failed({{"gravity", 3.6e-3}}), "free fall, time step, ");
+}
+
+/// Answers every line with what it has used so far; starts a process if it is asked to.
+constexpr const char* kTells = R"(
+import json, os, subprocess, sys, time
+held = bytearray(40_000_000)
+for line in sys.stdin:
+    if "sleep" in line:
+        sleeper = subprocess.Popen(["sleep", "1000"])
+    while time.process_time() < 0.15:
+        pass
+    with open("/proc/self/status") as status:
+        kilobytes = [int(l.split()[1]) for l in status if l.startswith("VmHWM")][0]
+    print(json.dumps({"kilobytes": kilobytes, "cpu": time.process_time()}), flush=True)
+)";
+
+TEST(Connections, MeasureWhatTheProgramUsesAndWhetherItHasHelp) {
+  const Scratch scratch;
+  write_file(scratch.path() / "tells.py", kTells);
+  Connection connection(
+      split_command("python3 " + (scratch.path() / "tells.py").string(), scratch.path()));
+  const Json told = connection.ask_line("hello");
+  const double kilobytes = told["kilobytes"], cpu = told["cpu"];
+  EXPECT_GT(kilobytes, 40'000);
+  EXPECT_NEAR(static_cast<double>(connection.peak_bytes()), 1024 * kilobytes, 10 * kilobytes);
+  EXPECT_NEAR(connection.cpu_seconds(), cpu, 0.05);
+  EXPECT_GE(connection.cpu_seconds(), cpu);
+  EXPECT_FALSE(connection.has_helpers());
+  connection.ask_line("sleep");
+  EXPECT_TRUE(connection.has_helpers());
+  EXPECT_TRUE(connection.close(20)->good()) << "it ends with its input";
+}
+
+TEST(Connections, SayHowAProgramFailed) {
+  struct Failure {
+    const char *script, *status, *reason, *log;
+  };
+  for (const Failure& one :
+       {Failure{"read x; echo said >&2; kill -KILL $$", "oom", "killed by the system during 'go'",
+                "said\n"},
+        Failure{"read x; kill -XCPU $$", "timeout", "CPU time", ""},
+        Failure{"read x; kill -SEGV $$", "crash", "SIGSEGV during 'go'", ""},
+        Failure{"read x; echo first >&2; echo last >&2; exit 3", "crash",
+                "exit code 3 during 'go': last", "first\nlast\n"},
+        Failure{"read x; echo std::bad_alloc >&2; exit 1", "oom",
+                "out of memory during 'go': std::bad_alloc", "std::bad_alloc\n"},
+        Failure{"read x; echo '[1]'; sleep 1000", "protocol",
+                "answered 'go' with what is no JSON object: '[1]'", ""},
+        Failure{"exec >&-; sleep 1000", "protocol", "closed its standard output during 'go'", ""},
+        Failure{"read x; printf abc; sleep 1000", "timeout",
+                "no answer to 'go' within 0.5 s, only 3 bytes", ""}}) {
+    const bool waits = one.reason == std::string("no answer to 'go' within 0.5 s, only 3 bytes");
+    Connection connection(
+        {.words = {"sh", "-c", one.script}, .folder = "", .seconds = waits ? 0.5 : 20});
+    try {
+      connection.ask_line("go");
+      ADD_FAILURE() << one.script;
+    } catch (const SolverFailure& failure) {
+      EXPECT_EQ(failure.status, one.status) << one.script;
+      EXPECT_STREQ(failure.what(), one.reason);
+      EXPECT_EQ(failure.log, one.log);
+    }
+  }
 }
 
 TEST(SolverNames, StartWithALetterAndAreShort) {

@@ -12,6 +12,7 @@
 #include "core/io/positions/positions.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/external/recorded.hpp"
 
 namespace taut::external::motion_file_test {
 namespace {
@@ -191,6 +192,158 @@ TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
   const double seen = strain_rms(turned, six.frame(3)), floor = six.floor(turned).rms;
   EXPECT_GT(seen, floor / 2);
   EXPECT_LT(seen, floor * 2);
+}
+
+/// The value of a line of the settings.
+std::string setting(const Scene& scene, const MotionOptions& options, const std::string& name) {
+  for (const auto& [line, value] : MotionFile(scene, options).settings(scene))
+    if (line == name) return value;
+  return "";
+}
+
+TEST_F(MotionFiles, WhatWasSaidReadOrDerivedIsInTheSettings) {
+  const Scene scene = sheet();
+  const MotionOptions plain = write("a.npy", scene, kAsIs);
+  EXPECT_EQ(setting(scene, plain, "frames"), "4 of 63 vertices, float64");
+  EXPECT_EQ(setting(scene, plain, "time step"),
+            "0.015625 s a frame, assumed: the scene's time step; fps says otherwise");
+  EXPECT_EQ(setting(scene, plain, "unit"), "1 unit is 1 m (derived), y up (derived)");
+  EXPECT_EQ(setting(scene, plain, "vertex order"), "as in the scene, at the start at most 0 m off");
+  EXPECT_EQ(setting(scene, {.file = plain.file, .fps = 64}, "time step"),
+            "0.015625 s a frame, as said");
+  EXPECT_EQ(setting(scene, write("a.mdd", scene, kAsIs), "time step"),
+            "0.015625 s a frame, from the times in the file");
+  EXPECT_EQ(setting(scene, {.file = folder_ / "a.mdd"}, "frames"), "4 of 63 vertices, float32");
+  const MotionOptions turned = write("b.npy", scene, [](std::vector<Vec3> x) {
+    std::swap(x[3], x[60]);
+    for (Vec3& v : x) v = Vec3(v.x(), -v.z(), v.y()) * 100;
+    return x;
+  });
+  EXPECT_EQ(setting(scene, turned, "unit"), "1 unit is 0.01 m (derived), z up (derived)");
+  EXPECT_TRUE(
+      setting(scene, turned, "vertex order").starts_with("matched by position, at the start"));
+  EXPECT_EQ(setting(scene, {.file = turned.file, .scale = 0.01, .up = "z"}, "unit"),
+            "1 unit is 0.01 m (as said), z up (as said)");
+  EXPECT_EQ(misfit(scene, {.file = turned.file, .up = "y"}).substr(folder_.string().size(), 33),
+            "/b.npy does not begin as sheet do");
+  EXPECT_EQ(MotionFile(scene, {.file = plain.file, .fps = 50}).frame_dt(), 0.02);
+  EXPECT_EQ(MotionFile(scene, {.file = plain.file, .fps = 0.5}).frame_dt(), 2);
+}
+
+TEST_F(MotionFiles, AFrameMayComeAHundredthOfAFrameEarlyOrLate) {
+  const Scene scene = sheet();
+  for (const auto& [late, good] :
+       {std::pair{0.009, true}, {-0.009, true}, {0.011, false}, {-0.011, false}}) {
+    const auto writer = create_positions(folder_ / "a.mdd", scene.mesh);
+    for (const double k : {0.0, 1.0, 2 + late, 3.0}) writer->append(k * scene.dt, scene.start.x);
+    writer->finish();
+    const auto open = [&] { MotionFile(scene, {.file = folder_ / "a.mdd"}); };
+    if (good) {
+      EXPECT_NO_THROW(open()) << late;
+    } else {
+      EXPECT_THROW(open(), InputError) << late;
+    }
+  }
+}
+
+TEST_F(MotionFiles, AVertexMayBeginATenThousandthOfTheExtentOffItsPlace) {
+  const Scene scene = sheet();
+  const double tolerance = 1e-4 * extent(scene);
+  for (const auto& [share, good] : {std::pair{0.98, true}, {1.02, false}}) {
+    for (const bool shuffled : {false, true}) {
+      const MotionOptions file = write("a.npy", scene, [&](std::vector<Vec3> x) {
+        x[20] += share * tolerance * Vec3(0.6, 0, 0.8);
+        if (shuffled) std::swap(x[20], x[40]);
+        return x;
+      });
+      EXPECT_EQ(misfit(scene, file).empty(), good) << share << shuffled;
+      if (!good) continue;
+      MotionFile motion(scene, file);
+      EXPECT_NEAR((motion.frame(0)[20] - scene.start.x[20]).norm(), share * tolerance, 1e-12);
+      EXPECT_NEAR((motion.frame(0)[40] - scene.start.x[40]).norm(), 0, 1e-12);
+    }
+  }
+}
+
+// A rounding to a step q, as likely anywhere in it, has the variance q^2/12: of a link's length in
+// any direction 2 q^2/12; no link is off by more than q (|x| + |y| + |z|) of its direction.
+TEST_F(MotionFiles, TheFloorOfAStepIsItsVarianceOverTheRestLength) {
+  Scene scene = sheet();
+  scene.mesh = make_sheet({.nu = 9, .nv = 5, .width = 0.4, .height = 0.32, .mass = 1});
+  scene.links = grid_links(scene.mesh, {.shear = true});
+  const auto check = [&](const char* name, double z, double step, const std::string& text = "",
+                         double unit = 1) {
+    scene.start = {scene.mesh.rest, std::vector<Vec3>(45, Vec3::Zero())};
+    for (Vec3& v : scene.start.x) v += Vec3(0.55, 0.95, z);  // all within 0.5 to 1
+    MotionOptions options{.file = folder_ / name};
+    if (text.empty())
+      options = write(name, scene, [&](const std::vector<Vec3>&) { return scene.start.x; });
+    for (int k = 0; k < 4 && !text.empty(); ++k) {
+      std::ofstream out(folder_ / (text + std::to_string(k) + ".obj"));
+      out.precision(9);
+      for (const Vec3& v : scene.start.x)
+        out << "v " << v.x() / unit << ' ' << v.y() / unit << ' ' << v.z() / unit << '\n';
+    }
+    MotionFile motion(scene, options);
+    ASSERT_TRUE(motion.misfits().empty()) << motion.misfits().front();
+    double sum = 0, most = 0;
+    for (const Link& link : scene.links) {
+      const Vec3 along =
+          (scene.start.x[to_index(link.b)] - scene.start.x[to_index(link.a)]) / link.rest;
+      sum += step * step / 6 / (link.rest * link.rest);
+      most = std::max(most, step * along.lpNorm<1>() / link.rest);
+    }
+    const StrainFloor floor = motion.floor(scene);
+    const double rms = std::sqrt(sum / static_cast<double>(scene.links.size()));
+    EXPECT_NEAR(floor.rms, rms, 1e-3 * rms) << name;
+    EXPECT_NEAR(floor.max, most, 1e-3 * most) << name;
+  };
+  check("a.npy", 0.6, std::ldexp(1, -53));
+  check("a.pc2", 0.6, std::ldexp(1, -24));
+  check("three0.obj", 0.551, 1e-3, "three");
+  check("six0.obj", 0.551237, 1e-6, "six");
+  check("cm0.obj", 0.551237, 1e-6, "cm", 0.01);  // four decimals of a centimetre
+}
+
+TEST_F(MotionFiles, ArePlayedFrameAfterFrameWithTheirDifferencesAsVelocities) {
+  const Scene scene = sheet();
+  const MotionOptions file = write("it's.npy", scene, kAsIs);
+  const std::string text = solver_text(file);
+  EXPECT_EQ(text, "positions:file='" + folder_.string() + "/it''s.npy',fps=0,scale=0,up=auto");
+  EXPECT_EQ(solver_text({.file = "a", .fps = 24, .scale = 0.01, .up = "z", .rest = "r.obj"}),
+            "positions:file='a',fps=24,scale=0.01,up=z,rest='r.obj'");
+  const Params params("positions", kPositions.params, text.substr(10));
+  EXPECT_TRUE(kPositions.unsupported(scene, params).empty());
+  EXPECT_EQ(kPositions.unsupported(scene, Params("positions", kPositions.params, "")).size(), 1u);
+  const auto solver = kPositions.make(scene, params);
+  solver->load(scene.start);
+  for (int k = 0; k < 3; ++k) {
+    solver->step(k * scene.dt, scene.dt);
+    State state;
+    solver->store(state);
+    const std::vector<Vec3> before = moved(scene, k), now = moved(scene, k + 1);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      EXPECT_LT((state.x[i] - now[i]).norm(), 1e-15);
+      EXPECT_LT((state.v[i] - (now[i] - before[i]) / scene.dt).norm(), 1e-12);
+    }
+  }
+  EXPECT_TRUE(std::isnan(solver->cpu_seconds()));
+  EXPECT_EQ(solver->peak_bytes(), 0u);
+  EXPECT_TRUE(solver->step_cost().empty());
+  Scene longer = scene;
+  longer.steps = 4;
+  EXPECT_THROW(kPositions.make(longer, params), InputError);
+  const std::string other = solver_text(write("b.npy", scene, [](std::vector<Vec3> x) {
+    x[0].z() += 1e-6;
+    return x;
+  }));
+  const SolverEntry *one = recorded("positions", text.substr(10)),
+                    *same = recorded("positions", text.substr(10)),
+                    *two = recorded("positions", other.substr(10));
+  EXPECT_EQ(one, same);
+  EXPECT_NE(one->implementation, two->implementation) << "of all bytes";
+  EXPECT_NE(one->name, two->name);
+  EXPECT_EQ(recorded("mine", text.substr(10))->name, "mine");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@
 #include "experiments/external/protocol.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 /// Everything that reads what others wrote, as functions of bytes: for libFuzzer (fuzz.cpp) and for
 /// the inputs that once broke something (corpus_test.cpp). Each throws InputError for what it

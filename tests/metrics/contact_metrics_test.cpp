@@ -147,6 +147,61 @@ TEST(Slip, SeesThePlaneMoveAndDampingAndNeedsAPlaneAlone) {
   EXPECT_FALSE(measure(scene, damped).contains("slip.error"));
 }
 
+// A cloth of unequal masses that goes anywhere, beside a block that feels the same normal impulses,
+// on a slope that moves: Coulomb's law once more, in components along the plane.
+TEST(Slip, OfAnyMotionIsTheDifferenceFromTheBlock) {
+  Draw draw(5);
+  Scene scene = sheet(3);
+  scene.gravity = {1, -9, 2}, scene.damping = 0.9, scene.steps = 140;
+  for (double& mass : scene.mesh.mass) mass *= draw.number(0.5, 2);
+  for (Vec3& v : scene.start.v) v = draw.vector(1);
+  const Vec3 normal = Vec3(0.3, 1, -0.2).normalized(), carried(0.3, -0.1, 0.2);
+  scene.colliders = {
+      {.shape = Plane{normal, -1}, .motion = {.velocity = carried}, .friction = 0.4}};
+  std::vector<State> states(141, scene.start);
+  for (std::size_t step = 1; step < states.size(); ++step) {
+    const Vec3 shift = draw.vector(0.004);
+    for (Vec3& x : states[step].x) x += shift + draw.vector(0.003);
+  }
+  const auto center = [&](const std::vector<Vec3>& all) {
+    Vec3 sum = Vec3::Zero();
+    double mass = 0;
+    for (std::size_t i = 0; i < 9; ++i)
+      sum += scene.mesh.mass[i] * all[i], mass += scene.mesh.mass[i];
+    return Vec3(sum / mass);
+  };
+  const Vec3 u = normal.unitOrthogonal(), w = normal.cross(u);
+  const auto along = [&](const Vec3& v) { return Eigen::Vector2d(u.dot(v), w.dot(v)); };
+  const auto freely = [&](const Vec3& v) {
+    return Vec3(std::exp(-0.9 / 64) * v + scene.gravity / 64);
+  };
+  const auto rubbed = [&](const Vec3& v, double press) {  // along the plane
+    const Eigen::Vector2d slides = along(v - carried);
+    const double left = std::max(0.0, slides.norm() - 0.4 * press);
+    return Eigen::Vector2d(along(carried) + left * slides.normalized());
+  };
+  Vec3 velocity = center(scene.start.v), block = velocity;
+  Eigen::Vector2d apart = Eigen::Vector2d::Zero();
+  double mean = 0, peak = 0;
+  int pressed = 0;
+  for (std::size_t step = 1; step <= 140; ++step) {
+    const Vec3 next = 64 * (center(states[step].x) - center(states[step - 1].x));
+    const double press = std::max(0.0, normal.dot(next - freely(velocity)));
+    pressed += press > 0;
+    const double error = 64 * (along(next) - rubbed(freely(velocity), press)).norm();
+    peak = std::max(peak, error), mean += step >= 77 ? error / 64 : 0;
+    const Eigen::Vector2d slid = rubbed(freely(block), press);
+    block = slid.x() * u + slid.y() * w;  // how fast it goes up or down does not matter
+    apart += (along(next) - slid) / 64;
+    velocity = next;
+  }
+  EXPECT_GT(pressed, 40);
+  const Values v = measure(scene, [&](int step) { return states[static_cast<std::size_t>(step)]; });
+  EXPECT_NEAR(v.at("slip.error"), mean, 1e-9);
+  EXPECT_NEAR(v.at("slip.error.peak"), peak, 1e-9);
+  EXPECT_NEAR(v.at("slip.distance"), apart.norm(), 1e-9);
+}
+
 TEST(Tunnelling, CountsPassagesWithinOneStepAndForgetsReturns) {
   Scene scene = sheet(3);
   scene.colliders = {{.shape = Box{.center = {0.5, -1, 0.5}, .half_extents = {2, 0.01, 2}}}};

@@ -63,6 +63,7 @@ TEST(Suggestion, IsTheNearestNameWithinAFewSlips) {
 TEST(Diagnostics, SayTheirPlaceAsFarAsItIsKnown) {
   EXPECT_EQ((Diagnostic{"", 3, 4, "m"}.text()), "m");
   EXPECT_EQ((Diagnostic{"f", 3, 4, "m"}.text()), "f:3:4: m");
+  EXPECT_EQ((Diagnostic{"f", 3, 0, "m"}.text()), "f:3: m");
   EXPECT_EQ((Diagnostic{"f", 0, 4, "m"}.text()), "f: column 4: m");
   EXPECT_EQ((Diagnostic{"f", 0, 0, "m"}.text()), "f: m");
   EXPECT_STREQ(InputError({{"f", 1, 2, "a"}, {"g", 0, 0, "b"}}).what(), "f:1:2: a\ng: b");

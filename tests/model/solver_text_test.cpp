@@ -4,6 +4,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/params.hpp"
+#include "core/model/solver.hpp"
 
 namespace taut::solver_text_test {
 namespace {
@@ -47,6 +48,14 @@ TEST(SolverText, ErrorsNameTheirColumn) {
   EXPECT_EQ(problem("n=3,,"), "5: mine: expected key=value, got ''");
   EXPECT_EQ(problem("=3"), "1: mine: expected key=value, got '=3'");
   EXPECT_EQ(problem("n"), "1: mine: expected key=value, got 'n'");
+}
+
+TEST(SolverText, TheNameStandsBeforeTheColonAndParametersAreAppended) {
+  EXPECT_EQ(solver_name("xpbd"), "xpbd");
+  EXPECT_EQ(solver_name("mine:cmd='a:b',n=3"), "mine");
+  EXPECT_EQ(with("xpbd", "bend=1"), "xpbd:bend=1");
+  EXPECT_EQ(with("xpbd:bend=1", "iterations=2,substeps=3"), "xpbd:bend=1,iterations=2,substeps=3");
+  EXPECT_EQ(with("xpbd", ""), "xpbd");
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/reference/chain_sweeps.hpp"
 #include "core/reference/closed_forms.hpp"
-#include "core/reference/relaxation.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
 #include "core/reference/textbook.hpp"

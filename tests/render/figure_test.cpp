@@ -5,11 +5,15 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "experiments/render/image/colour.hpp"
+#include "tests/render/render_scenes.hpp"
 
 namespace taut::figure_test {
 namespace {
+
+using test::small;
 
 constexpr Rgb8 kPaper = rgb(0xFFFFFF);
 
@@ -126,6 +130,90 @@ TEST(Figure, WhatIsWrittenBelowIsInUnitsOfPeople) {
             (Lines{"max |ε| = 4.12 %", "mean ε = \u22120.72 %"}));
   EXPECT_EQ(caption_of(ColourBy::penetration, live), Lines{"max depth = 1.52 mm"});
   EXPECT_EQ(caption_of(ColourBy::speed, live), Lines{"max |v| = 2.5 m/s"});
+}
+
+/// Whether a picture holds a panel with its left upper corner there: its middle, where nothing is
+/// written.
+bool holds(const Image& picture, const Image& panel, int left, int top) {
+  for (int y = panel.height() * 2 / 5; y < panel.height() * 9 / 10; ++y)
+    for (int x = panel.width() / 20; x < panel.width() * 7 / 10; ++x)
+      if (picture.at(left + x, top + y) != panel.at(x, y)) return false;
+  return true;
+}
+
+TEST(Figure, EveryRunStandsInItsPanelUnderTheDotOfItsColour) {
+  const Scene scene = test::level_sheet(5);
+  std::vector<RecordedRun> runs;
+  for (const auto& [strain, colour] :
+       {std::pair{-0.03, 0x0B6BCBu}, {0.0, 0xC8470Cu}, {0.02, 0x8250C4u}, {0.04, 0x0F7B5Du}}) {
+    runs.push_back(test::stretched(scene, strain));
+    runs.back().colour = rgb(colour);
+  }
+  for (const std::size_t count : {4u, 3u, 1u}) {
+    runs.resize(count);
+    const PageLayout layout(640, 480, static_cast<int>(count));
+    SceneRendererOptions options = small();
+    options.width = layout.panel_width, options.height = layout.panel_height;
+    options.view = parse_view("top"), options.range = 0.05;
+    const SceneRenderer renderer(scene, runs, options);
+    const Image page = compose(renderer, layout, 0.5);
+    EXPECT_EQ(std::pair(page.width(), page.height()), std::pair(640, 480));
+    for (std::size_t k = 0; k < count; ++k) {
+      const int column = count == 4 ? static_cast<int>(k % 2) : static_cast<int>(k),
+                row = count == 4 ? static_cast<int>(k / 2) : 0, left = column * layout.panel_width,
+                top = row * (layout.header + layout.panel_height);
+      EXPECT_TRUE(holds(page, renderer.panel(k, 0.5), left, top + layout.header)) << k;
+      EXPECT_EQ(page.at(left + static_cast<int>(45 * layout.unit),
+                        top + static_cast<int>(0.42 * layout.header - 9 * layout.unit)),
+                runs[k].colour)
+          << k;
+    }
+  }
+}
+
+TEST(Figure, ASheetHasAColumnForEachRunAndARowForEachMoment) {
+  const Scene scene = test::sheet_over_ball(9);
+  const std::vector<RecordedRun> runs{test::draped(scene, 5), test::stretched(scene, 0.02)};
+  SceneRendererOptions options = small();
+  options.width = 200, options.height = 160;
+  const SceneRenderer renderer(scene, runs, options);
+  const std::vector<double> times{0.25, 0.5, 1};
+  const Image page = compose_sheet(renderer, times);
+  const double unit = 160 / 400.0;
+  const int head = static_cast<int>(64 * unit), foot = static_cast<int>(96 * unit);
+  EXPECT_EQ(std::pair(page.width(), page.height()), std::pair(2 * 206 - 6, head + 3 * 166 + foot));
+  for (int column = 0; column < 2; ++column) {
+    const auto run = static_cast<std::size_t>(column);
+    for (int row = 0; row < 3; ++row)
+      EXPECT_TRUE(holds(page, renderer.panel(run, times[static_cast<std::size_t>(row)]),
+                        column * 206, head + row * 166))
+          << column << ' ' << row;
+    EXPECT_EQ(page.at(column * 206 + static_cast<int>(26 * unit), static_cast<int>(34 * unit)),
+              runs[run].colour);
+  }
+}
+
+TEST(ColourBar, TicksStandAtTheirPlacesAndArrowsPointBeyondTheEnds) {
+  for (const ColourBy by : {ColourBy::strain, ColourBy::speed}) {
+    Image image(400, 90, rgb(0xFFFFFF));
+    Canvas canvas(image);
+    const ColourScale scale{by, 0.04};
+    draw_colour_bar(canvas, scale, {50, 10, 300, 20}, 1);
+    for (int x = 50; x < 350; ++x)
+      EXPECT_EQ(image.at(x, 20), scale.map().at((x - 50) / 299.0)) << x;
+    std::set<int> ticks, expected;
+    for (int x = 40; x < 360; ++x)
+      if (image.at(x, 34) != rgb(0xFFFFFF)) ticks.insert(x);
+    for (const double value : scale.ticks()) {
+      const double at = 50 + (value - scale.low()) / (scale.high - scale.low()) * 300;
+      const int middle = static_cast<int>(std::round(at));  // half of either pixel beside it
+      expected.insert({middle - 1, middle});
+    }
+    EXPECT_EQ(ticks, expected);
+    EXPECT_EQ(image.at(354, 20), scale.colour(1)) << "beyond its high end";
+    EXPECT_EQ(image.at(372, 20), rgb(0xFFFFFF));
+    EXPECT_EQ(image.at(45, 20), by == ColourBy::strain ? scale.colour(-1) : rgb(0xFFFFFF));
+  }
 }
 
 }  // namespace

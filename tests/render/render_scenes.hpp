@@ -73,6 +73,15 @@ inline RecordedRun draped(const Scene& scene, double folds) {
   return run;
 }
 
+/// Quickly drawn, small panels.
+inline SceneRendererOptions small(ColourBy colour_by = ColourBy::strain) {
+  SceneRendererOptions options;
+  options.width = 240, options.height = 180;
+  options.quality = RenderQuality::draft();
+  options.colour_by = colour_by;
+  return options;
+}
+
 /// Largest difference of a channel, and its mean over all.
 struct Difference {
   int largest = 0;

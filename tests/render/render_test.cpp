@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <thread>
 
 #include "core/model/input_error.hpp"
@@ -14,6 +15,7 @@ namespace taut::render_test {
 namespace {
 
 using test::difference;
+using test::small;
 namespace fs = std::filesystem;
 
 Image read_png(const std::filesystem::path& path) {
@@ -82,14 +84,6 @@ double share_of(const Image& panel, Rgb8 colour) {
   return static_cast<double>(same) / static_cast<double>(panel.pixels().size());
 }
 
-SceneRendererOptions small(ColourBy colour_by = ColourBy::strain) {
-  SceneRendererOptions options;
-  options.width = 240, options.height = 180;
-  options.quality = RenderQuality::draft();
-  options.colour_by = colour_by;
-  return options;
-}
-
 // Open cloth that faces the sky has the colour that the bar promises, whatever light and shader do.
 TEST(SceneRenderer, OpenClothHasTheBarsColour) {
   const Scene scene = test::level_sheet(9);
@@ -129,6 +123,133 @@ TEST(SceneRenderer, MovingTheClothMovesThePicture) {
   const std::vector<RecordedRun> runs{test::draped(scene, 7)};
   const SceneRenderer renderer(scene, runs, small());
   EXPECT_GT(difference(renderer.panel(0, 0), renderer.panel(0, 1)).mean, 2);
+}
+
+/// The sheet at rest whose vertices have these speeds [m/s], by vertex and time.
+RecordedRun with_speeds(const Scene& scene,
+                        const std::function<double(std::size_t, double)>& speed) {
+  Trajectory trajectory = test::empty_trajectory(scene);
+  for (int k = 0; k <= scene.steps; ++k) {
+    State state = scene.start;
+    for (std::size_t i = 0; i < state.v.size(); ++i)
+      state.v[i] = Vec3(0, 0, speed(i, k * scene.dt));
+    trajectory.frames.push_back({k * scene.dt, state});
+  }
+  return recorded_run(scene, trajectory);
+}
+
+TEST(SceneRenderer, TheBarEndsWhere98Of100ValuesOfTheMomentsAskedForLie) {
+  const Scene scene = test::level_sheet(10);
+  const auto high = [&](const std::function<double(std::size_t, double)>& speed, double from = 0,
+                        double to = 1e9) {
+    const std::vector<RecordedRun> runs{with_speeds(scene, speed)};
+    SceneRendererOptions options = small(ColourBy::speed);
+    options.from = from, options.to = to;
+    return SceneRenderer(scene, runs, options).scale().high;
+  };
+  const auto first = [](std::size_t n, double then) {  // of 100 vertices n have 1 m/s
+    return [=](std::size_t i, double) { return i < n ? 1 : i == n ? then : 50.0; };
+  };
+  EXPECT_EQ(high(first(97, 3)), 3) << "the 98th";
+  EXPECT_EQ(high(first(98, 3)), 1);
+  EXPECT_EQ(high(first(100, 3)), 1);
+  // 25 moments, the first and the last among them, and none before or after.
+  const auto at = [](bool (*fast)(double)) {
+    return [=](std::size_t, double t) { return fast(t) ? 5.0 : 2.0; };
+  };
+  EXPECT_EQ(high(at([](double t) { return t < 0.25 || t > 0.75; }), 0.25, 0.75), 2);
+  EXPECT_EQ(high(at([](double t) { return t <= 0.25; }), 0.25, 0.75), 5);
+  EXPECT_EQ(high(at([](double t) { return t >= 0.75; }), 0.25, 0.75), 5);
+  EXPECT_EQ(high(at([](double t) { return t == 0.5; }), 0.5, 0.5), 5) << "one moment alone";
+  EXPECT_EQ(high(at([](double t) { return t >= 1; })), 5) << "to the scene's end";
+  // What is zero everywhere has a bar none the less.
+  const std::vector<RecordedRun> still{with_speeds(scene, [](std::size_t, double) { return 0; })};
+  const auto least = [&](ColourBy by) {
+    return SceneRenderer(scene, still, small(by)).scale().high;
+  };
+  EXPECT_DOUBLE_EQ(least(ColourBy::speed), 0.1);
+  EXPECT_DOUBLE_EQ(least(ColourBy::strain), 1e-3);
+  EXPECT_DOUBLE_EQ(least(ColourBy::penetration), round_up(1e-3 * extent(scene), 1e-9));
+}
+
+TEST(SceneRenderer, MaterialSpaceIsLinearBetweenTheVerticesAndHasTheSheetsShape) {
+  Scene scene = test::level_sheet(3);
+  const auto flat_of = [&](int nu, int nv, double width, double height) {
+    scene.mesh = make_sheet({.nu = nu, .nv = nv, .width = width, .height = height, .mass = 1});
+    scene.links = grid_links(scene.mesh, {});
+    scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
+    const std::vector<RecordedRun> runs{with_speeds(scene, [=](std::size_t i, double) {
+      const auto n = static_cast<std::size_t>(nu);
+      return static_cast<double>(i % n) + 0.75 * static_cast<double>(i / n);
+    })};
+    SceneRendererOptions options = small(ColourBy::speed);
+    options.range = 8;
+    const SceneRenderer renderer(scene, runs, options);
+    const Image flat = renderer.material_space(0, 0.5, 60);
+    for (int y = 0; y < flat.height(); ++y)
+      for (int x = 0; x < flat.width(); ++x) {
+        const double u = (x + 0.5) / flat.width() * (nu - 1),
+                     v = (y + 0.5) / flat.height() * (nv - 1);
+        const Rgb8 is = flat.at(x, y), should = renderer.scale().colour(u + 0.75 * v);
+        EXPECT_LE(std::max({std::abs(is.r - should.r), std::abs(is.g - should.g),
+                            std::abs(is.b - should.b)}),
+                  2)
+            << x << ' ' << y;
+      }
+    return std::pair(flat.width(), flat.height());
+  };
+  EXPECT_EQ(flat_of(5, 3, 2, 1), std::pair(60, 30));
+  EXPECT_EQ(flat_of(3, 6, 0.5, 2), std::pair(15, 60));
+  EXPECT_EQ(flat_of(2, 5, 0.05, 2), std::pair(6, 60)) << "a ninth at least";
+  scene.mesh.grid.reset();
+  const std::vector<RecordedRun> runs{with_speeds(scene, [](std::size_t, double) { return 1; })};
+  EXPECT_EQ(SceneRenderer(scene, runs, small()).material_space(0, 0, 60).width(), 0);
+}
+
+/// The colour of a panel where this vertex is seen.
+Rgb8 seen_at(const SceneRenderer& renderer, const Image& panel, std::size_t vertex, double t) {
+  const auto p = renderer.projected(0, t).at(vertex);
+  return panel.at(static_cast<int>((p.x() + 1) / 2 * static_cast<float>(panel.width())),
+                  static_cast<int>((1 - p.y()) / 2 * static_cast<float>(panel.height())));
+}
+
+TEST(SceneRenderer, PinsAreDarkBallsOnTheirVerticesAndNowhereElse) {
+  Scene scene = test::level_sheet(9);
+  const auto dark = [&](const std::vector<int>& pins) {
+    scene.pins = pins;
+    const std::vector<RecordedRun> runs{test::stretched(scene, 0)};
+    SceneRendererOptions options = small();
+    options.view = parse_view("top"), options.range = 0.05;
+    const SceneRenderer renderer(scene, runs, options);
+    const Image panel = renderer.panel(0, 0.5);
+    std::vector<int> found;
+    for (const int i : {20, 22, 40, 58, 60})
+      if (seen_at(renderer, panel, static_cast<std::size_t>(i), 0.5).g < 150) found.push_back(i);
+    return found;
+  };
+  EXPECT_EQ(dark({}), std::vector<int>{});
+  EXPECT_EQ(dark({20}), std::vector<int>{20});
+  EXPECT_EQ(dark({22, 40, 58}), (std::vector<int>{22, 40, 58}));
+}
+
+TEST(SceneRenderer, TheCameraFollowsClothThatNothingHolds) {
+  const Scene scene = test::level_sheet(9);
+  RecordedRun falls = test::stretched(scene, 0);
+  for (auto& frame : falls.trajectory.frames)
+    for (Vec3& x : frame.state.x) x += frame.t * Vec3(3, -50 * frame.t, 7);
+  const std::vector<RecordedRun> runs{falls};
+  SceneRendererOptions options = small();
+  options.range = 0.05;
+  const SceneRenderer renderer(scene, runs, options);
+  const auto before = renderer.projected(0, 0), after = renderer.projected(0, 1);
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_LT((before[i] - after[i]).norm(), 2e-3) << i;
+  EXPECT_TRUE(renderer.in_sight(0, 1));
+  const Rgb8 start = seen_at(renderer, renderer.panel(0, 0), 40, 0),
+             end = seen_at(renderer, renderer.panel(0, 1), 40, 1);
+  EXPECT_NEAR(start.g, end.g, 12);
+  EXPECT_GT(end.g, 150) << "cloth";
 }
 
 // What fell through a thin plate must not look as if it had never been there.

@@ -69,6 +69,74 @@ TEST(DrawnSheet, PassesThroughItsParticlesAndItsValuesAreLinear) {
       1e-12);
 }
 
+TEST(DrawnSheet, IsCoveredOnceByFacesThatAllTurnAlike) {
+  Scene scene = test::level_sheet(4);
+  scene.mesh = make_sheet({.nu = 4, .nv = 3, .width = 1.5, .height = 1, .mass = 1});
+  const std::vector<double> none(12, 0);
+  for (const int finest : {3, 12}) {
+    const RenderMesh mesh = ClothMesher(scene, finest).mesh(scene.mesh.rest, none, none);
+    EXPECT_EQ(mesh.position.size(), finest == 3 ? 12u : 13u * 9u);
+    EXPECT_NEAR(area(mesh), 1.5, 1e-5);
+    Vec3f sum = Vec3f::Zero();
+    for (const auto& [a, b, c] : mesh.triangles)
+      sum += (mesh.position[b] - mesh.position[a]).cross(mesh.position[c] - mesh.position[a]) / 2;
+    EXPECT_NEAR(sum.norm(), 1.5, 1e-5);
+    for (const Vec3f& n : mesh.normal) EXPECT_NEAR(n.dot(sum) / sum.norm(), 1, 1e-5);
+  }
+}
+
+TEST(DrawnCloth, WithoutAGridIsItsFacesAndWithoutFacesATubeWithBeads) {
+  Scene scene = test::level_sheet(3);
+  scene.mesh = make_sheet({.nu = 3, .nv = 3, .width = 2, .height = 1, .mass = 1});
+  scene.mesh.grid.reset();
+  std::vector<double> values, none(9, 0);
+  for (int i = 0; i < 9; ++i) values.push_back(0.5 * i);
+  const RenderMesh faces = ClothMesher(scene, 64).mesh(scene.mesh.rest, values, none);
+  ASSERT_EQ(faces.position.size(), 9u);
+  ASSERT_EQ(faces.triangles.size(), scene.mesh.triangles.size());
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_LT((faces.position[i].cast<double>() - scene.mesh.rest[i]).norm(), 1e-7);
+    EXPECT_EQ(faces.value[i], static_cast<float>(values[i]));
+    EXPECT_NEAR(faces.normal[i].norm(), 1, 1e-6);
+  }
+  for (std::size_t k = 0; k < faces.triangles.size(); ++k)
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_EQ(static_cast<int>(faces.triangles[k][c]), scene.mesh.triangles[k][c]);
+  EXPECT_NEAR(area(faces), 2, 1e-6);
+  EXPECT_EQ(ClothMesher(scene, 64).grid_spacing(), 0);
+
+  scene.mesh.triangles.clear();
+  scene.links = {{0, 2, 1, Family::structural}, {4, 4, 1, Family::bend}};
+  const RenderMesh tube = ClothMesher(scene, 64).mesh(scene.mesh.rest, values, none);
+  const float radius = 0.006f * static_cast<float>(extent(scene));
+  const Vec3f from = scene.mesh.rest[0].cast<float>(), to = scene.mesh.rest[2].cast<float>(),
+              axis = (to - from).normalized();
+  const std::size_t bead = 8 * 15;
+  ASSERT_EQ(tube.position.size(), 24 + 9 * bead) << "12 sides, and a bead at each vertex";
+  Vec3f middle = Vec3f::Zero();
+  for (std::size_t i = 0; i < 24; ++i) {
+    const Vec3f p = tube.position[i] - from;
+    EXPECT_NEAR((p - p.dot(axis) * axis).norm(), radius, 1e-5);
+    const bool end = p.dot(axis) > 1;
+    EXPECT_NEAR(p.dot(axis), end ? (to - from).norm() : 0, 1e-5);
+    EXPECT_EQ(tube.value[i], end ? 1.0f : 0.0f) << "of its vertex";
+    EXPECT_NEAR(tube.normal[i].dot(p - p.dot(axis) * axis), radius, 1e-5);
+    middle += tube.position[i] / 24;
+  }
+  EXPECT_LT((middle - (from + to) / 2).norm(), 1e-5) << "all around";
+  for (std::size_t i = 24; i < tube.position.size(); ++i) {
+    const std::size_t vertex = (i - 24) / bead;
+    EXPECT_NEAR((tube.position[i] - scene.mesh.rest[vertex].cast<float>()).norm(), 2 * radius,
+                1e-5);
+    EXPECT_EQ(tube.value[i], static_cast<float>(values[vertex]));
+  }
+  RenderMesh ball;
+  append_ball(ball, Vec3f::Zero(), 0.5f, 48, 7);
+  EXPECT_NEAR(volume(ball), 4 * std::numbers::pi / 3 * 0.125, 0.005);
+  EXPECT_NEAR(area(ball), std::numbers::pi, 0.015);
+  EXPECT_EQ(ball.value.front(), 7);
+}
+
 TEST(DrawnColliders, HaveTheirSizesLessTheInset) {
   const double pi = std::numbers::pi;
   const RenderMesh ball = collider_mesh({Ball{Vec3(1, 2, 3), 0.5}, {}, 0}, 0, {.inset = 0.1});

@@ -1,15 +1,22 @@
 // Video, media for the report, and export to other tools.
 #include <gtest/gtest.h>
+#include <png.h>
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <set>
 #include <sstream>
 
+#include "core/model/text.hpp"
+#include "experiments/case/case.hpp"
+#include "experiments/render/film/film.hpp"
 #include "experiments/render/picture/media.hpp"
+#include "experiments/report/input.hpp"
+#include "experiments/system/files.hpp"
 #include "tests/render/render_scenes.hpp"
 
 namespace taut::video_test {
@@ -105,6 +112,11 @@ TEST_F(VideoTest, MediaHasAVideoForEveryMomentTheSameBytesAgain) {
     pictures.insert(line.substr(line.rfind(',')));
   EXPECT_EQ(count, media.t.size());
   EXPECT_EQ(pictures.size(), media.t.size());
+  EXPECT_EQ(
+      output_of("ffprobe -v error -show_entries stream=width,height,r_frame_rate -of csv=p=0 " +
+                (folder_ / "film.mp4").string()),
+      "480,200,64/3\n")
+      << "a frame each three steps of 1/64 s";
 }
 
 TEST_F(VideoTest, WithoutFfmpegThereIsAPoster) {
@@ -121,6 +133,226 @@ TEST_F(VideoTest, WithoutFfmpegThereIsAPoster) {
   EXPECT_EQ(media.mp4, "");
   EXPECT_EQ(media.poster_type, "image/png");
   EXPECT_EQ(media.poster.substr(1, 3), "PNG");
+}
+
+/// Without ffmpeg a film is its poster: what is chosen for it takes no encoder.
+class Posters : public testing::Test {
+ protected:
+  void SetUp() override { setenv("PATH", "/nowhere", 1); }
+  void TearDown() override { setenv("PATH", path_.c_str(), 1); }
+  static Media media_of(const Scene& scene, const std::vector<RecordedRun>& runs, double duration,
+                        double speed = 1) {
+    MediaOptions options = quick();
+    options.duration = duration, options.speed = speed, options.width = 240, options.height = 100;
+    return render_media(scene, runs, options);
+  }
+  const std::string path_ = std::getenv("PATH");
+};
+
+/// The level sheet strained by `strain`(t) and moved along x by `way`(t) [m].
+RecordedRun moving(
+    const Scene& scene, const std::function<double(double)>& strain,
+    const std::function<double(double)>& way = [](double) { return 0.0; }) {
+  Trajectory trajectory = test::empty_trajectory(scene);
+  for (int k = 0; k <= scene.steps; ++k) {
+    const double t = k * scene.dt;
+    State state = scene.start;
+    for (Vec3& x : state.x) x = (1 + strain(t)) * x + Vec3(way(t), 0, 0);
+    trajectory.frames.push_back({t, state});
+  }
+  RecordedRun run = recorded_run(scene, trajectory);
+  run.title = "Analytic";
+  return run;
+}
+
+Image decoded(const std::string& bytes) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  EXPECT_TRUE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()));
+  png.format = PNG_FORMAT_RGB;
+  Image image(static_cast<int>(png.width), static_cast<int>(png.height));
+  EXPECT_TRUE(png_image_finish_read(&png, nullptr, &image.at(0, 0), 0, nullptr));
+  return image;
+}
+
+TEST_F(Posters, FramesAreWholeStepsAtAboutTheRateOfTheFilm) {
+  const Scene scene = test::level_sheet(3);  // 64 steps of 1/64 s
+  const std::vector<RecordedRun> runs{moving(scene, [](double t) { return 0.02 * t; })};
+  const auto steps = [&](double duration, double speed, const std::vector<RecordedRun>& of) {
+    std::vector<double> all;
+    const Media media = media_of(scene, of, duration, speed);
+    for (const double t : media.t) all.push_back(t * 64);
+    for (std::size_t k = 0; k < media.t.size(); ++k)
+      EXPECT_NEAR(media.rms_strain[0][k], 0.02 * std::min(1.0, media.t[k]), 1e-12);
+    return all;
+  };
+  using Steps = std::vector<double>;
+  EXPECT_EQ(steps(0.25, 1, runs), (Steps{0, 3, 6, 9, 12, 15})) << "22 a second: 64 / 22 = 2.9";
+  EXPECT_EQ(steps(0.25, 4, runs), (Steps{0, 12}));
+  EXPECT_EQ(steps(3 / 64.0, 0.3, runs), (Steps{0, 1, 2, 3})) << "no finer than the steps are";
+  EXPECT_EQ(steps(0.01, 1, runs), (Steps{0, 3})) << "two at least";
+  EXPECT_EQ(steps(9, 8, runs), (Steps{0, 23, 46})) << "to the scene's end";
+  std::vector<RecordedRun> coarse = runs;
+  coarse[0].trajectory.header.frame_dt = 4.0 / 64;
+  EXPECT_EQ(steps(0.25, 1, coarse), (Steps{0, 4, 8, 12, 16}));
+}
+
+TEST_F(Posters, ShowWhereTheRunsDifferMostFromAnEighthOfTheFilmOn) {
+  const Scene scene = test::level_sheet(3);
+  const auto poster = [&](const std::vector<RecordedRun>& runs) {
+    return media_of(scene, runs, 1).poster_t * 64 / 3;  // the frame of 22
+  };
+  const auto none = [](double) { return 0.0; };
+  /// `much` in frame k, else little.
+  const auto at = [](int k, double much, double little) {
+    return [=](double t) { return std::lround(t * 64) == 3 * k ? much : little; };
+  };
+  const auto early_and = [](int k) {
+    return [=](double t) {
+      const auto step = std::lround(t * 64);
+      return step == 3 ? 0.5 : step == 3 * k ? 0.1 : 0.01;
+    };
+  };
+  EXPECT_EQ(poster({moving(scene, none), moving(scene, early_and(7))}), 7);
+  EXPECT_EQ(poster({moving(scene, early_and(2)), moving(scene, none)}), 2);
+  EXPECT_EQ(poster({moving(scene, early_and(21)), moving(scene, none)}), 21);
+  EXPECT_EQ(poster({moving(scene, at(9, 0.21, 0.1)), moving(scene, at(5, 0.2, 0.1)),
+                    moving(scene, at(5, 0.17, 0.1))}),
+            9)
+      << "between the least and the largest";
+  EXPECT_EQ(poster({moving(scene, at(6, 0.3, 0.2))}), 6) << "of one alone its own";
+  const double size = extent(scene);
+  const auto little = at(5, 9e-4, 0);  // strain that nobody sees
+  EXPECT_EQ(poster({moving(scene, none), moving(scene, little, at(11, 0.011 * size, 0))}), 11);
+  EXPECT_EQ(poster({moving(scene, none), moving(scene, little, at(11, 0.009 * size, 0))}), 14)
+      << "two thirds on the way";
+  EXPECT_EQ(poster({moving(scene, none), moving(scene, at(5, 1.1e-3, 0), at(11, size, 0))}), 5)
+      << "strain before place";
+}
+
+TEST_F(Posters, HaveTheRunsFromLeftToRightAndTheirClothLaidFlat) {
+  Scene scene = test::level_sheet(5);
+  scene.mesh = make_sheet({.nu = 5,
+                           .nv = 3,
+                           .width = 1,
+                           .height = 0.5,
+                           .origin = Vec3(-0.5, 0, 0.5),
+                           .v = -Vec3::UnitZ(),
+                           .mass = 1});
+  scene.links = grid_links(scene.mesh, {});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(15, Vec3::Zero())};
+  const RecordedRun one = moving(scene, [](double t) { return 0.02 * t; }),
+                    two = moving(scene, [](double t) { return -0.01 * t; });
+  const Media first = media_of(scene, {one, two}, 1), second = media_of(scene, {two, one}, 1);
+  const Image left = decoded(first.poster), right = decoded(second.poster);
+  ASSERT_EQ(std::pair(left.width(), left.height()), std::pair(240, 100));
+  std::size_t differ = 0;
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 120; ++x) {
+      ASSERT_EQ(left.at(x, y), right.at(x + 120, y)) << x << ' ' << y;
+      ASSERT_EQ(left.at(x + 120, y), right.at(x, y));
+      differ += left.at(x, y) != left.at(x + 120, y);
+    }
+  EXPECT_GT(differ, 100u);
+  EXPECT_EQ(first.aspect, 2);
+  ASSERT_EQ(first.material.size(), 2u);
+  for (std::size_t run = 0; run < 2; ++run) {
+    ASSERT_EQ(first.material[run].size(), 4u);
+    std::size_t m = 0;
+    for (const std::size_t k : {2u, 7u, 14u, 21u}) {  // of 22: an eighth, thirds, the end
+      const Media::Flat& flat = first.material[run][m++];
+      EXPECT_EQ(flat.t, first.t[k]);
+      EXPECT_EQ(flat.rms, first.rms_strain[run][k]);
+      const Image image = decoded(flat.png);
+      EXPECT_EQ(std::pair(image.width(), image.height()), std::pair(66, 33));
+      const double strain = (run == 0 ? 0.02 : -0.01) * flat.t;
+      EXPECT_EQ(image.at(33, 16), first.scale.colour(strain)) << run << ' ' << k;
+    }
+  }
+}
+
+Record ran(const std::string& scene, const std::string& solver, const Status& status = {}) {
+  Record r = unfinished(make_case({scene, {}, solver}), status);
+  r.values = {{"stretch.rms", 0.01}};
+  return r;
+}
+
+TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableSpeed) {
+  const Scratch scratch;
+  const std::string cloth = "[cloth]\ngrid = [4, 3]\nsize = [1, 0.5]\nmass = 0.1\n",
+                    small = (scratch.path() / "small.toml").string();
+  write_file(small, cloth + "pins = [0]\n[time]\ndt = \"1/64\"\nduration = 0.25\n");
+  const double size = extent(*make_case({small, {}, "jakobsen"}).scene);
+  /// Half a second to cross its own size; at the limit, and just above it.
+  const std::pair<double, double> thrown[] = {{4, 0.5}, {2, 1}, {4.01, 0.25}, {8.01, 0.125}};
+  std::vector<std::string> others;
+  for (const auto& [speed, expected] : thrown) {
+    others.push_back((scratch.path() / ("thrown" + shortest(speed) + ".toml")).string());
+    write_file(others.back(), cloth + "velocity = [0, 0, " + shortest(speed * size) +
+                                  "]\n[time]\ndt = \"1/16\"\nduration = 4\n");
+  }
+  report::ReportInput input;
+  input.studies = {{"one", "?", {}, 0, {}}};
+  const char* solvers[] = {"xpbd:substeps=1,iterations=2",
+                           "jakobsen:substeps=1,iterations=2,order=mesh"};
+  for (const char* solver : solvers) input.studies[0].records.push_back(ran(small, solver));
+  input.studies[0].records.push_back(
+      ran(small, "mass-spring:substeps=1", {Status::Kind::unsupported, "no reason", -1, -1}));
+  std::multiset<std::string> news;
+  film_scenes(input, others, [&](const std::string& said) { news.insert(said); });
+  EXPECT_EQ(news, (std::multiset<std::string>{"small filmed", "thrown2 filmed", "thrown4 filmed",
+                                              "thrown4.01 filmed", "thrown8.01 filmed"}));
+  ASSERT_EQ(input.media.size(), 5u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(input.media[k + 1].speed, thrown[k].second) << k;
+  const report::SceneMedia &first = input.media[0], &other = input.media[1];
+  EXPECT_EQ(first.scene, "small");
+  ASSERT_EQ(first.clips.size(), 1u);
+  const report::Clip& clip = first.clips[0];
+  ASSERT_EQ(clip.panels.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_EQ(clip.panels[k].key, input.studies[0].records[k].key);
+  EXPECT_EQ(clip.panels[0].solver + clip.panels[1].solver, "xpbdjakobsen");
+  EXPECT_EQ(clip.panels[0].settings, "1 × 2");
+  EXPECT_EQ(clip.panels[1].settings, "1 × 2, order=mesh");
+  EXPECT_TRUE(clip.alt.starts_with(
+      "small: XPBD (1 × 2) and Jakobsen (1 × 2, order=mesh) side by side from the left, coloured "
+      "by mean edge strain ε at each vertex, full red at +"))
+      << clip.alt;
+  EXPECT_EQ(clip.type + clip.poster_type, "image/pngimage/png");
+  const Image poster = decoded(clip.bytes);
+  EXPECT_EQ(std::pair(poster.width(), poster.height()), std::pair(640, 400))
+      << "two of three thirds of 960";
+  using Refused = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(first.refused, (Refused{{"mass-spring", "no reason"}}));
+  EXPECT_EQ(first.duration, 15 / 64.0);
+  EXPECT_EQ(first.frame, 3 / 64.0);
+  EXPECT_EQ(first.speed, 1);
+  EXPECT_EQ(first.aspect, 2);
+  ASSERT_EQ(first.bar.stops.size(), 17u);
+  for (const auto& [stop, at] : {std::pair{0, 0.0}, {4, 0.25}, {8, 0.5}, {16, 1.0}}) {
+    const Rgb8 c = ColourMap::diverging().at(at);
+    char text[8];
+    std::snprintf(text, sizeof text, "#%02X%02X%02X", c.r, c.g, c.b);
+    EXPECT_EQ(first.bar.stops[static_cast<std::size_t>(stop)], text);
+  }
+  EXPECT_EQ(first.bar.ticks.front().first, 0);
+  EXPECT_EQ(first.bar.ticks.back().first, 1);
+  EXPECT_TRUE(first.bar.ticks.front().second.starts_with("\u2212"));
+  EXPECT_TRUE(first.bar.ticks.back().second.starts_with("+"));
+  ASSERT_EQ(first.material.size(), 2u);
+  EXPECT_EQ(first.material[1].solver, "jakobsen");
+  EXPECT_EQ(first.material[1].stills.size(), 4u);
+  EXPECT_EQ(first.material[1].stills.back().t, first.duration);
+  EXPECT_EQ(other.scene, "thrown4");
+  EXPECT_TRUE(other.refused.empty());
+  EXPECT_EQ(other.clips.at(0).panels.size(), 3u) << "whoever can";
+  EXPECT_EQ(other.clips[0].panels[0].key, "") << "no study ran it";
+  EXPECT_EQ(other.duration, 1.5) << "three seconds of film";
+  const Image wide = decoded(other.clips[0].bytes);
+  EXPECT_EQ(std::pair(wide.width(), wide.height()), std::pair(702, 320));
+  ASSERT_FALSE(input.series.empty());
+  for (const report::TimeSeries& series : input.series)
+    EXPECT_TRUE(series.scene.starts_with("thrown")) << "a study has its own";
 }
 
 }  // namespace

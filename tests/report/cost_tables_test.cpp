@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "experiments/case/record_io.hpp"
+#include "experiments/report/input.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"

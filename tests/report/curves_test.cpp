@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "experiments/report/chart/charts.hpp"
-#include "experiments/report/chart/references.hpp"
+#include "experiments/report/chart/citations.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "tests/support/synthetic_records.hpp"
 
@@ -256,6 +256,56 @@ TEST(Maps, HaveTheirCellsByAscendingSettingsAndShowTheWorse) {
   EXPECT_EQ((cells[{1, 0}]), &all[5]);
   EXPECT_EQ((cells[{0, 1}]), &all[2]);
   EXPECT_EQ((cells[{0, 0}]), &all[3]);
+}
+
+TEST(Maps, OfASceneAreOfStudiesWithThreeStepsAndThreeNumbersOfSweeps) {
+  const auto maps = [](const std::vector<double>& steps, const std::vector<int>& sweeps) {
+    ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
+    for (const char* scene : {"hang", "ball"})
+      for (const double dt : steps)
+        for (const int k : sweeps)
+          input.studies[0].records.push_back(synthetic::record(scene, "jakobsen", k, dt));
+    return scene_maps(input, "hang");
+  };
+  EXPECT_EQ(maps({0.01, 0.02}, {1, 2, 4}).size(), 0u);
+  EXPECT_EQ(maps({0.01, 0.02, 0.04}, {1, 2}).size(), 0u);
+  const auto found = maps({0.01, 0.02, 0.04}, {1, 2, 4});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].study + " " + found[0].scene, "one hang");
+  EXPECT_EQ(found[0].x.name + " " + found[0].y.name, "dt iterations");
+  EXPECT_EQ(found[0].cells.size(), 9u);
+}
+
+TEST(Maps, ThatWereAskedForNeedTwoOfEachAndMayHaveRecordsOfTheirOwn) {
+  ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
+  for (const double dt : {0.01, 0.02}) {
+    input.studies[0].records.push_back(synthetic::record("hang", "jakobsen", 1, dt));
+    input.studies[0].records.push_back(synthetic::record("hang", "jakobsen", 4, dt));
+  }
+  input.maps = {{"one", "?", "dt", "iterations", {}}, {"two", "?", "iterations", "dt", {}}};
+  input.maps[1].records = {input.studies[0].records.begin(), input.studies[0].records.begin() + 2};
+  EXPECT_EQ(scene_maps(input, "hang").size(), 1u) << "one time step alone is no map";
+  input.maps[1].records = input.studies[0].records;
+  const auto both = scene_maps(input, "hang");
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[1].study + " " + both[1].x.name, "two iterations");
+  EXPECT_TRUE(scene_maps(input, "ball").empty());
+}
+
+TEST(Keys, AreAsShortAsTellsThemApartInStepsOfFour) {
+  const auto length = [](const std::string& a, const std::string& b) {
+    ReportInput input{.studies = {{"one", "?", {at_step(0.01), at_step(0.02)}, 0, {}}}};
+    input.studies[0].records[0].key = a, input.studies[0].records[1].key = b;
+    Citations refs(input);
+    const std::string key = refs.key(a);
+    EXPECT_EQ(key, a.substr(0, key.size()));
+    EXPECT_EQ(refs.key("no such"), "");
+    return key.size();
+  };
+  const std::string tail(40, 'x');
+  EXPECT_EQ(length("0123456789ab" + tail, "0123456789ac" + tail), 12u);
+  EXPECT_EQ(length("0123456789abc" + tail, "0123456789abd" + tail), 16u);
+  EXPECT_EQ(length("0123456789abcdef0" + tail, "0123456789abcdef1" + tail), 20u);
 }
 
 }  // namespace

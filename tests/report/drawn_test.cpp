@@ -7,6 +7,7 @@
 
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/report/input.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
@@ -314,8 +315,9 @@ TEST(Drawn, APanelMarksWhatDiffersUnderItsSolver) {
         r.resolved_settings = {{"made by", r.solver}, {"gravity", "9.81"}};
     const Json model = parse_json(make_model(input));
     for (const Json& scene : model["scenes"]) {
-      if (!scene.contains("fairness")) continue;
-      const Json &columns = scene["fairness"]["columns"], &rows = scene["fairness"]["rows"];
+      if (!scene.contains("resolved_settings")) continue;
+      const Json &columns = scene["resolved_settings"]["columns"],
+                 &rows = scene["resolved_settings"]["rows"];
       EXPECT_EQ(rows[0]["differs"], columns.size() > 1);
       EXPECT_FALSE(rows[1]["differs"]);
       for (std::size_t i = 0; i < columns.size(); ++i, ++seen)

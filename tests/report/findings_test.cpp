@@ -3,8 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
 #include "core/model/input_error.hpp"
+#include "experiments/report/claims/rivals.hpp"
 #include "experiments/report/stored.hpp"
+#include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -154,6 +160,154 @@ TEST(ShownSeries, AreTheColumnsOfTheTableThatAFilmShows) {
   EXPECT_EQ(shown[0].scene, "hang");
   table.rows.pop_back();
   EXPECT_TRUE(shown_series(table, {}).empty()) << "one moment is no curve";
+}
+
+/// A study of two solvers, two numbers of sweeps and two time steps, that was run.
+class StoredStudy : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_file(scratch_.path() / "s.toml",
+               "summary = \"A strip\"\n[cloth]\ngrid = [4, 3]\nsize = [1, 0.5]\nmass = 0.1\npins = "
+               "[0]\n[time]\ndt = \"1/64\"\nduration = 0.125\n");
+    write_file(scratch_.path() / "few.toml",
+               "question = \"How?\"\nscenes = [\"" + (scratch_.path() / "s.toml").string() +
+                   "\"]\nsolvers = [\"jakobsen:substeps=1\", \"xpbd:substeps=1\"]\n"
+                   "[axes]\niterations = [2, 16]\n\"time.dt\" = [\"1/64\", "
+                   "\"1/32\"]\n[[plot]]\nkind = \"stability\"\n");
+    study_ = load_study((scratch_.path() / "few.toml").string());
+    cases_ = cases_of(study_);
+    store_.prepare();
+    run_cases(cases_, store_, Session(store_, "a test", {}, {}), {.jobs = 2});
+  }
+  const Scratch scratch_;
+  const Store store_{scratch_.path() / "results"};
+  Study study_;
+  std::vector<Case> cases_;
+};
+
+TEST_F(StoredStudy, IsReadWithItsPlanItsSlopeAndTheMotionsOfTheQuotedCases) {
+  ASSERT_EQ(cases_.size(), 8u);
+  const ReportInput input = stored_results({study_}, store_);
+  ASSERT_EQ(input.studies.size(), 1u);
+  const StudyResult& study = input.studies[0];
+  EXPECT_EQ(study.name + " " + study.question, "few How?");
+  EXPECT_EQ(study.planned, 8u);
+  EXPECT_EQ(study.slopes, (std::map<std::string, double>{{"s", -1}}));
+  ASSERT_EQ(study.records.size(), 8u);
+  ASSERT_EQ(input.scenes.size(), 1u);
+  EXPECT_EQ(input.scenes[0].name + ": " + input.scenes[0].summary, "s: A strip");
+  std::set<std::string> quoted;
+  const Rivals rivals = rivals_of(input);
+  for (const Record* r : rivals.scenes.at(0).cases) {
+    ASSERT_TRUE(r);
+    EXPECT_EQ(r->dt, 1.0 / 64);
+    EXPECT_EQ(r->params.at("iterations"), "16");
+    quoted.insert(r->key);
+  }
+  ASSERT_EQ(quoted.size(), 2u);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Record &r = study.records[i], whole = *store_.find(cases_[i].key);
+    EXPECT_EQ(r.key, cases_[i].key) << "in the plan's order";
+    EXPECT_EQ(r.step_cost.empty(), !quoted.contains(r.key)) << "what few cases need";
+    EXPECT_EQ(r.resolved_settings.empty(), !quoted.contains(r.key));
+    EXPECT_EQ(r.digest, "");
+    for (const auto& [name, value] : whole.values)
+      EXPECT_TRUE(std::isfinite(value) ? r.values.at(name) == value : !r.values.contains(name));
+  }
+  std::set<std::string> shown;
+  for (const TimeSeries& series : input.series) {
+    EXPECT_TRUE(quoted.contains(series.key));
+    EXPECT_EQ(series.label, series.solver == "xpbd" ? "XPBD" : "Jakobsen");
+    if (series.value != "stretch.rms") continue;
+    shown.insert(series.key);
+    const Series table = store_.series(series.key);
+    const auto column = [&](const char* name) {
+      return static_cast<std::size_t>(std::ranges::find(table.columns, name) -
+                                      table.columns.begin());
+    };
+    ASSERT_EQ(series.t.size(), table.rows.size());
+    for (std::size_t k = 0; k < series.t.size(); ++k) {
+      EXPECT_EQ(series.t[k], table.rows[k][column("t")]);
+      EXPECT_EQ(series.y[k], table.rows[k][column("stretch.rms")]);
+    }
+  }
+  EXPECT_EQ(shown, quoted);
+  std::filesystem::remove_all(store_.folder(cases_[3].key));
+  const ReportInput less = stored_results({study_}, store_);
+  EXPECT_EQ(less.studies[0].planned, 8u);
+  EXPECT_EQ(less.studies[0].records.size(), 7u);
+}
+
+TEST_F(StoredStudy, ItsMapsAndSeriesAreThoseOfItsPlotAndItsRecords) {
+  ReportInput input = stored_results({study_}, store_), empty;
+  add_stored_maps(input, {study_}, store_);
+  ASSERT_EQ(input.maps.size(), 1u);
+  EXPECT_EQ(input.maps[0].study + " " + input.maps[0].question, "few How?");
+  EXPECT_EQ(input.maps[0].x + " " + input.maps[0].y, "dt iterations");
+  EXPECT_TRUE(input.maps[0].records.empty()) << "they are the study's";
+  add_stored_maps(empty, {study_}, store_);
+  ASSERT_EQ(empty.maps.size(), 1u);
+  EXPECT_EQ(empty.maps[0].records.size(), 8u);
+  Study other = study_;
+  other.plots[0].options = {{"x", "iterations"}, {"y", "dt"}};
+  add_stored_maps(empty, {other}, store_);
+  EXPECT_EQ(empty.maps.at(1).x + " " + empty.maps[1].y, "iterations dt");
+  other.plots[0].kind = "convergence";
+  Study three = study_;
+  three.axes.push_back(three.axes[0]);
+  add_stored_maps(empty, {other, three}, store_);
+  EXPECT_EQ(empty.maps.size(), 2u);
+  Records records;
+  for (const Record& r : input.studies[0].records)
+    if (r.dt == 1.0 / 64) records.push_back(&r);
+  const auto series = stored_series(records, "stretch.rms", store_);
+  std::vector<std::string> labels;
+  for (const TimeSeries& one : series) labels.push_back(one.label);
+  EXPECT_EQ(labels, (std::vector<std::string>{"Jakobsen 1 × 2", "Jakobsen 1 × 16", "XPBD 1 × 2",
+                                              "XPBD 1 × 16"}));
+  EXPECT_EQ(series[1].key, records[1]->key);
+  EXPECT_EQ(series[1].t.back(), 0.125);
+  EXPECT_TRUE(stored_series(records, "no.such", store_).empty());
+}
+
+TEST_F(StoredStudy, IsComparedWithAnotherFolderCaseByCase) {
+  const Store other(scratch_.path() / "other");
+  other.prepare();
+  const auto put = [&](Record r, const std::string& key) {
+    r.key = std::string(62, 'b') + key;
+    other.commit(other.stage(r.key), r);
+  };
+  std::vector<Record> all;
+  for (const Case& one : cases_) all.push_back(*store_.find(one));
+  for (std::size_t i = 1; i < 8;
+       ++i) {  // the first is missing; a parameter is new to all of a solver
+    Record r = all[i];
+    r.values["stretch.rms"] *= 2;
+    if (r.solver == "xpbd") r.params["new"] = "1";
+    put(r, "0" + std::to_string(i));
+    if (i == 7) r.params["new"] = "2", put(r, "19");  // two under one name: neither is compared
+  }
+  Record alone = all[1];
+  alone.spec.overrides.push_back("cloth.mass=2"), put(alone, "20");
+  const Differences found = stored_differences(store_, other);
+  EXPECT_EQ(found.a, store_.root().string());
+  EXPECT_EQ(found.b, other.root().string());
+  EXPECT_EQ(found.pairs.size(), 6u);
+  for (const auto& [a, b] : found.pairs) {
+    EXPECT_EQ(a.id, b.id);
+    EXPECT_EQ(a.dt, b.dt);
+    EXPECT_EQ(b.values.at("stretch.rms"), 2 * a.values.at("stretch.rms"));
+  }
+  EXPECT_EQ(found.only_a, 2u);
+  EXPECT_EQ(found.only_b, 3u);
+  EXPECT_EQ(found.noise, 0);
+  const ReportInput any = stored_anywhere({study_}, store_), none = stored_anywhere({}, store_);
+  ASSERT_EQ(any.studies.size(), 1u);
+  EXPECT_EQ(any.studies[0].name, "few");
+  EXPECT_EQ(any.studies[0].records.size(), 8u);
+  EXPECT_EQ(none.studies.at(0).name + " " + none.studies[0].question,
+            "stored All cases of " + store_.root().string());
+  EXPECT_EQ(none.studies[0].records.size(), 8u);
 }
 
 }  // namespace

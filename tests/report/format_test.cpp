@@ -5,8 +5,11 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
-#include "experiments/report/chart/references.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/report/chart/citations.hpp"
+#include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 
@@ -133,6 +136,50 @@ TEST(Places, AreSpreadFromTheFirstToTheLast) {
   EXPECT_EQ(places_of(0, 4), Places{});
   EXPECT_EQ(places_of(4, 0), Places{});
   EXPECT_EQ(places_of(4, 1), Places{0});
+}
+
+TEST(Palette, ColoursAreWhatTheyAreCalledAndReadOnTheirBackgrounds) {
+  const auto channel = [](std::string_view hex, std::size_t i) {
+    const double v = std::stoi(std::string(hex.substr(1 + 2 * i, 2)), nullptr, 16) / 255.0;
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  };
+  const auto contrast = [&](std::string_view a, std::string_view b) {  // WCAG 2
+    const auto luminance = [&](std::string_view c) {
+      return 0.2126 * channel(c, 0) + 0.7152 * channel(c, 1) + 0.0722 * channel(c, 2) + 0.05;
+    };
+    return std::max(luminance(a) / luminance(b), luminance(b) / luminance(a));
+  };
+  std::set<std::string> looks, colours;
+  for (const char* solver : {"jakobsen", "bullet", "mass-spring", "xpbd", "bullet-deformable"}) {
+    const SolverStyle style = solver_style(solver);
+    EXPECT_GE(contrast(style.colour.light, "#FFFFFF"), 4.5) << solver;
+    EXPECT_GE(contrast(style.colour.dark, "#14171C"), 4.5) << solver;
+    colours.insert(std::string(style.colour.name));
+    EXPECT_TRUE(looks.insert(std::string(style.colour.light)).second) << solver;
+    EXPECT_TRUE(looks.insert(std::string(style.colour.dark)).second) << solver;
+    for (const std::string_view hex : {style.colour.light, style.colour.dark}) {
+      const double r = channel(hex, 0), g = channel(hex, 1), b = channel(hex, 2);
+      const std::string_view name = style.colour.name;
+      EXPECT_TRUE(name != "s-blue" || (b > g && g > r)) << hex;
+      EXPECT_TRUE(name != "s-orange" || (r > g && g > b)) << hex;
+      EXPECT_TRUE(name != "s-purple" || (b > r && r > g)) << hex;
+      EXPECT_TRUE(name != "s-green" || (g > b && b > r)) << hex;
+      EXPECT_TRUE(name != "s-magenta" || (r > b && b > g)) << hex;
+    }
+  }
+  EXPECT_EQ(colours.size(), 5u);
+  std::set<std::string_view> glyphs;
+  for (const char* name : {"ok", "unsettled", "extreme", "exploded", "unsupported", "timeout",
+                           "oom", "crash", "protocol", "error"}) {
+    const StatusStyle style = status_style(status_kind(name));
+    EXPECT_EQ(style.colour.name, name);
+    EXPECT_TRUE(glyphs.insert(style.glyph).second) << name;
+    EXPECT_GE(contrast(style.ink.light, style.colour.light), 3) << name;
+    EXPECT_GE(contrast(style.ink.dark, style.colour.dark), 3) << name;
+  }
+  EXPECT_EQ(status_style(Status::Kind::ok).glyph, "✓");
+  EXPECT_EQ(status_style(Status::Kind::exploded).glyph, "×");
+  EXPECT_EQ(status_style(Status::Kind::unsupported).glyph, "–");
 }
 
 }  // namespace

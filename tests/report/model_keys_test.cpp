@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "experiments/report/input.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "core/model/input_error.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
@@ -94,6 +96,228 @@ TEST_F(Plots, OnlyASolverThatReachedZeroIsSaidToHave) {
   const PlotFiles plot = draw({.kind = "contact", .y = "penetration.max"}, records);
   EXPECT_NE(read_text(plot.svg).find("Jakobsen: exactly zero"), std::string::npos);
   EXPECT_EQ(read_text(plot.svg).find("Bullet: exactly zero"), std::string::npos);
+}
+
+/// The commands of a script's plot, one a curve.
+std::vector<std::string> drawn_by(const std::string& script) {
+  std::vector<std::string> all;
+  std::string rest = script.substr(script.find("\nplot ") + 6);
+  for (std::size_t at; (at = rest.find(", \\\n  ")) != rest.npos; rest = rest.substr(at + 6))
+    all.push_back(rest.substr(0, at));
+  all.push_back(rest.substr(0, rest.find('\n')));
+  return all;
+}
+
+/// A line of a script that begins so.
+std::string line_of(const std::string& script, const std::string& begin) {
+  const auto at = script.find("\n" + begin);
+  return at == script.npos ? "" : script.substr(at + 1, script.find('\n', at + 1) - at - 1);
+}
+
+std::string look(const std::string& solver) {
+  const SolverStyle style = solver_style(solver);
+  std::string dash(style.dash);
+  std::ranges::replace(dash, ' ', ',');
+  return " lc rgb '" + std::string(style.colour.light) + "' dt " +
+         (dash.empty() ? "solid" : "(" + dash + ")") + " pt " + std::to_string(style.marker);
+}
+
+/// The record of a case called so, with or without a value of stretch.
+Record made(const std::string& id, const std::string& solver, int sweeps, double stretch) {
+  Record r = synthetic::record("hang", solver, sweeps, 1.0 / 64);
+  r.id = r.key = id, r.values = {{"stretch.rms", stretch}};
+  return r;
+}
+
+TEST_F(Plots, AScriptDrawsEveryRowUnderItsSolverInShownUnitsAndWhatFailedAbove) {
+  std::vector<Record> all{made("j1", "jakobsen", 1, 0.08), made("j4", "jakobsen", 4, 0.02),
+                          made("j16", "jakobsen", 16, 0),  made("b1", "bullet", 1, 0.3),
+                          made("b4", "bullet", 4, 0.1),    made("b,16", "bullet", 16, 0.05)};
+  synthetic::fail(all[4], Status::Kind::exploded, "energy");
+  const PlotFiles plot =
+      draw({.kind = "convergence", .title = "Two", .file = "one", .slope = -1}, all);
+  EXPECT_EQ(read_text(plot.csv),
+            "curve,solver,label,x,x_low,x_high,y,status,reason,failed,setting,case\n"
+            "0,jakobsen,Jakobsen,1,,,0.08,ok,,no,1 × 1,j1\n"
+            "0,jakobsen,Jakobsen,4,,,0.02,ok,,no,1 × 4,j4\n"
+            "0,jakobsen,Jakobsen,16,,,0,ok,,no,1 × 16,j16\n"
+            "1,bullet,Bullet,1,,,0.3,ok,,no,1 × 1,b1\n"
+            "1,bullet,Bullet,4,,,,exploded,energy,yes,1 × 4,b4\n"
+            "1,bullet,Bullet,16,,,0.05,ok,,no,1 × 16,\"b,16\"\n");
+  const std::string gp = read_text(plot.gp);
+  EXPECT_TRUE(
+      gp.starts_with("# convergence: stretch.rms over iterations\n# Again: gnuplot -e \"set "
+                     "terminal svg noenhanced; set output 'one.svg'\" one.gp\n"));
+  EXPECT_EQ(line_of(gp, "set title"), "set title 'Two'");
+  EXPECT_EQ(line_of(gp, "set xlabel"), "set xlabel 'sweeps per substep'");
+  EXPECT_EQ(line_of(gp, "set ylabel"), "set ylabel 'RMS stretch [%]'");
+  EXPECT_EQ(line_of(gp, "set logscale x"), "set logscale x");
+  EXPECT_EQ(line_of(gp, "set logscale y"), "set logscale y");
+  EXPECT_EQ(line_of(gp, "set xtics"), "set xtics ('1' 1, '4' 4, '16' 16)");
+  const std::string range = line_of(gp, "set yrange");  // from a third of 2 % to thrice 30 %
+  EXPECT_NEAR(std::stod(range.substr(12)), 2.0 / 3, 1e-12);
+  EXPECT_EQ(range.substr(range.find(':')), ":90]");
+  const auto rows = [](int curve, const char* failed) {
+    return "'one.csv' skip 1 using (column(1) == " + std::to_string(curve) + " && strcol(10) eq '" +
+           failed + "' ? column(4)*1 : NaN):";
+  };
+  const auto drawn = drawn_by(gp);
+  ASSERT_EQ(drawn.size(), 5u);
+  EXPECT_EQ(drawn[0], rows(0, "no") + "(column(7) > 0 ? column(7)*100 : NaN) with linespoints" +
+                          look("jakobsen") + " title 'Jakobsen'");
+  const auto ink = [](const char* solver) {
+    return " lc rgb '" + std::string(solver_style(solver).colour.light) + "' title '";
+  };
+  const auto part = [](const std::string& text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from) + from.size();
+    return text.substr(at, text.find(to, at) - at);
+  };
+  EXPECT_EQ(drawn[1].find(rows(0, "no") + "(column(7) == 0 ? "), 0u);
+  EXPECT_NEAR(std::stod(part(drawn[1], "(column(7) == 0 ? ", " :")), 2.0 / 3, 1e-12) << "the floor";
+  EXPECT_TRUE(drawn[1].ends_with(": NaN) with points pt 10 ps 1.2" + ink("jakobsen") +
+                                 "Jakobsen: exactly zero'"));
+  EXPECT_EQ(drawn[2], rows(1, "no") + "(column(7) > 0 ? column(7)*100 : NaN) with linespoints" +
+                          look("bullet") + " title 'Bullet'");
+  EXPECT_EQ(drawn[3], rows(1, "yes") + "(90) with points pt 2 ps 1.2 lw 2" + ink("bullet") +
+                          "Bullet: failed'");
+  // 0.6 of the least y x, 0.08, in per cent
+  EXPECT_EQ(drawn[4].find("[1:16] "), 0u);
+  EXPECT_NEAR(std::stod(drawn[4].substr(7)), 4.8, 1e-12);
+  EXPECT_EQ(drawn[4].substr(drawn[4].find('*')),
+            "*(x/1)**-1 with lines dt (4,4) lc rgb '#5B6472' title 'theory: slope -1'");
+}
+
+TEST_F(Plots, AxesAreAsTheirUnitsSayAndAFloorAndAFrontAreDrawnInThem) {
+  std::vector<Record> all;
+  for (const auto& [dt, y] : {std::pair{0.002, 0.05}, {0.004, 0.1}, {0.008, 0.25}}) {
+    Record r = synthetic::record("hang", "jakobsen", 16, dt);
+    r.id = r.key = std::to_string(dt);
+    r.values = {{"reference.rms", y}, {"reference.floor", 0.004}, {"settle.time", 4 * y - 0.5}};
+    r.projections = static_cast<std::size_t>(1 / dt);
+    all.push_back(r);
+  }
+  const std::string gp = read_text(
+      draw({.kind = "convergence", .x = "dt", .y = "reference.rms", .file = "floor", .slope = 2},
+           all)
+          .gp);
+  const Unit unit = quantity("reference.rms").unit;
+  EXPECT_EQ(line_of(gp, "set xtics"), "set xtics ('2' 2, '4' 4, '8' 8)");
+  EXPECT_EQ(line_of(gp, "set xlabel"), "set xlabel 'time step [ms]'");
+  const auto drawn = drawn_by(gp);
+  ASSERT_EQ(drawn.size(), 3u);
+  EXPECT_NE(drawn[0].find("column(4)*1000 : NaN):"), std::string::npos) << drawn[0];
+  const double factor = 0.6 * 0.25 / (0.008 * 0.008) * unit.scale;  // the least y / x^2
+  EXPECT_EQ(drawn[1].find("[2:8] "), 0u) << drawn[1];
+  EXPECT_NEAR(std::stod(drawn[1].substr(6)), factor, 1e-9 * factor);
+  EXPECT_NE(drawn[1].find("*(x/1000)**2 with"), std::string::npos);
+  EXPECT_NEAR(std::stod(drawn[2]), 0.004 * unit.scale, 1e-12);
+  EXPECT_TRUE(line_of(gp, "set yrange").starts_with("set yrange ["));
+  const double low = std::stod(line_of(gp, "set yrange").substr(12));
+  EXPECT_NEAR(low, 0.004 * unit.scale / 3, 1e-9) << "the floor is in the picture";
+  // Values of either sign stand on a linear axis that holds zero.
+  const std::string linear =
+      read_text(draw({.kind = "work-precision", .y = "settle.time", .file = "linear"}, all).gp);
+  EXPECT_EQ(line_of(linear, "set logscale y"), "");
+  const std::string range = line_of(linear, "set yrange");
+  EXPECT_NEAR(std::stod(range.substr(12)), -0.3, 1e-12);
+  EXPECT_NEAR(std::stod(range.substr(range.find(':') + 1)), 0.5 + 0.12 * 0.8, 1e-12);
+  EXPECT_NE(linear.find("$front << EOD\n"), std::string::npos);
+  const std::string front = linear.substr(linear.find("$front << EOD\n") + 14);
+  EXPECT_TRUE(front.starts_with("125 0.5\n250 -0.09")) << front.substr(0, 40);
+}
+
+TEST_F(Plots, AMapHasItsTicksItsColoursAndItsGlyphsInEachPanel) {
+  std::vector<Record> all;
+  for (const char* solver : {"jakobsen", "bullet"})
+    for (const double dt : {0.02, 0.01})
+      for (const int sweeps : {4, 1, 16})
+        all.push_back(synthetic::record("hang", solver, sweeps, dt));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].id = "c" + std::to_string(i);
+  synthetic::fail(all[1], Status::Kind::exploded, "energy");
+  const PlotFiles plot = draw({.kind = "stability", .title = "Maps", .file = "map"}, all);
+  const std::string csv = read_text(plot.csv), gp = read_text(plot.gp);
+  EXPECT_TRUE(
+      csv.starts_with("curve,solver,label,x,y,column,row,status,reason,case\n"
+                      "0,jakobsen,Jakobsen,0.01,1,0,0,ok,,c4\n"
+                      "0,jakobsen,Jakobsen,0.02,1,1,0,exploded,energy,c1\n"
+                      "0,jakobsen,Jakobsen,0.01,4,0,1,ok,,c3\n"))
+      << csv;
+  EXPECT_NE(csv.find("1,bullet,Bullet,0.02,16,1,2,ok,,c8\n"), std::string::npos) << csv;
+  EXPECT_EQ(line_of(gp, "set multiplot"), "set multiplot layout 1,2 title 'Maps'");
+  EXPECT_EQ(line_of(gp, "set xlabel"), "set xlabel 'time step [ms]'");
+  EXPECT_EQ(line_of(gp, "set ylabel"), "set ylabel 'sweeps per substep'");
+  EXPECT_EQ(count(gp, "set xtics ('10' 0, '20' 1)\nset xrange [-0.5:1.5]\n"), 2u);
+  EXPECT_EQ(count(gp, "set ytics ('1' 0, '4' 1, '16' 2)\nset yrange [-0.5:2.5]\n"), 2u);
+  for (const auto& [curve, title] : {std::pair{"0", "Jakobsen"}, {"1", "Bullet"}})
+    for (const Status::Kind kind : {Status::Kind::ok, Status::Kind::exploded}) {
+      const StatusStyle style = status_style(kind);
+      const std::string name(to_string(kind)),
+          cells = "'map.csv' skip 1 using (column(1) == " + std::string(curve) +
+                  " && strcol(8) eq '" + name + "' ? column(6) : NaN):7:";
+      EXPECT_EQ(count(gp, "set title '" + std::string(title) + "'"), 1u);
+      EXPECT_EQ(count(gp, cells + "(0.45):(0.45) with boxxyerror fs solid 1 noborder lc rgb '" +
+                              std::string(style.colour.light) + "' title '" + name + "'"),
+                1u);
+      EXPECT_EQ(count(gp, cells + "('" + std::string(style.glyph) + "') with labels tc rgb '" +
+                              std::string(style.ink.light) + "' notitle"),
+                1u);
+    }
+}
+
+TEST_F(Plots, SeriesAreDrawnAsTheyAreAndProfilesUpToTheLargestFactor) {
+  const std::vector<TimeSeries> series{
+      {"hang", "jakobsen", "A", "stretch.rms", {0, 0.5, 1}, {0.01, std::nan(""), 0.02}, "k"},
+      {"hang", "bullet", "B", "energy.mean", {0, 1}, {9, 9}},
+      {"hang", "jakobsen", "C", "stretch.rms", {0, 1}, {0.03, 0.04}, "", 1e-7}};
+  const PlotFiles plot = draw({.kind = "series", .file = "t"}, {}, series);
+  EXPECT_EQ(read_text(plot.csv),
+            "curve,solver,label,x,x_low,x_high,y,status,reason,failed,setting,case\n"
+            "0,jakobsen,A,0,,,0.01,ok,,no,,k\n0,jakobsen,A,0.5,,,,ok,,no,,k\n"
+            "0,jakobsen,A,1,,,0.02,ok,,no,,k\n1,jakobsen,C,0,,,0.03,ok,,no,,\n"
+            "1,jakobsen,C,1,,,0.04,ok,,no,,\n");
+  const auto drawn = drawn_by(read_text(plot.gp));
+  ASSERT_EQ(drawn.size(), 3u);
+  const std::string ink = "lc rgb '" + std::string(solver_style("jakobsen").colour.light) + "' dt ";
+  EXPECT_NE(drawn[0].find("(column(7)*100) with lines lw 1.5 " + ink), std::string::npos);
+  EXPECT_TRUE(drawn[0].ends_with(" title 'A'"));
+  EXPECT_TRUE(drawn[1].ends_with(" dt (7,4) title 'C'")) << "another dash of the same solver";
+  EXPECT_NEAR(std::stod(drawn[2]), 1e-5, 1e-18) << "the rounding of its file";
+
+  StudyBench bench{"trade", "a machine", {{"hang", {0.99, 1, 1.01}, {}}}};
+  for (const auto& [solver, seconds] : {std::pair{"jakobsen", 0.002}, {"bullet", 0.005}}) {
+    BenchedCase c{made(solver, solver, 4, 0.005), {}};
+    c.timing.samples.assign(4, seconds), c.timing.wall = c.timing.samples;
+    bench.scenes[0].cases.push_back(c);
+  }
+  const PlotFiles profile =
+      make_profile_plot({.kind = "profile", .title = "P", .file = "p"}, bench, dir_);
+  std::istringstream rows(read_text(profile.csv));
+  const std::pair<std::string, std::vector<double>> expected[] = {{"0,jakobsen,", {1, 1}},
+                                                                  {"0,jakobsen,", {2.75, 1}},
+                                                                  {"1,bullet,", {1, 0}},
+                                                                  {"1,bullet,", {2.5, 1}},
+                                                                  {"1,bullet,", {2.75, 1}}};
+  std::string row;
+  std::getline(rows, row);
+  EXPECT_EQ(row, "curve,solver,factor,share");
+  for (const auto& [begin, numbers] : expected) {
+    ASSERT_TRUE(std::getline(rows, row)) << begin;
+    ASSERT_TRUE(row.starts_with(begin)) << row;
+    EXPECT_NEAR(std::stod(row.substr(begin.size())), numbers[0], 1e-9);
+    EXPECT_EQ(std::stod(row.substr(row.rfind(',') + 1)), numbers[1]);
+  }
+  EXPECT_FALSE(std::getline(rows, row));
+  const std::string gp = read_text(profile.gp);
+  EXPECT_NEAR(std::stod(line_of(gp, "set xrange").substr(14)), 2.75, 1e-9);
+  EXPECT_EQ(line_of(gp, "set xrange").substr(0, 14), "set xrange [1:");
+  EXPECT_EQ(line_of(gp, "set yrange"), "set yrange [0:105]");
+  const auto steps = drawn_by(gp);
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_EQ(steps[1].find("'p.csv' skip 1 using (column(1) == 1 ? column(3) : "
+                          "NaN):(100*column(4)) with steps lw 2 lc rgb '" +
+                          std::string(solver_style("bullet").colour.light) + "'"),
+            0u);
+  EXPECT_TRUE(steps[1].ends_with(" title 'Bullet'"));
 }
 
 TEST_F(Plots, AllZeroAllFailedAndNan) {

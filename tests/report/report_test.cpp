@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/input.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
@@ -179,6 +182,64 @@ TEST(Model, AFilmSaysWhetherItShowsWhatTheSentenceIsAbout) {
   input.media[0].clips[0].panels[0].key = input.studies[0].records[0].key;  // another setting
   EXPECT_FALSE(claim("stretch").contains("film"));
   EXPECT_TRUE(claim("stretch").contains("film_note"));
+}
+
+TEST(Model, WhatIsMissingNamesTheCommandThatMakesIt) {
+  ReportInput input = example();
+  const auto commands = [&] {
+    std::map<std::string, std::string> all;
+    const Json model = model_of(input);
+    for (const Json& one : model.value("missing", Json::array()))
+      all[one["section"]] = one["command"].get<std::string>();
+    return all;
+  };
+  EXPECT_EQ(commands(), (std::map<std::string, std::string>{
+                            {"cost", "taut bench trade --preset quick"},
+                            {"films", "taut render hang --video"},
+                            {"truths", "taut verify --out results/runs/verify.json"},
+                            {"regressions", "taut check --record"}}));
+  input.studies.pop_back();
+  EXPECT_EQ(commands()["cost"], "taut bench iterations");
+  input.truths.emplace(), input.regressions.emplace();
+  input.media = {{.scene = "hang"}};
+  EXPECT_EQ(commands().size(), 1u);
+  input.bench = StudyBench{"trade", "a machine", {}};
+  EXPECT_EQ(commands().size(), 0u);
+}
+
+TEST(Model, FiguresOfTheWholeAreCounted) {
+  ReportInput input = example();
+  std::set<std::string> keys;  // the studies share some
+  for (const StudyResult& study : input.studies)
+    for (const Record& r : study.records) keys.insert(r.key);
+  const std::size_t cases = keys.size();
+  const Json meta = model_of(input)["meta"];
+  EXPECT_EQ(meta["cases"], cases);
+  EXPECT_EQ(meta["planned"], cases + 40 - input.studies[0].records.size());
+  EXPECT_FALSE(meta.contains("listed"));
+  EXPECT_EQ(meta["build"], (Json{{"program", "0123456789"}, {"toolchain", "g++ 12.2.0"}}));
+  EXPECT_EQ(meta["policy"].size(), 5u);
+  Truths truths{2, 3, {{"passed", 2}, {"broken", 1}}, {}};
+  truths.rows = {{"1", "a >= b", "s", "j", "1 +- 0.5", "2", "broken", "pi"}};
+  input.truths = truths;
+  input.regressions = Regressions{7, 90, {{"study", "case", "a -> b"}}};
+  const Json model = model_of(input);
+  EXPECT_EQ(model["truths"], (Json{{"truths", 2},
+                                   {"findings", 3},
+                                   {"verdicts", {{"broken", 1}, {"passed", 2}}},
+                                   {"rows",
+                                    {{{"section", "1"},
+                                      {"statement", "a ≥ b"},
+                                      {"source", "s"},
+                                      {"subject", "j"},
+                                      {"expected", "1 ± 0.5"},
+                                      {"measured", "2"},
+                                      {"verdict", "broken"},
+                                      {"why", "π"}}}}}));
+  EXPECT_EQ(model["regressions"],
+            (Json{{"cases", 7},
+                  {"values", 90},
+                  {"rows", {{{"study", "study"}, {"case", "case"}, {"change", "a -> b"}}}}}));
 }
 
 TEST(Model, SolversStandInTheOrderOfTheStudy) {

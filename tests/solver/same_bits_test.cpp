@@ -137,6 +137,10 @@ TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
 
 TEST(SameBits, OfWindAndContactThatThreadsShare) {
   Scene scene = crumpled(hanging_sheet(92, 90), 0.005);
+  for (int row = 0; row < 80; ++row) scene.pins.push_back(92 * row + 40);
+  PinMotion& moved = scene.pin_motions.emplace_back();
+  moved.motion.velocity = {0.5, 1, 0};
+  for (int row = 40; row < 80; ++row) moved.vertices.push_back(92 * row + 40);
   ASSERT_GE(scene.start.x.size(), ThreadPool::kWorthSharing);
   scene.colliders = obstacles(scene);
   scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.2};
@@ -177,9 +181,8 @@ std::vector<Link> order_of(const RegularLinks& regular, const InterleavedSheet<R
   const SheetSides& grid = regular.grid;
   const SheetSweep<Real>& sweep = sheet.sweep();
   std::vector<Link> links;
-  for (const int parity : {0, 1})
-    for (std::size_t block = 0; block < sheet.blocks().count(parity); ++block) {
-      const auto [begin, end] = sheet.blocks().of(parity, block);
+  for (const std::size_t parity : {0U, 1U})
+    visit_rows_of(parity, 0, to_index(grid.rows), grid.rows, [&](int begin, int end) {
       visit_rows(sweep, begin, end, [&](const SheetDirection<Real>& d, int j) {
         const Family family =
             regular.directions[static_cast<std::size_t>(&d - sweep.direction)].family;
@@ -190,7 +193,7 @@ std::vector<Link> order_of(const RegularLinks& regular, const InterleavedSheet<R
                                static_cast<double>(d.rest), family});
         });
       });
-    }
+    });
   return links;
 }
 

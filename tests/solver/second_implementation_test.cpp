@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/model/text.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut::second_implementation_test {
@@ -16,11 +17,11 @@ using second::Cloth;
 using second::Relaxing;
 
 /// A sheet whose vertices weigh differently and start anywhere near, with pins that go their way
-/// and air that flows.
-Scene busy_sheet(bool shear, bool bend) {
+/// and air that flows; so many times as heavy.
+Scene busy_sheet(bool shear, bool bend, double heavier = 1) {
   Scene s = crumpled(hanging_sheet(6, 5, {true, shear, bend}), 0.03);
   for (std::size_t i = 0; i < s.mesh.mass.size(); ++i) {
-    s.mesh.mass[i] *= 0.5 + static_cast<double>(i * 7 % 11) / 6;
+    s.mesh.mass[i] *= heavier * (0.5 + static_cast<double>(i * 7 % 11) / 6);
     s.start.v[i] = Vec3(std::sin(0.3 * double(i)), std::cos(0.7 * double(i)), 0.5);
   }
   s.gravity = {0.5, -9, 1};
@@ -63,6 +64,22 @@ TEST(SecondImplementation, OfPinsWindDampingAndSubsteps) {
     expect_same_path(scene, in_double(params + ",omega=0.8"),
                      Relaxing(scene, {.iterations = 4, .substeps = substeps, .omega = 0.8}));
   }
+}
+
+// Vertices of kilograms have inverse masses below 1, others far above.
+TEST(SecondImplementation, OfHeavyCloth) {
+  Scene scene = busy_sheet(true, true, 1000);
+  scene.thickness = 0.02;
+  scene.colliders = {{.shape = Ball{{0.4, -0.4, 0.2}, 0.15}, .friction = 0.3}};
+  for (const double w : inverse_masses(scene)) ASSERT_LT(w, 1);
+  expect_same_path(scene, in_double("iterations=2,substeps=2,levels=3,tethers=on"),
+                   Relaxing(scene, {.iterations = 2, .substeps = 2, .tethers = true, .levels = 3}));
+  scene.colliders[0].friction = 0;
+  expect_same_path(scene, "xpbd:precision=double,iterations=3,substeps=2,shear=1e-5",
+                   Relaxing(scene, {.iterations = 3,
+                                    .substeps = 2,
+                                    .friction = false,
+                                    .compliance = {{Family::shear, 1e-5}}}));
 }
 
 TEST(SecondImplementation, OfTethersAndLevels) {
@@ -153,60 +170,64 @@ TEST(SecondImplementation, OfXpbd) {
 }
 
 // F = -k x - c v on every particle; the velocity after a step is (x - x')/h.
-TEST(SecondImplementation, OfSprings) {
-  const std::map<Family, double> stiffness{
-      {Family::structural, 20}, {Family::shear, 9}, {Family::bend, 3}};
-  for (const std::string integrator :
-       {"explicit-euler", "symplectic-euler", "verlet", "verlet,drag-at=central"}) {
-    Scene scene = busy_sheet(true, true);
-    scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.05};
-    const int substeps = 8;
-    const double h = scene.dt / substeps, drag = 0.01, keep = std::exp(-scene.damping * h);
-    const bool central = integrator.ends_with("central");
-    Cloth second(scene);
-    const SolverChoice choice = parse_solver(
-        "mass-spring:precision=double,structural=20,shear=9,bend=3,drag=0.01,substeps=8,"
-        "integrator=" +
-        integrator);
-    const auto first = choice.entry->make(scene, choice.params);
-    first->load(scene.start);
-    State state;
-    for (int n = 0; n < 30; ++n) {
-      for (int s = 1; s <= substeps; ++s) {
-        auto a = second.accelerations(second.v);
-        for (const Link& l : scene.links) {
-          const Vec3 along = second.x[to_index(l.b)] - second.x[to_index(l.a)],
-                     force = stiffness.at(l.family) * (along.norm() - l.rest) * along.normalized();
-          a[to_index(l.a)] += second.w[to_index(l.a)] * force;
-          a[to_index(l.b)] -= second.w[to_index(l.b)] * force;
-        }
-        for (std::size_t i = 0; i < a.size(); ++i) {
-          const double cm = second.w[i] * drag;
-          Vec3 &x = second.x[i], &v = second.v[i];
-          if (second.w[i] == 0) {
-            v.setZero();
-          } else if (integrator == "explicit-euler") {
-            x += h * v;
-            v = keep * v + h * (a[i] - cm * v);
-          } else {
-            // central: v' = keep v + h (a - c/m (keep v + v')/2)
-            v = central ? Vec3((keep * v * (1 - cm * h / 2) + h * a[i]) / (1 + cm * h / 2))
-                        : Vec3(keep * v + h * (a[i] - cm * v));
-            x += h * v;
-          }
-        }
-        const std::vector<Vec3> before = second.x;
-        second.move_pins(n * scene.dt + s * h);
-        for (const PinMotion& group : scene.pin_motions)
-          for (const int pin : group.vertices)
-            second.v[to_index(pin)] = (second.x[to_index(pin)] - before[to_index(pin)]) / h;
+void expect_springs(const std::string& integrator, double heavier) {
+  const std::map<Family, double> stiffness{{Family::structural, 20 * heavier},
+                                           {Family::shear, 9 * heavier},
+                                           {Family::bend, 3 * heavier}};
+  Scene scene = busy_sheet(true, true, heavier);
+  scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.05 * heavier};
+  const int substeps = 8;
+  const double h = scene.dt / substeps, drag = 0.01 * heavier, keep = std::exp(-scene.damping * h);
+  const bool central = integrator.ends_with("central");
+  Cloth second(scene);
+  const SolverChoice choice =
+      parse_solver("mass-spring:precision=double,substeps=8,drag=" + shortest(drag) +
+                   ",structural=" + shortest(20 * heavier) + ",shear=" + shortest(9 * heavier) +
+                   ",bend=" + shortest(3 * heavier) + ",integrator=" + integrator);
+  const auto first = choice.entry->make(scene, choice.params);
+  first->load(scene.start);
+  State state;
+  for (int n = 0; n < 30; ++n) {
+    for (int s = 1; s <= substeps; ++s) {
+      auto a = second.accelerations(second.v);
+      for (const Link& l : scene.links) {
+        const Vec3 along = second.x[to_index(l.b)] - second.x[to_index(l.a)],
+                   force = stiffness.at(l.family) * (along.norm() - l.rest) * along.normalized();
+        a[to_index(l.a)] += second.w[to_index(l.a)] * force;
+        a[to_index(l.b)] -= second.w[to_index(l.b)] * force;
       }
-      first->step(n * scene.dt, scene.dt), first->store(state);
-      ASSERT_LT(largest_distance(state.x, second.x), 1e-10) << integrator << " step " << n;
-      ASSERT_LT(largest_distance(state.v, second.v), 1e-8) << integrator << " step " << n;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const double cm = second.w[i] * drag;
+        Vec3 &x = second.x[i], &v = second.v[i];
+        if (second.w[i] == 0) {
+          v.setZero();
+        } else if (integrator == "explicit-euler") {
+          x += h * v;
+          v = keep * v + h * (a[i] - cm * v);
+        } else {
+          // central: v' = keep v + h (a - c/m (keep v + v')/2)
+          v = central ? Vec3((keep * v * (1 - cm * h / 2) + h * a[i]) / (1 + cm * h / 2))
+                      : Vec3(keep * v + h * (a[i] - cm * v));
+          x += h * v;
+        }
+      }
+      const std::vector<Vec3> before = second.x;
+      second.move_pins(n * scene.dt + s * h);
+      for (const PinMotion& group : scene.pin_motions)
+        for (const int pin : group.vertices)
+          second.v[to_index(pin)] = (second.x[to_index(pin)] - before[to_index(pin)]) / h;
     }
-    EXPECT_GT(largest_distance(state.x, scene.start.x), 0.1);
+    first->step(n * scene.dt, scene.dt), first->store(state);
+    ASSERT_LT(largest_distance(state.x, second.x), 1e-10) << integrator << " step " << n;
+    ASSERT_LT(largest_distance(state.v, second.v), 1e-8) << integrator << " step " << n;
   }
+  EXPECT_GT(largest_distance(state.x, scene.start.x), 0.1);
+}
+
+TEST(SecondImplementation, OfSprings) {
+  for (const std::string integrator :
+       {"explicit-euler", "symplectic-euler", "verlet", "verlet,drag-at=central"})
+    for (const double heavier : {1, 1000}) expect_springs(integrator, heavier);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <vector>
 
@@ -44,6 +46,53 @@ TEST(ThreadPool, RoundsDoNotOverlap) {
     });
   }
   for (std::size_t i = 0; i < value.size(); ++i) ASSERT_EQ(value[i], (i + 2000) % value.size());
+}
+
+TEST(ThreadPool, AStageOfABlockFollowsThoseBeforeItOfItsNeighbours) {
+  static constexpr int stages = 300;  // more than are kept
+  static constexpr std::size_t blocks = 23;
+  for (const int threads : {2, 5}) {
+    ThreadPool pool(threads);
+    std::vector<std::atomic<int>> done(blocks);
+    std::atomic<int> early{0}, late{0};
+    for (int stage = 0; stage < stages; ++stage)
+      pool.queue(blocks, [&done, &early, &late, stage](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block) {
+          for (std::size_t other = block == 0 ? 0 : block - 1; other < std::min(block + 2, blocks);
+               ++other)
+            if (done[other] < stage) ++early;
+          if (dawdle(); done[block]++ != stage) ++late;
+        }
+      });
+    pool.finish();
+    EXPECT_EQ(early, 0);
+    EXPECT_EQ(late, 0);
+    for (const auto& n : done) EXPECT_EQ(n, stages);
+  }
+}
+
+TEST(ThreadPool, FinishesWhatIsQueuedBeforeOtherWork) {
+  ThreadPool pool(3);
+  std::vector<int> value(64, 0);
+  const auto add = [&value](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) dawdle(), ++value[i];
+  };
+  for (int n = 0; n < 300; ++n) {
+    const int before = value[0];
+    pool.queue(value.size(), add);
+    pool.queue(value.size(), add);
+    pool.run(value.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) value[i] = 3 * value[i] % 1000;
+    });
+    ASSERT_EQ(value, std::vector<int>(64, 3 * (before + 2) % 1000));
+    pool.queue(32, add);  // other blocks
+    pool.queue(64, add);
+    pool.finish();
+    EXPECT_EQ(value[31], value[32] + 1);
+    pool.run(value.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) value[i] = before + 1;
+    });
+  }
 }
 
 TEST(ThreadPool, OfOneIsTheCaller) {

@@ -136,6 +136,112 @@ TEST(Frontier, QuestionsBecomeCases) {
   EXPECT_THROW(range_of(base, "dt", 0.5, 0.1), InputError);
 }
 
+// Nine values, ends included, evenly spread: by ratio if they begin above zero. Then halves of the
+// bracket until it is narrower than a hundredth of its upper end.
+TEST(Frontier, IsSoughtInEvenSteps) {
+  const auto tried = [](const SearchRange& range, double border) {
+    std::vector<double> all;
+    find_frontier(range, [&](const std::vector<double>& values) {
+      std::vector<Outcome> outcomes;
+      for (const double value : values) {
+        all.push_back(value);
+        outcomes.push_back({{value < border ? Kind::ok : Kind::exploded, "", -1, -1}});
+      }
+      return outcomes;
+    });
+    return all;
+  };
+  using Values = std::vector<double>;
+  EXPECT_EQ(tried({.from = 1, .to = 256}, 999), (Values{1, 2, 4, 8, 16, 32, 64, 128, 256}));
+  EXPECT_EQ(tried({.from = 0, .to = 2}, 9), (Values{0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2}));
+  EXPECT_EQ(tried({.from = 0, .to = 3, .whole = true}, 9), (Values{0, 1, 2, 3}))
+      << "none is tried twice";
+  EXPECT_EQ(tried({.from = 0, .to = 8, .tolerance = 0.25, .coarse = 3}, 2.1),
+            (Values{0, 4, 8, 2, 3, 2.5, 2.6, 2.7, 2.8, 2.9}))
+      << "2 is a fifth below 2.5; then four values from there to the next that was tried";
+}
+
+// Values without an answer are passed over, and a bracket ends at one.
+TEST(Frontier, KnowsWhatIsAnAnswer) {
+  const auto probed = [](Kind kind, const std::string& reason, const std::string& symptom = "") {
+    return Probed{{{kind, reason, -1, -1}, symptom}, 1};
+  };
+  EXPECT_TRUE(probed(Kind::ok, "").stable());
+  EXPECT_TRUE(probed(Kind::extreme, "stretch").stable());
+  EXPECT_FALSE(probed(Kind::extreme, "else").stable());
+  EXPECT_FALSE(probed(Kind::ok, "", "tunnels").stable());
+  for (const Kind kind : {Kind::exploded, Kind::unsettled, Kind::crash}) {
+    EXPECT_FALSE(probed(kind, "").stable());
+    EXPECT_TRUE(probed(kind, "").known());
+  }
+  for (const Kind kind : {Kind::timeout, Kind::oom, Kind::protocol, Kind::error})
+    EXPECT_FALSE(probed(kind, "").known());
+  const Frontier gap =
+      find_frontier({.from = 0, .to = 8, .tolerance = 1e-3, .coarse = 3}, outcome([](double x) {
+                      return x == 6 ? Kind::timeout : x < 7 ? Kind::ok : Kind::exploded;
+                    }));
+  EXPECT_EQ(gap.stable, 4);
+  EXPECT_EQ(gap.unstable, 8);
+  EXPECT_EQ(gap.kind, Frontier::Kind::bracketed);
+  std::string kinds;
+  for (const auto kind : {Frontier::Kind::bracketed, Frontier::Kind::all_stable,
+                          Frontier::Kind::none_stable, Frontier::Kind::not_answered})
+    kinds += std::string(to_string(kind)) + ", ";
+  EXPECT_EQ(kinds, "bracketed, all stable, none stable, not answered, ");
+}
+
+TEST(Frontier, ARangeIsTheParametersOwnOrHasToBeGiven) {
+  const CaseSpec base{"chain", {}, "jakobsen"};
+  const auto range = [&](const std::string& of, std::optional<double> from = {},
+                         std::optional<double> to = {}) -> std::string {
+    try {
+      const SearchRange is = range_of(base, of, from, to);
+      return std::to_string(is.from) + " to " + std::to_string(is.to) + (is.whole ? " whole" : "");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(range("dt"), "0.001000 to 0.500000");
+  EXPECT_EQ(range("dt", 0.1), "0.100000 to 0.500000");
+  EXPECT_EQ(range("levels"), "1.000000 to 20.000000 whole");
+  EXPECT_EQ(range("omega|iterations"), "0.000000 to 2.000000") << "of the first";
+  EXPECT_EQ(range("wind.strength", 1, 2e9), "1.000000 to 2000000000.000000");
+  EXPECT_EQ(range("iterations"), "'iterations' has no range of its own: give --from and --to");
+  EXPECT_EQ(range("wind.strength", 1),
+            "'wind.strength' has no range of its own: give --from and "
+            "--to");
+  EXPECT_EQ(range("dt", 0.5, 0.5), "--from 0.5 must be below --to 0.5");
+  EXPECT_EQ(range("order"), "'order' is one of mesh|coloured|reversed|random|jolt, not a number");
+  EXPECT_EQ(range("omeg"),
+            "jakobsen has no parameter 'omeg'; did you mean 'omega'? (a scene key "
+            "has a dot, as \"wind.strength\")");
+  std::vector<std::string> overrides{"a.b=1", "a.bc=2", "x.y=3"};
+  set_override(overrides, "a.b=4");
+  EXPECT_EQ(overrides, (std::vector<std::string>{"a.bc=2", "x.y=3", "a.b=4"}));
+}
+
+// Springs are stable below 2/w, over-relaxation below 4/3 on one link (see below).
+TEST(Frontier, TheoryEndsWhereTheRangeDoes) {
+  const auto predicted = [](double from, double to) {
+    return *predicted_frontier({{"chain",
+                                 {"cloth.grid=[1, 2]", "forces.gravity=[0, 0, 0]"},
+                                 "jakobsen:order=mesh,iterations=1,substeps=1"},
+                                "omega",
+                                {.from = from, .to = to}});
+  };
+  const Prediction inside = predicted(1, 2), below = predicted(0.5, 1.3), above = predicted(1.4, 2);
+  EXPECT_EQ(inside.kind, Frontier::Kind::bracketed);
+  EXPECT_NEAR(inside.value, 4. / 3, 2e-6);
+  EXPECT_NEAR(inside.growth, 1, 1e-4) << "just above";
+  EXPECT_EQ(below.kind, Frontier::Kind::all_stable);
+  EXPECT_EQ(below.value, 1.3);
+  EXPECT_LT(below.growth, 1);
+  EXPECT_EQ(above.kind, Frontier::Kind::none_stable);
+  EXPECT_EQ(above.value, 1.4);
+  EXPECT_NEAR(above.growth, 1 + std::sqrt(2), 1e-6) << "of the end of the range";
+  EXPECT_EQ(above.law, inside.law);
+}
+
 Scene hung_chain(int links) {
   Scene scene = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
   scene.gravity.setZero();

@@ -179,6 +179,17 @@ TEST(IsolatedRun, GivesWhatTheCaseGivesInsideAndTheMotionThatWasAskedFor) {
   EXPECT_FALSE(fs::exists(scratch.path() / "heartbeat"));
 }
 
+TEST(IsolatedRun, OfALongRunItKeepsAHundredAndTwentyRows) {
+  const Scratch scratch;
+  const Case one = make_case({"hang", {"cloth.grid=[2, 2]", "time.duration=7.5"}, "jakobsen"});
+  ASSERT_EQ(one.scene->steps, 480);
+  EXPECT_EQ(run_into(one, scratch.path(), 7), 0);
+  EXPECT_EQ(series_from_csv(read_text(scratch.path() / "series.csv")).rows.size(), 121u);
+  const Trajectory motion = read_trajectory(scratch.path() / kFramesFile);
+  EXPECT_EQ(motion.frames.size(), 9u) << "every 68th of 480 steps, the first and the last";
+  EXPECT_EQ(Heartbeat::last(scratch.path() / "heartbeat"), 480);
+}
+
 TEST(IsolatedRun, SaysByItsExitCodeThatItCannotWrite) {
   const Scratch scratch;
   const Case one = make_case({kSmall.scene, kSmall.overrides, "jakobsen:iterations=2"});

@@ -170,7 +170,7 @@ TEST(ShippedData, AreFoundByNameAndFilesByPath) {
   EXPECT_EQ(refused([] { find_scene("more/../a"); }), "more/../a: no such scene file");
   EXPECT_EQ(refused([] { find_study("none.toml"); }), "none.toml: no such study file");
   EXPECT_EQ(refused([&] { find_scene((data / "scenes").string()); }),
-            (data / "scenes").string() + ": no such scene file");
+            (data / "scenes").string() + " is a folder, not a scene file");
   EXPECT_EQ(refused([] { find_scene("aa"); }),
             "unknown scene 'aa'; did you mean 'a'? (`taut list scenes` names all; a path has a '/' "
             "or ends in .toml)");

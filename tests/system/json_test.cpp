@@ -53,26 +53,26 @@ TEST(JsonReader, NamesFileLineAndThePlaceWithinTheText) {
     return j.at("scenes").items()[1].at("cases").items()[1];
   };
   EXPECT_EQ(wrong(json, [&](const JsonReader& j) { deep(j).at("n").number(); }),
-            "x.json:7:0: scenes[1].cases[1].n: expected a number");
+            "x.json:7: scenes[1].cases[1].n: expected a number");
   EXPECT_EQ(wrong(json, [&](const JsonReader& j) { deep(j).at("m"); }),
-            "x.json:7:0: scenes[1].cases[1]: has no 'm'");
+            "x.json:7: scenes[1].cases[1]: has no 'm'");
   EXPECT_EQ(wrong(json, [](const JsonReader& j) { j.at("list").items()[0].items(3); }),
-            "x.json:7:0: list[0]: has 2 items, not 3");
+            "x.json:7: list[0]: has 2 items, not 3");
   EXPECT_EQ(wrong(json, [](const JsonReader& j) { j.at("list").items()[1].items(); }),
-            "x.json:7:0: list[1]: expected an array");
+            "x.json:7: list[1]: expected an array");
   EXPECT_EQ(wrong(json, [](const JsonReader& j) { j.at("list").members(); }),
-            "x.json:7:0: list: expected an object");
+            "x.json:7: list: expected an object");
   EXPECT_EQ(wrong(json, [](const JsonReader& j) { j.at("list").find("a"); }),
-            "x.json:7:0: list: expected an object");
-  EXPECT_EQ(wrong(json, [](const JsonReader& j) { j.fail("no"); }), "x.json:7:0: no");
+            "x.json:7: list: expected an object");
+  EXPECT_EQ(wrong(json, [](const JsonReader& j) { j.fail("no"); }), "x.json:7: no");
   EXPECT_EQ(wrong(Json::array({Json::object()}), [](const JsonReader& j) { j.items()[0].at("a"); }),
-            "x.json:7:0: [0]: has no 'a'");
+            "x.json:7: [0]: has no 'a'");
   EXPECT_FALSE(JsonReader(json, "x.json").find("cases"));
   std::string keys;
   for (const auto& [key, value] : JsonReader(json, "x.json").members()) keys += key + " ";
   EXPECT_EQ(keys, "scenes list ");
   EXPECT_EQ(wrong(json, [](const JsonReader& j) { j.members()[1].second.flag(); }),
-            "x.json:7:0: list: expected true or false");
+            "x.json:7: list: expected true or false");
 }
 
 TEST(JsonReader, TakesAValueOfItsTypeWithinItsBounds) {
@@ -81,32 +81,30 @@ TEST(JsonReader, TakesAValueOfItsTypeWithinItsBounds) {
   };
   for (const int good : {-3, 0, 4}) EXPECT_EQ(wrong(good, integer(-3, 4)), "") << good;
   for (const Json& bad : {Json(-4), Json(5), Json(0.5)})
-    EXPECT_EQ(wrong(bad, integer(-3, 4)), "x.json:7:0: expected a whole number from -3 to 4")
-        << bad;
+    EXPECT_EQ(wrong(bad, integer(-3, 4)), "x.json:7: expected a whole number from -3 to 4") << bad;
   EXPECT_EQ(JsonReader(-3.0, "").integer(-3, 4), -3);
   const auto count = [](const JsonReader& j) { j.count(); };
   for (const Json& good : {Json(0), Json(9007199254740992.0)})
     EXPECT_EQ(wrong(good, count), "") << good;
   for (const Json& bad : {Json(-1), Json(1.5), Json(9007199254740994.0)})
-    EXPECT_EQ(wrong(bad, count), "x.json:7:0: expected a count") << bad;
+    EXPECT_EQ(wrong(bad, count), "x.json:7: expected a count") << bad;
   EXPECT_EQ(JsonReader(9007199254740992.0, "").count(), std::size_t{1} << 53);
   EXPECT_EQ(wrong(kInfinity, [](const JsonReader& j) { j.number(); }),
-            "x.json:7:0: expected a finite number");
-  EXPECT_EQ(wrong(nullptr, [](const JsonReader& j) { j.number(); }),
-            "x.json:7:0: expected a number");
+            "x.json:7: expected a finite number");
+  EXPECT_EQ(wrong(nullptr, [](const JsonReader& j) { j.number(); }), "x.json:7: expected a number");
   EXPECT_TRUE(std::isnan(JsonReader(nullptr, "").number_or_null()));
   EXPECT_EQ(JsonReader(2.5, "").number_or_null(), 2.5);
   EXPECT_EQ(wrong("2", [](const JsonReader& j) { j.number_or_null(); }),
-            "x.json:7:0: expected a number");
-  EXPECT_EQ(wrong(1, [](const JsonReader& j) { j.text(); }), "x.json:7:0: expected a text");
+            "x.json:7: expected a number");
+  EXPECT_EQ(wrong(1, [](const JsonReader& j) { j.text(); }), "x.json:7: expected a text");
   EXPECT_EQ(JsonReader("1", "").text(), "1");
   EXPECT_TRUE(JsonReader(true, "").flag());
   EXPECT_EQ(JsonReader(Json::array({"b", "a"}), "").texts(), (std::vector<std::string>{"b", "a"}));
   EXPECT_EQ(JsonReader(Json::array({2, 1.5}), "").numbers(), (std::vector<double>{2, 1.5}));
   EXPECT_EQ(wrong(Json::array({2, "x"}), [](const JsonReader& j) { j.numbers(); }),
-            "x.json:7:0: [1]: expected a number");
+            "x.json:7: [1]: expected a number");
   EXPECT_EQ(wrong({{"schema", 2}}, [](const JsonReader& j) { j.require_schema(3); }),
-            "x.json:7:0: schema: is 2; this program reads 3");
+            "x.json:7: schema: is 2; this program reads 3");
   EXPECT_EQ(wrong({{"schema", "a-1"}}, [](const JsonReader& j) { j.require_schema("a-1"); }), "");
 }
 
@@ -126,8 +124,8 @@ TEST(JsonLines, AreReadOneAfterTheOtherAndADamagedOneIsNamed) {
       EXPECT_EQ(error.diagnostics().front().file, file.string());
     }
   }
-  EXPECT_EQ(wrong(0, [](const JsonReader&) { parse_json_of("{", "y.json", 3); }).substr(0, 24),
-            "y.json:3:0: is not JSON:");
+  EXPECT_EQ(wrong(0, [](const JsonReader&) { parse_json_of("{", "y.json", 3); }).substr(0, 22),
+            "y.json:3: is not JSON:");
 }
 
 }  // namespace

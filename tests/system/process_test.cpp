@@ -3,10 +3,15 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <sstream>
 #include <thread>
 
@@ -31,6 +36,40 @@ std::string said(const std::string& script, ProcessOptions options = {}) {
 ProcessEnd end_of(const std::string& script) { return *Process(shell(script)).wait(20); }
 
 bool lives(pid_t pid) { return kill(pid, 0) == 0; }
+
+/// Whether it is gone within ten seconds; reaps it if it has become a child of this process.
+bool ends(pid_t pid) {
+  for (const auto end = in_seconds(10); seconds_until(end) > 0; usleep(1000)) {
+    if (!lives(pid)) return true;
+    waitpid(pid, nullptr, WNOHANG);
+  }
+  return false;
+}
+
+/// A signal to this thread every millisecond, after which system calls do not go on by themselves.
+class Interruptions {
+ public:
+  Interruptions() {
+    struct sigaction action {};
+    action.sa_handler = [](int) {};
+    sigaction(SIGUSR1, &action, &before_);
+    sender_ = std::thread([this, target = pthread_self()] {
+      for (; !done_; usleep(1000)) pthread_kill(target, SIGUSR1);
+    });
+  }
+  ~Interruptions() {
+    done_ = true;
+    sender_.join();
+    sigaction(SIGUSR1, &before_, nullptr);
+  }
+  Interruptions(const Interruptions&) = delete;
+  Interruptions& operator=(const Interruptions&) = delete;
+
+ private:
+  struct sigaction before_ {};
+  std::atomic<bool> done_ = false;
+  std::thread sender_;
+};
 
 /// As a shell's ulimit prints it, in units of so many bytes.
 std::string printed(int limit, rlim_t unit) {
@@ -115,25 +154,29 @@ TEST(Processes, OutputIsReadByLinesByBytesAndToTheEnd) {
 }
 
 TEST(Processes, WhoeverTakesTooLongIsNotWaitedFor) {
-  const auto seconds = [](const auto& what) {
-    const auto start = SteadyClock::now();
-    what();
-    return seconds_since(start);
+  const auto seconds = [](const auto& what) {  // the least of three: others use this machine too
+    double least = 1e9;
+    for (int i = 0; i < 3; ++i) {
+      const auto start = SteadyClock::now();
+      what();
+      least = std::min(least, seconds_since(start));
+    }
+    return least;
   };
   std::string got;
   Process silent(shell("exec sleep 1000"), {.input = Stream::piped, .output = Stream::piped});
   EXPECT_FALSE(silent.poll());
   for (const auto& wait : std::vector<std::function<void()>>{
-           [&] { EXPECT_FALSE(silent.read_line(got, 0.15)); },
-           [&] { EXPECT_FALSE(silent.read_bytes(got, 1, 0.15)); },
-           [&] { EXPECT_EQ(silent.read_all(0.15), ""); },
-           [&] { EXPECT_FALSE(silent.write(std::string(1 << 22, 'x'), 0.15)); }}) {
+           [&] { EXPECT_FALSE(silent.read_line(got, 0.06)); },
+           [&] { EXPECT_FALSE(silent.read_bytes(got, 1, 0.06)); },
+           [&] { EXPECT_EQ(silent.read_all(0.06), ""); },
+           [&] { EXPECT_FALSE(silent.write(std::string(1 << 22, 'x'), 0.06)); }}) {
     const double took = seconds(wait);
-    EXPECT_GE(took, 0.149);
-    EXPECT_LT(took, 5);
+    EXPECT_GE(took, 0.059);
+    EXPECT_LT(took, 0.4);
   }
   const pid_t pid = silent.pid();
-  EXPECT_LT(seconds([&] { EXPECT_FALSE(silent.wait(0.1)); }), 5);
+  EXPECT_FALSE(silent.wait(0.1));
   EXPECT_FALSE(lives(pid)) << "killed";
   EXPECT_EQ(silent.poll()->signal, SIGKILL);
   EXPECT_FALSE(silent.write("x")) << "nobody reads it";
@@ -170,7 +213,7 @@ TEST(Processes, TakeWithThemWhatTheyStartedEvenWhatLeftTheirSession) {
   EXPECT_TRUE(process.has_descendants());
   process.close_input();
   EXPECT_TRUE(process.wait(20));
-  EXPECT_FALSE(lives(left));
+  EXPECT_TRUE(ends(left));
   EXPECT_FALSE(process.has_descendants());
   pid_t pid = 0;
   {
@@ -182,6 +225,71 @@ TEST(Processes, TakeWithThemWhatTheyStartedEvenWhatLeftTheirSession) {
   Process bystander({"sleep", "1000"});
   EXPECT_TRUE(end_of("exit 0").good());
   EXPECT_FALSE(bystander.poll()) << "another one goes on";
+}
+
+TEST(Processes, OfTheirGroupNobodyStaysEvenWithoutAnEnvironment) {
+  std::string line;
+  Process process(shell("env -i sleep 1000 & echo $!"), {.output = Stream::piped});
+  ASSERT_TRUE(process.read_line(line, 20));
+  EXPECT_TRUE(process.wait(20)->good());
+  EXPECT_TRUE(ends(std::stoi(line)));
+  kill(std::stoi(line), SIGKILL);
+}
+
+TEST(Processes, ASignalMeanwhileCutsNothingShort) {
+  const Interruptions every_millisecond;
+  Process process(shell("sleep 0.05; echo one; sleep 0.05; printf abc; sleep 0.05"),
+                  {.output = Stream::piped});
+  std::string got;
+  ASSERT_TRUE(process.read_line(got, 20));
+  EXPECT_EQ(got, "one");
+  ASSERT_TRUE(process.read_bytes(got, 3, 20));
+  EXPECT_EQ(got, "abc");
+  const auto end = process.wait(20);
+  EXPECT_TRUE(end && end->good());
+  Process late(shell("sleep 0.05; exec cat >/dev/null"), {.input = Stream::piped});
+  EXPECT_TRUE(late.write(std::string(1 << 20, 'x'), 20));
+}
+
+TEST(Processes, AnInterruptionOfBeforeIsNone) {
+  Process process(shell("exit 3"));
+  process.wait(0.001);  // whoever reads errno reads that of an earlier call
+  for (const char* script : {"exit 3", "sleep 0.02; exit 3"}) {
+    Process other(shell(script));
+    errno = EINTR;
+    const auto end = other.wait(20);
+    EXPECT_TRUE(end && end->exit_code == 3);
+  }
+  Process polled(shell("exit 4"));
+  std::optional<ProcessEnd> end;
+  for (const auto late = in_seconds(20); !end && seconds_until(late) > 0; usleep(1000))
+    errno = EINTR, end = polled.poll();
+  EXPECT_TRUE(end && end->exit_code == 4);
+}
+
+TEST(Processes, HaveThisOnesEnvironmentOneMarkAndNoBlockedSignal) {
+  const std::string marks = "env | grep ^" + descent() + "; grep SigBlk /proc/self/status";
+  const std::string one = said(marks), other = said(marks);
+  const auto number = [](const std::string& text) {
+    EXPECT_TRUE(text.starts_with(descent())) << text;
+    EXPECT_TRUE(text.ends_with("=\nSigBlk:\t0000000000000000\n")) << text;
+    return std::stoi(text.substr(descent().size()));
+  };
+  EXPECT_EQ(number(other), number(one) + 1) << "each its own";
+  EXPECT_EQ(descent(), "TAUT_PROCESS_" + std::to_string(getpid()) + "_");
+  EXPECT_EQ(said("echo $PATH"), std::string(std::getenv("PATH")) + "\n");
+  sigset_t blocked;
+  pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
+  EXPECT_FALSE(sigismember(&blocked, SIGTERM)) << "of this one neither";
+}
+
+TEST(Processes, AMarkIsHowAVariableBegins) {
+  Process process({"env", "-i", "AB=1", "CD=2", "sleep", "1000"});
+  const auto has = [&](const char* mark) { return has_mark(process.pid(), mark); };
+  for (const auto late = in_seconds(20); !has("AB=1") && seconds_until(late) > 0;) usleep(1000);
+  for (const char* mark : {"AB=1", "A", "CD=", "C"}) EXPECT_TRUE(has(mark)) << mark;
+  for (const char* mark : {"B=1", "D", "AB=2", "1", "sleep"}) EXPECT_FALSE(has(mark)) << mark;
+  EXPECT_FALSE(has_mark(std::numeric_limits<pid_t>::max(), "A")) << "there is no such process";
 }
 
 TEST(Processes, WhatTheySayOnStandardErrorIsAppendedToAFile) {
@@ -230,10 +338,16 @@ TEST(Clocks, AFutureIsNeverBeforeItsStart) {
   EXPECT_EQ(after(start, -3), start);
   EXPECT_NEAR(seconds_until(in_seconds(3)), 3, 0.5);
   EXPECT_LT(seconds_since(in_seconds(3)), 0);
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  EXPECT_NEAR(seconds_of(CLOCK_REALTIME),
-              static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec), 1);
+  const auto shown = [] {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  };
+  for (int i = 0; i < 20; ++i, usleep(10000)) {  // over a fifth of a second
+    const double before = shown(), between = seconds_of(CLOCK_MONOTONIC), now = shown();
+    EXPECT_LE(before, between);
+    EXPECT_LE(between, now);
+  }
 }
 
 }  // namespace

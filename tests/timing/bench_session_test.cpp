@@ -7,10 +7,10 @@
 #include "core/model/input_error.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/timing/bench.hpp"
 #include "experiments/timing/bench/contact.hpp"
 #include "experiments/timing/bench/kernels.hpp"
 #include "experiments/timing/recommendation.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::bench_session_test {
 namespace {
@@ -144,6 +144,14 @@ TEST(BenchSessions, WhatCannotBeATimeIsRefusedWithItsPlace) {
   EXPECT_EQ(said("wall_seconds_per_step", "[]"),
             "f: scenes[0].cases[0]: has neither times nor a failure");
   EXPECT_EQ(said("failure", "\"why\""), "");
+  StudyBench one_by_one = session;
+  one_by_one.scenes[0].in_turns = false;
+  one_by_one.scenes[0].cases.push_back(timed("b", {2, 4}));
+  const StudyBench again = bench_from_json(to_json(one_by_one), "f");
+  EXPECT_FALSE(again.scenes[0].in_turns);
+  EXPECT_FALSE(again.scenes[0].ratio(0, 1)) << "not timed in turns";
+  one_by_one.scenes[0].in_turns = true;
+  EXPECT_TRUE(one_by_one.scenes[0].ratio(0, 1));
   Json two = parse_json(good);
   two["scenes"][0]["control"] = Json::array({1, 2});
   EXPECT_THROW(bench_from_json(to_text(two), "f"), InputError);

@@ -1,6 +1,4 @@
 // A bench: what was timed and what it says about the cost of an error.
-#include "experiments/timing/bench.hpp"
-
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>
@@ -10,8 +8,10 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::bench_test {
 namespace {
@@ -23,7 +23,7 @@ BenchedCase benched(const std::string& solver, double stretch, double cost_per_s
   c.record.id = "sheet " + solver;
   c.record.spec = {"sheet", {}, solver};
   c.record.scene = "sheet";
-  c.record.solver = solver.substr(0, solver.find(':'));
+  c.record.solver = solver_name(solver);
   c.record.dt = dt;
   c.record.steps = 10;
   c.record.values["stretch.rms"] = stretch;

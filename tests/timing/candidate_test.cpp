@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::candidate_test {
 namespace {

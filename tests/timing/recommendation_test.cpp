@@ -103,6 +103,42 @@ TEST(Recommendation, EverySolverIsNamedWithWhatItCostsOrHowNearItCame) {
   EXPECT_NE(text(recommend(b, {1e-9, {}}, "e"), b, "e").find("not reached"), std::string::npos);
 }
 
+/// A case whose samples are all alike.
+BenchedCase still(const std::string& solver, double cost, double error) {
+  BenchedCase c = finalist(solver, cost, error);
+  c.record.solver = solver.substr(0, solver.find(':'));
+  c.timing.samples.assign(8, cost);
+  return c;
+}
+
+// 20 ms a step of 1 s are 20 ms per simulated second; two settings of one solver are one line.
+TEST(Recommendation, ReadsLineByLineAsThis) {
+  SceneBench b = bench({still("bullet", 0.06, 0.001), still("jakobsen:iterations=4", 0.02, 0.01),
+                        still("xpbd", 0.002, 0.03), still("xpbd:substeps=1024", 0.004, 0.02),
+                        still("bullet:iterations=2", 0.05, 0.01)});
+  EXPECT_EQ(text(recommend(b, {0.01, {}}, "e"), b, "e"),
+            "e <= 0.01: jakobsen:iterations=4, e 0.01, 20 (20 to 20) ms CPU per simulated s; "
+            "clearly cheaper than bullet\n"
+            "  bullet: 2.5 (2.5 to 2.5) x the cost: bullet:iterations=2, e 0.01, 50 (50 to 50) ms "
+            "CPU per simulated s\n"
+            "  xpbd: not by the settings tried; nearest: xpbd:substeps=1024, e 0.02, 4 (4 to 4) ms "
+            "CPU per simulated s\n");
+  b.cases[3].record.params = {{"substeps", "1024"}, {"iterations", "128"}};
+  const std::string all = text(recommend(b, {{}, 0.0006}, "e"), b, "e");
+  EXPECT_TRUE(all.starts_with("least e within 0.01 ms per frame of 1/60 s: not reached\n")) << all;
+  EXPECT_NE(all.find("  jakobsen: not by the settings tried; nearest: jakobsen:iterations=4,"),
+            std::string::npos)
+      << all;
+  EXPECT_NE(all.find("  xpbd: never, to the end of its accuracy parameters; nearest: xpbd, e 0.03, "
+                     "2 (2 to 2) ms"),
+            std::string::npos)
+      << "of a budget the cheapest is nearest\n"
+      << all;
+  EXPECT_NE(all.find("  bullet: not by the settings tried; nearest: bullet:iterations=2,"),
+            std::string::npos)
+      << all;
+}
+
 TEST(Recommendation, TheWordsSayOfWhatItIsSure) {
   const auto said = [](const SceneBench& b, const Target& target) {
     const std::string all = text(recommend(b, target, "e", 0.05), b, "e");

@@ -44,7 +44,31 @@ TEST(Scaling, WhatWouldTakeTooLongIsSkippedAndSaid) {
   const auto lines = measure_scaling(squares({4, 8, 16, 32}), 5000, measured);
   EXPECT_EQ(lines[0].cases.size(), 3u);  // 256 vertices take 4096 s
   ASSERT_EQ(lines[0].skipped.size(), 1u);
-  EXPECT_NE(lines[0].skipped[0].find("1024 vertices"), std::string::npos);
+  EXPECT_EQ(lines[0].skipped[0], "1024 vertices: expected to take 16384 s, allowed 5000 s");
+  EXPECT_EQ(measure_scaling(squares({4, 8}), 256, measured)[0].cases.size(), 2u)
+      << "as long as is allowed";
+}
+
+// What failed is said and counts for no exponent; the wall's time is what the machine's load makes.
+TEST(Scaling, WhatEndedBadlyIsNoPointOfTheLine) {
+  const auto lines = measure_scaling(squares({4, 8, 12, 16, 20}), 1e9, [](const Case& one, double) {
+    Measured m = measured(one, 0);
+    if (m.benched.record.vertices == 64) m.benched.record.status.kind = Status::Kind::exploded;
+    if (m.benched.record.vertices == 144) m.benched.timing.failure = "no clock";
+    if (m.benched.record.vertices == 144 || m.benched.record.vertices == 64)
+      m.benched.timing.samples.assign(4, 1e6);
+    return m;
+  });
+  EXPECT_EQ(lines[0].skipped,
+            (std::vector<std::string>{"64 vertices: exploded", "144 vertices: no clock"}));
+  EXPECT_EQ(lines[0].cases.size(), 5u);
+  EXPECT_NEAR(lines[0].cpu->exponent, 1.5, 1e-9);
+  EXPECT_NEAR(lines[0].wall->exponent, 0, 1e-9);
+  EXPECT_EQ(lines[0].setting, "jakobsen");
+  EXPECT_EQ(lines[1].setting, "xpbd");
+  Record record;
+  record.step_cost = {{.pass = "a", .items = 9, .repeats = 7, .bytes = 20}, {.bytes = 3}};
+  EXPECT_EQ(plan_bytes(record), 23) << "held once, however often it is gone through";
 }
 
 TEST(Scaling, ACaseIsExpectedToTakeWhatTheOneBeforeTookInProportionToItsSize) {

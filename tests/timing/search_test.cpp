@@ -90,6 +90,21 @@ TEST(Search, StopsWhenTimeIsUp) {
   EXPECT_EQ(formula.runs, 4);
 }
 
+TEST(Search, BeginsWithWhatCostsLeast) {
+  const auto run = [](const std::string& setting) -> std::optional<Candidate> {
+    EXPECT_TRUE(setting == "jakobsen:iterations=1,substeps=1" ||
+                setting == "xpbd:substeps=4,iterations=1" ||
+                setting == "mass-spring:shear=50,structural=50,substeps=1")
+        << setting;
+    const std::string solver = setting.substr(0, setting.find(':'));
+    if (solver == "mass-spring") return {};  // time is up
+    const double cost = solver == "xpbd" ? 2 : 1;
+    return Candidate{solver, setting, {cost, cost, cost}};
+  };
+  EXPECT_EQ(cheapest_first({"mass-spring", "xpbd:substeps=4", "jakobsen"}, run),
+            (std::vector<std::string>{"jakobsen", "xpbd:substeps=4", "mass-spring"}));
+}
+
 TEST(Search, LeavesAloneWhatTheUserFixed) {
   Formula formula;
   const auto tried =

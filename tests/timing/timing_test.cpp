@@ -208,6 +208,22 @@ TEST(Benches, AFailureCostsItsOwnCaseAndADeadlineTheRoundsThatWouldNotEnd) {
   EXPECT_TRUE(late.timings[0].samples.empty());
 }
 
+// Four samples of 0.05 s make a round of 0.2 s. After the first some 0.25 s are left: room for
+// another of that length, but not for one that takes half as long again.
+TEST(Benches, NoRoundBeginsThatMayNotEnd) {
+  const Scripted scripted(
+      "echo ready; while read word n; do [ $word = time ] && sleep 0.05; echo 1 1; done\n");
+  const auto rounds = [](double seconds) {
+    const auto bench =
+        time_cases({{kSpec, 9}}, {.rounds = 3, .deadline = in_seconds(seconds)}).timings[0];
+    EXPECT_EQ(bench.failure, "");
+    EXPECT_EQ(bench.wall.size(), bench.samples.size());
+    return bench.samples.size() / 2;
+  };
+  EXPECT_EQ(rounds(0.46), 1u);
+  EXPECT_EQ(rounds(60), 3u);
+}
+
 // The test program is the worker (tests/support/main.cpp).
 TEST(Benches, TimeTheStepsOfASolver) {
   const CaseSpec real{"hang", {"cloth.grid=[8, 8]", "time.duration=0.5"}, "jakobsen"};

@@ -210,8 +210,6 @@ TEST(TruthSolvers, AreThePublishedOnesUnlessSaid) {
       mass_spring("verlet", 0.1, 2),
       "mass-spring:integrator=verlet,structural=0.10000000000000001,shear=0.10000000000000001,"
       "bend=0.10000000000000001,drag=2,substeps=1,precision=double");
-  EXPECT_EQ(with("xpbd", "bend=1"), "xpbd:bend=1");
-  EXPECT_EQ(with("xpbd", ""), "xpbd");
 }
 
 TEST(Settle, TakesTenCalmLooksInARow) {

@@ -1,6 +1,7 @@
 #include "core/solver/constraints/relaxation.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "core/model/input_error.hpp"
 #include "core/solver/constraints/hierarchy.hpp"
@@ -101,24 +102,7 @@ class JacobiPass final : public Pass<Real> {
   std::vector<Real> factor_;
 };
 
-/// One part of a phase: a block of rows of an interleaved sheet, a tile of colour batches.
-template <class Real>
-void project(const InterleavedSheet<Real>& links, const Kernels<Real>& kernels,
-             Projection projection, Real* x, std::size_t phase, std::size_t part) {
-  const SheetSweep<Real>& sweep = links.sweep();
-  const auto& sweeps = sweep.lanes == kWide ? kernels.wide_sheet : kernels.narrow_sheet;
-  const auto [from, to] = links.blocks().of(static_cast<int>(phase), part);
-  sweeps[static_cast<int>(projection)](sweep, x, from, to);
-}
-template <class Real>
-void project(const ColourBatches<Real>& links, const Kernels<Real>& kernels, Projection projection,
-             Real* x, std::size_t phase, std::size_t part) {
-  for (const BatchRun<Real>& run : links.runs(phase, part))
-    kernels.batches[static_cast<int>(projection)](run, x);
-}
-
-/// One Gauss-Seidel sweep over InterleavedSheet or ColourBatches, phase after phase; threads share
-/// the parts of a phase.
+/// One Gauss-Seidel sweep over InterleavedSheet or ColourBatches, which threads share.
 template <class Real, template <class> class Links>
 class ColouredPass final : public Pass<Real> {
  public:
@@ -130,20 +114,38 @@ class ColouredPass final : public Pass<Real> {
         kernels_(kernels<Real>(simd)),
         pool_(pool) {}
 
-  void apply(Particles<Real>& p, double, double) override {
-    for (std::size_t phase = 0; phase < links_.phases(); ++phase)
-      pool_.run(
-          links_.parts(phase),
-          [&](std::size_t begin, std::size_t end) {
-            for (std::size_t part = begin; part < end; ++part)
-              project(links_, kernels_, projection_, p.x.data(), phase, part);
-          },
-          p.size() >= ThreadPool::kWorthSharing);
-  }
+  void apply(Particles<Real>& p, double, double) override { sweep(links_, p); }
+  bool queues() const override { return std::is_same_v<Links<Real>, InterleavedSheet<Real>>; }
 
   std::vector<PassCost> cost() const override { return costs_; }
 
  private:
+  void sweep(const InterleavedSheet<Real>& links, Particles<Real>& p) {
+    const SheetSweep<Real>& sheet = links.sweep();
+    const auto& kernels = sheet.lanes == kWide ? kernels_.wide_sheet : kernels_.narrow_sheet;
+    const auto project = kernels[static_cast<int>(projection_)];
+    for (const std::size_t parity : {0U, 1U})
+      pool_.queue(
+          p.layout->blocks(),
+          [&links, project, parity, x = p.x.data()](std::size_t begin, std::size_t end) {
+            visit_rows_of(parity, begin, end, links.rows(),
+                          [&](int from, int to) { project(links.sweep(), x, from, to); });
+          },
+          p.size() >= ThreadPool::kWorthSharing);
+  }
+
+  void sweep(const ColourBatches<Real>& links, Particles<Real>& p) {
+    const auto project = kernels_.batches[static_cast<int>(projection_)];
+    for (std::size_t phase = 0; phase < links.phases(); ++phase)
+      pool_.run(
+          links.parts(phase),
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t tile = begin; tile < end; ++tile)
+              for (const BatchRun<Real>& run : links.runs(phase, tile)) project(run, p.x.data());
+          },
+          p.size() >= ThreadPool::kWorthSharing);
+  }
+
   Links<Real> links_;
   std::vector<PassCost> costs_;
   Projection projection_;

@@ -47,10 +47,13 @@ class ProjectorOf final : public Projector<Real> {
     contact_.motion = rounded<Real>(rigid_motion(collider_.motion, t, dt));
   }
 
-  void project(const ParticleSpan<Real>& span, ThreadPool& pool) const override {
-    pool.run(
-        span.parts(),
-        [&](std::size_t begin, std::size_t end) { collide_(contact_, span, begin, end); },
+  void project(const ParticleSpan<Real>& span, std::size_t blocks,
+               ThreadPool& pool) const override {
+    pool.queue(
+        blocks,
+        [span, contact = contact_, collide = collide_](std::size_t begin, std::size_t end) {
+          collide(contact, span, span.part_of_block(begin), span.part_of_block(end));
+        },
         span.particles >= ThreadPool::kWorthSharing);
   }
 

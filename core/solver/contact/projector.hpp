@@ -62,7 +62,8 @@ class Projector {
   virtual ~Projector() = default;
   /// What follows belongs to the step [t, t + dt].
   virtual void begin(double t, double dt) = 0;
-  virtual void project(const ParticleSpan<Real>&, ThreadPool&) const = 0;
+  /// Queues it.
+  virtual void project(const ParticleSpan<Real>&, std::size_t blocks, ThreadPool&) const = 0;
 };
 
 /// Keeps particles at `thickness` [m]; `continuous` also catches those that passed through the

@@ -1,5 +1,6 @@
 #include "core/solver/contact/responses.hpp"
 
+#include "core/model/index.hpp"
 #include "core/solver/contact/face_contact.hpp"
 #include "core/solver/contact/projector.hpp"
 #include "core/solver/contact/self_collision.hpp"
@@ -14,36 +15,56 @@ namespace {
 template <class Real>
 class CollidePass final : public Pass<Real> {
  public:
-  CollidePass(const Collider& collider, const Scene& scene, bool continuous, Simd simd,
-              ThreadPool& pool)
+  CollidePass(const Collider& collider, const Scene& scene, const Layout& layout, bool continuous,
+              Simd simd, ThreadPool& pool)
       : projector_(make_projector<Real>(collider, scene.thickness, continuous, simd)),
         pool_(pool),
         kind_(type_name(collider.shape)),
         particles_(scene.start.x.size()),
-        pins_(scene.pins.begin(), scene.pins.end()),
-        pinned_(pins_.size()) {}
+        pins_(pins_of(scene), layout) {}
 
   void begin(Particles<Real>&, double t, double dt) override { projector_->begin(t, dt); }
 
   void apply(Particles<Real>& p, double, double) override {
-    for (std::size_t k = 0; k < pins_.size(); ++k) pinned_[k] = p.x[pins_[k]];
-    projector_->project(span_of(p, p.x), pool_);
-    for (std::size_t k = 0; k < pins_.size(); ++k) p.x.set(pins_[k], pinned_[k]);
+    for_pins(p, [](Particles<Real>& q, Pin& pin) { pin.place = q.x[to_index(pin.vertex)]; });
+    projector_->project(span_of(p, p.x), p.layout->blocks(), pool_);
+    for_pins(p,
+             [](Particles<Real>& q, const Pin& pin) { q.x.set(to_index(pin.vertex), pin.place); });
   }
+  bool queues() const override { return true; }
 
   std::vector<PassCost> cost() const override {
-    return {{.pass = "collide " + kind_,
-             .items = particles_,
-             .bytes = sizeof(*this) + pins_.size() * (sizeof pins_[0] + sizeof pinned_[0])}};
+    return {
+        {.pass = "collide " + kind_, .items = particles_, .bytes = sizeof(*this) + pins_.bytes()}};
   }
 
  private:
+  struct Pin {
+    int vertex;
+    typename Points<Real>::Point place;  ///< where it is meanwhile [m]
+  };
+  static std::vector<Pin> pins_of(const Scene& scene) {
+    std::vector<Pin> pins;
+    for (const int v : scene.pins) pins.push_back({v, Points<Real>::Point::Zero()});
+    return pins;
+  }
+  /// Queues f(p, pin) for each.
+  template <class F>
+  void for_pins(Particles<Real>& p, const F& f) {
+    if (pins_.empty()) return;
+    pool_.queue(
+        p.layout->blocks(),
+        [this, &p, f](std::size_t begin, std::size_t end) {
+          for (Pin& pin : pins_.of(begin, end)) f(p, pin);
+        },
+        p.size() >= ThreadPool::kWorthSharing);
+  }
+
   std::unique_ptr<Projector<Real>> projector_;
   ThreadPool& pool_;
   std::string kind_;
   std::size_t particles_;
-  std::vector<std::size_t> pins_;
-  std::vector<typename Points<Real>::Point> pinned_;  ///< where they are meanwhile [m]
+  ByBlock<Pin> pins_;
 };
 
 /// Finds the particles that have arrived inside a collider.
@@ -59,7 +80,8 @@ class EnteringParticles {
   template <class Visit>
   void find(const Particles<Real>& p, const Visit& visit) {
     outside_ = p.x;
-    projector_->project(span_of(p, outside_), pool_);
+    projector_->project(span_of(p, outside_), p.layout->blocks(), pool_);
+    pool_.finish();
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] != 0 && outside_[i] != p.x[i]) visit(i, outside_[i]);
   }
@@ -168,10 +190,11 @@ class HaltPass final : public Pass<Real> {
 };
 
 template <class Real>
-void add_response(const Collider& collider, const Scene& scene, const ContactSettings& settings,
-                  ThreadPool& pool, ContactPasses<Real>& passes) {
+void add_response(const Collider& collider, const Scene& scene, const Layout& layout,
+                  const ContactSettings& settings, ThreadPool& pool, ContactPasses<Real>& passes) {
   const auto project = [&](bool continuous) {
-    return std::make_unique<CollidePass<Real>>(collider, scene, continuous, settings.simd, pool);
+    return std::make_unique<CollidePass<Real>>(collider, scene, layout, continuous, settings.simd,
+                                               pool);
   };
   switch (settings.response) {
     case Response::continuous:
@@ -200,8 +223,8 @@ void add_response(const Collider& collider, const Scene& scene, const ContactSet
 }  // namespace
 
 template <class Real>
-ContactPasses<Real> make_contact(const Scene& scene, const ContactSettings& settings,
-                                 ThreadPool& pool) {
+ContactPasses<Real> make_contact(const Scene& scene, const Layout& layout,
+                                 const ContactSettings& settings, ThreadPool& pool) {
   ContactPasses<Real> passes;
   if (scene.self_collision && settings.self == SelfCollisionMethod::grid)
     passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene, settings.simd, pool));
@@ -213,11 +236,13 @@ ContactPasses<Real> make_contact(const Scene& scene, const ContactSettings& sett
       passes.sweep.push_back(
           std::make_unique<FaceContactPass<Real>>(collider, scene.thickness, scene.mesh.triangles));
   for (const Collider& collider : scene.colliders)
-    add_response(collider, scene, settings, pool, passes);
+    add_response(collider, scene, layout, settings, pool, passes);
   return passes;
 }
 
-template ContactPasses<float> make_contact(const Scene&, const ContactSettings&, ThreadPool&);
-template ContactPasses<double> make_contact(const Scene&, const ContactSettings&, ThreadPool&);
+template ContactPasses<float> make_contact(const Scene&, const Layout&, const ContactSettings&,
+                                           ThreadPool&);
+template ContactPasses<double> make_contact(const Scene&, const Layout&, const ContactSettings&,
+                                            ThreadPool&);
 
 }  // namespace taut

@@ -38,6 +38,6 @@ struct ContactPasses {
 };
 
 template <class Real>
-ContactPasses<Real> make_contact(const Scene&, const ContactSettings&, ThreadPool&);
+ContactPasses<Real> make_contact(const Scene&, const Layout&, const ContactSettings&, ThreadPool&);
 
 }  // namespace taut

@@ -62,9 +62,12 @@ class SelfCollidePass final : public Pass<Real> {
     std::size_t pairs = 0, bytes = sizeof(*this) + grid_.bytes() + searched_at_.bytes() +
                                    close_.capacity() * sizeof(Pair);
     for (const Part& part : parts_) {
-      pairs += part.pairs.size();
-      bytes += sizeof part + part.pairs.capacity() * sizeof(Pair) +
-               part.crossing.capacity() * sizeof(Crossing);
+      bytes += sizeof part;
+      for (const Found* found : {&part.close, &part.others}) {
+        pairs += found->pairs.size();
+        bytes +=
+            found->pairs.capacity() * sizeof(Pair) + found->crossing.capacity() * sizeof(Crossing);
+      }
     }
     return {{.pass = "self-collide", .items = pairs, .bytes = bytes}};
   }
@@ -79,24 +82,36 @@ class SelfCollidePass final : public Pass<Real> {
   struct Crossing : Pair {
     Vec4T<Real> before;  ///< from a to b when the step began [m]
   };
-  /// What one thread has found, and in which bounds the motions lie that it has seen.
-  struct alignas(64) Part {
+  struct Found {
     std::vector<Pair> pairs;
     std::vector<Crossing> crossing;
+  };
+  /// What one thread has found, of those close at rest and of others, and in which bounds the
+  /// motions lie that it has seen.
+  struct alignas(64) Part {
+    Found close, others;
     MotionBoxes<Real> boxes;
     Real motion2;  ///< m^2
   };
 
+  /// In the order in which one thread finds the pairs.
+  std::vector<const Found*> all_found() const {
+    std::vector<const Found*> all;
+    for (const Part& part : parts_) all.push_back(&part.close);
+    for (const Part& part : parts_) all.push_back(&part.others);
+    return all;
+  }
+
   template <bool packed>
   void sweep(Points<Real>& x) const {
-    for (const Part& part : parts_)
-      for (const Crossing& pair : part.crossing) {
+    for (const Found* found : all_found())
+      for (const Crossing& pair : found->crossing) {
         const Vec4T<Real> now = between<packed>(x, pair);
         if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
           separate<packed>(x, pair, pair.before);
       }
-    for (const Part& part : parts_)
-      for (const Pair& pair : part.pairs) {
+    for (const Found* found : all_found())
+      for (const Pair& pair : found->pairs) {
         const Vec4T<Real> now = between<packed>(x, pair);
         if (squared_norm(now) < pair.least * pair.least) separate<packed>(x, pair, now);
       }
@@ -142,20 +157,21 @@ class SelfCollidePass final : public Pass<Real> {
   void search_step(const Particles<Real>& p, Real motion) {
     forget_pairs();
     const Real within = kNearby * diameter_;
-    const auto consider = [&](Part & part, const Pair& pair) __attribute__((always_inline)) {
+    const auto consider = [&](Found & found, const Pair& pair) __attribute__((always_inline)) {
       const Vec4T<Real> now = between<packed>(p.x, pair),
                         before = between<packed>(p.previous, pair);
       const Real way2 = squared_norm(now - before);
       if (!less(squared_norm(now), within * within, way2)) return;
-      part.pairs.push_back(pair);
+      found.pairs.push_back(pair);
       if (less(squared_norm(before), diameter_ * diameter_, 16 * way2))
-        part.crossing.push_back({pair, before});
+        found.crossing.push_back({pair, before});
     };
-    for (const Pair& pair : close_) consider(parts_.front(), pair);
+    for_close([&](Part& part, const Pair& pair) { consider(part.close, pair); });
     const Real reach = within + std::min(2 * motion, 4 * diameter_);
     grid_.moving_pairs(p.x, p.previous, within, reach,
                        [&](std::size_t n, std::uint32_t a, std::uint32_t b) {
-                         if (p.w[a] + p.w[b] != 0) consider(parts_[n], pair_of(p, a, b, diameter_));
+                         if (p.w[a] + p.w[b] != 0)
+                           consider(parts_[n].others, pair_of(p, a, b, diameter_));
                        });
   }
 
@@ -164,17 +180,28 @@ class SelfCollidePass final : public Pass<Real> {
     forget_pairs();
     skin_ = diameter_ / 2 + 2 * motion;
     const Real reach = diameter_ + skin_;
-    for (const Pair& pair : close_)
-      if (squared_norm(between<false>(p.x, pair)) < reach * reach)
-        parts_.front().pairs.push_back(pair);
+    for_close([&](Part& part, const Pair& pair) {
+      if (squared_norm(between<false>(p.x, pair)) < reach * reach) part.close.pairs.push_back(pair);
+    });
     grid_.pairs(p.x, reach, [&](std::size_t n, std::uint32_t a, std::uint32_t b) {
-      if (p.w[a] + p.w[b] != 0) parts_[n].pairs.push_back(pair_of(p, a, b, diameter_));
+      if (p.w[a] + p.w[b] != 0) parts_[n].others.pairs.push_back(pair_of(p, a, b, diameter_));
     });
   }
 
   void forget_pairs() {
-    for (Part& part : parts_) part.pairs.clear(), part.crossing.clear();
+    for (Part& part : parts_)
+      for (Found* found : {&part.close, &part.others})
+        found->pairs.clear(), found->crossing.clear();
     searched_ = false;
+  }
+
+  /// Calls f(part, pair) for those close at rest, shared out in order.
+  template <class F>
+  void for_close(const F& f) {
+    pool_.run_parts(parts_.size(), close_.size(),
+                    [&](std::size_t n, std::size_t begin, std::size_t end) {
+                      for (std::size_t k = begin; k < end; ++k) f(parts_[n], close_[k]);
+                    });
   }
 
   /// Whether a < b + c, of which the squares are given.

@@ -12,7 +12,6 @@ namespace taut {
 
 namespace {
 
-constexpr int kBlockRows = 8;
 constexpr int kFewestColumns =
     2 * kNarrow + 1;  ///< three vectors: a bend link leaves its lane once
 /// In the order of the sweep: along u, along v, both diagonals, then every second vertex.
@@ -39,16 +38,6 @@ std::optional<SheetSides> sides_of(const Grid& grid) {
 }
 
 }  // namespace
-
-std::size_t RowBlocks::count(int parity) const {
-  const int all = (rows + kBlockRows - 1) / kBlockRows;
-  return to_index((all + 1 - parity) / 2);
-}
-
-RowBlocks::Rows RowBlocks::of(int parity, std::size_t block) const {
-  const int begin = (2 * static_cast<int>(block) + parity) * kBlockRows;
-  return {begin, std::min(begin + kBlockRows, rows)};
-}
 
 std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link> links) {
   if (!mesh.grid) return {};
@@ -103,7 +92,7 @@ Layout interleaved_layout(const SheetSides& grid) {
 template <class Real>
 InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<const double> w,
                                          double omega)
-    : blocks_{links.grid.rows} {
+    : row_count_(links.grid.rows) {
   const SheetSides& grid = links.grid;
   const SheetRows in_memory = rows_of(grid);
   const int lanes = sweep_.lanes = in_memory.lanes;

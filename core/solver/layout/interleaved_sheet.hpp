@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,23 +38,22 @@ struct RegularLinks {
 /// columns, below which lanes would overlap; and the faces are those of make_sheet.
 std::optional<RegularLinks> regular_links(const Mesh&, std::span<const Link>);
 
-/// Blocks of rows, first the even ones, then the odd ones: those of one parity share no row, even
-/// if each reaches into the row after it or two of them, so that threads can take one each.
-struct RowBlocks {
-  struct Rows {
-    int begin, end;
-  };
-  std::size_t count(int parity) const;
-  Rows of(int parity, std::size_t block) const;
-  int rows;
-};
+/// Calls f(first row, end) for those of blocks [begin, end) of rows that are even, or odd: they
+/// share no row, even if each reaches into the row after it or two of them.
+template <class F>
+void visit_rows_of(std::size_t parity, std::size_t begin, std::size_t end, int rows, const F& f) {
+  for (std::size_t block = begin + (begin + parity) % 2; block < end; block += 2) {
+    const int first = static_cast<int>(block) * kBlockRows;
+    if (first < rows) f(first, std::min(first + kBlockRows, rows));
+  }
+}
 
 /// Where an interleaved sheet (simd/kernels.hpp) keeps each vertex. Vertices past the last column
 /// are padding that falls freely and that nobody looks at.
 Layout interleaved_layout(const SheetSides&);
 
-/// A Gauss-Seidel sweep over an interleaved sheet, block after block; the directions one after the
-/// other within a block.
+/// A Gauss-Seidel sweep over an interleaved sheet, the even blocks, then the odd ones; the
+/// directions one after the other within a block.
 template <class Real>
 class InterleavedSheet {
  public:
@@ -62,16 +62,11 @@ class InterleavedSheet {
   InterleavedSheet(const InterleavedSheet&) = delete;  // it points into itself
 
   const SheetSweep<Real>& sweep() const { return sweep_; }
-  RowBlocks blocks() const { return blocks_; }
-
-  /// Even blocks, then odd ones.
-  std::size_t phases() const { return 2; }
-  std::size_t parts(std::size_t phase) const { return blocks_.count(static_cast<int>(phase)); }
-
+  int rows() const { return row_count_; }
   std::size_t bytes() const;
 
  private:
-  RowBlocks blocks_;
+  int row_count_;
   SheetSweep<Real> sweep_{};
   std::vector<SheetRow<Real>> rows_;
   std::vector<std::vector<Real>> shares_;  ///< different rows' tables, each kept once

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <span>
 #include <vector>
 
+#include "core/model/index.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/vec3.hpp"
 #include "core/solver/simd/kernels.hpp"
@@ -49,7 +52,21 @@ class Layout {
   }
   std::size_t bytes() const { return slots_.size() * sizeof slots_[0]; }
 
+  /// Of particles beside each other, which threads share; at least one.
+  std::size_t blocks() const {
+    const std::size_t used = stride_ == 1 ? 4 * size_ : to_index(sheet_.rows) * sheet_.stride;
+    return std::max<std::size_t>(1, (used + block_length() - 1) / block_length());
+  }
+  /// Where a block begins in the array; of blocks(): its end.
+  std::size_t place_of_block(std::size_t block) const {
+    return block < blocks() ? block * block_length() : length_;
+  }
+  std::size_t block_of(std::size_t i) const { return slot(i) / block_length(); }
+
  private:
+  std::size_t block_length() const {
+    return stride_ == 1 ? 4 * kLanes * kBlockBatches : kBlockRows * sheet_.stride;
+  }
   Layout(std::size_t size, std::size_t stride, std::size_t length, std::vector<std::uint32_t> slots)
       : size_(size),
         stride_(stride),
@@ -136,6 +153,33 @@ struct Particles {
   std::size_t size() const { return layout->size(); }
 };
 
+/// Items, each of a vertex, block after block of the particles.
+template <class Item>
+class ByBlock {
+ public:
+  ByBlock() = default;  ///< none
+  ByBlock(std::vector<Item> items, const Layout& layout) : items_(std::move(items)) {
+    if (items_.empty()) return;
+    const auto block_of = [&](const Item& item) { return layout.block_of(to_index(item.vertex)); };
+    std::ranges::stable_sort(items_, {}, block_of);
+    for (std::size_t block = 0; block <= layout.blocks(); ++block)
+      first_.push_back(static_cast<std::size_t>(
+          std::ranges::lower_bound(items_, block, {}, block_of) - items_.begin()));
+  }
+  bool empty() const { return items_.empty(); }
+  std::size_t size() const { return items_.size(); }
+  std::size_t bytes() const { return size() * sizeof(Item) + first_.size() * sizeof first_[0]; }
+  /// Those of blocks [begin, end).
+  std::span<Item> of(std::size_t begin, std::size_t end) {
+    if (empty()) return {};
+    return std::span(items_).subspan(first_[begin], first_[end] - first_[begin]);
+  }
+
+ private:
+  std::vector<Item> items_;
+  std::vector<std::size_t> first_;  ///< of each block, and the end
+};
+
 /// One effect of a scene with the data it needs. It exists only if the scene has the effect: no
 /// flag is tested inside the loop, and an absent effect owns no memory.
 template <class Real>
@@ -148,6 +192,9 @@ class Pass {
   virtual void begin(Particles<Real>&, double /*t*/, double /*dt*/) {}
   /// For the step [t, t + dt].
   virtual void apply(Particles<Real>&, double t, double dt) = 0;
+  /// Whether begin() and apply() touch particles only in what they queue (ThreadPool::queue):
+  /// before those of any other pass, what is queued has to be finished.
+  virtual bool queues() const { return false; }
   /// Of one application, a line for each thing it does; the solver sets `repeats`.
   virtual std::vector<PassCost> cost() const = 0;
 };

@@ -35,9 +35,9 @@ template <Projection kind, class T>
   }
 }
 
-/// Moves x1 and x2 to the distance rest. The one implementation of the projection, for every
-/// width and precision. share1 and share2 are w1/(w1 + w2) and w2/(w1 + w2), times the
-/// relaxation weight of the link.
+/// Moves x1 and x2 to the distance rest, for every width and precision. share1 and share2 are
+/// w1/(w1 + w2) and w2/(w1 + w2), times the relaxation weight of the link. Only project_batch
+/// (kernels_impl.hpp), whose coordinates lie across the lanes, has these operations once more.
 template <Projection kind, class T>
 [[gnu::always_inline]] inline void project_distance(Vec3T<T>& x1, Vec3T<T>& x2, T rest, T share1,
                                                     T share2) {

@@ -22,6 +22,9 @@ namespace taut {
 inline constexpr int kNarrow = 8, kWide = 16;
 /// Links of a batch.
 inline constexpr int kLanes = 8;
+/// Threads share blocks of so many rows of a sheet, or of so many kLanes packed particles: the
+/// numbers of both are a multiple of kGrain.
+inline constexpr int kBlockRows = 8, kBlockBatches = 96;
 
 /// The rows of an interleaved sheet in memory. Lanes past the last column and vectors past the last
 /// one are padding.
@@ -131,6 +134,11 @@ struct ParticleSpan {
   std::size_t parts() const {
     return sheet.lanes > 1 ? static_cast<std::size_t>(sheet.rows)
                            : (particles + kLanes - 1) / kLanes;
+  }
+  /// The first part of a block.
+  std::size_t part_of_block(std::size_t block) const {
+    const std::size_t part = block * (sheet.lanes > 1 ? kBlockRows : kBlockBatches);
+    return part < parts() ? part : parts();
   }
 };
 /// Puts out of the collider what is inside, or, continuous, has passed through it in this step; of

@@ -53,7 +53,8 @@ double error_of(const std::string& text) {
 
 Target target_of(const Options& options) {
   if (options.error.empty() == (options.budget <= 0))
-    throw InputError("advise needs one of --error and --budget");
+    throw InputError(std::string("advise needs one of --error and --budget") +
+                     (options.error.empty() ? "" : ", not both"));
   if (!options.error.empty()) return {error_of(options.error), {}};
   return {{}, options.budget * 1e-3 / kFrame};
 }
@@ -144,11 +145,10 @@ class Advisor {
     return found;
   }
 
-  /// Every solver gets an equal share of the time that those before it have left.
-  void search() {
-    auto left = static_cast<double>(options_.solvers.size());
+  /// Those that can run the scene.
+  std::vector<std::string> supported() {
+    std::vector<std::string> all;
     for (const std::string& solver : options_.solvers) {
-      const double deadline = elapsed() + (options_.patience - elapsed()) / left--;
       const Case one = make(solver);
       std::vector<std::string> reasons;
       try {
@@ -160,6 +160,21 @@ class Advisor {
         result_.unsupported.push_back(solver + ": " + reasons.front());
         continue;
       }
+      all.push_back(solver);
+    }
+    return all;
+  }
+
+  /// Every solver gets an equal share of the time that those before it have left.
+  void search() {
+    std::vector<std::string> solvers = supported();
+    if (solvers.size() > 1)
+      solvers = cheapest_first(std::move(solvers), [&](const std::string& setting) {
+        return evaluate(setting, options_.patience);
+      });
+    auto left = static_cast<double>(solvers.size());
+    for (const std::string& solver : solvers) {
+      const double deadline = elapsed() + (options_.patience - elapsed()) / left--;
       bool ended = true;
       const Evaluation run = [&](const std::string& setting) {
         const auto found = evaluate(setting, deadline);

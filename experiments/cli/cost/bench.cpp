@@ -2,13 +2,16 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/question.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/timing/recommendation.hpp"
 
 namespace taut::verb::bench {
@@ -80,14 +83,18 @@ void print_failures(const SceneBench& bench) {
       std::cout << "  doubtful: " << c.record.id << ": " << c.timing.remark << '\n';
 }
 
-/// Cases grouped by scene, in order of appearance.
+/// Cases grouped by scene and its settings, in order of appearance. The time step is one of the
+/// settings of a solver: a cost is that of a simulated second.
 std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
     const std::vector<Record>& records) {
+  std::set<Question> asked;
+  for (const Record& record : records) asked.insert(question_of(record));
   std::vector<std::pair<std::string, std::vector<Record>>> groups;
   for (const Record& record : records) {
     if (record.status.kind == Status::Kind::unsupported) continue;
-    auto group = std::ranges::find(groups, record.scene, [](const auto& g) { return g.first; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {record.scene, {}});
+    const std::string title = title_among(question_of(record), asked);
+    auto group = std::ranges::find(groups, title, [](const auto& g) { return g.first; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {title, {}});
     group->second.push_back(record);
   }
   return groups;
@@ -106,6 +113,8 @@ StudyBench bench(const std::string& name, const std::vector<Case>& cases, const 
 }
 
 void bench_study(const std::string& name, const Options& options) {
+  if (std::ranges::count(shipped("scenes"), name) > std::ranges::count(shipped("studies"), name))
+    throw InputError("'" + name + "' is a scene; --solver says what to time on it");
   const Study study = load_study(name, options.preset);
   const StudyBench result = bench(study.name, cases_of(study), options);
   const std::filesystem::path file = keep(options.out, result);

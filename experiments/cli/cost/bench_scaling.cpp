@@ -93,10 +93,10 @@ Json json_of(const ScalingLine& line) {
   return all;
 }
 
-/// Where `taut plot` and the report find it: a bench like any other.
+/// Where `taut plot` and the report find it: a bench, but of cases that were not timed in turns.
 std::filesystem::path keep(const Study& study, const std::vector<ScalingLine>& lines,
                            const Options& options) {
-  SceneBench scene{study.scenes.front(), {1, 1, 1}, {}};
+  SceneBench scene{study.scenes.front(), {}, {}, false};
   for (const ScalingLine& line : lines)
     for (const BenchedCase& c : line.cases) scene.cases.push_back(c);
   StudyBench session = StudyBench::here(study.name);
@@ -107,7 +107,6 @@ std::filesystem::path keep(const Study& study, const std::vector<ScalingLine>& l
 int run(const Options& options) {
   require_one_quiet_host();
   const Study study = load_study(options.study, options.preset);
-  require_preset(study, options.preset);
   const std::vector<Case> cases = cases_of(study);
   const Store store(options.out);
   store.prepare();

@@ -81,6 +81,8 @@ int run(const Options& options) try {
   continue_in_right_program(one.choice);
   if (!options.into.empty()) return run_into(one, options.into, options.frames);
 
+  for (const std::string& file : {options.final_state, options.series, options.trajectory})
+    if (!file.empty()) test_writable(file);
   MotionWriter writer(options.trajectory, one);
   SlowRun slow(one.scene->steps);
   const CaseRun result = run_case(

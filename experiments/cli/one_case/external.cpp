@@ -69,8 +69,7 @@ std::function<int()> bind_scene(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   app.add_option("SCENE", o->scene, "Name or path of a scene")->required();
   app.add_option("-o,--out", o->out, "File to write")->required();
-  app.add_option("--set", o->settings, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
-      ->allow_extra_args(false);
+  add_settings(app, o->settings);
   return [o] {
     write_file(o->out, external::scene_file(load_scene(find_scene(o->scene), o->settings)));
     return kPass;

@@ -77,8 +77,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--rest", o->motion.rest,
                  "A file with the cloth at rest in the file's order, if it does not begin as the "
                  "scene does");
-  app.add_option("--set", o->settings, "Replace a key of the scene: 'cloth.grid=[65, 65]'")
-      ->allow_extra_args(false);
+  add_settings(app, o->settings);
   app.add_option("--series", o->series, "Write values over time (CSV)");
   app.add_option("--picture", o->picture, "Draw the end (.png), beside every --solver");
   app.add_option("--solver", o->solvers, "A solver to draw beside; repeat it for each")

@@ -3,6 +3,7 @@
 #include "core/io/positions/positions.hpp"
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -10,6 +11,7 @@
 #include "experiments/render/image/video.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/timing/statistics.hpp"
 
 namespace taut::verb::render {
 
@@ -115,9 +117,8 @@ Files export_frames(const RunSet& set, const fs::path& folder) {
   const std::size_t stride = std::max(1, static_cast<int>(1 / (30 * set.scene.dt) + 0.5));
   make_folder(folder);
   for (std::size_t k = 0; k < set.runs.size(); ++k) {
-    const std::string& solver = set.runs[k].trajectory.header.solver;
-    const std::string prefix =
-        set.scene.name + "_" + std::to_string(k + 1) + "_" + solver.substr(0, solver.find(':'));
+    const std::string prefix = set.scene.name + "_" + std::to_string(k + 1) + "_" +
+                               solver_name(set.runs[k].trajectory.header.solver);
     const auto writer = create_positions(folder / (prefix + ".obj"), set.scene.mesh);
     const auto& frames = set.runs[k].trajectory.frames;
     const Countdown countdown("file");
@@ -163,14 +164,19 @@ int run(Options options) {
   std::ranges::sort(times);
   if (!times.empty() && times.front() < 0) throw InputError("--at: times are not negative");
   const bool moving = options.video || !options.exported.empty();
-  if (!times.empty() && !moving && options.duration.empty())  // nothing later will be seen
-    options.what.overrides.push_back("time.duration=" + std::to_string(times.back() + 1e-4));
+  if (!times.empty()) {
+    const Scene scene = load_scene(find_scene(options.what.scene), options.what.overrides);
+    if (times.back() > scene.duration() + scene.dt)
+      throw InputError("--at " + number_text(times.back()) + " is after the end at " +
+                       number_text(scene.duration()) + " s: see --duration");
+    const double seen = times.back() + 1e-4;  // nothing later will be seen
+    if (!moving && options.duration.empty() && seen < scene.duration())
+      options.what.overrides.push_back("time.duration=" + std::to_string(seen));
+  }
   parse_view(options.view), parse_colour_by(options.colour);
   if (!options.size.empty()) parse_size(options.size);
   const RunSet set =
       record_runs(options.what, [](const std::string& text) { progress() << text << '\n'; });
-  if (!times.empty() && times.back() > set.scene.duration() + set.scene.dt)
-    throw InputError("--at " + options.at.back() + " is after the end: see --duration");
   const fs::path out = output(options, set.scene.name);
   const auto done = [&](const Files& files) {
     print_files(files, options.json);
@@ -207,8 +213,7 @@ std::function<int()> bind(CLI::App& app) {
       ->check(CLI::IsMember({"obj"}));
   app.add_option("--duration", o->duration, "Simulated time [s]");
   app.add_option("--dt", o->dt, "Time step [s], a number or a fraction such as 1/120");
-  app.add_option("--set", o->what.overrides, "Replace a key of the scene: 'cloth.grid=[65, 65]'")
-      ->allow_extra_args(false);
+  add_settings(app, o->what.overrides);
   app.add_option("--size", o->size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
   app.add_option("--quality", o->quality, "draft, video or still")
       ->check(CLI::IsMember({"draft", "video", "still"}));

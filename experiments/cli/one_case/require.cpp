@@ -344,9 +344,7 @@ std::function<int()> bind(CLI::App& app) {
                  "unit shown (:2mm) or in % of the cloth, of the duration or of the value; repeat "
                  "it (default: shape, stretch, depth, crossings, settling time)")
       ->allow_extra_args(false);
-  app.add_option("--set", o->settings,
-                 "Scene setting as a TOML assignment, such as cloth.grid=[64,64]")
-      ->allow_extra_args(false);
+  add_settings(app, o->settings);
   app.add_option("--patience", o->patience, "For all of a scene's work [s] (default: 120)")
       ->check(above_zero());
   app.add_option("--picture", o->picture,

@@ -83,7 +83,6 @@ void start(const fs::path& folder, Scheduler on) {
 
 int submit(const Submit& o) {
   const Study study = load_study(o.study, o.preset);
-  require_preset(study, o.preset);
   const std::string nodes = nodes_of(o);
   const Scheduler on = o.on == "slurm" ? Scheduler::slurm : Scheduler::parallel;
   const fs::path folder =

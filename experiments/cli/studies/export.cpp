@@ -16,7 +16,7 @@
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::verb::exporting {
 

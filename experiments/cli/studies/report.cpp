@@ -33,7 +33,9 @@ struct Options {
 };
 
 bool is_results_folder(const std::string& name) {
-  return std::filesystem::is_directory(std::filesystem::path(name) / "store");
+  const std::filesystem::path folder(name);
+  return std::filesystem::is_directory(folder / "store") ||
+         std::filesystem::is_directory(folder / "packs");
 }
 
 std::string command_line(const Options& options) {
@@ -130,6 +132,8 @@ int run(Options options) {
     studies.push_back(load_study(name, options.preset));
   const Store store(options.results);
   report::ReportInput input = report::stored_results(studies, store);
+  if (!std::filesystem::exists(options.results))
+    throw InputError("no results folder " + options.results + "; taut run makes it");
   std::vector<Study> map_studies;
   for (const std::string& name : maps) map_studies.push_back(load_study(name, options.preset));
   report::add_stored_maps(input, map_studies, store);

@@ -68,7 +68,6 @@ std::vector<Study> load_studies(const Options& options) {
   for (const std::string& name : options.studies) try {
       Study study = load_study(name, options.preset);
       judge_plots(study, wrong);
-      require_preset(study, options.preset);
       studies.push_back(std::move(study));
     } catch (const InputError& error) {
       for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);

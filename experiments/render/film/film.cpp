@@ -136,17 +136,13 @@ report::ColourBar bar_of(const ColourScale& scale) {
   return bar;
 }
 
-std::string solver_name(const RecordedRun& run) {
-  const std::string& solver = run.trajectory.header.solver;
-  return solver.substr(0, solver.find(':'));
-}
-
 report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
   report::Clip clip;
   std::string who;
   for (std::size_t k = 0; k < set.runs.size(); ++k) {
     const RecordedRun& run = set.runs[k];
-    clip.panels.push_back({solver_name(run), film.panels[k].settings, film.panels[k].key});
+    clip.panels.push_back(
+        {solver_name(run.trajectory.header.solver), film.panels[k].settings, film.panels[k].key});
     who += (k > 0 ? " and " : "") + run.title + " (" + run.settings + ")";
   }
   clip.alt = set.scene.name + ": " + who + (set.runs.size() > 1 ? " side by side" : "") +
@@ -181,15 +177,19 @@ FilmResult make_film(const Film& film) {
                     {}};
   for (std::size_t k = 0; k < media.material.size(); ++k) {
     report::MaterialRow& row = result.media.material.emplace_back();
-    row.solver = solver_name(set.runs[k]);
+    row.solver = solver_name(set.runs[k].trajectory.header.solver);
     for (const Media::Flat& flat : media.material[k])
       row.stills.push_back({flat.t, flat.rms, flat.png});
   }
   for (std::size_t k = 0; !film.studied && k < set.runs.size(); ++k)
-    std::ranges::move(report::shown_series(
-                          set.series[k],
-                          {film.scene, solver_name(set.runs[k]), film.panels[k].label, "", {}, {}}),
-                      std::back_inserter(result.series));
+    std::ranges::move(
+        report::shown_series(set.series[k], {film.scene,
+                                             solver_name(set.runs[k].trajectory.header.solver),
+                                             film.panels[k].label,
+                                             "",
+                                             {},
+                                             {}}),
+        std::back_inserter(result.series));
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
@@ -26,7 +27,7 @@ Rgb8 colour_of(std::string_view hex) {
 /// A motion with the title, settings and colour of the solver that made it.
 RecordedRun shown_run(const Scene& scene, Trajectory motion, const std::string& solver) {
   RecordedRun run = recorded_run(scene, std::move(motion));
-  const std::string name = solver.substr(0, solver.find(':'));
+  const std::string name = solver_name(solver);
   run.title = report::solver_title(name);
   run.settings = report::brief_settings(solver);
   run.colour = colour_of(report::solver_style(name).colour.light);

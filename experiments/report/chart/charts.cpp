@@ -8,8 +8,9 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::report {
 
@@ -276,7 +277,7 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
 
 Chart cost_chart(const SceneBench& scene, const Records& records) {
   Chart chart = make_chart("cost", records, "cpu.per_second", kErrorMetric, "setting");
-  chart.id = scene.scene + "-cost", chart.scene = scene.scene;
+  chart.id = slug(scene.scene) + "-cost", chart.scene = scene.scene;
   chart.title = capitalised(chart.y.title) + " over " + chart.x.title;
   chart.caption =
       "Down and left is better. Two runs of identical code: " + fixed(scene.control.low, 2) +

@@ -120,7 +120,7 @@ std::string share_text(double ratio) {
   return ratio <= 0.55 ? "1/" + significant(1 / ratio, 2) : fixed(100 * ratio, 0) + "\u00A0%";
 }
 
-Json json_of(const Claim& claim, References& refs) {
+Json json_of(const Claim& claim, Citations& refs) {
   Json one{{"id", claim.id},
            {"kind", to_string(claim.kind)},
            {"about", claim.about},

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/chart/references.hpp"
+#include "experiments/report/chart/citations.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::report {
 
@@ -106,7 +106,7 @@ class Claim {
 inline constexpr double kPricedError = 0.01;
 
 /// As the model has it (model/MODEL.md).
-Json json_of(const Claim&, References&);
+Json json_of(const Claim&, Citations&);
 
 /// Errors, penetration, largest stable time step and failures, over all scenes and scene by scene.
 std::vector<Claim> physics_claims(const Rivals&);

@@ -22,7 +22,7 @@ std::string dt_text(double dt) { return quantity("dt").text(dt, 3); }
 /// ", time step 15.6 ms": of these scenes, if it is one for all.
 std::string at_step(const Rivals& rivals, const std::vector<std::string>& scenes) {
   std::set<double> steps;
-  for (const std::string& scene : scenes) steps.insert(rivals.quoted(scene)->question.dt);
+  for (const std::string& title : scenes) steps.insert(rivals.quoted(title)->question.dt);
   if (steps.size() == 1) return ", time step " + dt_text(*steps.begin());
   return ", time steps " + dt_text(*steps.begin()) + " to " + dt_text(*steps.rbegin());
 }
@@ -36,7 +36,7 @@ std::string why_none(const Record* r) {
 
 /// What all rivals have on a scene, or why not.
 struct SceneValues {
-  std::string scene;
+  std::string scene;                          ///< its title
   std::vector<std::optional<double>> values;  ///< of each rival
   std::string lacking;                        ///< "box (Bullet ended as exploded)"; "": nothing
   bool any = false;                           ///< somebody has a value
@@ -45,7 +45,7 @@ struct SceneValues {
 std::vector<SceneValues> look_at_all(const Rivals& rivals, Evidence& evidence) {
   std::vector<SceneValues> all;
   for (const QuotedScene& quoted : rivals.scenes) {
-    SceneValues here{.scene = quoted.question.scene, .values = {}, .lacking = {}};
+    SceneValues here{.scene = quoted.title, .values = {}, .lacking = {}};
     std::string why;
     for (std::size_t i = 0; i < rivals.all.size(); ++i) {
       const Record* r = quoted.cases[i];
@@ -393,7 +393,8 @@ void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
 /// One scene, values side by side, failures by name.
 void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Claim>& claims) {
   const std::string& scene = quoted.question.scene;
-  const std::string at = at_work(rivals) + ", time step " + dt_text(quoted.question.dt);
+  const std::string at = (quoted.title == scene ? "" : " on " + quoted.title) + at_work(rivals) +
+                         ", time step " + dt_text(quoted.question.dt);
   const auto side_by_side = [&](const std::string& id, const std::string& opening,
                                 const std::vector<std::pair<std::string, std::string>>& values) {
     std::vector<Evidence> basis;

@@ -95,29 +95,24 @@ QuotedScene quote(const std::string& scene, const std::vector<Rival>& rivals) {
       const Question question = question_of(*r);
       auto at = std::ranges::find(asked, question, &QuotedScene::question);
       if (at == asked.end())
-        at = asked.insert(at, {question, std::vector<const Record*>(rivals.size())});
+        at = asked.insert(at, {question, scene, std::vector<const Record*>(rivals.size())});
       if (!at->cases[i]) at->cases[i] = r;
     }
   const auto rank = [](const QuotedScene& q) {
     return std::pair(std::ranges::count(q.cases, nullptr), std::abs(std::log(q.question.dt * 64)));
   };
   const auto best = std::ranges::min_element(asked, {}, rank);
-  if (best == asked.end()) return {{scene, {}, 0}, std::vector<const Record*>(rivals.size())};
+  if (best == asked.end())
+    return {{scene, {}, 0}, scene, std::vector<const Record*>(rivals.size())};
   return *best;
 }
 
 }  // namespace
 
-Question question_of(const Record& r) {
-  Question question{r.scene, r.spec.overrides, r.dt};
-  std::erase_if(question.overrides, [](const auto& text) { return text.starts_with("time.dt="); });
-  std::ranges::sort(question.overrides);
-  return question;
-}
-
-const QuotedScene* Rivals::quoted(const std::string& scene) const {
-  const auto at =
-      std::ranges::find(scenes, scene, [](const QuotedScene& q) { return q.question.scene; });
+const QuotedScene* Rivals::quoted(const std::string& scene_or_title) const {
+  const auto at = std::ranges::find_if(scenes, [&](const QuotedScene& q) {
+    return q.title == scene_or_title || q.question.scene == scene_or_title;
+  });
   return at == scenes.end() ? nullptr : &*at;
 }
 
@@ -139,6 +134,11 @@ Rivals rivals_of(const ReportInput& input) {
   Rivals rivals;
   std::vector<std::string> solvers, scenes;
   std::set<std::string_view> keys;
+  std::set<Question> asked;
+  const auto untimed = [](Question question) {  // how long it lasts is no part of a scene's title
+    std::erase_if(question.overrides, [](const auto& s) { return s.starts_with("time."); });
+    return question;
+  };
   const auto add = [](std::vector<std::string>& names, const std::string& name) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
@@ -147,13 +147,17 @@ Rivals rivals_of(const ReportInput& input) {
     for (const Record& r : study.records) {
       if (!keys.insert(r.key.empty() ? r.id : r.key).second) continue;
       add(solvers, r.solver), add(scenes, r.scene);
+      asked.insert(untimed(question_of(r)));
       rivals.by_solver[r.solver].push_back(&r);
     }
   }
   for (const std::string& solver : solvers)
     rivals.all.push_back(choose(solver, rivals.by_solver[solver]));
   choose_work(rivals.all);
-  for (const std::string& scene : scenes) rivals.scenes.push_back(quote(scene, rivals.all));
+  for (const std::string& scene : scenes) {
+    QuotedScene& quoted = rivals.scenes.emplace_back(quote(scene, rivals.all));
+    quoted.title = title_among(untimed(quoted.question), asked);
+  }
   return rivals;
 }
 

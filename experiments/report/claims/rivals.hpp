@@ -1,23 +1,14 @@
 #pragma once
 
-#include <compare>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "experiments/case/question.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
 
 namespace taut::report {
-
-/// What a case is asked, apart from the solver: scene, its settings and the time step.
-struct Question {
-  std::string scene;
-  std::vector<std::string> overrides;  ///< without that of the time step, sorted
-  double dt = 0;                       ///< s
-  auto operator<=>(const Question&) const = default;
-};
-Question question_of(const Record&);
 
 /// One solver with the settings under which it is compared: of several choices the one with most
 /// cases, so that its name means one thing in every sentence.
@@ -31,6 +22,7 @@ struct Rival {
 /// The cases of which single values are quoted: the same question for all, each at its work.
 struct QuotedScene {
   Question question;
+  std::string title;  ///< the scene's name, with the settings that not all of its cases share
   std::vector<const Record*> cases;  ///< of each rival; nullptr: was not run like this
 };
 
@@ -40,7 +32,7 @@ struct Rivals {
   std::vector<QuotedScene> scenes;  ///< every scene that a study ran
   std::vector<std::string> studies;
 
-  const QuotedScene* quoted(const std::string& scene) const;
+  const QuotedScene* quoted(const std::string& scene_or_title) const;
   /// Every case of every solver and choice, each once.
   std::map<std::string, std::vector<const Record*>> by_solver;
   /// "1 × 16 (substeps × sweeps)", or that it is unequal and what it is of each.

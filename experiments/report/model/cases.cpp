@@ -28,7 +28,7 @@ std::string range_of(const std::set<double>& values, const Quantity& q) {
 
 }  // namespace
 
-Json json_of_case(const Record& r, const BenchedCase* timed, References& refs) {
+Json json_of_case(const Record& r, const BenchedCase* timed, Citations& refs) {
   CaseSpec spec = r.spec;
   if (spec.scene.find('/') != std::string::npos)
     spec.scene = std::filesystem::absolute(spec.scene).lexically_normal().string();

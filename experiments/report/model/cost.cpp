@@ -1,6 +1,7 @@
 #include <limits>
 
 #include "core/model/input_error.hpp"
+#include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/model/parts.hpp"
@@ -22,7 +23,7 @@ std::string span_text(const Interval& i, const Unit& unit) {
 struct CostScene {
   const SceneBench& bench;
   const std::vector<Record>& records;
-  References& refs;
+  Citations& refs;
 
   std::string setting(std::size_t at) const {
     const std::string label = SettingLabels(records).of(bench.cases[at].record);
@@ -77,7 +78,7 @@ SceneBench with_shared_parameters(SceneBench bench) {
 
 Json levels_table(const CostScene& scene) {
   const Quantity q = quantity(kErrorMetric), cpu = quantity("cpu.per_second");
-  Json table{{"id", "cost-levels-" + scene.bench.scene},
+  Json table{{"id", "cost-levels-" + slug(scene.bench.scene)},
              {"title", "Cost of an error"},
              {"caption",
               "CPU time per simulated second, its 95 % interval, and the setting: the cheapest "
@@ -108,7 +109,7 @@ Json levels_table(const CostScene& scene) {
 Json budgets_table(const CostScene& scene) {
   const Quantity q = quantity(kErrorMetric);
   const Unit ms{"s", "ms", 1e3 * kFrame};
-  Json table{{"id", "cost-budgets-" + scene.bench.scene},
+  Json table{{"id", "cost-budgets-" + slug(scene.bench.scene)},
              {"title", "Error within a budget"},
              {"caption",
               "The least error within a budget of CPU time per frame of 1/60 s, what it "
@@ -140,10 +141,10 @@ Json budgets_table(const CostScene& scene) {
 /// Who is cheapest for the priced error, by how much, and how to ask again.
 Json cheapest_row(const CostScene& scene) {
   const SceneBench& bench = scene.bench;
-  std::string again = "taut advise " + bench.scene + " --error 1%";
-  if (!bench.cases.empty())
-    for (const std::string& value : bench.cases.front().record.spec.overrides)
-      again += " --set '" + value + "'";
+  const CaseSpec spec =
+      bench.cases.empty() ? CaseSpec{bench.scene, {}, {}} : bench.cases.front().record.spec;
+  std::string again = "taut advise " + spec.scene + " --error 1%";
+  for (const std::string& value : spec.overrides) again += " --set '" + value + "'";
   const auto best = best_for({.error = kPricedError}, bench.candidates(kErrorMetric));
   if (!best) return {bench.scene, "not reached by the settings tried", "–", "–", again};
   const BenchedCase& c = bench.cases[*best];
@@ -195,7 +196,7 @@ Json profile_table(const std::vector<SceneBench>& scenes) {
 
 }  // namespace
 
-Json json_of_cost(const StudyBench& study, References& refs, Json& charts, Json& tables) {
+Json json_of_cost(const StudyBench& study, Citations& refs, Json& charts, Json& tables) {
   Json cost{{"machine", study.machine}};
   Json cheapest{
       {"id", "cost-cheapest"},

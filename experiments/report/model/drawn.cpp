@@ -23,7 +23,7 @@ Json json_of_axis(const Quantity& q, const std::vector<double>& ticks) {
   return axis;
 }
 
-Json json_of(const Point& p, const Chart& chart, References& refs) {
+Json json_of(const Point& p, const Chart& chart, Citations& refs) {
   const bool none = failed(p);
   Json point{{"x", json_number(p.x)},
              {"y", none ? Json() : json_number(p.y)},
@@ -38,7 +38,7 @@ Json json_of(const Point& p, const Chart& chart, References& refs) {
 }
 
 /// Times and values of a series.
-Json json_of(const TimeSeries& series, References& refs) {
+Json json_of(const TimeSeries& series, Citations& refs) {
   Json one{{"solver", series.solver}, {"label", series.label}, {"t", series.t}};
   for (const double y : series.y) one["y"].push_back(json_number(y));
   add_if(one, "case", refs.key(series.key));
@@ -46,7 +46,7 @@ Json json_of(const TimeSeries& series, References& refs) {
 }
 
 Json json_of_tracks(const std::string& scene, double until, const ReportInput& input,
-                    References& refs) {
+                    Citations& refs) {
   std::map<std::string, Json> by_value;
   for (const TimeSeries& series : input.series) {
     if (series.scene != scene) continue;
@@ -101,7 +101,7 @@ Json json_interval(const Interval& i, std::size_t n) {
           {"n", n}};
 }
 
-Json json_of(const Chart& chart, References& refs) {
+Json json_of(const Chart& chart, Citations& refs) {
   Json one{{"id", chart.id},
            {"scene", chart.scene},
            {"kind", chart.kind},
@@ -156,7 +156,7 @@ Json json_of(const Chart& chart, References& refs) {
   return one;
 }
 
-Json json_of(const StatusMap& map, const std::string& id, References& refs) {
+Json json_of(const StatusMap& map, const std::string& id, Citations& refs) {
   Json one{{"id", id},
            {"scene", map.scene},
            {"solver", map.solver},
@@ -180,7 +180,7 @@ Json json_of(const StatusMap& map, const std::string& id, References& refs) {
   return one;
 }
 
-Json json_of(const SceneMedia& media, const ReportInput& input, References& refs,
+Json json_of(const SceneMedia& media, const ReportInput& input, Citations& refs,
              std::size_t& budget) {
   Json films;
   for (std::size_t k = 0; k < media.clips.size(); ++k) {
@@ -227,7 +227,7 @@ Json json_of(const SceneMedia& media, const ReportInput& input, References& refs
   return films;
 }
 
-Json json_of_fairness(const QuotedScene& quoted, const Rivals& rivals, References& refs) {
+Json json_of_resolved_settings(const QuotedScene& quoted, const Rivals& rivals, Citations& refs) {
   Json panel{{"caption", "Settings each solver used for this scene"}};
   std::vector<const Record*> cases;
   std::vector<std::string> names;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "experiments/report/chart/charts.hpp"
-#include "experiments/report/chart/references.hpp"
+#include "experiments/report/chart/citations.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/system/json.hpp"
 
@@ -15,21 +15,21 @@ namespace taut::report {
 Json json_interval(const Interval&, std::size_t n);
 
 /// `timed`: where its cost was measured; nullptr: nowhere.
-Json json_of_case(const Record&, const BenchedCase* timed, References&);
+Json json_of_case(const Record&, const BenchedCase* timed, Citations&);
 /// Counts and ranges of settings of a scene's cases.
 Json facts_of(const ReportInput&, const std::string& scene);
-Json json_of(const Chart&, References&);
-Json json_of(const StatusMap&, const std::string& id, References&);
-Json json_of(const SceneMedia&, const ReportInput&, References&, std::size_t& budget);
+Json json_of(const Chart&, Citations&);
+Json json_of(const StatusMap&, const std::string& id, Citations&);
+Json json_of(const SceneMedia&, const ReportInput&, Citations&, std::size_t& budget);
 /// What accuracy costs; its charts and tables go to those of the model.
-Json json_of_cost(const StudyBench&, References&, Json& charts, Json& tables);
+Json json_of_cost(const StudyBench&, Citations&, Json& charts, Json& tables);
 /// What two folders have otherwise; its table goes to those of the model.
-Json json_of(const Differences&, References&, Json& tables);
+Json json_of(const Differences&, Citations&, Json& tables);
 /// What scenes require and how far solvers go; null without either. Its tables go to the model's.
 Json json_of_limits(const ReportInput&, Json& tables);
 /// What Vasilovici's report asserts, with verdicts: as its truths say now, if they were checked.
 Json json_of_vasilovici(const std::optional<Truths>&);
 /// Settings of every rival on a scene, row by row; null without a case.
-Json json_of_fairness(const QuotedScene&, const Rivals&, References&);
+Json json_of_resolved_settings(const QuotedScene&, const Rivals&, Citations&);
 
 }  // namespace taut::report

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/solver.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
@@ -21,7 +22,7 @@ Json columns(const std::vector<std::string>& titles) {
 Json required_table(const std::vector<RequiredModel>& required) {
   Json rows = Json::array();
   for (const RequiredModel& one : required)
-    rows.push_back(Json::array({one.scene, solver_title(one.solver.substr(0, one.solver.find(':'))),
+    rows.push_back(Json::array({one.scene, solver_title(solver_name(one.solver)),
                                 one.chaotic.empty() ? "no" : one.chaotic, one.answers, one.drop,
                                 one.keep, one.time}));
   return {
@@ -123,7 +124,7 @@ std::vector<Changed> all_changed(const Differences& differences) {
 }
 
 /// Its row: what it is, in A, in B, the change, and whether that is better.
-Json row_of(const Changed& changed, References& refs) {
+Json row_of(const Changed& changed, Citations& refs) {
   const auto& [a, b] = *changed.pair;
   Json head{{"text", b.scene + " " + solver_title(b.solver) + " " + brief_settings(b.spec.solver) +
                          ", " + quantity("dt").text(b.dt, 3)}};
@@ -144,7 +145,7 @@ Json row_of(const Changed& changed, References& refs) {
 
 }  // namespace
 
-Json json_of(const Differences& differences, References& refs, Json& tables) {
+Json json_of(const Differences& differences, Citations& refs, Json& tables) {
   const std::vector<Changed> changed = all_changed(differences);
   Json one{{"a", differences.a}, {"b", differences.b}};
   if (changed.empty()) return one;

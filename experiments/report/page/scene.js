@@ -1,7 +1,7 @@
 'use strict';
 // What there is of one scene, and the scenes one at a time.
 
-function fairness({caption, columns, rows}) {
+function resolvedSettings({caption, columns, rows}) {
   const who = ({solver, text}) => text.startsWith(solverOf(solver).title) ? mark(solver) : [named(solver), ' '];
   const heads = ['setting', ...columns.map((c) => [who(c), caseLink(c.case, short(c.text, 60))])];
   const line = ({name, differs, values}) => {
@@ -58,7 +58,7 @@ function scenePart(scene) {
     priced && el('section', {className: 'part'}, el('h3', {}, `What accuracy costs on ${short(scene.title)}`),
       note(priced.noise, priced.noisy && el('b', {}, ' No difference here is called clear.')),
       el('div', {className: 'grid'}, costs.map(figureOf), all(priced.tables, tables).map((table) => tableNode(table)))),
-    scene.fairness && fairness(scene.fairness),
+    scene.resolved_settings && resolvedSettings(scene.resolved_settings),
     scene.facts?.length ? folded('The scene in numbers', factList(scene.facts)) : null);
 }
 

@@ -62,8 +62,7 @@ Kernel textbook(const Scene& scene, const std::string& name) {
 Kernel of_solver(const Scene& scene, const std::string& name, int flops, int bytes) {
   const auto make = [&](int iterations) {
     const SolverChoice choice =
-        parse_solver(name + (name.find(':') == std::string::npos ? ":" : ",") +
-                     "iterations=" + std::to_string(iterations));
+        parse_solver(with(name, "iterations=" + std::to_string(iterations)));
     std::shared_ptr<Solver> solver = choice.entry->make(scene, choice.params);
     solver->load(scene.start);
     return solver;

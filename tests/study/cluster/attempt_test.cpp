@@ -3,54 +3,28 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstdlib>
-#include <thread>
 
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
-#include "experiments/system/files.hpp"
+#include "experiments/system/clock.hpp"
+#include "tests/study/cluster/speaking.hpp"
 
 namespace taut::cluster::attempt_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A start that speaks as long as it is there.
-class Speaking {
- public:
-  Speaking(const fs::path& session, const std::string& state)
-      : thread_([this, session, state] {
-          while (!ended_) {
-            append_line(session / "beats",
-                        R"({"state":")" + state +
-                            R"(","done":0,"cases":9,"work":0,"work_done":0,"seconds":1,"why":""})");
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-          }
-        }) {}
-  ~Speaking() {
-    ended_ = true;
-    thread_.join();
-  }
-
- private:
-  std::atomic<bool> ended_ = false;
-  std::thread thread_;
-};
-
 class Starts : public testing::Test {
  protected:
   Starts() { setenv("TAUT_CLUSTER_PATIENCE", "1", 1); }
   ~Starts() override { unsetenv("TAUT_CLUSTER_PATIENCE"); }
 
-  fs::path session(const std::string& name) const {
-    const fs::path folder = scratch_.path() / "sessions" / name;
-    make_folder(folder);
-    write_file(folder / "session.json", R"({"host":"zeus","started":"20260102T030405Z"})");
-    return folder;
-  }
+  fs::path session(const std::string& name) const { return make_session(scratch_.path(), name); }
+  const fs::path& scratch() const { return scratch_.path(); }
   /// Whether the start `mine` goes on beside one that speaks.
   bool goes_on(const std::string& mine, const std::string& other, const std::string& state) const {
-    const Speaking speaking(session(other), state);
+    const Speaking speaking(session(other), beat_line(state));
     try {
       Attempt attempt(scratch_.path(), session(mine));
       attempt.end("all cases");
@@ -72,6 +46,74 @@ TEST_F(Starts, OfTwoTogetherTheLesserNameGoesOnAndTheOtherGivesWay) {
 
 TEST_F(Starts, WhoRunsAlreadyGoesOnWhateverItsName) {
   EXPECT_FALSE(goes_on("1-a", "1-b", "running"));
+}
+
+// A beat every two seconds, one at the start and one at each change; a line that is being written
+// does not count, and one that is none is named.
+TEST_F(Starts, SayWhatTheyDo) {
+  const fs::path mine = session("1");
+  CampaignProgress campaign;
+  campaign.cases = 7, campaign.reused = 2, campaign.ran = 3, campaign.work = 10,
+  campaign.work_done = 4;
+  const auto lines = [&] {
+    const std::string text = read_text(mine / "beats");
+    return std::ranges::count(text, '\n');
+  };
+  {
+    Attempt attempt(scratch(), mine);
+    EXPECT_EQ(lines(), 2) << "claiming, then running";
+    for (int i = 0; i < 9; ++i) attempt.progress(campaign);
+    EXPECT_EQ(lines(), 2) << "not every call is a beat";
+    const auto running = not_ended(scratch());
+    ASSERT_EQ(running.size(), 1u);
+    EXPECT_EQ(running[0].host + " " + running[0].started, "zeus 20260102T030405Z");
+    EXPECT_EQ(running[0].last.state, Beat::State::running);
+    EXPECT_EQ(running[0].count, 2u);
+    attempt.end("all cases");
+  }
+  EXPECT_EQ(lines(), 3) << "and none more when it goes";
+  EXPECT_TRUE(not_ended(scratch()).empty());
+  const std::string last = read_text(mine / "beats");
+  EXPECT_NE(
+      last.find(R"({"state":"ended","done":5,"cases":7,"work":10.0,"work_done":4.0,"seconds":)"),
+      std::string::npos)
+      << last;
+  EXPECT_TRUE(last.ends_with(R"("why":"all cases"})"
+                             "\n"))
+      << last;
+  { const Attempt left(scratch(), session("2")); }
+  EXPECT_TRUE(read_text(session("2") / "beats")
+                  .ends_with(R"("why":"an error"})"
+                             "\n"));
+  const fs::path cut = session("3");
+  write_file(cut / "beats", beat_line("running") + "\n" + beat_line("ended"));
+  ASSERT_EQ(not_ended(scratch()).size(), 1u);
+  EXPECT_EQ(not_ended(scratch())[0].count, 1u);
+  write_file(cut / "beats", beat_line("running") + "\n" + beat_line("dancing") + "\n");
+  try {
+    not_ended(scratch());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              (cut / "beats").string() + ":2: state: unknown state 'dancing'");
+  }
+}
+
+// Who was silent for the whole of another's patience is written off, and nobody waits again.
+TEST_F(Starts, WhoIsSilentIsLost) {
+  const fs::path silent = session("0");
+  append_line(silent / "beats", beat_line("running"));
+  const auto start = SteadyClock::now();
+  { Attempt attempt(scratch(), session("1")); }
+  EXPECT_GE(seconds_since(start), 0.99) << "patience is a second here";
+  EXPECT_TRUE(not_ended(scratch()).empty());
+  EXPECT_TRUE(read_text(silent / "beats")
+                  .ends_with(R"("seconds":0.0,"why":"lost"})"
+                             "\n"));
+  setenv("TAUT_CLUSTER_PATIENCE", "-3", 1);
+  EXPECT_EQ(patience().count(), 8);
+  setenv("TAUT_CLUSTER_PATIENCE", "2.5", 1);
+  EXPECT_EQ(patience().count(), 2.5);
 }
 
 }  // namespace

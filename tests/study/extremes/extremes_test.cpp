@@ -12,6 +12,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/study/extremes/symptom.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/timing/statistics.hpp"
 
 namespace taut::extremes_test {
 namespace {
@@ -78,6 +79,25 @@ TEST(Symptoms, AsymmetryIsTheDistanceFromTheMirrorImage) {
   EXPECT_EQ(asymmetry(*blown.scene, blown.scene->start.x), 0) << "wind from the side";
 }
 
+// The mirror is the plane across the middle of the first side, wherever that is.
+TEST(Symptoms, AsymmetryAsksForASceneThatIsSymmetric) {
+  const auto of = [](const std::vector<std::string>& changes) {
+    const Case one = make_case({"swing", changes, "jakobsen"});
+    std::vector<Vec3> end = one.scene->start.x;
+    end.back().z() += 0.25;
+    return asymmetry(*one.scene, end);
+  };
+  const std::string grid = "cloth.grid=[5, 4]";
+  EXPECT_NEAR(of({grid}), 0.25, 1e-12);
+  EXPECT_NEAR(of({grid, "cloth.origin=[7, -2, 3]"}), 0.25, 1e-12);
+  EXPECT_NEAR(of({grid, "wind={ velocity = [0, 2, 1] }"}), 0.25, 1e-12) << "along the mirror";
+  for (const char* sideways : {"wind={ velocity = [0.1, 0, 0] }", "forces.gravity=[1, -9, 0]",
+                               "cloth.u=[0, 0, 1]", "collider=[{ type = \"plane\", offset = -9 }]"})
+    EXPECT_EQ(of({grid, sideways}), 0) << sideways;
+  const Case one = make_case({"swing", {grid}, "jakobsen"});
+  EXPECT_EQ(asymmetry(*one.scene, {}), 0) << "it did not come to its end";
+}
+
 TEST(Symptoms, WhatASwingSetsFreeIsItsFallToThePlumbLine) {
   const JudgedRun seen = swing({});
   const Scene& scene = *seen.one.scene;
@@ -125,6 +145,53 @@ TEST(ExtremeSettings, BeginAtWhatTheStandardSceneHas) {
     }
 }
 
+// From where it is easy to where it is absurd. Downwards a search goes up in 1/setting.
+TEST(ExtremeSettings, GoThisFar) {
+  const auto all = [](const std::string& solver) {
+    std::string text;
+    for (const ExtremeSetting& one : extreme_settings(solver)) {
+      const FrontierQuestion& q = one.question;
+      text += one.name + " [" + one.unit + "]: ";
+      if (one.lacks.empty())
+        text += number_text(q.setting(q.range.from)) + " to " + number_text(q.setting(q.range.to)) +
+                (q.range.whole || q.direction == Direction::down_in_whole_numbers ? ", whole" : "");
+      else
+        text += one.lacks;
+      text += "\n";
+      if (!one.lacks.empty()) continue;
+      EXPECT_EQ(q.base.scene, "swing");
+      EXPECT_EQ(q.range.tolerance, 0.02);
+      EXPECT_NEAR(make_case(q.base).scene->dt, one.name == "sweeps" ? 1. / 30 : 1. / 240, 1e-8);
+      EXPECT_EQ(make_case(q.base).scene->mesh.size(), one.name == "sweeps" ? 17 * 17 : 81);
+    }
+    return text;
+  };
+  const std::string scene =
+      "mass ratio []: 1 to 1e+09\n"
+      "resolution [vertices a side]: 9 to 97, whole\n"
+      "speed of a collider [m/s]: 0.1 to 1e+03\n"
+      "size, up [m]: 1 to 1e+05\n"
+      "size, down [m]: 1 to 1e-05\n"
+      "distance from the origin [m]: 1 to 1e+05\n"
+      "wind [N s/m^3]: 0.01 to 1e+05\n";
+  EXPECT_EQ(all("jakobsen"),
+            "time step [s]: 0.00417 to 1\nsweeps []: 64 to 1, whole\n"
+            "stiffness [omega]: 1 to 2\n" +
+                scene);
+  EXPECT_EQ(all("bullet"),
+            "time step [s]: 0.00417 to 1\nsweeps []: 64 to 1, whole\n"
+            "stiffness [stiffness]: 1 to 2\n" +
+                scene);
+  EXPECT_EQ(all("xpbd"),
+            "time step [s]: 0.00417 to 1\nsweeps []: 64 to 1, whole\n"
+            "stiffness []: its links are rigid\n" +
+                scene);
+  EXPECT_EQ(all("mass-spring"),
+            "time step [s]: 0.00417 to 1\nsweeps []: it has none\n"
+            "stiffness [N/m]: 50 to 1e+08\n" +
+                scene);
+}
+
 TEST(ExtremeSettings, TheoriesAreClosedForms) {
   for (const ExtremeSetting& setting : extreme_settings("jakobsen:substeps=1,contact=discrete")) {
     if (setting.name == "wind") {
@@ -167,6 +234,8 @@ TEST(Frontiers, AreReadBackOfTheProgramThatFoundThemAndDamageIsNamed) {
   const auto read = read_frontiers(file, "program");
   ASSERT_TRUE(read);
   EXPECT_EQ(to_json(*read, "program"), read_text(file));
+  EXPECT_DOUBLE_EQ((*read)[0].headroom(), 10);
+  EXPECT_DOUBLE_EQ((*read)[1].headroom(), 10) << "downwards from 1 to 0.1";
   EXPECT_FALSE(read_frontiers(file, "another"));
   write_file(file, "{}\n");
   EXPECT_THROW(read_frontiers(file, "program"), InputError);

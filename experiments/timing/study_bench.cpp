@@ -1,4 +1,4 @@
-#include "experiments/timing/bench.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 #include <unistd.h>
 
@@ -19,7 +19,7 @@ namespace taut {
 
 namespace {
 
-constexpr int kBenchSchema = 3;
+constexpr int kBenchSchema = 4;
 
 Interval scaled(const Interval& i, double factor) {
   return {i.low * factor, i.mid * factor, i.high * factor};
@@ -51,7 +51,9 @@ StudyBench study_of(const JsonReader& j) {
   StudyBench study{
       j.at("study").text(), j.at("machine").text(), {}, j.at("host").text(), j.at("build").text()};
   for (const JsonReader& one : j.at("scenes").items()) {
-    SceneBench scene{one.at("scene").text(), interval_of(one.at("control")), {}};
+    SceneBench scene{one.at("scene").text(), {}, {}};
+    if ((scene.in_turns = one.find("control").has_value()))
+      scene.control = interval_of(one.at("control"));
     for (const JsonReader& c : one.at("cases").items()) scene.cases.push_back(case_of(c));
     study.scenes.push_back(std::move(scene));
   }
@@ -105,7 +107,7 @@ std::optional<Interval> SceneBench::ratio(std::size_t i, std::size_t j) const {
   const BenchedCase &a = cases[i], &b = cases[j];
   if (!a.timing.failure.empty() || !b.timing.failure.empty()) return {};
   const std::size_t samples = a.timing.samples.size();
-  if (samples != b.timing.samples.size() || samples % 2 != 0) return {};  // not of one session
+  if (!in_turns || samples != b.timing.samples.size() || samples % 2 != 0) return {};
   return scaled(interleaved_ratio(a.timing.samples, b.timing.samples), b.record.dt / a.record.dt);
 }
 
@@ -172,7 +174,8 @@ std::string to_json(const StudyBench& study) {
            {"host", study.host},
            {"build", study.build}};
   for (const SceneBench& scene : study.scenes) {
-    Json one{{"scene", scene.scene}, {"control", scene.control}};
+    Json one{{"scene", scene.scene}};
+    if (scene.in_turns) one["control"] = scene.control;
     for (const auto& [record, timing] : scene.cases)
       one["cases"].push_back({{"record", parse_json(to_json(record))},
                               {"cpu_seconds_per_step", timing.samples},

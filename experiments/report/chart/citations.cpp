@@ -1,4 +1,4 @@
-#include "experiments/report/chart/references.hpp"
+#include "experiments/report/chart/citations.hpp"
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ std::vector<std::size_t> places_of(std::size_t n, std::size_t most) {
   return places;
 }
 
-References::References(const ReportInput& input) {
+Citations::Citations(const ReportInput& input) {
   const auto add = [&](const Record& r, const std::string& study) {
     const auto [at, fresh] = known_.try_emplace(r.key);
     if (fresh) cases_.push_back(&r);
@@ -35,20 +35,20 @@ References::References(const ReportInput& input) {
   while (std::ranges::adjacent_find(keys, alike) != keys.end()) length_ += 4;
 }
 
-std::string References::key(const std::string& key) {
+std::string Citations::key(const std::string& key) {
   const auto at = known_.find(key);
   if (at == known_.end()) return "";
   at->second.named = true;
   return key.substr(0, length_);
 }
 
-std::set<std::string> References::studies_of(const Record& r) const {
+std::set<std::string> Citations::studies_of(const Record& r) const {
   std::set<std::string> names;
   for (const std::string* name : known_.at(r.key).studies) names.insert(*name);
   return names;
 }
 
-std::vector<const Record*> References::listed() const {
+std::vector<const Record*> Citations::listed() const {
   const auto named = [&](const Record* r) { return known_.at(r->key).named; };
   std::vector<const Record*> others = cases_;
   std::erase_if(others, named);
@@ -60,7 +60,7 @@ std::vector<const Record*> References::listed() const {
   return all;
 }
 
-const Quantity& References::use(const std::string& name) {
+const Quantity& Citations::use(const std::string& name) {
   const auto at = quantities_.find(name);
   return at != quantities_.end() ? at->second
                                  : quantities_.emplace(name, quantity(name)).first->second;

@@ -64,14 +64,15 @@ struct ParameterRange {
 
 /// All settings of all solvers on one scene, timed in one interleaved session.
 struct SceneBench {
-  std::string scene;
-  Interval control;  ///< the first case against itself: how far apart the same code strays here
+  std::string scene;  ///< its title (title_among())
+  Interval control;   ///< the first case against itself: how far apart the same code strays here
   std::vector<BenchedCase> cases;
+  bool in_turns = true;  ///< false: one after the other, without control; no two can be compared
 
   /// The cases by their error in the metric's value; same order.
   std::vector<Candidate> candidates(const std::string& metric) const;
   /// Cost of case i over case j per simulated second, from their interleaved samples; nothing if
-  /// either failed.
+  /// either failed, or if they were not timed in turns.
   std::optional<Interval> ratio(std::size_t i, std::size_t j) const;
   /// How far the cases of a solver go along its accuracy parameters.
   std::vector<ParameterRange> parameter_ranges(const std::string& solver) const;

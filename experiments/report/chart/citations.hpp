@@ -24,10 +24,10 @@ inline constexpr std::size_t kMostCells = 10000;  ///< of all maps
 std::vector<std::size_t> places_of(std::size_t n, std::size_t most);
 
 /// What parts of the model refer to: cases by key, quantities by name.
-class References {
+class Citations {
  public:
   /// Every record of the input, each once; a key as short as it may be.
-  explicit References(const ReportInput&);
+  explicit Citations(const ReportInput&);
   /// The short key, and from now on the case is named; "" if it is no case of the input.
   std::string key(const std::string& key);
   std::string key(const Record& r) { return key(r.key); }

@@ -1,4 +1,4 @@
-#include "core/reference/relaxation.hpp"
+#include "core/reference/chain_sweeps.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,0 +1,211 @@
+// What a study's file says is what is varied, value by value; and what is wrong with it is said
+// with its place, all at once.
+#include <gtest/gtest.h>
+
+#include "core/model/input_error.hpp"
+#include "experiments/study/study.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::study_values_test {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+class StudyFile : public testing::Test {
+ protected:
+  Study read(const std::string& text, const std::string& preset = "") const {
+    write_file(file_, text);
+    return load_study(file_, preset);
+  }
+  /// Line, column and message of each thing that is wrong.
+  std::string wrong(const std::string& text) const {
+    std::string all;
+    try {
+      cases_of(read(text));
+    } catch (const InputError& error) {
+      for (const Diagnostic& d : error.diagnostics()) {
+        EXPECT_EQ(d.file, file_);
+        all += std::to_string(d.line) + ":" + std::to_string(d.column) + ": " + d.message + "\n";
+      }
+    }
+    return all;
+  }
+  const Scratch folder_;
+  const std::string file_ = folder_.path() / "asked.toml";
+};
+
+TEST_F(StudyFile, GivesItsValuesAsTheyWereTyped) {
+  const Study study = read(R"(question = "Why?"
+scenes = ["hang"]
+solvers = ["jakobsen"]
+set = ["time.duration=1", "links.bend=true"]
+[axes]
+time.dt = ["1/64", 0.02, 100000]
+"cloth.grid" = [[4, 5], [6, 7]]
+"links.bend" = [true, false]
+"cloth.mesh" = ['a"b\c']
+"forces.damping" = { from = 0, to = 1, steps = 5 }
+"wind.strength" = { from = 8, to = 0.5, steps = 5, scale = "log" }
+"cloth.mass" = [999999999999999, 1000000000000000]
+iterations = [3, 1]
+order = ["mesh", "coloured"]
+[[plot]]
+kind = "convergence"
+y = "stretch.max"
+slope = -0.5
+[[plot]]
+kind = "scaling"
+)");
+  EXPECT_EQ(study.name, "asked");
+  EXPECT_EQ(study.question, "Why?");
+  EXPECT_EQ(study.settings, (Strings{"time.duration=1", "links.bend=true"}));
+  std::string all;
+  for (const StudyAxis& axis : study.axes) {
+    all += axis.name + (axis.of_scene() ? "*" : "") + ":";
+    for (const std::string& value : axis.values) all += " " + value;
+    all += "\n";
+  }
+  EXPECT_EQ(all,
+            "cloth.grid*: [4, 5] [6, 7]\n"
+            "cloth.mass*: 999999999999999 1e+15\n"
+            "cloth.mesh*: \"a\\\"b\\\\c\"\n"
+            "forces.damping*: 0 0.25 0.5 0.75 1\n"
+            "iterations: 3 1\n"
+            "links.bend*: true false\n"
+            "order: mesh coloured\n"
+            "time.dt*: \"1/64\" 0.02 100000\n"
+            "wind.strength*: 8 4 2 1 0.5\n");
+  const auto place = [&](const std::string& text) {
+    const SourceLocation at = study.places.at(text);
+    return std::pair(at.line, at.column);
+  };
+  EXPECT_EQ(place("links.bend=true"), std::pair(8, 17)) << "the axis, which is read after it";
+  EXPECT_EQ(place("time.duration=1"), std::pair(4, 8));
+  EXPECT_EQ(place("time.dt=0.02"), std::pair(6, 20));
+  EXPECT_EQ(place("forces.damping=0.75"), std::pair(10, 20));
+  ASSERT_EQ(study.plots.size(), 2u);
+  EXPECT_EQ(study.plots[0].kind, "convergence");
+  EXPECT_EQ(study.plots[0].options,
+            (std::map<std::string, std::string>{{"y", "stretch.max"}, {"slope", "-0.5"}}));
+  EXPECT_EQ(study.plots[0].places.at("slope").line, 18);
+  EXPECT_EQ(study.plots[1].kind, "scaling");
+}
+
+TEST_F(StudyFile, APresetReplacesAnAxisAndPutsItLast) {
+  const std::string text = R"(question = "?"
+scenes = ["hang"]
+solvers = ["jakobsen"]
+axes.iterations = [1, 2]
+axes.substeps = [4, 8]
+exclude = [{ iterations = 1 }]
+[preset.small]
+axes.iterations = [16]
+exclude = []
+[preset.other]
+solvers = ["bullet"]
+)";
+  const Study small = read(text, "small"), whole = read(text);
+  EXPECT_EQ(small.axes[0].name + small.axes[1].name, "substepsiterations");
+  EXPECT_EQ(small.axes[1].values, Strings{"16"});
+  EXPECT_EQ(whole.axes[0].values, (Strings{"1", "2"}));
+  EXPECT_EQ(small.presets, (Strings{"other", "small"}));
+  EXPECT_TRUE(small.exclusions.empty());
+  EXPECT_EQ(cases_of(small).size(), 2u);
+  EXPECT_EQ(cases_of(whole).size(), 2u) << "half of the four are excluded";
+  EXPECT_EQ(read(text, "other").solvers, Strings{"bullet"});
+  try {
+    read(text, "smal");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              file_ + ": study 'asked' has no preset 'smal'; did you mean 'small'?");
+  }
+}
+
+// Of a scene's key a list is one value; of scenes, solvers and parameters it is several.
+TEST_F(StudyFile, AnExclusionNamesAnyOfSomeValues) {
+  const auto left = [&](const std::string& exclusion) {
+    std::string all;
+    for (const Case& one : cases_of(read("question = \"?\"\nscenes = [\"hang\"]\n"
+                                         "solvers = [\"jakobsen\", \"xpbd\"]\nexclude = [" +
+                                         exclusion +
+                                         "]\naxes.substeps = [1, 2]\n"
+                                         "axes.\"cloth.grid\" = [[4, 5], [5, 4]]\n")))
+      all += one.choice.entry->name[0] + std::string(one.choice.params.value("substeps")) + "@" +
+             std::to_string(one.scene->mesh.grid->nu) + " ";
+    return all;
+  };
+  EXPECT_EQ(left(""), "j1@4 j2@4 x1@4 x2@4 j1@5 j2@5 x1@5 x2@5 ");
+  EXPECT_EQ(left("{ \"cloth.grid\" = [4, 5] }"), "j1@5 j2@5 x1@5 x2@5 ");
+  EXPECT_EQ(left("{ \"cloth.grid\" = [4, 5], substeps = 2 }"), "j1@4 x1@4 j1@5 j2@5 x1@5 x2@5 ");
+  EXPECT_EQ(left("{ substeps = [2, 1], solver = [\"xpbd\", \"bullet\"] }"), "j1@4 j2@4 j1@5 j2@5 ");
+  EXPECT_EQ(left("{ scene = \"fall\" }, { scene = [\"hang\"], substeps = 1 }"),
+            "j2@4 x2@4 j2@5 x2@5 ");
+}
+
+TEST_F(StudyFile, WhatIsWrongIsSaidWithItsPlaceAllAtOnce) {
+  EXPECT_EQ(wrong(R"(question = ""
+scenes = ["hang", 3]
+solvers = ["jakobsen:iteratons=2", "jakobsen"]
+set = 7
+[axes]
+colour = [1]
+iterations = { from = 1, to = 4 }
+order = []
+substeps = 7
+projection = ["exact", "none"]
+"time.dt" = { from = 0, to = 1, steps = 3, scale = "log" }
+"time.duration" = { from = 1, to = 2, steps = 1 }
+"forces.damping" = { from = 1, to = 2, steps = 3, scale = "lin" }
+"wind.strength" = { from = 1, too = 2, steps = 3 }
+[preset.p]
+exclude = [3, { scen = "hang" }]
+[preset.q]
+solver = ["bullet"]
+[[plot]]
+knd = "x"
+)"),
+            "1:1: missing key 'question' in the study\n"
+            "2:19: 'scenes' holds texts, not a whole number\n"
+            "3:22: jakobsen: unknown parameter 'iteratons'; did you mean 'iterations'?\n"
+            "4:7: 'set' in the study 'set' must be a list of texts, not a whole number\n"
+            "6:1: no solver of this study has a parameter 'colour' (a scene key has a dot, as "
+            "\"time.dt\")\n"
+            "7:14: missing key 'steps' in the range\n"
+            "8:9: 'order' must be a list of values or a range { from, to, steps, scale }\n"
+            "9:12: 'substeps' must be a list of values or a range { from, to, steps, scale }\n"
+            "10:25: jakobsen: projection=none is not one of exact|sqrt-free\n"
+            "11:13: a logarithmic range needs ends greater than 0\n"
+            "12:47: 'steps' in the range must be at least 2 and at most 1000, not 1\n"
+            "13:59: 'scale' in the range must be \"linear\" or \"log\", not \"lin\"; did you mean "
+            "'log'?\n"
+            "14:19: missing key 'to' in the range\n"
+            "14:31: unknown key 'too' in the range; did you mean 'to'?\n"
+            "16:12: an exclusion is a table such as { scene = \"ball\" }\n"
+            "16:17: nothing that this study varies is called 'scen'; did you mean 'scene'? (scene, "
+            "solver, or an axis's name)\n"
+            "18:1: unknown key 'solver' in [preset.q]; did you mean 'solvers'?\n"
+            "19:1: missing key 'kind' in [[plot]]\n"
+            "20:1: unknown key 'knd' in [[plot]]; did you mean 'kind'?\n");
+}
+
+TEST_F(StudyFile, WhatNobodyCanRunIsRefused) {
+  const std::string good = "question = \"?\"\nscenes = [\"hang\"]\nsolvers = [\"jakobsen\"]\n";
+  EXPECT_EQ(wrong(good), "");
+  EXPECT_EQ(wrong("question = \"?\"\n"),
+            "1:1: missing key 'scenes' in the study\n1:1: missing key 'solvers' in the study\n");
+  const std::string said =
+      ": a text of a study holds no line breaks, tabs or other control "
+      "characters\n";
+  EXPECT_EQ(wrong("question = \"a\\tb\"\n" + good.substr(15)), "1:12" + said);
+  EXPECT_EQ(wrong("question = \"a\\u007fb\"\n" + good.substr(15)), "1:12" + said);
+  EXPECT_EQ(wrong(good + "set = [\"a b\", \"a\\nb\"]\n"), "4:15" + said);
+  EXPECT_EQ(wrong(good + "\"a\\u001fb\" = 1\n"), "4:1" + said);
+  EXPECT_EQ(wrong(good + "exclude = 3\n"),
+            "4:11: 'exclude' in the study 'exclude' must be a list of tables\n");
+  EXPECT_EQ(wrong(good + "set = [\"time.td=1\"]\n"),
+            "4:8: time.td=1: unknown key 'td' in [time]; did you mean 'dt'?\n");
+}
+
+}  // namespace
+}  // namespace taut::study_values_test
