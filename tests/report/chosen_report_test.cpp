@@ -1,0 +1,367 @@
+// One small report whose every number was chosen: what its cases, charts, panels, films and tables
+// say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "core/model/input_error.hpp"
+#include "experiments/report/chart/wording.hpp"
+#include "experiments/report/claims/claim.hpp"
+#include "experiments/report/input.hpp"
+#include "experiments/report/report.hpp"
+#include "experiments/system/json.hpp"
+#include "tests/support/synthetic_records.hpp"
+
+namespace taut::report::chosen_report_test {
+namespace {
+
+Json model_of(const ReportInput& input) { return parse_json(make_model(input)); }
+
+/// "hj04kkkkkkkk": twelve digits of a key, as the model has them.
+std::string short_key(const std::string& scene, const std::string& solver, int sweeps) {
+  return std::string{scene[0], solver[0], sweeps < 10 ? '0' : '1'} + std::to_string(sweeps % 10) +
+         "kkkkkkkk";
+}
+
+/// A small report whose every number was chosen: two solvers on two scenes, one refusal.
+ReportInput chosen() {
+  ReportInput input;
+  input.studies = {{"sweeps", "How many?", {}, 9, {{"hang", -1}}}, {"other", "?", {}, 0, {}}};
+  const auto add = [&](std::size_t study, const std::string& scene, const std::string& solver,
+                       int sweeps, double stretch) -> Record& {
+    Record r = synthetic::record(scene, solver, sweeps, 0.01);
+    r.id = scene + solver + std::to_string(sweeps);
+    r.key = short_key(scene, solver, sweeps) + std::string(30, 'k');
+    r.params["substeps"] = "1";
+    r.values = {{"stretch.rms", stretch}};
+    return input.studies[study].records.emplace_back(r);
+  };
+  for (const auto& [sweeps, a, b] :
+       {std::tuple{4, 0.08, 0.09}, {8, 0.04, 0.05}, {16, 0.02, 0.03}}) {
+    add(0, "hang", "jakobsen", sweeps, a);
+    add(0, "hang", "bullet", sweeps, b);
+  }
+  add(1, "ball", "jakobsen", 16, 0.005);
+  add(1, "ball", "bullet", 16, 0.02).status = {Status::Kind::unsettled, "speed", -1, -1};
+  Record& refused = add(1, "ball", "xpbd", 16, 0);
+  refused.status = {Status::Kind::unsupported, "no balls", -1, -1}, refused.values.clear();
+  return input;
+}
+
+const Json& by_id(const Json& list, const std::string& id) {
+  static const Json none;
+  for (const Json& one : list)
+    if (one["id"] == id) return one;
+  ADD_FAILURE() << "no " << id;
+  return none;
+}
+
+TEST(Chosen, ACaseHasItsOwnNumbersAndItsCostOfTheBench) {
+  ReportInput input = chosen();
+  Record& r = input.studies[0].records[1];
+  r.spec = {"hang", {"cloth.grid=[4, 4]"}, "bullet:iterations=4"};
+  r.steps = 7, r.vertices = 5, r.links = 6, r.projections = 9;
+  r.params = {{"iterations", "4"}, {"precision", "double"}};
+  r.status = {Status::Kind::unsettled, "speed", 3, 2};
+  r.values["none"] = std::nan("");
+  input.bench = StudyBench{"trade", "a machine", {{"hang", {0.97, 1, 1.04}, {{r, {}}}}}};
+  input.bench->scenes[0].cases[0].timing.samples = {0.002, 0.002, 0.002};
+  const Json model = model_of(input);
+  EXPECT_EQ(model["cases"][1],
+            (Json{{"key", short_key("hang", "bullet", 4)},
+                  {"id", "hangbullet4"},
+                  {"scene", "hang"},
+                  {"solver", "bullet"},
+                  {"settings", "bullet:iterations=4"},
+                  {"parameters", {{"iterations", "4"}, {"precision", "double"}}},
+                  {"brief", "1 × 4"},
+                  {"studies", {"sweeps", "trade"}},
+                  {"dt", 0.01},
+                  {"steps", 7},
+                  {"vertices", 5},
+                  {"links", 6},
+                  {"projections", 9},
+                  {"status", "unsettled"},
+                  {"reason", "speed"},
+                  {"step", 3},
+                  {"vertex", 2},
+                  {"values", {{"stretch.rms", 0.09}}},
+                  {"cost",
+                   {{"cpu.per_second", {{"low", 0.2}, {"mid", 0.2}, {"high", 0.2}, {"n", 3}}},
+                    {"cpu.per_step", {{"low", 0.002}, {"mid", 0.002}, {"high", 0.002}, {"n", 3}}}}},
+                  {"overrides", {"cloth.grid=[4, 4]"}},
+                  {"command", "taut case hang bullet:iterations=4 --set 'cloth.grid=[4, 4]'"}}));
+  EXPECT_FALSE(model["cases"][0].contains("cost") || model["cases"][0].contains("step"));
+  const Json& noise = model["cost"]["scenes"][0];
+  EXPECT_EQ(noise["control"], (Json{{"low", 0.97}, {"mid", 1}, {"high", 1.04}, {"n", 3}}));
+  EXPECT_EQ(noise["noise"],
+            "Timing noise: two runs of identical code differed by up to 4.0\u00A0%.");
+  EXPECT_EQ(model["meta"]["machine"], "a machine");
+}
+
+TEST(Chosen, ASceneHasItsFactsItsStatusesAndWhoRefusesIt) {
+  const Json model = model_of(chosen());
+  const Json &hang = by_id(model["scenes"], "hang"), &ball = by_id(model["scenes"], "ball");
+  const auto fact = [](const Json& scene, const std::string& name) -> std::string {
+    for (const Json& one : scene["facts"])
+      if (one["name"] == name) return one["value"];
+    return "";
+  };
+  EXPECT_EQ(fact(hang, "cases"), "6");
+  EXPECT_EQ(fact(hang, "sweeps per substep"), "4, 8, 16");
+  EXPECT_EQ(fact(hang, "time step"), "10\u00A0ms");
+  EXPECT_EQ(fact(hang, "simulated time"), "4\u00A0s");
+  EXPECT_EQ(fact(hang, "vertices"), "400");
+  EXPECT_EQ(fact(ball, "cases"), "3");
+  ReportInput more = chosen();
+  for (const int sweeps : {2, 1024})
+    more.studies[0].records.push_back(more.studies[0].records[0]),
+        more.studies[0].records.back().params["iterations"] = std::to_string(sweeps);
+  EXPECT_EQ(fact(by_id(model_of(more)["scenes"], "hang"), "sweeps per substep"),
+            "2 to 1024 (5 values)");
+  EXPECT_EQ(hang["statuses"], (Json{{"bullet", {{"ok", 3}}}, {"jakobsen", {{"ok", 3}}}}));
+  EXPECT_EQ(ball["statuses"], (Json{{"bullet", {{"unsettled", 1}}},
+                                    {"jakobsen", {{"ok", 1}}},
+                                    {"xpbd", {{"unsupported", 1}}}}));
+  EXPECT_EQ(ball["refusals"], (Json{{{"solver", "xpbd"}, {"reason", "no balls"}}}));
+  EXPECT_FALSE(hang.contains("refusals"));
+  for (const Json& status : model["statuses"])
+    EXPECT_EQ(status["failed"], status["id"] == "unsupported") << status;
+  EXPECT_EQ(model["meta"]["cases"], 9);
+  EXPECT_EQ(model["meta"]["planned"], 12) << "six of nine of the first study were run";
+  EXPECT_EQ(model["method"]["studies"][0],
+            (Json{{"name", "sweeps"}, {"question", "How many?"}, {"cases", 6}, {"planned", 9}}));
+  EXPECT_EQ(by_id(model["solvers"], "jakobsen")["settings"], "precision=double");
+}
+
+TEST(Chosen, AChartHasItsPointsItsTicksItsFitAndItsTheory) {
+  ReportInput input = chosen();
+  Record& failed = input.studies[0].records[3];  // Bullet, 8 sweeps
+  failed.status = {Status::Kind::exploded, "energy", 3, 2};
+  const Json model = model_of(input);
+  const Json& chart = by_id(model["charts"], "hang-convergence");
+  EXPECT_EQ(chart["kind"], "convergence");
+  EXPECT_EQ(chart["title"], "RMS stretch over sweeps per substep");
+  EXPECT_EQ(chart["caption"], "Last second.");
+  EXPECT_EQ(chart["x"]["values"], (Json{4, 8, 16}));
+  EXPECT_EQ(chart["x"]["texts"], (Json{"4", "8", "16"}));
+  EXPECT_EQ(chart["x"]["axis"], "log");
+  EXPECT_EQ(chart["y"]["unit"], "%");
+  EXPECT_FALSE(chart["y"].contains("values"));
+  EXPECT_EQ(chart["theory"]["slope"], -1);
+  EXPECT_NEAR(chart["theory"]["factor"].get<double>(), 0.6 * 0.32, 1e-12) << "the least y x";
+  EXPECT_EQ(chart["theory"]["text"], "theory: slope −1.0");
+  ASSERT_EQ(chart["series"].size(), 2u);
+  const Json& series = chart["series"][1];
+  EXPECT_EQ(series["label"], "Bullet");
+  EXPECT_EQ(series["points"], (Json{{{"x", 4},
+                                     {"y", 0.09},
+                                     {"status", "ok"},
+                                     {"case", short_key("hang", "bullet", 4)},
+                                     {"failed", false},
+                                     {"zero", false},
+                                     {"name", "1 × 4"}},
+                                    {{"x", 8},
+                                     {"y", nullptr},
+                                     {"status", "exploded"},
+                                     {"case", short_key("hang", "bullet", 8)},
+                                     {"failed", true},
+                                     {"zero", false},
+                                     {"name", "1 × 8"}},
+                                    {{"x", 16},
+                                     {"y", 0.03},
+                                     {"status", "ok"},
+                                     {"case", short_key("hang", "bullet", 16)},
+                                     {"failed", false},
+                                     {"zero", false},
+                                     {"name", "1 × 16"}}}));
+  EXPECT_FALSE(chart.contains("fits")) << "from the middle on two points of each are left";
+  const Json& work = by_id(model["charts"], "hang-work");
+  EXPECT_EQ(work["x"]["metric"], "projections");
+  ASSERT_EQ(work["front"].size(), 3u);
+  for (const Json& p : work["front"])
+    EXPECT_TRUE(p["case"].get<std::string>().starts_with("hj")) << p;
+}
+
+TEST(Chosen, AClaimHasWhatItLookedAtAndItsTileTheSame) {
+  ReportInput input = chosen();
+  std::erase_if(input.studies[1].records, [](const Record& r) { return r.solver == "xpbd"; });
+  const Json model = model_of(input);
+  const Json &claim = by_id(model["claims"], "stretch"),
+             &tile = by_id(model["claims"], "tile-stretch");
+  EXPECT_EQ(claim["kind"], "headline");
+  EXPECT_EQ(claim["about"], "all");
+  EXPECT_EQ(claim["sure"], to_string(Certainty::single_run));
+  EXPECT_EQ(claim["sentence"],
+            "RMS stretch in the last second at 1 × 16 (substeps × sweeps), time step 10.0\u00A0ms, "
+            "geometric mean over hang and ball: 1.0\u00A0% with Jakobsen and 2.4\u00A0% with "
+            "Bullet. Less with Jakobsen on hang and ball.");
+  EXPECT_EQ(claim["strong"], (Json{"1.0\u00A0% with Jakobsen", "2.4\u00A0% with Bullet"}));
+  ASSERT_EQ(claim["basis"].size(), 1u);
+  const Json& basis = claim["basis"][0];
+  EXPECT_EQ(basis["metric"], "stretch.rms");
+  EXPECT_EQ(basis["window"], "last second");
+  EXPECT_EQ(basis["scenes"], (Json{"ball", "hang"}));
+  EXPECT_EQ(basis["statuses"],
+            (Json{{"Bullet", {{"ok", 1}, {"unsettled", 1}}}, {"Jakobsen", {{"ok", 2}}}}));
+  EXPECT_EQ(basis["settings"],
+            (Json{{{"solver", "Bullet"}, {"text", "1 × 16"}},
+                  {{"solver", "Jakobsen"},
+                   {"text", brief_settings("jakobsen:iterations=16,precision=double")}}}));
+  ASSERT_EQ(basis["values"].size(), 4u);
+  EXPECT_EQ(basis["values"][3], (Json{{"scene", "ball"},
+                                      {"solver", "bullet"},
+                                      {"label", "Bullet"},
+                                      {"value", 0.02},
+                                      {"n", 1},
+                                      {"status", "unsettled"},
+                                      {"text", "2.0\u00A0%"},
+                                      {"case", short_key("ball", "bullet", 16)}}));
+  EXPECT_EQ(tile["kind"], "tile");
+  EXPECT_EQ(tile["heading"], "RMS stretch, last second");
+  EXPECT_EQ(tile["metric"], "stretch.rms");
+  EXPECT_EQ(tile["basis"], claim["basis"]);
+  ASSERT_EQ(tile["bars"].size(), 2u);
+  EXPECT_EQ(tile["bars"][0]["solver"], "jakobsen");
+  EXPECT_NEAR(tile["bars"][0]["value"].get<double>(), 0.01, 1e-12);
+  EXPECT_NEAR(tile["bars"][1]["value"].get<double>(), std::sqrt(0.02 * 0.03), 1e-12);
+  EXPECT_EQ(tile["bars"][1]["text"], "2.4\u00A0%");
+}
+
+TEST(Chosen, APanelHasAColumnForEachQuotedCaseAndMarksWhatDiffers) {
+  ReportInput input = chosen();
+  for (StudyResult& study : input.studies)
+    for (Record& r : study.records) {
+      const bool ours = r.solver == "jakobsen";
+      r.resolved_settings = {{"same", "1"},
+                             {"longer", ours ? "exact" : "exact, of doubles"},
+                             {"other", ours ? "a >= b" : "c"}};
+      if (ours) r.resolved_settings.emplace_back("own", "x");
+    }
+  const Json panel = by_id(model_of(input)["scenes"], "hang")["resolved_settings"];
+  EXPECT_EQ(panel["columns"], (Json{{{"solver", "jakobsen"},
+                                     {"case", short_key("hang", "jakobsen", 16)},
+                                     {"text", "Jakobsen 1 × 16"}},
+                                    {{"solver", "bullet"},
+                                     {"case", short_key("hang", "bullet", 16)},
+                                     {"text", "Bullet 1 × 16"}}}));
+  const auto row = [](const char* name, const char* a, const char* b, bool differs) {
+    return Json{{"name", name}, {"values", {a, b}}, {"differs", differs}};
+  };
+  ASSERT_EQ(panel["rows"].size(), 6u);
+  EXPECT_EQ(panel["rows"][0], row("same", "1", "1", false));
+  EXPECT_EQ(panel["rows"][1], row("longer", "exact", "exact, of doubles", false));
+  EXPECT_EQ(panel["rows"][2], row("other", "a ≥ b", "c", true));
+  EXPECT_EQ(panel["rows"][3], row("own", "x", "–", false));
+  EXPECT_EQ(panel["rows"][4],
+            row("passes of a step, in order", "verlet, structural × 16, shear × 16",
+                "verlet, structural × 16, shear × 16", false));
+  EXPECT_EQ(panel["rows"][5],
+            row("work: constraint projections per step", "23712", "23712", false));
+}
+
+TEST(Chosen, AFilmHasItsPanelsItsBarItsFlatsAndWhatHappensWhileItLasts) {
+  ReportInput input = chosen();
+  input.media = {{.scene = "hang", .duration = 1, .speed = 0.5, .frame = 0.125, .poster = 0.75}};
+  input.media[0].clips = {
+      {"video/mp4",
+       "film",
+       "still",
+       "image/jpeg",
+       "to be seen",
+       {{"jakobsen", "1 × 16", input.studies[0].records[4].key}, {"bullet", "elsewhere", ""}}}};
+  input.media[0].bar = {"strain", {"#000000", "#FFFFFF"}, {{0, "low"}, {0.5, "high"}}};
+  input.media[0].material = {{"bullet", {{0.25, 0.0123, "png"}}}};
+  input.media[0].aspect = 1.5;
+  input.series = {
+      {"hang", "jakobsen", "J", "stretch.rms", {0, 0.5, 1, 1.5}, {0, 0.1, std::nan(""), 9}},
+      {"hang", "bullet", "B", "stretch.rms", {1, 2}, {1, 1}}};
+  const Json model = model_of(input);
+  const Json& film = by_id(model["films"], "film-hang");
+  EXPECT_EQ(film["src"], "data:video/mp4;base64,ZmlsbQ==");
+  EXPECT_EQ(film["poster"], "data:image/jpeg;base64,c3RpbGw=");
+  EXPECT_EQ(
+      (std::tuple{film["duration"], film["speed"], film["frame"], film["poster_t"], film["alt"]}),
+      (std::tuple{Json(1), Json(0.5), Json(0.125), Json(0.75), Json("to be seen")}));
+  EXPECT_EQ(film["panels"], (Json{{{"solver", "jakobsen"},
+                                   {"settings", "1 × 16"},
+                                   {"case", short_key("hang", "jakobsen", 16)}},
+                                  {{"solver", "bullet"}, {"settings", "elsewhere"}}}));
+  EXPECT_EQ(film["caption"], "Jakobsen: 1 × 16; Bullet: elsewhere");
+  EXPECT_EQ(film["bar"],
+            (Json{{"title", "strain"},
+                  {"stops", {"#000000", "#FFFFFF"}},
+                  {"ticks", {{{"at", 0}, {"text", "low"}}, {{"at", 0.5}, {"text", "high"}}}}}));
+  EXPECT_EQ(film["tracks"], (Json{{{"metric", "stretch.rms"},
+                                   {"title", "RMS stretch"},
+                                   {"series",
+                                    {{{"solver", "jakobsen"},
+                                      {"label", "J"},
+                                      {"t", {0, 0.5, 1}},
+                                      {"y", {0, 0.1, nullptr}}}}}}}))
+      << "one moment of Bullet's is no track";
+  EXPECT_EQ(by_id(model["scenes"], "hang")["material"],
+            (Json{{"aspect", 1.5},
+                  {"rows",
+                   {{{"solver", "bullet"},
+                     {"moments",
+                      {{{"t", 0.25},
+                        {"rms", 0.0123},
+                        {"text", "1.2\u00A0%"},
+                        {"image", "data:image/png;base64,cG5n"}}}}}}}}));
+}
+
+TEST(Chosen, TablesHaveWhatWasFoundRowByRow) {
+  ReportInput input = chosen();
+  input.required = {{"hang", "jakobsen:iterations=4", "", "shape", "wind", "pins", "34 %", "taut"},
+                    {"ball", "bullet", "after 0.4 s", "depth", "none", "all", "–", ""}};
+  ParameterFrontier f;
+  f.solver = "bullet", f.parameter = "time step", f.unit = "s", f.from = 0.01, f.to = 1;
+  f.good = 0.0612, f.bad = 0.0623, f.symptom = "explodes", f.theory = 0.07;
+  input.frontiers = {f, f, f, f};
+  input.frontiers[1].solver = "jakobsen", input.frontiers[1].bad = std::nan("");
+  input.frontiers[2].parameter = "drag", input.frontiers[2].lacks = "it has none";
+  input.frontiers[3].parameter = "mass", input.frontiers[3].unit = "",
+  input.frontiers[3].solver = "jakobsen";
+  input.frontiers[3].good = input.frontiers[3].theory = std::nan("");
+  const Record& a = input.studies[0].records[0];
+  Record worse = a, better = input.studies[0].records[2], other = a, same = a;
+  worse.values = {{"stretch.rms", 0.1}, {"kinetic", 3}}, better.values["stretch.rms"] = 0.03;
+  other.status.kind = Status::Kind::crash;
+  Record before = a;
+  before.values["kinetic"] = 2;
+  input.differences = Differences{
+      "x", "y", {{a, same}, {before, worse}, {input.studies[0].records[2], better}, {a, other}},
+      {},  0,   0,
+      0};
+  const Json model = model_of(input);
+  EXPECT_EQ(by_id(model["tables"], "required")["rows"],
+            (Json{{"hang", "Jakobsen", "no", "shape", "wind", "pins", "34 %"},
+                  {"ball", "Bullet", "after 0.4 s", "depth", "none", "all", "–"}}));
+  const Json& frontiers = by_id(model["tables"], "frontiers");
+  EXPECT_EQ(frontiers["columns"],
+            (Json{{{"title", "parameter"}}, {{"title", "bullet"}}, {{"title", "jakobsen"}}}));
+  EXPECT_EQ(frontiers["rows"],
+            (Json{{"time step", "0.0612\u00A0s, then explodes (theory: 0.0700\u00A0s)",
+                   "1.00\u00A0s, as far as was asked"},
+                  {"drag", "–: it has none", "–"},
+                  {"mass", "–", "none, then explodes"}}));
+  const Json& values = by_id(model["tables"], "differences-values");
+  EXPECT_EQ(values["caption"],
+            "The 4 largest relative changes of 4; better and worse where a value is an error.");
+  std::vector<std::vector<std::string>> rows;
+  for (const Json& row : values["rows"]) rows.push_back({row[1], row[2], row[3], row[4], row[5]});
+  EXPECT_EQ(rows, (std::vector<std::vector<std::string>>{
+                      {"status", "ok", "crash", "–", ""},
+                      {"kinetic", "2", "3", "50\u00A0%", ""},
+                      {"RMS stretch", "4.000\u00A0%", "3.000\u00A0%", "−25\u00A0%", "better"},
+                      {"RMS stretch", "8.000\u00A0%", "10.00\u00A0%", "25\u00A0%", "worse"}}));
+  EXPECT_EQ(values["rows"][2][0]["case"], short_key("hang", "jakobsen", 8));
+  EXPECT_EQ(
+      model["differences"]["a"].get<std::string>() + model["differences"]["b"].get<std::string>(),
+      "xy");
+}
+
+}  // namespace
+}  // namespace taut::report::chosen_report_test
