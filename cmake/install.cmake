@@ -6,7 +6,8 @@ install(FILES ${PROJECT_BINARY_DIR}/taut.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/m
 install(FILES ${PROJECT_BINARY_DIR}/taut.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
         RENAME taut COMPONENT program)
 install(FILES experiments/main-job.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
-install(DIRECTORY experiments/external/sdk experiments/external/jolt DESTINATION ${CMAKE_INSTALL_DATADIR}/taut/external COMPONENT program)
+install(DIRECTORY experiments/external/sdk experiments/external/jolt experiments/external/nvcloth
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/taut/external COMPONENT program)
 install(DIRECTORY experiments/scenes experiments/studies experiments/templates results/references
         DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
 

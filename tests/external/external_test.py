@@ -289,18 +289,27 @@ echo more >dist/large.js
         self.assertEqual(list(self.solvers.rglob("*")), [])
         self.assertIn("there is jolt", self.taut("external", "install", "havok", expect=2).err)
 
-    def test_the_real_one_runs(self):
-        """Not downloaded by tests: `taut external install jolt` first."""
+
+class Engines(Programs):
+    """Not downloaded by tests: external/README.md says how to come by each."""
+
+    def engine(self, name):
         home = os.environ.get("XDG_CONFIG_HOME") or pathlib.Path.home() / ".config"
         installed = pathlib.Path(USERS_SOLVERS or pathlib.Path(home) / "taut" / "solvers")
-        if not (installed / "jolt.toml").exists():
-            self.skipTest(f"no jolt in {installed}: taut external install jolt")
+        if not (installed / f"{name}.toml").exists():
+            self.skipTest(f"no {name} in {installed}")
         os.environ["TAUT_SOLVERS"] = str(installed)
-        study = self.study(solvers=["jolt", LISTING + "1"], rest="[axes]\nsubsteps = [2, 8]\n")
+        study = self.study(solvers=[name, LISTING + "1"], rest="[axes]\nsubsteps = [2, 8]\n")
         self.taut("run", study)
         self.assertEqual({r["status"]["kind"] for r in self.records()}, {"ok"})
-        stretch = {r["params"]["substeps"]: r["values"]["stretch.rms"] for r in self.records() if r["solver"] == "jolt"}
+        stretch = {r["params"]["substeps"]: r["values"]["stretch.rms"] for r in self.records() if r["solver"] == name}
         self.assertLess(stretch["8"], stretch["2"])
+
+    def test_jolt(self):
+        self.engine("jolt")
+
+    def test_nvcloth(self):
+        self.engine("nvcloth")
 
 
 class Hostile(Programs):
