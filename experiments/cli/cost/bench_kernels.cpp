@@ -59,14 +59,14 @@ void print(const KernelBench& bench) {
                "projection: "
             << in_both(bench.traffic_float, bench.traffic_double);
   const TwoCores& cores = bench.two_cores;
-  std::cout << "two threads: " << interval_text(cores.threads)
+  std::cout << "two threads: " << interval_text(cores.threads())
             << " times one, wall time; two unrelated sheets at once: "
-            << interval_text(cores.unrelated) << "; so two threads get "
-            << interval_text(cores.share) << " of what two cores give\n";
-  if (cores.free > 0)
-    std::cout << "two threads while both cores were free (" << number_text(100 * cores.free)
-              << " % of the rounds: unrelated sheets at " << TwoCores::kFree
-              << " and more): " << interval_text(cores.threads_while_free) << " times one\n";
+            << interval_text(cores.unrelated()) << "; so two threads get "
+            << interval_text(cores.share()) << " of what two cores give\n";
+  if (cores.free_rounds() > 0)
+    std::cout << "two threads while both cores were free (" << cores.free_rounds() << " of "
+              << cores.rounds() << " rounds: unrelated sheets at " << TwoCores::kFree
+              << " and more): " << interval_text(cores.threads_while_free()) << " times one\n";
   std::cout << std::flush;
 }
 
@@ -84,8 +84,8 @@ Json json_of(const KernelBench& bench) {
   return {{"side", bench.side},
           {"instructions", to_string(widest())},
           {"rows", rows},
-          {"two_threads", bench.two_cores.threads},
-          {"unrelated_sheets", bench.two_cores.unrelated}};
+          {"two_threads", bench.two_cores.threads()},
+          {"unrelated_sheets", bench.two_cores.unrelated()}};
 }
 
 std::function<int()> bind(CLI::App& app) {
