@@ -1,19 +1,19 @@
-// taut-solver/1 for C++17, no dependency: copy this file beside your solver.
+// taut-solver/1 for C++17: copy this file beside your solver. It needs nlohmann/json.hpp alone
+// (Debian: nlohmann-json3-dev; elsewhere one file of https://github.com/nlohmann/json).
 //
 //     struct Mine {
 //       using Json = taut_solver::Json;
-//       // The answer to "hello", without its protocol.
-//       static constexpr const char* kAbout =
-//           R"("name": "mine", "version": "1.0", "params": {"iterations":
-//              {"type": "integer", "min": 1, "max": 1000, "default": 8, "doc": "Sweeps"}})";
+//       // The answer to "hello", without its protocol: {{"name", "mine"}, {"version", "1.0"},
+//       {"params",
+//       // {{"iterations", {{"type", "integer"}, {"min", 1}, {"max", 1000}, {"default", 8}}}}}}
+//       static Json about();
 //       // Why the scene would be misread; empty: it is not.
 //       static std::vector<std::string> cannot(const Json& scene, const Json& params);
-//       Mine(const Json& scene, const Json& params);  // scene["dt"].number, ...
+//       Mine(const Json& scene, const Json& params);  // double dt = scene.at("dt"); ...
 //       void load(const double* x, const double* v);  // start here: 3n [m] and 3n [m/s]
 //       void step(double t, double dt);               // advance from t to t + dt [s]
 //       void store(double* x, double* v) const;       // 3n each
-//       // "" or more members of the answer to "scene" (its plan, its settings), after a comma.
-//       std::string extras() const;
+//       Json extras() const;  // more members of the answer to "scene": its plan, its settings
 //     };
 //     int main() { return taut_solver::serve<Mine>(); }
 //
@@ -22,166 +22,19 @@
 #pragma once
 
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <memory>
-#include <sstream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace taut_solver {
 
-/// A JSON value: what a scene file and a request consist of.
-struct Json {
-  enum class Kind { null, boolean, number, text, array, object } kind = Kind::null;
-  double number = 0;  ///< 1 for true
-  std::string text;
-  std::vector<Json> items;
-  std::map<std::string, Json> members;
-
-  const Json& operator[](const std::string& key) const {
-    const auto at = members.find(key);
-    if (at == members.end()) throw std::runtime_error("no key '" + key + "'");
-    return at->second;
-  }
-  const Json& operator[](std::size_t i) const { return items.at(i); }
-  std::size_t size() const { return items.size(); }
-  int integer() const { return static_cast<int>(number); }
-  /// Null, false, 0, "" and [] are nothing.
-  bool something() const {
-    return number != 0 || !text.empty() || !items.empty() || !members.empty();
-  }
-  std::vector<double> numbers() const {
-    std::vector<double> all;
-    for (const Json& item : items) all.push_back(item.number);
-    return all;
-  }
-};
-
-/// Reads one value; throws std::runtime_error if it is none.
-class JsonParser {
- public:
-  static Json parse(const std::string& text) {
-    JsonParser parser(text);
-    Json value = parser.value(0);
-    if (parser.next() != '\0') parser.fail();
-    return value;
-  }
-
- private:
-  explicit JsonParser(const std::string& text) : text_(text), at_(text_.c_str()) {}
-  [[noreturn]] static void fail() { throw std::runtime_error("no JSON"); }
-  char next() {
-    while (*at_ == ' ' || *at_ == '\n' || *at_ == '\t' || *at_ == '\r') ++at_;
-    return *at_;
-  }
-  bool accept(char c) { return next() == c && ++at_; }
-  void expect(const char* word) {
-    for (; *word; ++word, ++at_)
-      if (*at_ != *word) fail();
-  }
-
-  Json value(int depth) {
-    if (depth > 100) fail();
-    Json v;
-    switch (next()) {
-      case '{':
-        ++at_, v.kind = Json::Kind::object;
-        if (accept('}')) return v;
-        do {
-          next();
-          const std::string key = string();
-          if (!accept(':')) fail();
-          v.members[key] = value(depth + 1);
-        } while (accept(','));
-        if (!accept('}')) fail();
-        return v;
-      case '[':
-        ++at_, v.kind = Json::Kind::array;
-        if (accept(']')) return v;
-        do v.items.push_back(value(depth + 1));
-        while (accept(','));
-        if (!accept(']')) fail();
-        return v;
-      case '"':
-        v.kind = Json::Kind::text, v.text = string();
-        return v;
-      case 't':
-        expect("true"), v.kind = Json::Kind::boolean, v.number = 1;
-        return v;
-      case 'f':
-        expect("false"), v.kind = Json::Kind::boolean;
-        return v;
-      case 'n':
-        expect("null");
-        return v;
-      default: {
-        char* end = nullptr;
-        v.kind = Json::Kind::number, v.number = std::strtod(at_, &end);
-        if (end == at_) fail();
-        at_ = end;
-        return v;
-      }
-    }
-  }
-
-  std::string string() {
-    if (*at_++ != '"') fail();
-    std::string s;
-    for (; *at_ != '"'; ++at_) {
-      if (*at_ == '\0') fail();
-      if (*at_ != '\\') {
-        s += *at_;
-        continue;
-      }
-      switch (*++at_) {
-        case 'n':
-          s += '\n';
-          break;
-        case 't':
-          s += '\t';
-          break;
-        case 'r':
-          s += '\r';
-          break;
-        case 'b':
-          s += '\b';
-          break;
-        case 'f':
-          s += '\f';
-          break;
-        case 'u':  // names outside ASCII are not looked at
-          for (int k = 0; k < 4; ++k)
-            if (*++at_ == '\0') fail();
-          s += '?';
-          break;
-        case '\0':
-          fail();
-        default:
-          s += *at_;
-      }
-    }
-    ++at_;
-    return s;
-  }
-
-  std::string text_;
-  const char* at_;
-};
-
-inline std::string json_text(const std::string& text) {
-  std::string all = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') all += '\\';
-    all += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return all + '"';
-}
+using Json = nlohmann::ordered_json;
 
 /// Answers requests until the input ends.
 template <class Solver>
@@ -194,28 +47,30 @@ int serve() {
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
   };
-  const auto answer_to = [&](const Json& request, bool& with_state) -> std::string {
-    const std::string& op = request["op"].text;
-    if (op == "hello")
-      return R"({"protocol": "taut-solver/1", )" + std::string(Solver::kAbout) + "}";
+  const auto answer_to = [&](const Json& request) -> Json {
+    const std::string op = request.at("op");
+    if (op == "hello") {
+      Json answer = Solver::about();
+      answer["protocol"] = "taut-solver/1";
+      return answer;
+    }
     if (op == "scene") {
-      std::ifstream file(request["file"].text, std::ios::binary);
-      if (!file) throw std::runtime_error("cannot read " + request["file"].text);
-      std::ostringstream content;
-      content << file.rdbuf();
-      const Json scene = JsonParser::parse(content.str());
-      std::string reasons;
-      for (const std::string& reason : Solver::cannot(scene, request["params"]))
-        reasons += (reasons.empty() ? "" : ", ") + json_text(reason);
-      if (!reasons.empty()) return R"({"cannot": [)" + reasons + "]}";
-      live = std::make_unique<Solver>(scene, request["params"]);
-      n = static_cast<std::size_t>(scene["vertices"].integer());
+      const std::string path = request.at("file");
+      std::ifstream file(path, std::ios::binary);
+      if (!file) throw std::runtime_error("cannot read " + path);
+      const Json scene = Json::parse(file), &params = request.at("params");
+      const std::vector<std::string> reasons = Solver::cannot(scene, params);
+      if (!reasons.empty()) return {{"cannot", reasons}};
+      live = std::make_unique<Solver>(scene, params);
+      n = scene.at("vertices");
       state.assign(6 * n, 0);
-      return R"({"vertices": )" + std::to_string(n) + live->extras() + "}";
+      Json answer = live->extras();
+      answer["vertices"] = n;
+      return answer;
     }
     if (op != "load" && op != "step" && op != "store") throw std::runtime_error("unknown op " + op);
     if (op == "load") {
-      std::string bytes(static_cast<std::size_t>(request["bytes"].number), '\0');
+      std::string bytes(request.at("bytes").get<std::size_t>(), '\0');
       std::cin.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
       if (bytes.size() != state.size() * sizeof(double))
         throw std::runtime_error("the state has another size");
@@ -224,30 +79,27 @@ int serve() {
     if (!live) throw std::runtime_error("no scene yet");
     if (op == "load") {
       live->load(state.data(), state.data() + 3 * n);
-      return "{}";
+      return Json::object();
     }
     if (op == "step") {
-      const double before = cpu(), t = request["t"].number, dt = request["dt"].number;
-      for (int k = 0; k < request["count"].integer(); ++k) live->step(t + k * dt, dt);
-      return R"({"cpu_ns": )" + std::to_string(cpu() - before) + "}";
+      const double before = cpu(), t = request.at("t"), dt = request.at("dt");
+      const int count = request.at("count");
+      for (int k = 0; k < count; ++k) live->step(t + k * dt, dt);
+      return {{"cpu_ns", cpu() - before}};
     }
     live->store(state.data(), state.data() + 3 * n);
-    with_state = true;
-    return R"({"bytes": )" + std::to_string(state.size() * sizeof(double)) + "}";
+    return {{"bytes", state.size() * sizeof(double)}};
   };
   for (std::string line; std::getline(std::cin, line);) {
-    bool with_state = false;
-    std::string answer;
+    Json answer;
     try {
-      answer = answer_to(JsonParser::parse(line), with_state);
+      answer = answer_to(Json::parse(line));
     } catch (const std::exception& error) {
-      answer = R"({"error": )" + json_text(error.what()) + "}";
+      answer = {{"error", error.what()}};
     }
-    for (char& c : answer)
-      if (c == '\n') c = ' ';  // an answer is one line
-    answer += '\n';
-    std::fwrite(answer.data(), 1, answer.size(), stdout);
-    if (with_state) std::fwrite(state.data(), sizeof(double), state.size(), stdout);
+    line = answer.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+    std::fwrite(line.data(), 1, line.size(), stdout);
+    if (answer.contains("bytes")) std::fwrite(state.data(), sizeof(double), state.size(), stdout);
     std::fflush(stdout);
   }
   return 0;

@@ -5,14 +5,24 @@
 #include "taut_solver.hpp"
 
 struct Toy {
-  static constexpr const char* kAbout =
-      R"("name": "toy-cpp", "version": "1", "summary": "Jakobsen's algorithm in C++",
-         "source": "Jakobsen, Advanced Character Physics, GDC 2001", "params": {"iterations":
-         {"type": "integer", "min": 0, "max": 1000000, "default": 8, "doc": "Sweeps over all links in a step"}})";
+  using Json = taut_solver::Json;
 
-  static std::vector<std::string> cannot(const taut_solver::Json& scene, const taut_solver::Json&) {
+  static Json about() {
+    const Json iterations{{"type", "integer"},
+                          {"min", 0},
+                          {"max", 1000000},
+                          {"default", 8},
+                          {"doc", "Sweeps over all links in a step"}};
+    return {{"name", "toy-cpp"},
+            {"version", "1"},
+            {"summary", "Jakobsen's algorithm in C++"},
+            {"source", "Jakobsen, Advanced Character Physics, GDC 2001"},
+            {"params", {{"iterations", iterations}}}};
+  }
+
+  static std::vector<std::string> cannot(const Json& scene, const Json&) {
     for (const char* effect : {"colliders", "wind", "self_collision", "pin_motions", "damping"})
-      if (scene[effect].something())
+      if (!scene.at(effect).empty() && scene.at(effect) != 0)  // null and [] are empty
         return {"gravity, links and pins at rest are all that it knows"};
     return {};
   }
@@ -22,14 +32,12 @@ struct Toy {
     double rest;
   };
 
-  Toy(const taut_solver::Json& scene, const taut_solver::Json& params)
-      : w(scene["inverse_mass"].numbers()),
-        gravity(scene["gravity"].numbers()),
-        h(scene["dt"].number),
-        sweeps(params["iterations"].integer()) {
-    for (const taut_solver::Json& l : scene["links"].items)
-      links.push_back({static_cast<std::size_t>(l[0].integer()),
-                       static_cast<std::size_t>(l[1].integer()), l[2].number});
+  Toy(const Json& scene, const Json& params)
+      : w(scene.at("inverse_mass")),
+        gravity(scene.at("gravity")),
+        h(scene.at("dt")),
+        sweeps(params.at("iterations")) {
+    for (const Json& link : scene.at("links")) links.push_back({link[0], link[1], link[2]});
   }
 
   void load(const double* now, const double* v) {
@@ -58,10 +66,10 @@ struct Toy {
     for (std::size_t k = 0; k < x.size(); ++k) now[k] = x[k], v[k] = (x[k] - before[k]) / h;
   }
 
-  std::string extras() const {
-    return R"(, "plan": [{"pass": "links", "items": )" + std::to_string(links.size()) +
-           R"(, "repeats": )" + std::to_string(sweeps) + R"(, "projections": true}],
-           "settings": {"projection": "exact", "precision": "double"})";
+  Json extras() const {
+    const Json pass{
+        {"pass", "links"}, {"items", links.size()}, {"repeats", sweeps}, {"projections", true}};
+    return {{"plan", {pass}}, {"settings", {{"projection", "exact"}, {"precision", "double"}}}};
   }
 
   std::vector<double> w, gravity, x, before;  // 1/kg, m/s^2; m, now and a step ago
