@@ -16,7 +16,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the format is written as memory has it");
 
 constexpr char kMagic[8] = {'T', 'A', 'U', 'T', 'T', 'R', 'A', 'J'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 1, kRealBytes = 4, kChannels = 1;
 
 /// The first 48 bytes, as documented.
 struct FixedHeader {
@@ -26,35 +26,14 @@ struct FixedHeader {
 };
 static_assert(sizeof(FixedHeader) == 48);
 
+using Vec3f = Eigen::Vector3f;
+static_assert(sizeof(Vec3f) == 3 * sizeof(float), "a frame is written as memory has it");
+
 constexpr std::uint64_t round_up_to_8(std::uint64_t bytes) { return (bytes + 7) / 8 * 8; }
 
 template <class T>
 void put(std::string& out, const T& value) {
   out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-template <class Real>
-void put_vectors(std::string& out, const std::vector<Vec3>& vectors) {
-  for (const Vec3& p : vectors)
-    for (int axis = 0; axis < 3; ++axis) put(out, static_cast<Real>(p[axis]));
-}
-
-template <class Real>
-void get_vectors(const char* from, std::vector<Vec3>& vectors) {
-  for (Vec3& p : vectors) {
-    Real xyz[3];
-    std::memcpy(xyz, from, sizeof xyz);
-    p = Vec3(static_cast<double>(xyz[0]), static_cast<double>(xyz[1]), static_cast<double>(xyz[2]));
-    from += sizeof xyz;
-  }
-}
-
-std::uint64_t bytes_of_real(const TrajectoryHeader& header) {
-  return static_cast<std::uint64_t>(header.real);
-}
-
-std::uint64_t bytes_of_channel(const TrajectoryHeader& header) {
-  return 3 * static_cast<std::uint64_t>(header.vertices) * bytes_of_real(header);
 }
 
 std::string header_bytes(const TrajectoryHeader& header) {
@@ -65,8 +44,8 @@ std::string header_bytes(const TrajectoryHeader& header) {
                     .first = u32(before_triangles + 12 * header.triangles.size()),
                     .vertices = u32(header.vertices),
                     .triangles = u32(header.triangles.size()),
-                    .real = u32(header.real),
-                    .channels = header.velocities ? 2u : 1u,
+                    .real = kRealBytes,
+                    .channels = kChannels,
                     .name_bytes = u32(header.scene.size()),
                     .solver_bytes = u32(header.solver.size()),
                     .frame_dt = header.frame_dt};
@@ -89,14 +68,10 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, Trajectory
 }
 
 void TrajectoryWriter::append(double t, const State& state) {
-  const auto n = static_cast<std::size_t>(header_.vertices);
-  assert(state.x.size() == n && (!header_.velocities || state.v.size() == n));
-  const bool f32 = header_.real == TrajectoryHeader::Real::f32;
+  assert(state.x.size() == static_cast<std::size_t>(header_.vertices));
   buffer_.clear();
   put(buffer_, t);
-  f32 ? put_vectors<float>(buffer_, state.x) : put_vectors<double>(buffer_, state.x);
-  if (header_.velocities)
-    f32 ? put_vectors<float>(buffer_, state.v) : put_vectors<double>(buffer_, state.v);
+  for (const Vec3& p : state.x) put(buffer_, Vec3f(p.cast<float>()));
   write_bytes(buffer_);
   ++frames_;
 }
@@ -118,7 +93,7 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : path_(pa
   const std::uint64_t bytes = std::filesystem::file_size(path, error);
   if (error || !in_) fail("cannot read: " + (error ? error.message() : "not a readable file"));
   read_header(bytes);
-  frame_size_ = sizeof(double) + bytes_of_channel(header_) * (header_.velocities ? 2 : 1);
+  frame_size_ = sizeof(double) + sizeof(Vec3f) * static_cast<std::uint64_t>(header_.vertices);
   frames_ = static_cast<int>((bytes - first_) / frame_size_);
   dropped_ = (bytes - first_) % frame_size_;
 }
@@ -142,8 +117,7 @@ void TrajectoryReader::read_header(std::uint64_t file_bytes) {
   const std::uint64_t before_triangles = round_up_to_8(
       sizeof fixed + std::uint64_t{fixed.name_bytes} + std::uint64_t{fixed.solver_bytes});
   const bool consistent = fixed.vertices > 0 && fixed.vertices <= 0x7fffffff &&
-                          (fixed.real == 4 || fixed.real == 8) &&
-                          (fixed.channels == 1 || fixed.channels == 2) &&
+                          fixed.real == kRealBytes && fixed.channels == kChannels &&
                           fixed.first == before_triangles + 12 * std::uint64_t{fixed.triangles};
   if (!consistent) fail("inconsistent header");
   if (file_bytes < fixed.first)
@@ -151,8 +125,6 @@ void TrajectoryReader::read_header(std::uint64_t file_bytes) {
          std::to_string(fixed.first));
   first_ = fixed.first;
   header_.vertices = static_cast<int>(fixed.vertices);
-  header_.real = static_cast<TrajectoryHeader::Real>(fixed.real);
-  header_.velocities = fixed.channels == 2;
   header_.frame_dt = fixed.frame_dt;
   header_.scene.resize(fixed.name_bytes);
   in_.read(header_.scene.data(), fixed.name_bytes);
@@ -178,14 +150,12 @@ TrajectoryReader::Frame TrajectoryReader::read(int k) {
   if (!in_) fail("cannot read frame " + std::to_string(k));
   Frame frame;
   std::memcpy(&frame.t, bytes.data(), sizeof frame.t);
-  const auto get = [&](std::uint64_t offset, std::vector<Vec3>& vectors) {
-    vectors.resize(static_cast<std::size_t>(header_.vertices));
-    const char* from = bytes.data() + sizeof(double) + offset;
-    header_.real == TrajectoryHeader::Real::f32 ? get_vectors<float>(from, vectors)
-                                                : get_vectors<double>(from, vectors);
-  };
-  get(0, frame.state.x);
-  if (header_.velocities) get(bytes_of_channel(header_), frame.state.v);
+  const char* from = bytes.data() + sizeof frame.t;
+  for (int i = 0; i < header_.vertices; ++i, from += sizeof(Vec3f)) {
+    Vec3f p;
+    std::memcpy(p.data(), from, sizeof p);
+    frame.state.x.emplace_back(p.cast<double>());
+  }
   return frame;
 }
 

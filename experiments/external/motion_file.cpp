@@ -30,9 +30,7 @@ class TrajectoryPositions final : public PositionReader {
     if (reader_.frames() == 0) throw InputError({{path.string(), 0, 0, "has no whole frame"}});
     header_ = {.vertices = reader_.header().vertices,
                .frames = reader_.frames(),
-               .rounding = reader_.header().real == TrajectoryHeader::Real::f32
-                               ? Rounding::binary32
-                               : Rounding::binary64,
+               .rounding = Rounding::binary32,
                .files = {path}};
     for (int k = 0; k < header_.frames; ++k) header_.times.push_back(reader_.read(k).t);
   }
