@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <set>
 #include <tuple>
+
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -18,11 +19,7 @@ std::string status_text(const Status& status) {
              : name + " (" + status.reason + ")";
 }
 
-std::string digits(double value, int count) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", count, value);
-  return text;
-}
+std::string digits(double value, int count) { return formatted("%.*g", count, value); }
 
 std::string readable(double value) { return std::isnan(value) ? "none" : digits(value, 7); }
 

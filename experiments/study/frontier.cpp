@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <sstream>
 
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/reference/linear_stability.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -40,9 +39,7 @@ class BorderSearch {
     if (range_.whole) return std::round(value);
     const int digits =
         std::clamp(3 - static_cast<int>(std::floor(std::log10(range_.tolerance))), 3, 17);
-    char text[40];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return std::strtod(text, nullptr);
+    return std::strtod(formatted("%.*g", digits, value).c_str(), nullptr);
   }
 
   std::vector<double> coarse_values() const {
@@ -177,9 +174,8 @@ void set_override(std::vector<std::string>& overrides, const std::string& assign
 double FrontierQuestion::setting(double value) const {
   if (direction == Direction::up) return value;
   if (direction == Direction::down_in_whole_numbers) return std::round(1 / value);
-  char text[32];  // six digits are more than a bracket has
-  std::snprintf(text, sizeof text, "%.6g", 1 / value);
-  return std::strtod(text, nullptr);
+  // Six digits are more than a bracket has.
+  return std::strtod(formatted("%.6g", 1 / value).c_str(), nullptr);
 }
 
 CaseSpec FrontierQuestion::at(double value) const {

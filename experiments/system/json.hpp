@@ -13,8 +13,8 @@
 
 namespace taut {
 
-/// The one kind of JSON in the program: keys stay in the order in which they were written. Include
-/// this from sources only; the library is large.
+/// The one kind of JSON in the program: keys stay in the order in which they were written. The
+/// library is large: not for headers that many include.
 using Json = nlohmann::ordered_json;
 
 // Its writer and its parser are compiled once, in json.cpp.

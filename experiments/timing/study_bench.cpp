@@ -13,6 +13,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -147,9 +148,7 @@ SceneBench bench_scene(const std::string& scene, const std::vector<Record>& reco
 
 std::vector<std::string> solvers_of(const SceneBench& bench) {
   std::vector<std::string> names;
-  for (const BenchedCase& c : bench.cases)
-    if (std::find(names.begin(), names.end(), c.record.solver) == names.end())
-      names.push_back(c.record.solver);
+  for (const BenchedCase& c : bench.cases) add_new(names, c.record.solver);
   return names;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iomanip>
 #include <iostream>
 #include <iterator>
@@ -23,6 +22,7 @@
 #include "experiments/study/extremes/extremes.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut::verb::frontier {
@@ -48,11 +48,7 @@ std::string unit_of(const Options& options, const SolverChoice& choice) {
   return "";
 }
 
-std::string percent(double ratio) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%+.2g %%", 100 * ratio);
-  return text;
-}
+std::string percent(double ratio) { return formatted("%+.2g %%", 100 * ratio); }
 
 /// How theory and the bracket agree.
 std::string agreement(const Prediction& theory, const Frontier& found) {

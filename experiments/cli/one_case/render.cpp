@@ -11,6 +11,7 @@
 #include "experiments/render/image/video.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut::verb::render {
@@ -70,10 +71,9 @@ Files draw_stills(const Options& options, const RunSet& set, const std::vector<d
   Files files;
   for (std::size_t k = 0; k < times.size(); ++k) {
     fs::path file = out;
-    char suffix[32];
-    std::snprintf(suffix, sizeof suffix, "-t%.2f", times[k]);
     if (times.size() > 1)
-      file.replace_filename(out.stem().string() + suffix + out.extension().string());
+      file.replace_filename(out.stem().string() + formatted("-t%.2f", times[k]) +
+                            out.extension().string());
     write_png(file, compose(renderer, layout, times[k]));
     countdown(k + 1, times.size());
     files.push_back(file.string());

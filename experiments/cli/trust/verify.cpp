@@ -6,7 +6,6 @@
 #include <iostream>
 #include <memory>
 #include <mutex>
-#include <sstream>
 #include <string>
 #include <thread>
 
@@ -21,6 +20,7 @@
 #include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/truths/truth.hpp"
 #include "experiments/truths/vasilovici/assertions.hpp"
 
@@ -136,10 +136,7 @@ Json to_json(const std::vector<Outcome>& outcomes) {
 }
 
 std::string value(double v) {
-  std::ostringstream text;
-  text.precision(std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3);
-  text << v;
-  return text.str();
+  return formatted("%.*g", std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3, v);
 }
 
 std::string line(const Finding& f) {

@@ -369,34 +369,17 @@ PlotFiles make_profile_plot(PlotSpec spec, const StudyBench& bench,
 
 namespace fs = std::filesystem;
 
-namespace {
-
-fs::path temporary(const fs::path& path) {
-  return path.parent_path() / ("." + path.filename().string() + "." + unique_suffix());
-}
-
-/// Runs `program -e commands script` in the script's folder; gives its exit code and what it said.
-std::pair<int, std::string> run_program(const std::string& program, const fs::path& script,
-                                        const std::string& commands) try {
-  Process process({program, "-e", commands, "./" + script.filename().string()},
-                  {.errors = ProcessOptions::Stream::piped, .folder = script.parent_path()});
-  const std::string said = process.read_all();
-  return {process.wait()->exit_code, said};
-} catch (const InputError& error) {
-  throw PlotError(std::string(error.what()) +
-                  ": install the Debian package gnuplot-nox to get figures");
-}
-
-}  // namespace
-
 void run_gnuplot(const fs::path& script, const std::string& terminal, const fs::path& out,
-                 const std::string& program) {
-  const fs::path absolute = fs::absolute(script);
-  const fs::path temp = temporary(fs::absolute(out));
+                 const std::string& program) try {
+  const fs::path temp =
+      fs::absolute(out).parent_path() / ("." + out.filename().string() + "." + unique_suffix());
   const EndsWithProgram tie(temp);
-  const auto [code, said] =
-      run_program(program, absolute,
-                  "set terminal " + terminal + "; set output " + gnuplot_string(temp.string()));
+  Process process(
+      {program, "-e", "set terminal " + terminal + "; set output " + gnuplot_string(temp.string()),
+       "./" + script.filename().string()},
+      {.errors = ProcessOptions::Stream::piped, .folder = fs::absolute(script).parent_path()});
+  const std::string said = process.read_all();
+  const int code = process.wait()->exit_code;
   std::error_code missing;
   const auto size = fs::file_size(temp, missing);
   if (code == 0 && !missing && size > 0) {
@@ -406,6 +389,9 @@ void run_gnuplot(const fs::path& script, const std::string& terminal, const fs::
   fs::remove(temp, missing);
   throw PlotError("gnuplot could not draw " + script.string() + ": " +
                   (said.empty() ? "exit code " + std::to_string(code) : said));
+} catch (const InputError& error) {
+  throw PlotError(std::string(error.what()) +
+                  ": install the Debian package gnuplot-nox to get figures");
 }
 
 }  // namespace taut::report
