@@ -155,7 +155,8 @@ Json json_of(const Claim& claim, Citations& refs) {
     }
     if (listed.size() > kMostValues) {  // what has no value is listed first
       basis["unlisted"] = listed.size() - kMostValues;
-      std::ranges::stable_partition(listed, [](const auto* s) { return !std::isfinite(s->value); });
+      std::stable_partition(listed.begin(), listed.end(),
+                            [](const auto* s) { return !std::isfinite(s->value); });
       listed.resize(kMostValues);
     }
     for (const Evidence::Seen* seen : listed) {
