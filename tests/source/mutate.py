@@ -18,8 +18,8 @@ Survivors are printed as a difference. Those that change no result are listed in
 and are not drawn. Left out, and counted: places outside of functions or in constexpr ones, and headers that layers include which
 were not drawn. The aim is 92 % noticed, no layer below 85 %. The run fails if so few are noticed as a sample of this size has once in
 a thousand times when the share is --goal. The tests ask for 0.8: with all checks 41 of 45 errors of three fresh samples were noticed,
-within --limit, which leaves out most tests of the command line, 33 of 40 of two others (seeds 77 and 31415). --chosen plants the errors of a file instead (chosen_mutants.txt): the checks that stand there with an error
-must notice it, every one.
+within --limit, which leaves out most tests of the command line, 33 of 40 of two others (seeds 77 and 31415). --chosen plants the
+errors of a file instead (chosen_mutants.txt): the checks that stand there with an error must notice it, every one.
 """
 import argparse
 import concurrent.futures
