@@ -95,7 +95,6 @@ class TrajectoryReader {
   Frame read(int k);
 
  private:
-  [[noreturn]] void fail(const std::string& why) const;
   void read_header(std::uint64_t file_bytes);
   std::filesystem::path path_;
   TrajectoryHeader header_;

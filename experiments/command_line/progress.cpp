@@ -7,6 +7,7 @@
 
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/command_line/verb.hpp"
 #include "experiments/system/clock.hpp"
 
 namespace taut {
@@ -91,6 +92,14 @@ CampaignProgress run_missing(const std::vector<Case>& cases, const Store& store,
   const CampaignProgress campaign = run_cases(cases, store, session, options);
   display.finish(campaign);
   return campaign;
+}
+
+int exit_code(const CampaignProgress& campaign, const Store& store) {
+  if (campaign.conflicts > 0)
+    std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
+              << (store.root() / "conflicts").string() << '\n';
+  if (campaign.interrupted) return kInterrupted;
+  return campaign.conflicts > 0 ? kConflict : kPass;
 }
 
 }  // namespace taut

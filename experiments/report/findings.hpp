@@ -10,7 +10,7 @@ namespace taut::report {
 // What other verbs left in the results folder; nullopt if they did not or another build did. A
 // file that cannot be understood is an InputError.
 
-/// verify.json of `taut verify --out`. `program`: measurement() of this build.
+/// verify.json of `taut verify -o`. `program`: measurement() of this build.
 std::optional<Truths> stored_truths(const std::filesystem::path& results, std::string_view program);
 
 /// check.json of `taut check --record`.

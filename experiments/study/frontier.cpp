@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <sstream>
+#include <iterator>
 
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
@@ -16,7 +16,7 @@ namespace taut {
 
 namespace {
 
-/// Values looked at between the bracket and the coarse value above it.
+/// Values looked at between the bracket and the next value tried above it.
 constexpr int kLooksAbove = 4;
 
 class BorderSearch {
@@ -64,27 +64,20 @@ class BorderSearch {
       result_.probes.push_back({one, values[i]});
       all = all && (one.status.kind != Status::Kind::unsupported || !one.symptom.empty());
     }
-    std::sort(result_.probes.begin(), result_.probes.end(),
-              [](const Probed& a, const Probed& b) { return a.value < b.value; });
+    std::ranges::sort(result_.probes, {}, &Probed::value);
     if (!all) result_.kind = Frontier::Kind::not_answered;
     return all;
   }
 
   void bracket() {
-    const Probed* below = nullptr;
-    const Probed* first = nullptr;
-    for (const Probed& probe : result_.probes) {
-      if (!probe.known()) continue;
-      if (!probe.stable()) {
-        first = &probe;
-        break;
-      }
-      below = &probe;
-    }
-    if (!first && !below) return;
-    if (first) result_.unstable = first->value;
-    if (below) result_.stable = below->value;
-    result_.kind = !first   ? Frontier::Kind::all_stable
+    std::vector<Probed> known;
+    std::ranges::copy_if(result_.probes, std::back_inserter(known), &Probed::known);
+    if (known.empty()) return;
+    const auto first = std::ranges::find(known, false, &Probed::stable);
+    const bool any = first != known.end(), below = first != known.begin();
+    if (any) result_.unstable = first->value;
+    if (below) result_.stable = std::prev(first)->value;
+    result_.kind = !any     ? Frontier::Kind::all_stable
                    : !below ? Frontier::Kind::none_stable
                             : Frontier::Kind::bracketed;
     if (result_.kind == Frontier::Kind::bracketed) halve();
@@ -146,9 +139,8 @@ std::string_view to_string(Frontier::Kind kind) {
 }
 
 const Probed* Frontier::at(double value) const {
-  for (const Probed& probe : probes)
-    if (probe.value == value) return &probe;
-  return nullptr;
+  const auto found = std::ranges::find(probes, value, &Probed::value);
+  return found == probes.end() ? nullptr : &*found;
 }
 
 Frontier find_frontier(const SearchRange& range, const Trial& trial) {
@@ -242,8 +234,7 @@ CaseFrontier find_frontier(const FrontierQuestion& question, const Store& store,
     }
     return outcomes;
   });
-  std::sort(seen.begin(), seen.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::sort(seen, {}, [](const auto& one) { return one.first; });
   for (auto& [value, record] : seen) result.records.push_back(std::move(record));
   return result;
 }

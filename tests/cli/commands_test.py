@@ -205,7 +205,7 @@ class Verbs(CommandLine):
         self.taut("run", study)
         (self.folder / "file").write_text("")
         self.assertIn("is a folder; name a file in it", self.taut("report", study, "-o", ".", expect=2).err)
-        for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"]]:
+        for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "-o", "file"]]:
             self.assertIn("file", self.taut(*words, expect=2).err)
         for option in ("--final-state", "--series", "--trajectory"):
             started = time.monotonic()

@@ -196,7 +196,7 @@ TEST(Model, WhatIsMissingNamesTheCommandThatMakesIt) {
   EXPECT_EQ(commands(), (std::map<std::string, std::string>{
                             {"cost", "taut bench trade --preset quick"},
                             {"films", "taut render hang --video"},
-                            {"truths", "taut verify --out results/runs/verify.json"},
+                            {"truths", "taut verify -o results/runs/verify.json"},
                             {"regressions", "taut check --record"}}));
   input.studies.pop_back();
   EXPECT_EQ(commands()["cost"], "taut bench iterations");

@@ -111,7 +111,7 @@ std::function<int()> bind(CLI::App& app) {
       else
         print(rows, *o, side);
     }
-    if (o->json) std::cout << to_text(all, 1) << '\n';
+    if (o->json) print_json(all);
     return kPass;
   };
 }
