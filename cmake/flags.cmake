@@ -26,14 +26,11 @@ target_compile_options(taut_flags INTERFACE
 if(TAUT_WERROR)
   target_compile_options(taut_flags INTERFACE -Werror)
 endif()
-if(TAUT_FUZZ)
-  target_compile_options(taut_flags INTERFACE -fsanitize=fuzzer-no-link)
-endif()
-if(TAUT_SANITIZE OR TAUT_FUZZ)
+if(TAUT_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
   target_compile_definitions(taut_flags INTERFACE TAUT_SANITIZED)
   target_compile_options(taut_flags INTERFACE
-    -fsanitize=address,undefined,float-divide-by-zero -fno-sanitize-recover=all -fno-omit-frame-pointer
+    -fsanitize=address,undefined,float-divide-by-zero,fuzzer-no-link -fno-sanitize-recover=all -fno-omit-frame-pointer
     -D_GLIBCXX_ASSERTIONS)
   target_link_options(taut_flags INTERFACE -fsanitize=address,undefined)
 endif()

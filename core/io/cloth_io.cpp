@@ -195,6 +195,9 @@ void read_weights(Section& cloth, Scene& scene) {
   }
 }
 
+/// What a value names by itself: an array is a pair [i, j].
+std::vector<int> vertices_of(const Value&, Section&, const std::string& key, const Mesh&);
+
 /// Vertices that start elsewhere than the shape says.
 void read_placed(Section& cloth, Scene& scene) {
   for (const Value* entry : cloth.tables("placed")) {
@@ -204,16 +207,7 @@ void read_placed(Section& cloth, Scene& scene) {
     const auto target = placed.vec3("at", kFar);
     placed.finish();
     if (!vertex || !target) continue;
-    // A lone pair is one vertex here, where read_vertices sees an array of two.
-    Value one = *entry;
-    for (std::size_t i = 0; i < one.keys.size(); ++i)
-      if (one.keys[i].text == "vertex" && one.items[i].is_array()) {
-        Value list = one.items[i];
-        list.items = {one.items[i]};
-        one.items[i] = list;
-      }
-    Section single(cloth.diagnostics(), one, "'placed' in [cloth]");
-    const auto vertices = read_vertices(single, "vertex", scene.mesh);
+    const auto vertices = vertices_of(*vertex, placed, "vertex", scene.mesh);
     if (vertices.size() > 1) placed.report("vertex", "must name one vertex");
     if (vertices.size() == 1) scene.start.x[to_index(vertices[0])] = *target;
   }
@@ -354,16 +348,21 @@ class VertexReader {
   std::vector<int> all_;
 };
 
+std::vector<int> vertices_of(const Value& value, Section& section, const std::string& key,
+                             const Mesh& mesh) {
+  VertexReader reader(section, key, mesh);
+  reader.add(value);
+  return reader.take();
+}
+
 }  // namespace
 
 std::vector<int> read_vertices(Section& section, const std::string& key, const Mesh& mesh) {
   const Value* value = section.find(key);
   if (!value) return {};
+  if (!value->is_array()) return vertices_of(*value, section, key, mesh);
   VertexReader reader(section, key, mesh);
-  if (value->is_array())
-    for (const Value& item : value->items) reader.add(item);
-  else
-    reader.add(*value);
+  for (const Value& item : value->items) reader.add(item);
   return reader.take();
 }
 

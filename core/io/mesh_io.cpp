@@ -24,38 +24,34 @@ namespace {
 class SurfaceErrors {
  public:
   explicit SurfaceErrors(std::string file) : file_(std::move(file)) {}
-  void report(int line, const std::string& message, int column = 1);
+  void report(int line, const std::string& message, int column = 1) {
+    found_.push_back({file_, line, column, message});
+  }
   /// Throws InputError with the first hundred in the order of the file; returns if there are none.
-  void throw_if_any();
+  void throw_if_any() {
+    if (found_.empty()) return;
+    std::ranges::stable_sort(found_, {},
+                             [](const Diagnostic& d) { return std::pair(d.line, d.column); });
+    constexpr std::size_t kMost = 100;
+    if (found_.size() > kMost) {
+      const std::string more = std::to_string(found_.size() - kMost) + " more errors";
+      found_.resize(kMost);
+      found_.push_back({file_, 0, 0, more});
+    }
+    throw InputError(found_);
+  }
 
  private:
   std::string file_;
   std::vector<Diagnostic> found_;
 };
 
-void SurfaceErrors::report(int line, const std::string& message, int column) {
-  found_.push_back({file_, line, column, message});
-}
-
-void SurfaceErrors::throw_if_any() {
-  if (found_.empty()) return;
-  std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
-  });
-  constexpr std::size_t kMost = 100;
-  if (found_.size() > kMost) {
-    const std::string more = std::to_string(found_.size() - kMost) + " more errors";
-    found_.resize(kMost);
-    found_.push_back({file_, 0, 0, more});
-  }
-  throw InputError(found_);
-}
-
 /// An edge with the faces that have it; a < b.
 struct Edge {
   int a = 0, b = 0;
   std::vector<int> faces;
 };
+
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).norm() / 2;
 }

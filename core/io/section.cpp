@@ -158,6 +158,19 @@ std::optional<std::string> Section::string(const std::string& key) {
   return value->string;
 }
 
+std::optional<std::vector<std::string>> Section::strings(const std::string& key) {
+  const Value* value = find(key);
+  if (!value) return std::nullopt;
+  if (!value->is_array()) return wrong_type(*value, key, "a list of strings"), std::nullopt;
+  std::vector<std::string> all;
+  for (const Value& item : value->items)
+    if (item.is_string())
+      all.push_back(item.string);
+    else
+      wrong_type(item, key, "a list of strings");
+  return all;
+}
+
 std::string Section::choice(const std::string& key, const std::vector<std::string>& choices,
                             const std::string& fallback) {
   const auto given = string(key);

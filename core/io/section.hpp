@@ -82,6 +82,8 @@ class Section {
                                              const Range&);
   bool boolean(const std::string& key, bool fallback);
   std::optional<std::string> string(const std::string& key);
+  /// A list of strings; nothing if it is absent or no list.
+  std::optional<std::vector<std::string>> strings(const std::string& key);
   std::string choice(const std::string& key, const std::vector<std::string>& choices,
                      const std::string& fallback);
   /// A table; nullptr if it is absent.

@@ -11,11 +11,15 @@
 
 namespace taut {
 
+void fail_in(const std::filesystem::path& file, const std::string& why, int line, int column) {
+  throw InputError({{file.string(), line, column, why}});
+}
+
 std::string read_text(const std::filesystem::path& path, std::size_t most) {
   const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   const auto fail = [&](const std::string& why) {
     if (fd >= 0) close(fd);
-    throw InputError({{path.string(), 0, 0, why}});
+    fail_in(path, why);
   };
   const auto fail_reading = [&] { fail(std::string("cannot be read: ") + std::strerror(errno)); };
   struct stat about {};

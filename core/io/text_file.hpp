@@ -21,6 +21,10 @@ inline constexpr std::size_t kMostResultBytes = std::size_t{1} << 30;
 /// file (a folder, a pipe, a device; none is waited for) or is larger than `most` bytes.
 std::string read_text(const std::filesystem::path&, std::size_t most = kMostResultBytes);
 
+/// Throws InputError: what is wrong with a file, and where in it (1-based; 0: nowhere).
+[[noreturn]] void fail_in(const std::filesystem::path&, const std::string& why, int line = 0,
+                          int column = 0);
+
 /// The words of a line, apart by blanks; what follows `comment` is none of it.
 inline std::vector<std::string_view> words_of(std::string_view line, char comment = '#') {
   constexpr std::string_view kBlank = " \t\r\f\v";

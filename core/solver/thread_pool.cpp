@@ -13,8 +13,9 @@ constexpr std::chrono::microseconds kSpinTime{100};
 constexpr int kPausesPerCheck = 32;
 /// 20 to 70 us, longer than a stage of a part: then its thread is not on a core.
 constexpr int kMostPauses = 1000;
-/// 2 to 7 us: another thread is about as far, and what moves to a core has to move back.
-constexpr int kPatience = 100;
+/// 40 to 140 us of all stages together, more than a thread waits for one that is on a core: what
+/// moves to another core has to move back.
+constexpr int kPatience = 2000;
 
 void pause() {
 #if defined(__x86_64__)
@@ -83,12 +84,13 @@ void ThreadPool::advance(Member& me, std::size_t part, std::uint32_t stages) {
   }
 }
 
-ThreadPool::Member ThreadPool::work_off(std::size_t member) {
+void ThreadPool::work_off(std::size_t member) {
   Member me{part_count_ * member / threads(), part_count_ * (member + 1) / threads(), kPatience};
   for (std::uint32_t stage = 1; stage <= stages_.size(); ++stage)
     for (std::size_t k = 0; k < me.end - me.begin; ++k)  // both ends first: others wait for them
       advance(me, k % 2 == 0 ? me.begin + k / 2 : me.end - 1 - k / 2, stage);
-  return me;
+  for (std::size_t part = 0; part < part_count_; ++part)  // whose thread is late
+    advance(me, part, static_cast<std::uint32_t>(stages_.size()));
 }
 
 void ThreadPool::dispatch() {
@@ -97,9 +99,7 @@ void ThreadPool::dispatch() {
   gate_.fetch_or(1, std::memory_order_release);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
-  Member me = work_off(0);
-  const auto stages = static_cast<std::uint32_t>(stages_.size());
-  for (std::size_t part = 0; part < part_count_; ++part) advance(me, part, stages);
+  work_off(0);
   gate_.fetch_and(~1U, std::memory_order_relaxed);
   for (Wait wait; gate_.load(std::memory_order_acquire) != 0;) wait();
   stages_.clear();

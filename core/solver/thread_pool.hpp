@@ -109,7 +109,7 @@ class ThreadPool {
 
   void dispatch();
   void serve(std::size_t member);
-  Member work_off(std::size_t member);
+  void work_off(std::size_t member);
   void advance(Member&, std::size_t part, std::uint32_t stages);
 
   std::vector<Stage> stages_;

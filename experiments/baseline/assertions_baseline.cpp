@@ -1,26 +1,21 @@
 #include "experiments/baseline/assertions_baseline.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
 namespace {
 
 std::string figure_text(const Finding& f) {
-  char text[96];
-  const std::string unit = f.unit == "1" ? "" : " " + f.unit;
-  if (f.expected == 0)
-    std::snprintf(text, sizeof text, " %.4g%s (at most %.3g)", f.measured, unit.c_str(),
-                  f.tolerance);
-  else
-    std::snprintf(text, sizeof text, " %.4g%s (%.4g +- %.3g)", f.measured, unit.c_str(), f.expected,
-                  f.tolerance);
-  return solver_name(f.subject) + ": " + f.quantity + text;
+  return solver_name(f.subject) + ": " + f.quantity + formatted(" %.4g", f.measured) +
+         (f.unit == "1" ? "" : " " + f.unit) +
+         (f.expected == 0 ? formatted(" (at most %.3g)", f.tolerance)
+                          : formatted(" (%.4g +- %.3g)", f.expected, f.tolerance));
 }
 
 /// What speaks for an assertion: a number that breaks it, else the first that is measured and

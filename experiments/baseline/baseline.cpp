@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <set>
 #include <tuple>
+
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -18,11 +19,7 @@ std::string status_text(const Status& status) {
              : name + " (" + status.reason + ")";
 }
 
-std::string digits(double value, int count) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", count, value);
-  return text;
-}
+std::string digits(double value, int count) { return formatted("%.*g", count, value); }
 
 std::string readable(double value) { return std::isnan(value) ? "none" : digits(value, 7); }
 
@@ -105,12 +102,6 @@ bool same_question(const BaselineRow& a, const BaselineRow& b) {
   return a.scene == b.scene && a.spec.solver == b.spec.solver && a.frontier == b.frontier;
 }
 
-const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
-  for (const BaselineRow& row : rows)
-    if (row.id == id) return &row;
-  return nullptr;
-}
-
 std::set<std::string> solvers_of(const Baseline& rows) {
   std::set<std::string> names;
   for (const BaselineRow& row : rows) names.insert(row.solver());
@@ -146,6 +137,11 @@ void compare_case(const BaselineRow& row, const Baseline& before, const Baseline
 }
 
 }  // namespace
+
+const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
+  const auto at = std::ranges::find(rows, id, &BaselineRow::id);
+  return at == rows.end() ? nullptr : &*at;
+}
 
 BaselineRow baseline_row(const Record& record, const std::string& scene) {
   BaselineRow row{record.id,          record.spec,  scene, status_text(record.status),

@@ -25,6 +25,7 @@ struct BaselineRow {
 };
 /// Sorted by id.
 using Baseline = std::vector<BaselineRow>;
+const BaselineRow* find_row(const Baseline&, const std::string& id);  ///< nullptr: there is none
 
 /// `scene` is digest(Scene) of the scene that the record's spec names. The solver is kept with only
 /// those parameters that differ from their defaults, so that a new parameter changes no row.

@@ -6,6 +6,7 @@
 #include "core/io/section.hpp"
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -25,16 +26,14 @@ std::string line_of(const BaselineRow& row) {
             {"projections", row.projections}};
   if (!row.frontier.empty()) json["frontier"] = row.frontier;
   if (row.flaky) json["flaky"] = true;
-  Json values = Json::object();
-  for (const auto& [name, value] : row.values) values[name] = value;  // null: no meaning
-  json["values"] = std::move(values);
+  json["values"] = row.values;  // null: no meaning
   return to_text(json) + "\n";
 }
 
 BaselineRow row_of(const JsonReader& json) {
   BaselineRow row;
   row.id = printable(json.at("id").text());  // goes to the terminal
-  row.spec = {json.at("scene").text(), json.at("overrides").texts(), json.at("solver").text()};
+  read_into(json, row.spec);
   row.scene = json.at("content").text();
   row.status = json.at("status").text();
   row.projections = json.at("projections").count();

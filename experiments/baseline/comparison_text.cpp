@@ -1,13 +1,13 @@
 // Comparisons for people and for continuous integration: what moved, commands, JUnit.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <set>
 
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/system/process.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -96,15 +96,11 @@ std::vector<MovedValue> roll_up(const Comparison& comparison) {
 
 std::string text(const MovedValue& moved, std::string_view unit) {
   if (moved.largest->kind == Change::Kind::status_changed) return moved.largest->text;
-  char text[160];
-  const std::string of(unit == "1" || unit.empty() ? "" : " " + std::string(unit));
-  if (std::isfinite(moved.relative()))
-    std::snprintf(text, sizeof text, "%+.3g %% (%.4g -> %.4g%s)", 100 * moved.relative(),
-                  moved.largest->before, moved.largest->now, of.c_str());
-  else
-    std::snprintf(text, sizeof text, "%.4g -> %.4g%s", moved.largest->before, moved.largest->now,
-                  of.c_str());
-  return text;
+  const std::string change = formatted("%.4g -> %.4g", moved.largest->before, moved.largest->now) +
+                             (unit == "1" || unit.empty() ? "" : " " + std::string(unit));
+  return std::isfinite(moved.relative())
+             ? formatted("%+.3g %% (", 100 * moved.relative()) + change + ")"
+             : change;
 }
 
 }  // namespace taut

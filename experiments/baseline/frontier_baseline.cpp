@@ -8,22 +8,11 @@ namespace taut {
 
 namespace {
 
-std::vector<std::string> texts(Section& section, const char* key) {
-  std::vector<std::string> all;
-  const Value* list = section.find(key);
-  if (!list) return all;
-  for (const Value& item : list->items)
-    if (item.is_string())
-      all.push_back(item.string);
-    else
-      section.report(key, "holds texts, not " + describe(item));
-  return all;
-}
-
 FrontierQuestion question_of(Section& section) {
   section.need({"scene", "solver", "of", "from", "to"});
   FrontierQuestion question;
-  question.base = {section.string("scene").value_or(""), texts(section, "set"),
+  question.base = {section.string("scene").value_or(""),
+                   section.strings("set").value_or(std::vector<std::string>()),
                    section.string("solver").value_or("")};
   question.of = section.string("of").value_or("dt");
   const double from = section.number("from", {-1e9, 1e9}, 0);

@@ -1,9 +1,9 @@
 #include "experiments/case/record_io.hpp"
 
-#include <charconv>
+#include <array>
 #include <cmath>
-#include <limits>
 
+#include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/json.hpp"
@@ -19,29 +19,20 @@ Json status_json(const Status& status) {
           {"vertex", status.vertex}};
 }
 
-Json result_json(const Record& r) {
-  Json step_cost = Json::array(), resolved_settings = Json::array(), values = Json::object();
-  for (const PassCost& p : r.step_cost)
-    step_cost.push_back({{"pass", p.pass},
-                         {"items", p.items},
-                         {"repeats", p.repeats},
-                         {"bytes", p.bytes},
-                         {"projections", p.projections}});
-  for (const auto& [name, text] : r.resolved_settings) resolved_settings.push_back({name, text});
-  for (const auto& [name, value] : r.values) values[name] = value;  // null where it is not finite
-  return {{"status", status_json(r.status)},        {"values", values},
-          {"projections", r.projections},           {"step_cost", step_cost},
-          {"resolved_settings", resolved_settings}, {"digest", r.digest}};
+Json result_json(const Record& r) {  // a value that is not finite is null
+  return {{"status", status_json(r.status)},
+          {"values", r.values},
+          {"projections", r.projections},
+          {"step_cost", r.step_cost},
+          {"resolved_settings", r.resolved_settings},
+          {"digest", r.digest}};
 }
 
-void append(std::string& text, double value) {
-  if (!std::isnan(value)) text += shortest(value);
-}
-
-double number(std::string_view field) {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  std::from_chars(field.data(), field.data() + field.size(), value);
-  return value;
+/// Doubles in shortest exact form, NaN as an empty field.
+template <class Values>
+std::string csv_line(const Values& values) {
+  const auto field = [](double v) { return std::isnan(v) ? std::string() : shortest(v); };
+  return join(values, ",", field) + '\n';
 }
 
 std::string_view take(std::string_view& text, char separator) {
@@ -53,6 +44,15 @@ std::string_view take(std::string_view& text, char separator) {
 
 }  // namespace
 
+void read_into(const JsonReader& j, CaseSpec& spec) {
+  spec = {j.at("scene").text(), j.at("overrides").texts(), j.at("solver").text()};
+}
+
+Status::Kind status_of(const JsonReader& j) {
+  if (!is_status(j.text())) j.fail("unknown status '" + j.text() + "'");
+  return status_kind(j.text());
+}
+
 Record record_of(const JsonReader& j) {
   constexpr int kNone = -1;
   j.require_schema(kRecordSchema);
@@ -60,8 +60,7 @@ Record record_of(const JsonReader& j) {
   r.key = j.at("key").text();
   if (!is_key(r.key)) j.at("key").fail("expected 64 hexadecimal digits");
   r.id = j.at("id").text();
-  const JsonReader spec = j.at("spec");
-  r.spec = {spec.at("scene").text(), spec.at("overrides").texts(), spec.at("solver").text()};
+  read_into(j.at("spec"), r.spec);
   r.scene = j.at("scene").text();
   r.solver = j.at("solver").text();
   for (const auto& [name, value] : j.at("params").members()) r.params[name] = value.text();
@@ -71,10 +70,8 @@ Record record_of(const JsonReader& j) {
   r.vertices = j.at("vertices").integer(0);
   r.links = j.at("links").integer(0);
   const JsonReader status = j.at("status");
-  const std::string kind = status.at("kind").text();
-  if (!is_status(kind)) status.at("kind").fail("unknown status '" + kind + "'");
-  r.status = {status_kind(kind), status.at("reason").text(), status.at("step").integer(kNone),
-              status.at("vertex").integer(kNone)};
+  r.status = {status_of(status.at("kind")), status.at("reason").text(),
+              status.at("step").integer(kNone), status.at("vertex").integer(kNone)};
   for (const auto& [name, value] : j.at("values").members())
     r.values[name] = value.number_or_null();
   r.projections = j.at("projections").count();
@@ -107,8 +104,7 @@ std::string to_json(const Record& r, int indent) {
   j.update({{"schema", kRecordSchema},
             {"key", r.key},
             {"id", r.id},
-            {"spec",
-             {{"scene", r.spec.scene}, {"overrides", r.spec.overrides}, {"solver", r.spec.solver}}},
+            {"spec", r.spec},
             {"scene", r.scene},
             {"solver", r.solver},
             {"params", r.params},
@@ -131,16 +127,8 @@ bool is_key(std::string_view text) {
 std::string result_digest(const Record& r) { return sha256(to_text(result_json(r))); }
 
 std::string to_csv(const Series& series) {
-  std::string text;
-  for (const std::string& column : series.columns) text += (text.empty() ? "" : ",") + column;
-  text += '\n';
-  for (const auto& row : series.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i > 0) text += ',';
-      append(text, row[i]);
-    }
-    text += '\n';
-  }
+  std::string text = join(series.columns, ",") + '\n';
+  for (const auto& row : series.rows) text += csv_line(row);
   return text;
 }
 
@@ -151,7 +139,8 @@ Series series_from_csv(std::string_view text) {
   while (!text.empty()) {
     std::string_view line = take(text, '\n');
     std::vector<double> row;
-    for (std::size_t i = 0; i < series.columns.size(); ++i) row.push_back(number(take(line, ',')));
+    for (std::size_t i = 0; i < series.columns.size(); ++i)
+      row.push_back(whole<double>(take(line, ',')).value_or(std::nan("")));
     series.rows.push_back(std::move(row));
   }
   return series;
@@ -160,13 +149,8 @@ Series series_from_csv(std::string_view text) {
 std::string to_csv(const State& state) {
   std::string text = "vertex,x,y,z,vx,vy,vz\n";
   for (std::size_t i = 0; i < state.x.size(); ++i) {
-    text += std::to_string(i);
-    for (const Vec3* value : {&state.x[i], &state.v[i]})
-      for (const double c : *value) {
-        text += ',';
-        append(text, c);
-      }
-    text += '\n';
+    const Vec3 &x = state.x[i], &v = state.v[i];
+    text += std::to_string(i) + ',' + csv_line(std::array{x[0], x[1], x[2], v[0], v[1], v[2]});
   }
   return text;
 }

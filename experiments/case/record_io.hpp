@@ -19,6 +19,22 @@ std::string describe(const Status&);
 /// Version of every JSON text below; readers refuse others.
 inline constexpr int kRecordSchema = 1;
 
+/// Found by the JSON library, wherever one of them becomes JSON.
+template <class Json>
+void to_json(Json& json, const PassCost& p) {
+  json = {{"pass", p.pass},
+          {"items", p.items},
+          {"repeats", p.repeats},
+          {"bytes", p.bytes},
+          {"projections", p.projections}};
+}
+template <class Json>
+void to_json(Json& json, const CaseSpec& spec) {
+  json = {{"scene", spec.scene}, {"overrides", spec.overrides}, {"solver", spec.solver}};
+}
+void read_into(const JsonReader&, CaseSpec&);  ///< throws InputError
+Status::Kind status_of(const JsonReader&);     ///< throws InputError
+
 /// One JSON object; doubles in shortest exact form, NaN as null. indent < 0: one line.
 std::string to_json(const Record&, int indent = -1);
 /// Throws InputError that names `where` (a file) if the text is not a record of this schema.

@@ -10,6 +10,12 @@ namespace taut {
 namespace {
 
 constexpr const char* kSchema = "taut-reference-1";
+constexpr std::tuple kFields{Field{"scene", &Reference::scene},
+                             Field{"digest", &Reference::digest},
+                             Field{"kind", &Reference::kind},
+                             Field{"t", &Reference::t},
+                             Field{"derivation", &Reference::derivation},
+                             Field{"floor_m", &Reference::floor}};
 
 std::string file_name(const Reference& reference) {
   if (reference.kind == "static") return "static.json";
@@ -20,10 +26,9 @@ std::string file_name(const Reference& reference) {
 }  // namespace
 
 void write_reference(const Reference& reference, const std::filesystem::path& folder) {
-  Json json{{"schema", kSchema},          {"scene", reference.scene},
-            {"digest", reference.digest}, {"kind", reference.kind},
-            {"t", reference.t},           {"derivation", reference.derivation},
-            {"floor_m", reference.floor}, {"vertices", reference.x.size()}};
+  Json json{{"schema", kSchema}};
+  json.update(json_of(reference, kFields));
+  json["vertices"] = reference.x.size();
   std::string text = to_text(json, 1);
   text.resize(text.size() - 2);  // "\n}": the coordinates follow, one vertex a line
   text += ",\n \"x\": [";
@@ -39,13 +44,7 @@ void write_reference(const Reference& reference, const std::filesystem::path& fo
 Reference read_reference(const std::filesystem::path& path) {
   return read_json(read_text(path), path.string(), [](const JsonReader& j) {
     j.require_schema(kSchema);
-    Reference reference{j.at("scene").text(),
-                        j.at("digest").text(),
-                        j.at("kind").text(),
-                        j.at("t").number(),
-                        j.at("derivation").text(),
-                        j.at("floor_m").number(),
-                        {}};
+    Reference reference = read_as(j, kFields);
     for (const JsonReader& vertex : j.at("x").items()) {
       const std::vector<JsonReader> x = vertex.items(3);
       reference.x.emplace_back(x[0].number(), x[1].number(), x[2].number());

@@ -1,22 +1,23 @@
 #include "experiments/case/trajectory.hpp"
 
-#include <bit>
 #include <cassert>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <iostream>
 
-#include "core/model/input_error.hpp"
+#include "core/io/positions/formats.hpp"
+#include "core/io/text_file.hpp"
 
 namespace taut {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the format is written as memory has it");
+using std::endian;
+static_assert(endian::native == endian::little, "the header is written as memory has it");
 
 constexpr char kMagic[8] = {'T', 'A', 'U', 'T', 'T', 'R', 'A', 'J'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 1, kRealBytes = 4, kChannels = 1;
 
 /// The first 48 bytes, as documented.
 struct FixedHeader {
@@ -28,35 +29,6 @@ static_assert(sizeof(FixedHeader) == 48);
 
 constexpr std::uint64_t round_up_to_8(std::uint64_t bytes) { return (bytes + 7) / 8 * 8; }
 
-template <class T>
-void put(std::string& out, const T& value) {
-  out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-template <class Real>
-void put_vectors(std::string& out, const std::vector<Vec3>& vectors) {
-  for (const Vec3& p : vectors)
-    for (int axis = 0; axis < 3; ++axis) put(out, static_cast<Real>(p[axis]));
-}
-
-template <class Real>
-void get_vectors(const char* from, std::vector<Vec3>& vectors) {
-  for (Vec3& p : vectors) {
-    Real xyz[3];
-    std::memcpy(xyz, from, sizeof xyz);
-    p = Vec3(static_cast<double>(xyz[0]), static_cast<double>(xyz[1]), static_cast<double>(xyz[2]));
-    from += sizeof xyz;
-  }
-}
-
-std::uint64_t bytes_of_real(const TrajectoryHeader& header) {
-  return static_cast<std::uint64_t>(header.real);
-}
-
-std::uint64_t bytes_of_channel(const TrajectoryHeader& header) {
-  return 3 * static_cast<std::uint64_t>(header.vertices) * bytes_of_real(header);
-}
-
 std::string header_bytes(const TrajectoryHeader& header) {
   const auto u32 = [](auto value) { return static_cast<std::uint32_t>(value); };
   const std::uint64_t before_triangles =
@@ -65,18 +37,18 @@ std::string header_bytes(const TrajectoryHeader& header) {
                     .first = u32(before_triangles + 12 * header.triangles.size()),
                     .vertices = u32(header.vertices),
                     .triangles = u32(header.triangles.size()),
-                    .real = u32(header.real),
-                    .channels = header.velocities ? 2u : 1u,
+                    .real = kRealBytes,
+                    .channels = kChannels,
                     .name_bytes = u32(header.scene.size()),
                     .solver_bytes = u32(header.solver.size()),
                     .frame_dt = header.frame_dt};
   std::memcpy(fixed.magic, kMagic, sizeof kMagic);
   std::string out;
-  put(out, fixed);
+  append_number(out, fixed, endian::little);
   out += header.scene + header.solver;
   out.resize(before_triangles, '\0');
   for (const Triangle& triangle : header.triangles)
-    for (int vertex : triangle) put(out, u32(vertex));
+    for (int vertex : triangle) append_number(out, u32(vertex), endian::little);
   return out;
 }
 
@@ -89,14 +61,10 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, Trajectory
 }
 
 void TrajectoryWriter::append(double t, const State& state) {
-  const auto n = static_cast<std::size_t>(header_.vertices);
-  assert(state.x.size() == n && (!header_.velocities || state.v.size() == n));
-  const bool f32 = header_.real == TrajectoryHeader::Real::f32;
+  assert(state.x.size() == static_cast<std::size_t>(header_.vertices));
   buffer_.clear();
-  put(buffer_, t);
-  f32 ? put_vectors<float>(buffer_, state.x) : put_vectors<double>(buffer_, state.x);
-  if (header_.velocities)
-    f32 ? put_vectors<float>(buffer_, state.v) : put_vectors<double>(buffer_, state.v);
+  append_number(buffer_, t, endian::little);
+  append_vectors<float>(buffer_, state.x, endian::little);
   write_bytes(buffer_);
   ++frames_;
 }
@@ -106,28 +74,26 @@ void TrajectoryWriter::write_bytes(const std::string& bytes) {
   out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out_.flush();
   if (out_) return;
-  const std::string why = errno != 0 ? std::strerror(errno) : "write error";
-  throw InputError({{path_.string(), 0, 0, "cannot write the trajectory: " + why}});
+  fail_in(path_, std::string("cannot write the trajectory: ") +
+                     (errno != 0 ? std::strerror(errno) : "write error"));
 }
 
 TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : path_(path) {
   std::error_code error;
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    fail("is no regular file");  // opening a pipe waits for whoever writes into it
+    fail_in(path, "is no regular file");  // opening a pipe waits for whoever writes into it
   in_.open(path, std::ios::binary);
   const std::uint64_t bytes = std::filesystem::file_size(path, error);
-  if (error || !in_) fail("cannot read: " + (error ? error.message() : "not a readable file"));
+  if (error || !in_)
+    fail_in(path, "cannot read: " + (error ? error.message() : "not a readable file"));
   read_header(bytes);
-  frame_size_ = sizeof(double) + bytes_of_channel(header_) * (header_.velocities ? 2 : 1);
+  frame_size_ = sizeof(double) + 3 * kRealBytes * static_cast<std::uint64_t>(header_.vertices);
   frames_ = static_cast<int>((bytes - first_) / frame_size_);
   dropped_ = (bytes - first_) % frame_size_;
 }
 
-void TrajectoryReader::fail(const std::string& why) const {
-  throw InputError({{path_.string(), 0, 0, why}});
-}
-
 void TrajectoryReader::read_header(std::uint64_t file_bytes) {
+  const auto fail = [&](const std::string& why) { fail_in(path_, why); };
   if (file_bytes == 0) fail("empty file, not a trajectory");
   FixedHeader fixed{};
   const auto known = static_cast<std::streamsize>(std::min<std::uint64_t>(8, file_bytes));
@@ -142,8 +108,7 @@ void TrajectoryReader::read_header(std::uint64_t file_bytes) {
   const std::uint64_t before_triangles = round_up_to_8(
       sizeof fixed + std::uint64_t{fixed.name_bytes} + std::uint64_t{fixed.solver_bytes});
   const bool consistent = fixed.vertices > 0 && fixed.vertices <= 0x7fffffff &&
-                          (fixed.real == 4 || fixed.real == 8) &&
-                          (fixed.channels == 1 || fixed.channels == 2) &&
+                          fixed.real == kRealBytes && fixed.channels == kChannels &&
                           fixed.first == before_triangles + 12 * std::uint64_t{fixed.triangles};
   if (!consistent) fail("inconsistent header");
   if (file_bytes < fixed.first)
@@ -151,8 +116,6 @@ void TrajectoryReader::read_header(std::uint64_t file_bytes) {
          std::to_string(fixed.first));
   first_ = fixed.first;
   header_.vertices = static_cast<int>(fixed.vertices);
-  header_.real = static_cast<TrajectoryHeader::Real>(fixed.real);
-  header_.velocities = fixed.channels == 2;
   header_.frame_dt = fixed.frame_dt;
   header_.scene.resize(fixed.name_bytes);
   in_.read(header_.scene.data(), fixed.name_bytes);
@@ -175,27 +138,20 @@ TrajectoryReader::Frame TrajectoryReader::read(int k) {
   in_.clear();
   in_.seekg(static_cast<std::streamoff>(first_ + static_cast<std::uint64_t>(k) * frame_size_));
   in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!in_) fail("cannot read frame " + std::to_string(k));
+  if (!in_) fail_in(path_, "cannot read frame " + std::to_string(k));
   Frame frame;
-  std::memcpy(&frame.t, bytes.data(), sizeof frame.t);
-  const auto get = [&](std::uint64_t offset, std::vector<Vec3>& vectors) {
-    vectors.resize(static_cast<std::size_t>(header_.vertices));
-    const char* from = bytes.data() + sizeof(double) + offset;
-    header_.real == TrajectoryHeader::Real::f32 ? get_vectors<float>(from, vectors)
-                                                : get_vectors<double>(from, vectors);
-  };
-  get(0, frame.state.x);
-  if (header_.velocities) get(bytes_of_channel(header_), frame.state.v);
+  frame.t = number_at<double>(bytes.data(), endian::little);
+  frame.state.x.resize(static_cast<std::size_t>(header_.vertices));
+  read_vectors<float>(bytes.data() + sizeof(double), frame.state.x, endian::little);
   return frame;
 }
 
 Trajectory read_trajectory(const std::filesystem::path& path) {
   TrajectoryReader reader(path);
   if (reader.frames() == 0)
-    throw InputError(
-        {{path.string(), 0, 0,
-          "a trajectory without a whole frame: it ends at byte " + std::to_string(reader.end()) +
-              ", the first frame would end at byte " + std::to_string(reader.frame_end(1))}});
+    fail_in(path, "a trajectory without a whole frame: it ends at byte " +
+                      std::to_string(reader.end()) + ", the first frame would end at byte " +
+                      std::to_string(reader.frame_end(1)));
   if (reader.dropped_bytes() > 0)
     std::cerr << path.string() << ": the writer was interrupted; dropped the last "
               << reader.dropped_bytes() << " bytes, an unfinished frame from byte "
@@ -206,10 +162,8 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
     trajectory.frames.push_back(reader.read(k));
     const double t = trajectory.frames.back().t;
     if (!std::isfinite(t) || (k > 0 && t < trajectory.frames[static_cast<std::size_t>(k) - 1].t))
-      throw InputError({{path.string(), 0, 0,
-                         "frame " + std::to_string(k) +
-                             " is at no time, or at an earlier one "
-                             "than the frame before it"}});
+      fail_in(path, "frame " + std::to_string(k) +
+                        " is at no time, or at an earlier one than the frame before it");
   }
   return trajectory;
 }

@@ -18,39 +18,36 @@
 ///         12  u32      F: offset of the first frame
 ///         16  u32      n: vertices
 ///         20  u32      m: triangles
-///         24  u32      r: bytes of a real, 4 or 8 (IEEE 754)
-///         28  u32      c: channels, 1 (positions) or 2 (positions, then velocities)
+///         24  u32      4: bytes of a coordinate (IEEE 754)
+///         28  u32      1: positions alone
 ///         32  u32      s: bytes of the scene's name
 ///         36  u32      q: bytes of the solver's text
 ///         40  f64      nominal time between frames [s]
 ///         48  char[s]  scene name, UTF-8
 ///       48+s  char[q]  solver and its parameters, UTF-8; zeros up to F - 12 m
 ///     F-12 m  u32[m][3]     triangles: vertex indices
-///          F  the frames: f64 t [s]; real[n][3] x [m]; if c = 2, real[n][3] v [m/s]
+///          F  the frames: f64 t [s]; f32[n][3] x [m]
 ///
-/// The number of frames is (file size - F) / (8 + 3 n r c), rounded down. Read in Python:
+/// The number of frames is (file size - F) / (8 + 12 n), rounded down. Read in Python:
 ///
 ///     import struct
 ///     d = open("run.traj", "rb").read()
-///     magic, version, F, n, m, r, c, s, q, dt = struct.unpack_from("<8s8Id", d)
+///     magic, version, F, n, m, real, channels, s, q, dt = struct.unpack_from("<8s8Id", d)
 ///     assert magic == b"TAUTTRAJ" and version == 1
 ///     triangles = list(struct.iter_unpack("<3I", d[F - 12 * m : F]))
-///     size = 8 + 3 * n * r * c
+///     size = 8 + 12 * n
 ///     for k in range((len(d) - F) // size):
-///         t, *u = struct.unpack_from(f"<d{3 * n * c}{'f' if r == 4 else 'd'}", d, F + k * size)
+///         t, *u = struct.unpack_from(f"<d{3 * n}f", d, F + k * size)
 ///         x = [u[i : i + 3] for i in range(0, 3 * n, 3)]
 namespace taut {
 
 /// What a trajectory says about itself.
 struct TrajectoryHeader {
-  enum class Real : std::uint32_t { f32 = 4, f64 = 8 };
   std::string scene;                ///< name
   std::string solver;               ///< SolverChoice::canonical()
   double frame_dt = 0;              ///< s, nominal: frames carry their own times
   int vertices = 0;                 ///< > 0
   std::vector<Triangle> triangles;  ///< may be empty (a chain)
-  Real real = Real::f32;
-  bool velocities = false;
 };
 
 /// Appends frames to a new file, each handed to the operating system whole before `append` returns:
@@ -89,13 +86,12 @@ class TrajectoryReader {
   std::uint64_t end() const { return frame_end(frames_) + dropped_; }
   struct Frame {
     double t = 0;  ///< s
-    State state;   ///< v is empty if the file has no velocities
+    State state;   ///< v is empty
   };
   /// Precondition: 0 <= k < frames().
   Frame read(int k);
 
  private:
-  [[noreturn]] void fail(const std::string& why) const;
   void read_header(std::uint64_t file_bytes);
   std::filesystem::path path_;
   TrajectoryHeader header_;

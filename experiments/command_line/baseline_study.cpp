@@ -55,12 +55,6 @@ void add_frontiers(const Store& store, const BaselineOptions& options, BaselineS
   }
 }
 
-const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
-  for (const BaselineRow& row : rows)
-    if (row.id == id) return &row;
-  return nullptr;
-}
-
 }  // namespace
 
 void BaselineOptions::bind(CLI::App& app) {

@@ -58,6 +58,25 @@ CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
       ->allow_extra_args(false);
 }
 
+void add_limits(CLI::App& app, Limits& limits) {
+  app.add_option("--timeout", limits.seconds,
+                 "CPU time limit of a case [s] (default: 120); wall time: five times that")
+      ->check(above_zero());
+  const auto set = [&limits](double mb) { limits.bytes = static_cast<std::size_t>(mb) << 20; };
+  app.add_option_function<double>("--memory", set, "Memory limit of a case [MB] (default: 2048)")
+      ->check(CLI::Range(64.0, 1e9));
+}
+
+void add_stored(CLI::App& app, std::string& preset, std::string& results) {
+  app.add_option("--preset", preset, "The preset under which it was run");
+  results = default_results();
+  app.add_option("--results", results, "Results folder (default: " + results + ")");
+}
+
+CLI::Option* add_output(CLI::App& app, std::string& path, const std::string& what) {
+  return app.add_option("-o,--output", path, what);
+}
+
 void add_samples(CLI::App& app, int& rounds, double& seconds, int fewest_rounds) {
   app.add_option("--rounds", rounds,
                  "Rounds in alternating order (ABBA), two samples each (default: " +
@@ -83,7 +102,7 @@ void add_baselines(CLI::App& app, std::string& folder) {
 
 void print_files(const std::vector<std::string>& files, bool json) {
   if (json)
-    std::cout << to_text(Json{{"files", files}}, 1) << '\n';
+    print_json(Json{{"files", files}});
   else
     for (const std::string& file : files) std::cout << file << '\n';
 }
@@ -93,13 +112,7 @@ CLI::Option* add_json(CLI::App& app, bool& json, const std::string& what) {
 }
 
 void check_solvers(const std::vector<std::string>& texts) {
-  std::vector<Diagnostic> wrong;
-  for (const std::string& text : texts) try {
-      parse_solver(text);
-    } catch (const InputError& error) {
-      wrong.insert(wrong.end(), error.diagnostics().begin(), error.diagnostics().end());
-    }
-  if (!wrong.empty()) throw InputError(wrong);
+  read_all(texts, [](const std::string& text) { parse_solver(text); });
 }
 
 }  // namespace taut

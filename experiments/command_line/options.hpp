@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/model/input_error.hpp"
+#include "experiments/study/isolate.hpp"
+
 namespace taut {
 
 /// A check of an option's value: a number above 0.
@@ -27,6 +30,15 @@ CLI::Option* add_preset(CLI::App&, std::string& preset);
 /// Settings of a scene, as --set, once for each.
 CLI::Option* add_settings(CLI::App&, std::vector<std::string>& settings);
 
+/// --timeout and --memory of a case; they stand for the defaults.
+void add_limits(CLI::App&, Limits&);
+
+/// --preset and --results of what was run.
+void add_stored(CLI::App&, std::string& preset, std::string& results);
+
+/// What a verb writes, as -o: a file or a folder.
+CLI::Option* add_output(CLI::App&, std::string& path, const std::string& what);
+
 /// --rounds and --seconds of a timing; they stand for the defaults.
 void add_samples(CLI::App&, int& rounds, double& seconds, int fewest_rounds = 1);
 
@@ -41,6 +53,18 @@ void print_files(const std::vector<std::string>& files, bool json);
 
 /// --json, which says `what` is printed instead.
 CLI::Option* add_json(CLI::App&, bool& json, const std::string& what);
+
+/// Calls read(one) for each; throws everything that is wrong with any of them as one InputError.
+template <class All, class Read>
+void read_all(const All& all, const Read& read) {
+  std::vector<Diagnostic> wrong;
+  for (const auto& one : all) try {
+      read(one);
+    } catch (const InputError& error) {
+      wrong.insert(wrong.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  if (!wrong.empty()) throw InputError(wrong);
+}
 
 /// Throws InputError with everything that is wrong with any of these solvers' texts.
 void check_solvers(const std::vector<std::string>& texts);

@@ -2,12 +2,13 @@
 
 #include <unistd.h>
 
-#include <cstdio>
 #include <iostream>
 
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/command_line/verb.hpp"
 #include "experiments/system/clock.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -16,10 +17,7 @@ namespace {
 bool g_shown = true;
 
 std::string clock_text(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%d:%02d", static_cast<int>(seconds) / 60,
-                static_cast<int>(seconds) % 60);
-  return text;
+  return formatted("%d:%02d", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
 }
 
 }  // namespace
@@ -47,13 +45,9 @@ void Countdown::operator()(std::size_t done, std::size_t total) const {
   if (!g_shown || (!terminal_ && done != total && done % std::max<std::size_t>(1, total / 10) != 0))
     return;
   const double each = seconds_since(start_) / static_cast<double>(done);
-  char text[80];
-  if (done < total)
-    std::snprintf(text, sizeof text, " %zu/%zu  left %s", done, total,
-                  clock_text(each * static_cast<double>(total - done)).c_str());
-  else
-    std::snprintf(text, sizeof text, " %zu/%zu  %.2g s each", done, total, each);
-  std::cerr << (terminal_ ? "\r\033[K" : "") << what_ << text;
+  std::cerr << (terminal_ ? "\r\033[K" : "") << what_ << formatted(" %zu/%zu  ", done, total)
+            << (done < total ? "left " + clock_text(each * static_cast<double>(total - done))
+                             : formatted("%.2g s each", each));
   if (!terminal_ || done == total) std::cerr << '\n';
   std::cerr << std::flush;
 }
@@ -91,6 +85,14 @@ CampaignProgress run_missing(const std::vector<Case>& cases, const Store& store,
   const CampaignProgress campaign = run_cases(cases, store, session, options);
   display.finish(campaign);
   return campaign;
+}
+
+int exit_code(const CampaignProgress& campaign, const Store& store) {
+  if (campaign.conflicts > 0)
+    std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
+              << (store.root() / "conflicts").string() << '\n';
+  if (campaign.interrupted) return kInterrupted;
+  return campaign.conflicts > 0 ? kConflict : kPass;
 }
 
 }  // namespace taut

@@ -26,6 +26,9 @@ class Progress {
 CampaignProgress run_missing(const std::vector<Case>&, const Store&, const std::string& command,
                              CampaignOptions);
 
+/// The exit code of a campaign; says where the results are that differ from those stored.
+int exit_code(const CampaignProgress&, const Store&);
+
 /// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere. The end
 /// says what one took: "frame 80/80  0.15 s each".
 class Countdown {

@@ -149,10 +149,7 @@ Json Connection::ask(const Json& request, std::string_view bytes) {
 
 double Connection::cpu_seconds() const {
   clockid_t clock{};
-  timespec now{};
-  if (clock_getcpuclockid(process_.pid(), &clock) != 0 || clock_gettime(clock, &now) != 0)
-    return std::nan("");
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  return clock_getcpuclockid(process_.pid(), &clock) == 0 ? seconds_of(clock) : std::nan("");
 }
 
 std::size_t Connection::peak_bytes() const {

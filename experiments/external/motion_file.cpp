@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 
@@ -10,18 +9,13 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/trajectory.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::external {
 
 namespace {
 
 constexpr double kInch = 0.0254;
-
-std::string number(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 /// taut's own format.
 class TrajectoryPositions final : public PositionReader {
@@ -30,9 +24,7 @@ class TrajectoryPositions final : public PositionReader {
     if (reader_.frames() == 0) throw InputError({{path.string(), 0, 0, "has no whole frame"}});
     header_ = {.vertices = reader_.header().vertices,
                .frames = reader_.frames(),
-               .rounding = reader_.header().real == TrajectoryHeader::Real::f32
-                               ? Rounding::binary32
-                               : Rounding::binary64,
+               .rounding = Rounding::binary32,
                .files = {path}};
     for (int k = 0; k < header_.frames; ++k) header_.times.push_back(reader_.read(k).t);
   }
@@ -79,17 +71,7 @@ struct VertexMatch {
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 std::string coordinates(const Vec3& x) {
-  char buffer[96];
-  std::snprintf(buffer, sizeof buffer, "(%.6g, %.6g, %.6g)", x.x(), x.y(), x.z());
-  return buffer;
-}
-
-/// The nearest vertex of `all` and its distance [m].
-std::pair<std::size_t, double> nearest(const Vec3& x, const std::vector<Vec3>& all) {
-  std::pair<std::size_t, double> best{kNone, std::numeric_limits<double>::infinity()};
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (const double d = (all[i] - x).norm(); d < best.second) best = {i, d};
-  return best;
+  return formatted("(%.6g, %.6g, %.6g)", x.x(), x.y(), x.z());
 }
 
 /// Vertices in the order of their x.
@@ -159,15 +141,13 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
     }
   }
   if (strays > 0) {
-    const auto [at, distance] = nearest(file[first_stray], scene);
-    char buffer[256];
-    std::snprintf(
-        buffer, sizeof buffer,
+    const std::size_t at =
+        neighbours.within(file[first_stray], std::numeric_limits<double>::infinity());
+    match.mismatch = formatted(
         "%zu of its %zu vertices lie on none of the scene: its vertex %zu is at %s, %.4g m "
         "from the nearest, the scene's vertex %zu at %s (tolerance %.2g m)",
-        strays, file.size(), first_stray, coordinates(file[first_stray]).c_str(), distance, at,
-        coordinates(scene[at]).c_str(), tolerance);
-    match.mismatch = buffer;
+        strays, file.size(), first_stray, coordinates(file[first_stray]).c_str(),
+        (scene[at] - file[first_stray]).norm(), at, coordinates(scene[at]).c_str(), tolerance);
     return match;
   }
   match.farthest = farthest();
@@ -238,7 +218,7 @@ void MotionFile::find_place(const Scene& scene, const MotionOptions& options) {
                     (options.up == "auto" ? "derived" : "as said") + ")";
       order_said_ = std::string(match.same_order() ? "as in the scene" : "matched by position") +
                     ", at " + (rest.empty() ? "the start" : "rest") + " at most " +
-                    number("%.2g", match.farthest) + " m off";
+                    formatted("%.2g", match.farthest) + " m off";
       of_scene_ = std::move(match.of_scene);
       return;
     }
@@ -284,15 +264,16 @@ ResolvedSettings MotionFile::settings(const Scene& scene) {
   const char* rounding = about.rounding == Rounding::binary32   ? "float32"
                          : about.rounding == Rounding::binary64 ? "float64"
                                                                 : "text";
-  return {{"frames", std::to_string(about.frames) + " of " + std::to_string(about.vertices) +
-                         " vertices, " + rounding},
-          {"time step", shortest(frame_dt_) + " s a frame, " + time_said_},
-          {"unit", place_said_},
-          {"vertex order", order_said_},
-          {"floor of strain", number("%.1e", least.rms) + " RMS, " + number("%.1e", least.max) +
-                                  " at most: the rounding of the file"},
-          {"velocity", "differences between frames"},
-          {"cost", "not measured"}};
+  return {
+      {"frames", std::to_string(about.frames) + " of " + std::to_string(about.vertices) +
+                     " vertices, " + rounding},
+      {"time step", shortest(frame_dt_) + " s a frame, " + time_said_},
+      {"unit", place_said_},
+      {"vertex order", order_said_},
+      {"floor of strain", formatted("%.1e", least.rms) + " RMS, " + formatted("%.1e", least.max) +
+                              " at most: the rounding of the file"},
+      {"velocity", "differences between frames"},
+      {"cost", "not measured"}};
 }
 
 }  // namespace taut::external

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "core/model/index.hpp"
 #include "core/model/mesh.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::external {
 
@@ -29,16 +29,9 @@ Scene sheet(int side, std::vector<int> pins) {
   return scene;
 }
 
-std::string text(double value) {
-  std::ostringstream out;
-  out.precision(4);
-  out << value;
-  return out.str();
-}
+std::string text(double value) { return formatted("%.4g", value); }
 
-std::string text(const Vec3& v) {
-  return "(" + text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + ")";
-}
+std::string text(const Vec3& v) { return formatted("(%.4g, %.4g, %.4g)", v.x(), v.y(), v.z()); }
 
 /// The vertex that is farthest from where it should be. NaN counts as farthest.
 std::pair<std::size_t, double> farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
@@ -86,7 +79,7 @@ class Prober {
     if (connection_) return *connection_;
     connection_ = std::make_unique<Connection>(command_);
     hello_ = say_hello(*connection_);
-    if (params_.is_null()) params_ = default_params(*hello_);
+    if (params_.is_null()) params_ = own_params(*hello_, {hello_->name, hello_->params, ""});
     return *connection_;
   }
   void end_connection() { connection_.reset(); }

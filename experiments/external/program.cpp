@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "core/io/text_file.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/external/command.hpp"
 #include "experiments/external/probe.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::external {
 
@@ -59,10 +59,7 @@ class ExternalSolver final : public Solver {
     if (steps_ == 0 || std::isnan(said_)) return {};
     const double word = said_ / steps_, clock = clock_ / steps_;
     if (agrees(word, clock, empty_)) return {};
-    std::ostringstream text;
-    text.precision(4);
-    text << "it says " << 1e6 * word << " us a step, its CPU clock " << 1e6 * clock << " us";
-    return text.str();
+    return formatted("it says %.4g us a step, its CPU clock %.4g us", 1e6 * word, 1e6 * clock);
   }
 
  private:

@@ -135,13 +135,6 @@ Json own_params(const Hello& hello, const Params& params) {
   return all;
 }
 
-Json default_params(const Hello& hello) {
-  Json all = Json::object();
-  for (const ParamSpec& spec : hello.params)
-    all[std::string(spec.name)] = typed(spec, spec.default_value);
-  return all;
-}
-
 SceneAnswer read_scene_answer(const Json& answer, int vertices) {
   const JsonReader j = reader(answer, "scene");
   SceneAnswer told;

@@ -40,8 +40,6 @@ SceneAnswer give_scene(Connection&, const Scene&, const Json& params);
 
 /// The values of the program's own parameters: numbers for numbers, texts for the others.
 Json own_params(const Hello&, const Params&);
-/// The same at their defaults.
-Json default_params(const Hello&);
 
 /// load, step and store.
 void load_state(Connection&, const State&);

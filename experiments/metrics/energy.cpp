@@ -1,3 +1,5 @@
+#include <numeric>
+
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -18,8 +20,7 @@ class Energy final : public Metric {
   static bool measures(const Scene& scene) { return !scene.gravity.isZero(0); }
   explicit Energy(const Scene& scene)
       : mass_(scene.mesh.mass), start_(scene.start.x), gravity_(scene.gravity), end_(scene) {
-    double total = 0;
-    for (const double m : mass_) total += m;
+    const double total = std::accumulate(mass_.begin(), mass_.end(), 0.0);
     unit_ = total * gravity_.norm() * extent(scene);
   }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <type_traits>
 
+#include "core/model/solver.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -11,10 +13,6 @@
 namespace taut::report {
 
 namespace {
-
-std::string with_unit(double value, const std::string& unit, int digits) {
-  return significant(value, digits) + (unit == "1" ? "" : " " + unit);
-}
 
 /// How far a finding is on the way to its tolerance; 1: at it.
 double share_of_tolerance(const JsonReader& finding) {
@@ -24,35 +22,38 @@ double share_of_tolerance(const JsonReader& finding) {
   return tolerance > 0 ? off / tolerance : off;
 }
 
-TruthRow row_of(const JsonReader& truth, const JsonReader& finding) {
-  const std::string unit = finding.at("unit").text(), verdict = finding.at("verdict").text();
+/// A row of the model: a closed form or a published number beside what was measured.
+Json row_of(const JsonReader& truth, const JsonReader& finding) {
+  const std::string si = finding.at("unit").text(), unit = si == "1" ? "" : " " + si,
+                    verdict = finding.at("verdict").text();
   const double expected = finding.at("expected").number_or_null(),
                slack = finding.at("tolerance").number_or_null();
-  TruthRow row{truth.at("section_title").text(),
-               truth.at("statement").text(),
-               truth.at("source").text(),
-               finding.at("subject").text(),
-               "",
-               "",
-               verdict,
-               finding.at("why").text()};
+  Json row{{"section", truth.at("section_title").text()},
+           {"statement", typeset(truth.at("statement").text())},
+           {"source", typeset(truth.at("source").text())},
+           {"subject", finding.at("subject").text()},
+           {"expected", ""},
+           {"measured", ""},
+           {"verdict", verdict}};
+  add_if(row, "why", typeset(finding.at("why").text()));
   if (verdict == "not applicable") return row;
   const double measured = finding.at("measured").number_or_null();
-  if (expected == 0) {
-    row.expected = "at most " + with_unit(slack, unit, 2),
-    row.measured = with_unit(measured, unit, 2);
+  const auto say = [&](const std::string& wanted, const std::string& found) {
+    row["expected"] = typeset(wanted), row["measured"] = typeset(found);
     return row;
-  }
+  };
+  if (expected == 0)
+    return say("at most " + significant(slack, 2) + unit, significant(measured, 2) + unit);
   // As many digits as the tolerance lets matter.
-  const int decimals = decimals_for(slack);
-  const bool plain = slack >= 1e-6 && std::abs(measured) < 1e6;
-  const std::string suffix = unit == "1" ? "" : " " + unit;
-  row.expected = plain       ? fixed(expected, decimals) + " ± " + fixed(slack, decimals) + suffix
-                 : slack > 0 ? significant(expected, 6) + " ± " + with_unit(slack, unit, 2)
-                             : "exactly " + with_unit(expected, unit, 3);
-  row.measured =
-      plain ? fixed(measured, decimals) + suffix : with_unit(measured, unit, slack > 0 ? 6 : 3);
-  return row;
+  if (slack >= 1e-6 && std::abs(measured) < 1e6) {
+    const int decimals = decimals_for(slack);
+    return say(fixed(expected, decimals) + " ± " + fixed(slack, decimals) + unit,
+               fixed(measured, decimals) + unit);
+  }
+  if (slack > 0)
+    return say(significant(expected, 6) + " ± " + significant(slack, 2) + unit,
+               significant(measured, 6) + unit);
+  return say("exactly " + significant(expected, 3) + unit, significant(measured, 3) + unit);
 }
 
 /// What `read` makes of a file; nothing if there is none or another program wrote it. Throws
@@ -79,23 +80,20 @@ std::vector<std::filesystem::path> files_below(const std::filesystem::path& fold
   return files;
 }
 
-RequiredModel required_of(const JsonReader& json) {
-  const auto text = [&](const char* key) { return json.at(key).text(); };
-  return {text("scene"), text("solver"), text("chaotic"), text("answers"),
-          text("drop"),  text("keep"),   text("time"),    text("command")};
-}
-
 }  // namespace
 
-std::vector<RequiredModel> stored_requirements(const std::filesystem::path& results,
-                                               std::string_view program) {
-  std::vector<RequiredModel> all;
+Json stored_requirements(const std::filesystem::path& results, std::string_view program) {
+  Json rows;
   for (const auto& file : files_below(results / "require", "found.json"))
-    if (auto found = read_found(file, "taut-require-1", program, [](const JsonReader& root) {
-          return required_of(root.at("summary"));
+    if (auto row = read_found(file, "taut-require-1", program, [](const JsonReader& root) {
+          const auto text = [&](const char* key) { return root.at("summary").at(key).text(); };
+          const std::string chaotic = text("chaotic");
+          return Json::array({text("scene"), solver_title(solver_name(text("solver"))),
+                              chaotic.empty() ? "no" : chaotic, text("answers"), text("drop"),
+                              text("keep"), text("time")});
         }))
-      all.push_back(std::move(*found));
-  return all;
+      rows.push_back(std::move(*row));
+  return rows;
 }
 
 std::vector<ParameterFrontier> stored_frontiers(const std::filesystem::path& results,
@@ -111,21 +109,26 @@ std::optional<Truths> stored_truths(const std::filesystem::path& results,
                                     std::string_view program) {
   return read_found(results / "verify.json", "taut-truths-2", program, [](const JsonReader& root) {
     Truths truths;
+    int count = 0;
+    std::map<std::string, int> verdicts;
+    Json rows;
     for (const JsonReader& truth : root.at("truths").items()) {
       std::optional<JsonReader> nearest;
-      std::vector<TruthRow> apart;
+      Json apart;
       for (const JsonReader& finding : truth.at("findings").items()) {
         const std::string verdict = finding.at("verdict").text();
-        ++truths.findings, ++truths.verdicts[verdict];
+        ++count, ++verdicts[verdict];
         if (verdict != "passed")
           apart.push_back(row_of(truth, finding));
         else if (!nearest || share_of_tolerance(finding) > share_of_tolerance(*nearest))
           nearest = finding;
       }
-      ++truths.truths;
-      if (nearest) truths.rows.push_back(row_of(truth, *nearest));
-      for (TruthRow& row : apart) truths.rows.push_back(std::move(row));
+      if (nearest) rows.push_back(row_of(truth, *nearest));
+      for (Json& row : apart) rows.push_back(std::move(row));
     }
+    truths.shown = {
+        {"truths", root.at("truths").items().size()}, {"findings", count}, {"verdicts", verdicts}};
+    add_if(truths.shown, "rows", std::move(rows));
     for (const JsonReader& one : root.at("assertions").items())
       truths.assertions[one.at("assertion").text()] = {one.at("verdict").text(),
                                                        one.at("figure").text()};
@@ -133,13 +136,15 @@ std::optional<Truths> stored_truths(const std::filesystem::path& results,
   });
 }
 
-std::optional<Regressions> stored_regressions(const std::filesystem::path& results,
-                                              std::string_view program) {
+std::optional<Json> stored_regressions(const std::filesystem::path& results,
+                                       std::string_view program) {
   return read_found(results / "check.json", "taut-check-1", program, [](const JsonReader& root) {
-    Regressions regressions{root.at("cases").integer(), root.at("values").integer(), {}};
+    Json regressions{{"cases", root.at("cases").integer()},
+                     {"values", root.at("values").integer()}};
     for (const JsonReader& f : root.at("findings").items())
-      regressions.rows.push_back(
-          {f.at("study").text(), f.at("case").text(), f.at("change").text()});
+      regressions["rows"].push_back({{"study", f.at("study").text()},
+                                     {"case", f.at("case").text()},
+                                     {"change", f.at("change").text()}});
     return regressions;
   });
 }

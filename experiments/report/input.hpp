@@ -8,6 +8,7 @@
 
 #include "experiments/case/record.hpp"
 #include "experiments/study/extremes/extremes.hpp"
+#include "experiments/system/json.hpp"
 #include "experiments/timing/study_bench.hpp"
 
 namespace taut::report {
@@ -65,13 +66,6 @@ struct Clip {
   std::vector<Panel> panels;
 };
 
-/// The colour bar of a scene's pictures, which the page draws itself.
-struct ColourBar {
-  std::string title;                                  ///< "mean edge strain ε at each vertex"
-  std::vector<std::string> stops;                     ///< "#B00018", evenly spaced, left to right
-  std::vector<std::pair<double, std::string>> ticks;  ///< place in [0, 1] and label
-};
-
 /// One solver's cloth laid flat at a few moments, in order of time.
 struct MaterialRow {
   struct Still {
@@ -87,9 +81,9 @@ struct MaterialRow {
 struct SceneMedia {
   std::string scene;
   std::vector<Clip> clips{};
-  double duration = 0;  ///< s of simulated time that a video covers
-  double speed = 1;     ///< simulated seconds per second of video
-  ColourBar bar{};
+  double duration = 0;                  ///< s of simulated time that a video covers
+  double speed = 1;                     ///< simulated seconds per second of video
+  Json bar{};                           ///< of the colours, as the model has it; null: none
   std::vector<MaterialRow> material{};  ///< empty for cloth that is no sheet
   double aspect = 1;                    ///< width / height of the cloth laid flat
   std::string summary{};                ///< of a scene that no study ran
@@ -99,43 +93,11 @@ struct SceneMedia {
   std::vector<std::pair<std::string, std::string>> refused{};
 };
 
-/// A closed form or a published number beside what was measured: of each truth the finding that is
-/// nearest to its tolerance, and every finding that did not simply pass.
-struct TruthRow {
-  std::string section;             ///< "One constraint"
-  std::string statement, source;   ///< of the truth
-  std::string subject;             ///< "jakobsen:iterations=4"
-  std::string expected, measured;  ///< with tolerance and unit
-  std::string verdict;             ///< "passed", "deviates", "not applicable", "broken"
-  std::string why;                 ///< what explains a deviation; may be empty
-};
-
 /// What `taut verify` found.
 struct Truths {
-  int truths = 0, findings = 0;
-  std::map<std::string, int> verdicts;  ///< findings by verdict
-  std::vector<TruthRow> rows;
+  Json shown = {};  ///< `truths` of the model (model/MODEL.md)
   /// By assertion of Vasilovici's report: its verdict now, and the number that it rests on.
   std::map<std::string, std::pair<std::string, std::string>> assertions = {};
-};
-
-/// What `taut check` found: how much was compared with the committed baselines and what moved.
-struct Regressions {
-  struct Row {
-    std::string study, id, change;  ///< "stretch.max 0.012 -> 0.013"
-  };
-  int cases = 0, values = 0;
-  std::vector<Row> rows;
-};
-
-/// What `taut require` found of one scene: the smallest model that keeps its answers.
-struct RequiredModel {
-  std::string scene, solver;
-  std::string chaotic;     ///< "after 0.4 s"; "" if it is not
-  std::string answers;     ///< kept
-  std::string drop, keep;  ///< effects that can go, and those that are required
-  std::string time;        ///< of the smallest model's run, of the full one's: "34 %"
-  std::string command;     ///< that runs the smallest model; "": nothing can go
 };
 
 /// Two results folders, of two builds or two machines.
@@ -161,11 +123,11 @@ struct ReportInput {
   std::vector<MapResult> maps;
   std::vector<TimeSeries> series;  ///< over time, for the scene on top and its playhead
   std::vector<SceneMedia> media;
-  std::optional<StudyBench> bench;                ///< what accuracy costs; nullopt: not timed
-  std::optional<Truths> truths;                   ///< nullopt: not run
-  std::optional<Regressions> regressions;         ///< nullopt: not checked
-  std::optional<Differences> differences = {};    ///< nullopt: one folder alone
-  std::vector<RequiredModel> required = {};       ///< of the scenes that were asked about
+  std::optional<StudyBench> bench;              ///< what accuracy costs; nullopt: not timed
+  std::optional<Truths> truths;                 ///< nullopt: not run
+  std::optional<Json> regressions;              ///< of the model; nullopt: not checked
+  std::optional<Differences> differences = {};  ///< nullopt: one folder alone
+  Json required = {};  ///< rows of the model's table; null: no scene was asked about
   std::vector<ParameterFrontier> frontiers = {};  ///< solver by solver, parameter by parameter
   /// Inputs that could not be understood, and why: they are left out and said so.
   std::vector<std::pair<std::string, std::string>> left_out = {};

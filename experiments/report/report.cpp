@@ -14,6 +14,7 @@
 #include "experiments/report/input.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -86,8 +87,8 @@ class Builder {
     add_if(model, "limits", json_of_limits(input_, tables_));
     add_if(model, "tables", std::move(tables_));
     add_if(model, "cost", std::move(cost));
-    add_if(model, "truths", truths());
-    add_if(model, "regressions", regressions());
+    if (input_.truths) add_if(model, "truths", input_.truths->shown);
+    if (input_.regressions) add_if(model, "regressions", *input_.regressions);
     add_if(model, "differences", std::move(differences));
     model["method"] = method();
     add_if(model, "missing", missing());
@@ -128,13 +129,10 @@ class Builder {
   Json solvers() const {
     Json all;
     std::vector<std::string> names;
-    const auto add = [&](const std::string& solver) {
-      if (std::ranges::find(names, solver) == names.end()) names.push_back(solver);
-    };
-    for (const Rival& rival : rivals_.all) add(rival.solver);
-    for (const Record* r : refs_.cases()) add(r->solver);
+    for (const Rival& rival : rivals_.all) add_new(names, rival.solver);
+    for (const Record* r : refs_.cases()) add_new(names, r->solver);
     for (const SceneMedia& media : input_.media)
-      for (const auto& [solver, why] : media.refused) add(solver);
+      for (const auto& [solver, why] : media.refused) add_new(names, solver);
     for (const std::string& solver : names) {
       const SolverStyle style = solver_style(solver);
       Json one{{"id", solver},
@@ -200,10 +198,8 @@ class Builder {
       if (claim.about == name) one["claims"].push_back(claim.id);
     for (const SceneMedia& media : input_.media)
       if (media.scene == name) add_media(one, media);
-    for (Chart& chart : scene_charts(input_, name)) {
-      one["charts"].push_back(chart.id);
-      charts_.push_back(json_of(chart, refs_));
-    }
+    for (const Chart& chart : scene_charts(input_, name))
+      add_by_id(one, "charts", json_of(chart, refs_), charts_);
     if (!one.contains("films")) add_series(one, name);
     std::map<std::string, int> names;
     for (const StatusMap& map : scene_maps(input_, name)) {
@@ -214,21 +210,18 @@ class Builder {
       cells_ -= map.cells.size();
       std::string id = name + "-" + map.study + "-" + map.solver;
       if (const int n = names[id]++; n > 0) id += "-" + std::to_string(n + 1);
-      one["maps"].push_back(id);
-      maps_.push_back(json_of(map, id, refs_));
+      add_by_id(one, "maps", json_of(map, id, refs_), maps_);
     }
-    for (const auto& [solver, cases] : rivals_.by_solver)
-      for (const Record* r : cases)
-        if (r->scene == name) {
-          Json& count = one["statuses"][solver][std::string(to_string(r->status.kind))];
-          count = count.is_null() ? 1 : count.get<int>() + 1;
-        }
-    one["facts"] = facts_of(input_, name);
     std::set<std::pair<std::string, std::string>> refusals;
     for (const auto& [solver, cases] : rivals_.by_solver)
-      for (const Record* r : cases)
-        if (r->scene == name && r->status.kind == Status::Kind::unsupported)
+      for (const Record* r : cases) {
+        if (r->scene != name) continue;
+        Json& count = one["statuses"][solver][std::string(to_string(r->status.kind))];
+        count = count.is_null() ? 1 : count.get<int>() + 1;
+        if (r->status.kind == Status::Kind::unsupported)
           refusals.insert({solver, r->status.reason});
+      }
+    one["facts"] = facts_of(input_, name);
     for (const auto& [solver, reason] : refusals)
       one["refusals"].push_back({{"solver", solver}, {"reason", reason}});
     add_if(one, "resolved_settings", json_of_resolved_settings(quoted, rivals_, refs_));
@@ -252,15 +245,13 @@ class Builder {
         scene["material"] = film["material"];
         film.erase("material");
       }
-      const std::string id = film["id"];
-      scene["films"].push_back(id);
       std::set<std::string>& cases = film_cases_[media.scene];
       for (const Json& panel : film["panels"]) {
         const std::string key = panel.value("case", "");
         cases.insert(key);
-        if (!key.empty()) film_of_.emplace(key, id);
+        if (!key.empty()) film_of_.emplace(key, film["id"].get<std::string>());
       }
-      films_.push_back(std::move(film));
+      add_by_id(scene, "films", std::move(film), films_);
     }
   }
 
@@ -281,8 +272,7 @@ class Builder {
     }
     for (auto& [value, chart] : charts) {
       add_floor(chart);
-      scene["charts"].push_back(chart.id);
-      charts_.push_back(json_of(chart, refs_));
+      add_by_id(scene, "charts", json_of(chart, refs_), charts_);
     }
   }
 
@@ -298,38 +288,11 @@ class Builder {
     for (const std::string& scene : scenes)
       if (const auto film = film_cases_.find(scene); film != film_cases_.end()) {
         filmed = true;
-        if (claim.quoted() && std::ranges::includes(looked_at, film->second) &&
-            !one.contains("film"))
+        if (claim.quotes && std::ranges::includes(looked_at, film->second) && !one.contains("film"))
           one["film"] = "film-" + scene;
       }
     if (filmed && !one.contains("film") && claim.about != "failures")
       one["film_note"] = "The films show " + rivals_.work_text() + ".";
-    return one;
-  }
-
-  Json truths() const {
-    if (!input_.truths) return {};
-    const Truths& t = *input_.truths;
-    Json one{{"truths", t.truths}, {"findings", t.findings}, {"verdicts", t.verdicts}};
-    for (const TruthRow& row : t.rows) {
-      Json at{{"section", row.section},
-              {"statement", typeset(row.statement)},
-              {"source", typeset(row.source)},
-              {"subject", row.subject},
-              {"expected", typeset(row.expected)},
-              {"measured", typeset(row.measured)},
-              {"verdict", row.verdict}};
-      add_if(at, "why", typeset(row.why));
-      one["rows"].push_back(std::move(at));
-    }
-    return one;
-  }
-
-  Json regressions() const {
-    if (!input_.regressions) return {};
-    Json one{{"cases", input_.regressions->cases}, {"values", input_.regressions->values}};
-    for (const auto& [study, id, change] : input_.regressions->rows)
-      one["rows"].push_back({{"study", study}, {"case", id}, {"change", change}});
     return one;
   }
 
@@ -368,7 +331,7 @@ class Builder {
           "taut render " + rivals_.scenes.front().question.scene + " --video");
     if (!input_.truths)
       add("truths", "Closed forms and published numbers were not evaluated by this build.",
-          "taut verify --out results/runs/verify.json");
+          "taut verify -o results/runs/verify.json");
     if (!input_.regressions)
       add("regressions", "Not compared with the committed baselines by this build.",
           "taut check --record");

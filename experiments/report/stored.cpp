@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
@@ -128,7 +129,7 @@ template <class T, class RecordOf>
 std::map<std::string, T*> by_question(std::vector<T>& all, const Names& known, RecordOf record_of) {
   std::map<std::string, T*> index;
   for (T& one : all) {
-    const Record& r = record_of(one);
+    const Record& r = std::invoke(record_of, one);
     std::string name = r.scene + "\n" + r.solver;
     for (const std::string& text : r.spec.overrides) name += "\n" + text;
     const auto names = known.find(r.solver);
@@ -169,19 +170,18 @@ Differences stored_differences(const Store& a, const Store& b) {
     std::erase_if(own, [&, &solver = solver](const std::string& name) {
       return !other.contains(solver) || !other.at(solver).contains(name);
     });
-  const auto itself = [](const Record& r) -> const Record& { return r; };
+  const std::identity itself;
   const auto of_a = by_question(in_a, names, itself), of_b = by_question(in_b, names, itself);
   for (const auto& [name, record] : of_a)
     if (const auto at = of_b.find(name); record && at != of_b.end() && at->second)
       found.pairs.emplace_back(std::move(*record), std::move(*at->second));
   found.only_a = in_a.size() - found.pairs.size(), found.only_b = in_b.size() - found.pairs.size();
   auto timed_a = all_timed(a, found.noise), timed_b = all_timed(b, found.noise);
-  const auto its_record = [](const BenchedCase& c) -> const Record& { return c.record; };
   for (auto& [host, in_b_here] : timed_b) {
     const auto same = timed_a.find(host);
     if (same == timed_a.end()) continue;  // times of two hosts are not compared
-    const auto costs = by_question(in_b_here, names, its_record);
-    for (const auto& [name, one] : by_question(same->second, names, its_record))
+    const auto costs = by_question(in_b_here, names, &BenchedCase::record);
+    for (const auto& [name, one] : by_question(same->second, names, &BenchedCase::record))
       if (const auto at = costs.find(name); one && at != costs.end() && at->second)
         found.timed.emplace_back(*one, *at->second);
   }
@@ -192,9 +192,7 @@ ReportInput stored_anywhere(const std::vector<Study>& studies, const Store& stor
   ReportInput input;
   const std::vector<Record> all = all_records(store);
   const auto name_of = [](const CaseSpec& spec) {
-    std::string name = spec.scene + "\n" + spec.solver;
-    for (const std::string& text : spec.overrides) name += "\n" + text;
-    return name;
+    return spec.scene + "\n" + spec.solver + "\n" + join(spec.overrides, "\n");
   };
   std::map<std::string, const Record*> by_name;
   for (const Record& r : all) by_name[name_of(r.spec)] = &r;
@@ -223,8 +221,8 @@ std::optional<double> theory_slope(const Scene& scene) {
 namespace {
 
 /// Calls `visit` for each case of the plan with its record, if the store has one.
-void each_record(const Study& study, const Store& store,
-                 const std::function<void(const Case&, std::optional<Record>)>& visit) {
+template <class Visit>
+void each_record(const Study& study, const Store& store, const Visit& visit) {
   each_case(study, [&](Case&& one) {
     std::optional<Record> record = store.find(one);
     if (record) record = slim(std::move(*record));
@@ -258,12 +256,11 @@ std::vector<TimeSeries> stored_series(const Records& records, const std::string&
   std::vector<TimeSeries> all;
   const SettingLabels labels(records);
   for (const Record* r : records) {
-    const Record& record = *r;
-    const std::string setting = labels.of(record);
-    const std::string label = solver_title(record.solver) + (setting.empty() ? "" : " " + setting);
-    TimeSeries series = column(
-        store.series(record.key),
-        {record.scene, record.solver, label, value, {}, {}, record.key, strain_floor(record)});
+    const std::string setting = labels.of(*r);
+    const std::string label = solver_title(r->solver) + (setting.empty() ? "" : " " + setting);
+    TimeSeries series =
+        column(store.series(r->key),
+               {r->scene, r->solver, label, value, {}, {}, r->key, strain_floor(*r)});
     if (series.t.size() > 1) all.push_back(std::move(series));
   }
   return all;

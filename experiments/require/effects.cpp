@@ -10,20 +10,15 @@ namespace {
 
 constexpr int kFewest = 4;  ///< vertices along a side that a coarser grid keeps at least
 
-/// Collects effects; those without a reduction are left out.
-class Effects {
- public:
-  void add(const std::string& name, std::vector<Reduction> reductions) {
-    if (!reductions.empty()) all_.push_back({name, std::move(reductions)});
-  }
-  void gone(const std::string& name, std::function<void(Draft&)> apply) {
-    add(name, {{"gone", std::move(apply)}});
-  }
-  std::vector<Effect> take() { return std::move(all_); }
+using Effects = std::vector<Effect>;
 
- private:
-  std::vector<Effect> all_;
-};
+/// One without a reduction is none.
+void add(Effects& effects, const std::string& name, std::vector<Reduction> reductions) {
+  if (!reductions.empty()) effects.push_back({name, std::move(reductions)});
+}
+void gone(Effects& effects, const std::string& name, std::function<void(Draft&)> apply) {
+  add(effects, name, {{"gone", std::move(apply)}});
+}
 
 bool has_family(const Scene& scene, Family family) {
   return std::ranges::any_of(scene.links, [&](const Link& l) { return l.family == family; });
@@ -34,36 +29,36 @@ void add_links_and_forces(const Case& one, Effects& effects) {
   const auto no_links = [](const char* family) {
     return [family](Draft& draft) { draft.set("links", family, "false"); };
   };
-  if (has_family(scene, Family::bend)) effects.gone("bend links", no_links("bend"));
-  if (has_family(scene, Family::shear)) effects.gone("shear links", no_links("shear"));
+  if (has_family(scene, Family::bend)) gone(effects, "bend links", no_links("bend"));
+  if (has_family(scene, Family::shear)) gone(effects, "shear links", no_links("shear"));
   if (scene.wind) {
-    effects.gone("wind", [](Draft& draft) { draft.remove("wind"); });
+    gone(effects, "wind", [](Draft& draft) { draft.remove("wind"); });
     if (scene.wind->law == Wind::Law::relative)
-      effects.add("law of the wind", {{"relative -> literal", [](Draft& draft) {
-                                         if (draft.has("wind"))
-                                           draft.set("wind", "law", "'literal'");
-                                       }}});
+      add(effects, "law of the wind", {{"relative -> literal", [](Draft& draft) {
+                                          if (draft.has("wind"))
+                                            draft.set("wind", "law", "'literal'");
+                                        }}});
   }
   if (scene.damping > 0)
-    effects.gone("damping", [](Draft& draft) { draft.remove("forces", "damping"); });
+    gone(effects, "damping", [](Draft& draft) { draft.remove("forces", "damping"); });
 }
 
 void add_contact(const Case& one, Effects& effects) {
   const Scene& scene = *one.scene;
   if (std::ranges::any_of(scene.colliders, [](const Collider& c) { return c.friction > 0; }))
-    effects.gone("friction", [](Draft& draft) {
+    gone(effects, "friction", [](Draft& draft) {
       for (Value& collider : *draft.tables("collider")) erase_key(collider, "friction");
     });
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const std::string number =
         scene.colliders.size() > 1 ? " " + std::to_string(k + 1) : std::string();
-    effects.gone(std::string(type_name(scene.colliders[k].shape)) + number,
-                 [k](Draft& draft) { (*draft.tables("collider"))[k] = Value{}; });
+    gone(effects, std::string(type_name(scene.colliders[k].shape)) + number,
+         [k](Draft& draft) { (*draft.tables("collider"))[k] = Value{}; });
   }
   if (scene.self_collision)
-    effects.gone("self-collision", [](Draft& draft) { draft.remove("self_collision"); });
+    gone(effects, "self-collision", [](Draft& draft) { draft.remove("self_collision"); });
   if (scene.thickness > 0 && !scene.colliders.empty())
-    effects.gone("thickness", [](Draft& draft) { draft.remove("cloth", "thickness"); });
+    gone(effects, "thickness", [](Draft& draft) { draft.remove("cloth", "thickness"); });
 }
 
 /// A choice with its cheaper value; a whole number is halved until it is 1.
@@ -73,16 +68,16 @@ void add_parameter(const Case& one, Effects& effects, const OptionalEffect& effe
   if (spec == one.choice.entry->params.end()) return;
   const std::string from(one.choice.params.value(parameter));
   std::vector<Reduction> reductions;
-  const auto add = [&](const std::string& value) {
+  const auto reduce_to = [&](const std::string& value) {
     reductions.push_back({from + " -> " + value, [parameter, value](Draft& draft) {
                             draft.set_parameter(parameter, value);
                           }});
   };
   if (spec->kind == ParamSpec::Kind::integer)
-    for (int n = std::stoi(from); n > 1;) add(std::to_string(n = (n + 1) / 2));
+    for (int n = std::stoi(from); n > 1;) reduce_to(std::to_string(n = (n + 1) / 2));
   else if (from == effect.from)
-    add(to);
-  effects.add(std::string(effect.name), std::move(reductions));
+    reduce_to(to);
+  add(effects, std::string(effect.name), std::move(reductions));
 }
 
 void add_sizes(const Case& one, Effects& effects) {
@@ -100,7 +95,7 @@ void add_sizes(const Case& one, Effects& effects) {
                            draft.set("cloth", "grid",
                                      "[" + std::to_string(nu) + ", " + std::to_string(nv) + "]");
                          }});
-    effects.add("resolution", std::move(coarser));
+    add(effects, "resolution", std::move(coarser));
   }
   std::vector<Reduction> shorter;
   for (const int part : {2, 4, 8}) {
@@ -109,7 +104,7 @@ void add_sizes(const Case& one, Effects& effects) {
     shorter.push_back({shortest(scene.duration()) + " s -> " + shortest(seconds) + " s",
                        [=](Draft& draft) { draft.set("time", "duration", shortest(seconds)); }});
   }
-  effects.add("duration", std::move(shorter));
+  add(effects, "duration", std::move(shorter));
 }
 
 }  // namespace
@@ -125,7 +120,7 @@ std::vector<Effect> effects_of(const Case& one) {
   add_parameter(one, effects, {"sweeps", solver.accuracy.sweeps});
   add_parameter(one, effects, {"precision", "precision", "double", "float"});
   add_sizes(one, effects);
-  return effects.take();
+  return effects;
 }
 
 }  // namespace taut

@@ -330,8 +330,7 @@ class Search {
         continue;
       }
       const double longer = static_cast<double>(cases[i].steps) / cases[0].steps;
-      const Interval ratio = bench.ratio(i, 0);
-      *wanted[i] = Interval{ratio.low * longer, ratio.mid * longer, ratio.high * longer};
+      *wanted[i] = bench.ratio(i, 0) * longer;
     }
   }
 

@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <deque>
 #include <list>
 #include <thread>
 
@@ -70,9 +71,8 @@ class Campaign {
         waiting_.push_back(&one);
       }
     }
-    waiting_.sort([](const Case* a, const Case* b) {
-      const double wa = estimated_work(*a), wb = estimated_work(*b);
-      return wa != wb ? wa > wb : a->key < b->key;
+    std::ranges::sort(waiting_, {}, [](const Case* one) {
+      return std::pair(-estimated_work(*one), std::string_view(one->key));
     });
     report(nullptr);
   }
@@ -110,7 +110,7 @@ class Campaign {
   const Store& store_;
   const Session& session_;
   const CampaignOptions& options_;
-  std::list<const Case*> waiting_;
+  std::deque<const Case*> waiting_;
   std::list<IsolatedCase> running_;
   CampaignProgress progress_;
 };

@@ -1,5 +1,6 @@
 // From a study to its cases.
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "core/model/input_error.hpp"
@@ -25,8 +26,7 @@ void combinations(const std::vector<StudyAxis>& axes,
 
 std::vector<StudyAxis> scene_axes(const Study& study) {
   std::vector<StudyAxis> chosen;
-  for (const StudyAxis& axis : study.axes)
-    if (axis.of_scene()) chosen.push_back(axis);
+  std::ranges::copy_if(study.axes, std::back_inserter(chosen), &StudyAxis::of_scene);
   return chosen;
 }
 
@@ -38,9 +38,7 @@ std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) 
       param_items(colon == text.npos ? "" : std::string_view(text).substr(colon + 1));
   std::vector<StudyAxis> chosen;
   for (const StudyAxis& axis : study.axes) {
-    const auto specs = choice.entry->params;
-    const bool has = std::any_of(specs.begin(), specs.end(),
-                                 [&](const ParamSpec& spec) { return spec.name == axis.name; });
+    const bool has = std::ranges::count(choice.entry->params, axis.name, &ParamSpec::name) > 0;
     const bool fixed = std::ranges::find(given, axis.name, &ParamItem::key) != given.end();
     if (has && !fixed) chosen.push_back(axis);
   }
@@ -69,16 +67,12 @@ void require_few(const Study& study) {
 }
 
 bool excluded(const Study& study, const Settings& settings) {
-  const auto matches = [&](const Exclusion& exclusion) {
-    for (const auto& [name, values] : exclusion.when) {
-      const auto setting = settings.find(name);
-      if (setting == settings.end() ||
-          std::find(values.begin(), values.end(), setting->second) == values.end())
-        return false;
-    }
-    return true;
+  const auto has = [&](const auto& named) {
+    const auto setting = settings.find(named.first);
+    return setting != settings.end() && std::ranges::count(named.second, setting->second) > 0;
   };
-  return std::any_of(study.exclusions.begin(), study.exclusions.end(), matches);
+  return std::ranges::any_of(
+      study.exclusions, [&](const Exclusion& one) { return std::ranges::all_of(one.when, has); });
 }
 
 CaseSpec spec_of(const Study& study, const std::string& scene, const std::string& solver,

@@ -2,21 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <sstream>
+#include <iterator>
 
 #include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/reference/linear_stability.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
 namespace {
 
-/// Values looked at between the bracket and the coarse value above it.
+/// Values looked at between the bracket and the next value tried above it.
 constexpr int kLooksAbove = 4;
 
 class BorderSearch {
@@ -40,9 +40,7 @@ class BorderSearch {
     if (range_.whole) return std::round(value);
     const int digits =
         std::clamp(3 - static_cast<int>(std::floor(std::log10(range_.tolerance))), 3, 17);
-    char text[40];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return std::strtod(text, nullptr);
+    return std::strtod(formatted("%.*g", digits, value).c_str(), nullptr);
   }
 
   std::vector<double> coarse_values() const {
@@ -64,27 +62,20 @@ class BorderSearch {
       result_.probes.push_back({one, values[i]});
       all = all && (one.status.kind != Status::Kind::unsupported || !one.symptom.empty());
     }
-    std::sort(result_.probes.begin(), result_.probes.end(),
-              [](const Probed& a, const Probed& b) { return a.value < b.value; });
+    std::ranges::sort(result_.probes, {}, &Probed::value);
     if (!all) result_.kind = Frontier::Kind::not_answered;
     return all;
   }
 
   void bracket() {
-    const Probed* below = nullptr;
-    const Probed* first = nullptr;
-    for (const Probed& probe : result_.probes) {
-      if (!probe.known()) continue;
-      if (!probe.stable()) {
-        first = &probe;
-        break;
-      }
-      below = &probe;
-    }
-    if (!first && !below) return;
-    if (first) result_.unstable = first->value;
-    if (below) result_.stable = below->value;
-    result_.kind = !first   ? Frontier::Kind::all_stable
+    std::vector<Probed> known;
+    std::ranges::copy_if(result_.probes, std::back_inserter(known), &Probed::known);
+    if (known.empty()) return;
+    const auto first = std::ranges::find(known, false, &Probed::stable);
+    const bool any = first != known.end(), below = first != known.begin();
+    if (any) result_.unstable = first->value;
+    if (below) result_.stable = std::prev(first)->value;
+    result_.kind = !any     ? Frontier::Kind::all_stable
                    : !below ? Frontier::Kind::none_stable
                             : Frontier::Kind::bracketed;
     if (result_.kind == Frontier::Kind::bracketed) halve();
@@ -146,9 +137,8 @@ std::string_view to_string(Frontier::Kind kind) {
 }
 
 const Probed* Frontier::at(double value) const {
-  for (const Probed& probe : probes)
-    if (probe.value == value) return &probe;
-  return nullptr;
+  const auto found = std::ranges::find(probes, value, &Probed::value);
+  return found == probes.end() ? nullptr : &*found;
 }
 
 Frontier find_frontier(const SearchRange& range, const Trial& trial) {
@@ -177,9 +167,8 @@ void set_override(std::vector<std::string>& overrides, const std::string& assign
 double FrontierQuestion::setting(double value) const {
   if (direction == Direction::up) return value;
   if (direction == Direction::down_in_whole_numbers) return std::round(1 / value);
-  char text[32];  // six digits are more than a bracket has
-  std::snprintf(text, sizeof text, "%.6g", 1 / value);
-  return std::strtod(text, nullptr);
+  // Six digits are more than a bracket has.
+  return std::strtod(formatted("%.6g", 1 / value).c_str(), nullptr);
 }
 
 CaseSpec FrontierQuestion::at(double value) const {
@@ -242,8 +231,7 @@ CaseFrontier find_frontier(const FrontierQuestion& question, const Store& store,
     }
     return outcomes;
   });
-  std::sort(seen.begin(), seen.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::sort(seen, {}, [](const auto& one) { return one.first; });
   for (auto& [value, record] : seen) result.records.push_back(std::move(record));
   return result;
 }

@@ -60,7 +60,7 @@ std::string_view to_string(Frontier::Kind);
 using Trial = std::function<std::vector<Outcome>(const std::vector<double>&)>;
 
 /// Tries the coarse values, halves the first interval whose ends differ until it is narrow, then
-/// looks between `unstable` and the next coarse value for stable values that monotony would rule
+/// looks between `unstable` and the next value tried for stable values that monotony would rule
 /// out. Values without an answer are passed over.
 Frontier find_frontier(const SearchRange&, const Trial&);
 

@@ -9,21 +9,10 @@ MainJob main_job() {
   const Document document = read_document(data_folder() / "main-job.toml", {});
   Diagnostics diagnostics(document);
   Section section(diagnostics, document.root, "the main job");
+  section.need({"preset", "studies", "maps", "bench"});
+  const auto text = [&](const char* key) { return section.string(key).value_or(""); };
   const auto names = [&](const char* key) {
-    std::vector<std::string> all;
-    const Value* list = section.find(key);
-    if (!list || !list->is_array()) return section.missing(key), all;
-    for (const Value& item : list->items)
-      if (item.is_string())
-        all.push_back(item.string);
-      else
-        diagnostics.report(item.place, "expected the name of a study");
-    return all;
-  };
-  const auto text = [&](const char* key) {
-    const auto value = section.string(key);
-    if (!value) section.missing(key);
-    return value.value_or("");
+    return section.strings(key).value_or(std::vector<std::string>());
   };
   MainJob job{text("preset"), names("studies"), names("maps"), text("bench")};
   section.finish();

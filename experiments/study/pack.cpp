@@ -29,9 +29,7 @@ Header header_of(const std::string& line, const fs::path& pack) {
   return read_json(line, pack.string(), [](const JsonReader& j) {
     Header header{j.at("key").text(), j.at("result").text(), false, {}, 0};
     if (!is_key(header.key)) j.at("key").fail("expected 64 hexadecimal digits");
-    const std::string status = j.at("status").text();
-    if (!is_status(status)) j.at("status").fail("unknown status '" + status + "'");
-    header.is_result = Status{status_kind(status), {}, -1, -1}.is_result();
+    header.is_result = Status{status_of(j.at("status")), {}, -1, -1}.is_result();
     for (const auto& [part, size] : j.at("sizes").members()) {
       header.sizes.emplace_back(part, size.count());
       if (header.sizes.back().second > kMostBytes) size.fail("expected at most 1 GiB");
@@ -108,25 +106,30 @@ PackIndex PackIndex::of(const fs::path& root) {
   return index;
 }
 
-PackedEntry::PackedEntry(const fs::path& pack, std::uint64_t offset) : pack_(pack) {
-  std::ifstream in(pack, std::ios::binary);
+StoredEntry::StoredEntry(fs::path pack, std::uint64_t offset) : place_(std::move(pack)) {
+  std::ifstream in(place_, std::ios::binary);
   in.seekg(static_cast<std::streamoff>(offset));
-  if (!std::getline(in, seal)) throw InputError(pack.string() + ": cannot read");
-  std::uint64_t at = offset + seal.size() + 1;
-  for (const auto& [part, size] : header_of(seal, pack).sizes) {
+  if (!std::getline(in, seal_)) throw InputError(place_.string() + ": cannot read");
+  std::uint64_t at = offset + seal_.size() + 1;
+  for (const auto& [part, size] : header_of(seal_, place_).sizes) {
     parts_[part] = {at, size};
     at += size;
   }
 }
 
-std::string PackedEntry::part(const std::string& name) const {
+std::string StoredEntry::seal() const {
+  return seal_.empty() ? read_text(place_ / "status.json") : seal_;
+}
+
+std::string StoredEntry::part(const std::string& name) const {
+  if (seal_.empty()) return fs::exists(place_ / name) ? read_text(place_ / name) : "";
   const auto at = parts_.find(name);
   if (at == parts_.end()) return {};
   std::string text(at->second.second, '\0');
-  std::ifstream in(pack_, std::ios::binary);
+  std::ifstream in(place_, std::ios::binary);
   in.seekg(static_cast<std::streamoff>(at->second.first));
   if (!in.read(text.data(), static_cast<std::streamsize>(text.size())))
-    throw InputError(pack_.string() + ": " + name + " is cut off");
+    throw InputError(place_.string() + ": " + name + " is cut off");
   return text;
 }
 

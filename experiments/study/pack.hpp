@@ -49,16 +49,19 @@ struct PackIndex {
   static PackIndex of(const std::filesystem::path& root);
 };
 
-/// One entry of a pack file. Throws InputError if it is not there whole.
-struct PackedEntry {
-  PackedEntry(const std::filesystem::path& pack, std::uint64_t offset);
+/// An entry that is there: in a folder, its seal and its parts a file each, or in a pack file.
+class StoredEntry {
+ public:
+  explicit StoredEntry(std::filesystem::path folder) : place_(std::move(folder)) {}
+  /// Throws InputError if it is not there whole.
+  StoredEntry(std::filesystem::path pack, std::uint64_t offset);
+  std::string seal() const;                         ///< throws InputError: it cannot be read
   std::string part(const std::string& name) const;  ///< "" if it has none of that name
 
-  std::string seal;
-
  private:
-  std::filesystem::path pack_;
-  std::map<std::string, std::pair<std::uint64_t, std::size_t>> parts_;  ///< offset and size
+  std::filesystem::path place_;
+  std::string seal_;                                                    ///< in a pack file
+  std::map<std::string, std::pair<std::uint64_t, std::size_t>> parts_;  ///< there: offset and size
 };
 
 }  // namespace taut

@@ -40,19 +40,28 @@ Json seal_of(const EntryParts& parts, const Record& record) {
 }
 
 /// The record of an entry; throws if a part is not what its seal says.
-Record open_entry(const std::string& sealed, const std::string& key,
-                  const std::function<std::string(const std::string&)>& read) {
-  read_json(sealed, "status.json", [&](const JsonReader& seal) {
+Record open_entry(const StoredEntry& entry, const std::string& key) {
+  read_json(entry.seal(), "status.json", [&](const JsonReader& seal) {
     for (const auto& [part, digest] : seal.at("files").members()) {
       if (std::ranges::find(kParts, part) == kParts.end()) digest.fail("is no part of an entry");
-      if (sha256(read(part)) != digest.text())
+      if (sha256(entry.part(part)) != digest.text())
         throw InputError(part + " does not match its digest");
     }
     if (seal.at("key").text() != key) throw InputError("it belongs to another key");
   });
-  Record record = record_from_json(read("case.json"), "case.json");
+  Record record = record_from_json(entry.part("case.json"), "case.json");
   if (record.key != key) throw InputError("it belongs to another key");
   return record;
+}
+
+/// What becomes of a record beside the one that is there, if any.
+Store::Commit beside(const std::optional<Record>& old, const Record& record, bool adds_frames) {
+  using Commit = Store::Commit;
+  if (!old) return Commit::stored;
+  if (result_digest(*old) == result_digest(record))
+    return adds_frames ? Commit::stored : Commit::same;
+  if (!old->status.is_result()) return Commit::stored;
+  return record.status.is_result() ? Commit::conflict : Commit::same;
 }
 
 /// A leftover of a process of this host that no longer exists: "<key>.<host>.<pid>.<rand>".
@@ -103,38 +112,26 @@ void Store::flush() const {
   if (packs().writer) packs().writer->flush();
 }
 
+const PackIndex::Place* Store::packed(const std::string& key) const {
+  const auto at = packs().index.places.find(key);
+  if (at == packs().index.places.end()) return nullptr;
+  return at->second.result || !fs::exists(folder(key)) ? &at->second : nullptr;
+}
+
+std::optional<StoredEntry> Store::entry(const std::string& key) const {
+  if (const PackIndex::Place* place = packed(key))
+    return StoredEntry(packs().index.packs[place->pack], place->offset);
+  if (fs::exists(folder(key))) return StoredEntry(folder(key));
+  return {};
+}
+
 std::optional<Record> Store::find(const std::string& key) const {
-  std::optional<Record> loose = find_loose(key);
-  if (loose && loose->status.is_result()) return loose;
-  std::optional<Record> packed = find_packed(key);
-  return packed && (!loose || packed->status.is_result()) ? packed : loose;
-}
-
-std::optional<Record> Store::find_loose(const std::string& key) const {
-  if (!fs::exists(folder(key))) return {};
-  try {
-    return open_entry(read_text(folder(key) / "status.json"), key,
-                      [&](const std::string& part) { return read_text(folder(key) / part); });
-  } catch (const std::exception& error) {
-    set_aside(key, error.what());
-    return {};
-  }
-}
-
-std::optional<Record> Store::find_packed(const std::string& key) const {
-  const PackIndex& index = packs().index;
-  const auto at = index.places.find(key);
-  if (at == index.places.end()) return {};
-  const fs::path& file = index.packs[at->second.pack];
-  try {
-    const PackedEntry entry(file, at->second.offset);
-    return open_entry(entry.seal, key, [&](const std::string& part) { return entry.part(part); });
-  } catch (const std::exception& error) {
-    notice_(file.string() + ": corrupt entry at byte " + std::to_string(at->second.offset) + " (" +
-            error.what() + "), ignored");
-    packs().index.places.erase(key);
-    return {};
-  }
+  for (;;) try {
+      const std::optional<StoredEntry> found = entry(key);
+      return found ? std::optional(open_entry(*found, key)) : std::nullopt;
+    } catch (const std::exception& error) {
+      if (!set_aside(key, error.what())) return {};
+    }
 }
 
 std::optional<Record> Store::find(const Case& one) const {
@@ -143,33 +140,33 @@ std::optional<Record> Store::find(const Case& one) const {
   return record;
 }
 
-void Store::set_aside(const std::string& key, const std::string& why) const {
+bool Store::set_aside(const std::string& key, const std::string& why) const {
+  if (const PackIndex::Place* place = packed(key)) {
+    notice_(packs().index.packs[place->pack].string() + ": corrupt entry at byte " +
+            std::to_string(place->offset) + " (" + why + "), ignored");
+    packs().index.places.erase(key);
+    return true;
+  }
   const fs::path place = root_ / "corrupt" / (key + "." + unique_suffix());
   std::error_code error;
   fs::create_directories(place.parent_path(), error);
   if (!error) fs::rename(folder(key), place, error);
   notice_(folder(key).string() + ": corrupt entry (" + why + "), " +
           (error ? "ignored: " + error.message() : "set aside as " + place.string()));
+  return !error;
 }
 
 Series Store::series(const std::string& key) const {
-  const std::string text = part(key, "series.csv");
+  const std::optional<StoredEntry> found = entry(key);
+  const std::string text = found ? found->part("series.csv") : "";
   return text.empty() ? Series{} : series_from_csv(text);
-}
-
-std::string Store::part(const std::string& key, const std::string& name) const {
-  const PackIndex& index = packs().index;
-  const auto at = index.places.find(key);
-  const fs::path loose = folder(key);
-  if (at != index.places.end() && (at->second.result || !fs::exists(loose)))
-    return PackedEntry(index.packs[at->second.pack], at->second.offset).part(name);
-  return fs::exists(loose / name) ? read_text(loose / name) : "";
 }
 
 EntryParts Store::parts(const std::string& key) const {
   EntryParts parts;
-  for (const char* name : kParts)
-    if (std::string text = part(key, name); !text.empty()) parts[name] = std::move(text);
+  if (const std::optional<StoredEntry> found = entry(key))
+    for (const char* name : kParts)
+      if (std::string text = found->part(name); !text.empty()) parts[name] = std::move(text);
   return parts;
 }
 
@@ -196,23 +193,22 @@ fs::path Store::stage(const std::string& key) const {
 }
 
 Store::Commit Store::commit(EntryParts parts, const Record& record) const {
-  const std::optional<Record> old = find(record.key);
-  if (old && result_digest(*old) == result_digest(record)) return Commit::same;
-  if (old && old->status.is_result() && !record.status.is_result()) return Commit::same;
+  const Commit done = beside(find(record.key), record, false);
+  if (done == Commit::same) return done;
   parts["case.json"] = to_json(record, 1) + "\n";
   const std::string seal = to_text(seal_of(parts, record));
-  if (old && old->status.is_result()) {
+  if (done == Commit::conflict) {
     const fs::path place = root_ / "conflicts" / (record.key + "." + unique_suffix());
     make_folder(place);
     for (const auto& [part, text] : parts) write_durably(place / part, text);
     write_durably(place / "status.json", seal + "\n");
-    return Commit::conflict;
+    return done;
   }
   Packs& into = packs();
   const auto pack = static_cast<std::uint32_t>(into.index.packs.size() - 1);
   const std::uint64_t offset = into.writer->append(seal, parts);
   into.index.places[record.key] = {pack, record.status.is_result(), offset};
-  return Commit::stored;
+  return done;
 }
 
 Store::Commit Store::commit(const fs::path& staged, const Record& record) const {
@@ -228,32 +224,27 @@ Store::Commit Store::commit(const fs::path& staged, const Record& record) const 
   write_durably(staged / "case.json", to_json(record, 1) + "\n");
   write_durably(staged / "status.json", to_text(seal_of(parts_in(staged), record), 1) + "\n");
   sync_folder(staged);
-  const fs::path target = folder(record.key);
-  make_folder(target.parent_path());
+  fs::path target;
   // Another process may commit the same case at any moment: then this one looks again.
   for (int attempt = 0; attempt < 100; ++attempt) {
-    if (const std::optional<Record> old = find(record.key)) {
-      const bool same = result_digest(*old) == result_digest(record);
-      const bool adds_frames = same && fs::exists(staged / kFramesFile) && !has_frames(record.key);
-      if ((same && !adds_frames) || (old->status.is_result() && !record.status.is_result())) {
-        fs::remove_all(staged, error);
-        return Commit::same;
-      }
-      if (old->status.is_result() && !same) {
-        const fs::path place = root_ / "conflicts" / (record.key + "." + unique_suffix());
-        make_folder(place.parent_path());
-        fs::rename(staged, place, error);
-        if (error) throw InputError(place.string() + ": cannot create: " + error.message());
-        return Commit::conflict;
-      }
-      fs::rename(target, staged.string() + ".replaced", error);
+    const std::optional<Record> old = find(record.key);
+    const bool adds_frames = fs::exists(staged / kFramesFile) && !has_frames(record.key);
+    const Commit done = beside(old, record, adds_frames);
+    if (done == Commit::same) {
+      fs::remove_all(staged, error);
+      return done;
     }
+    const bool conflict = done == Commit::conflict;
+    target =
+        conflict ? root_ / "conflicts" / (record.key + "." + unique_suffix()) : folder(record.key);
+    make_folder(target.parent_path());
+    if (old && !conflict) fs::rename(target, staged.string() + ".replaced", error);
     fs::rename(staged, target, error);
     std::error_code ignored;
     fs::remove_all(staged.string() + ".replaced", ignored);
     if (!error) {
       sync_folder(target.parent_path());
-      return Commit::stored;
+      return done;
     }
     if (error != std::errc::directory_not_empty && error != std::errc::file_exists) break;
   }

@@ -88,10 +88,11 @@ class Store {
  private:
   struct Packs;
   Packs& packs() const;  ///< read when they are first asked for
-  std::optional<Record> find_loose(const std::string& key) const;
-  std::optional<Record> find_packed(const std::string& key) const;
-  std::string part(const std::string& key, const std::string& name) const;
-  void set_aside(const std::string& key, const std::string& why) const;
+  /// Where the entry is in a pack file; nullptr: it is in its folder, or there is none.
+  const PackIndex::Place* packed(const std::string& key) const;
+  std::optional<StoredEntry> entry(const std::string& key) const;
+  /// Takes the damaged entry away; false if it cannot be.
+  bool set_aside(const std::string& key, const std::string& why) const;
   std::filesystem::path root_;
   Notice notice_;
   mutable std::shared_ptr<Packs> packs_;

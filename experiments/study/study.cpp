@@ -38,7 +38,7 @@ std::string text_of(const Value& value, bool toml) {
   }
 }
 
-/// Every solver of the study that has the parameter; with `whole`, only if it is a whole number.
+/// Whether any of the solvers has the parameter; with `whole`, as a whole number.
 bool has_param(const std::vector<SolverChoice>& solvers, const std::string& name, bool whole) {
   for (const SolverChoice& choice : solvers)
     for (const ParamSpec& spec : choice.entry->params)
@@ -92,7 +92,7 @@ class StudyReader {
     const Value* list = section.find(key);
     if (!list) return false;
     if (!list->is_array() || list->items.empty()) {
-      section.report(key, "'" + key + "' must be a list of texts, not " + describe(*list));
+      section.report(key, "must be a list of texts, not " + describe(*list));
       return false;
     }
     into.clear();
@@ -214,7 +214,7 @@ class StudyReader {
 
   void read_exclusions(Section& section, const Value& list) {
     study_.exclusions.clear();
-    if (!list.is_array()) section.report("exclude", "'exclude' must be a list of tables");
+    if (!list.is_array()) section.report("exclude", "must be a list of tables");
     for (const Value& item : list.items) {
       Exclusion exclusion;
       for (std::size_t i = 0; i < item.items.size() && item.is_table(); ++i) {

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "core/model/input_error.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -53,9 +54,7 @@ class File {
 };
 
 std::string random_digits() {
-  char digits[16];
-  std::snprintf(digits, sizeof digits, "%08x", static_cast<unsigned>(std::random_device{}()));
-  return digits;
+  return formatted("%08x", static_cast<unsigned>(std::random_device{}()));
 }
 
 void replace_file(const fs::path& path, std::string_view bytes, bool durable) {

@@ -1,6 +1,7 @@
 #include "experiments/system/json.hpp"
 
 #include <cmath>
+#include <iostream>
 
 #include "core/model/input_error.hpp"
 
@@ -9,6 +10,8 @@ namespace taut {
 std::string to_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
+
+void print_json(const Json& json, int indent) { std::cout << to_text(json, indent) << '\n'; }
 
 Json parse_json(std::string_view text) { return Json::parse(text); }
 
@@ -115,6 +118,13 @@ std::vector<double> JsonReader::numbers() const {
   std::vector<double> all;
   for (const JsonReader& item : items()) all.push_back(item.number());
   return all;
+}
+
+void read_into(const JsonReader& json, std::string& text) { text = json.text(); }
+void read_into(const JsonReader& json, bool& flag) { flag = json.flag(); }
+void read_into(const JsonReader& json, std::size_t& count) { count = json.count(); }
+void read_into(const JsonReader& json, double& number) {
+  number = std::isnan(number) ? json.number_or_null() : json.number();
 }
 
 void JsonReader::require_schema(const Json& schema) const {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -13,8 +14,8 @@
 
 namespace taut {
 
-/// The one kind of JSON in the program: keys stay in the order in which they were written. Include
-/// this from sources only; the library is large.
+/// The one kind of JSON in the program: keys stay in the order in which they were written. The
+/// library is large: not for headers that many include.
 using Json = nlohmann::ordered_json;
 
 // Its writer and its parser are compiled once, in json.cpp.
@@ -28,6 +29,15 @@ Json parse_json(std::string_view);
 Json json_number(double);
 /// Appends a field unless it is null or empty.
 void add_if(Json& object, const char* name, Json value);
+/// An array of what `json_of(item)` gives for each of the items.
+template <class Range, class JsonOf>
+Json json_array(const Range& items, const JsonOf& json_of) {
+  Json all = Json::array();
+  for (const auto& item : items) all.push_back(json_of(item));
+  return all;
+}
+/// Writes it to standard output, with a line feed.
+void print_json(const Json&, int indent = 1);
 
 /// A value of a JSON text that a program wrote and this one reads back. Whatever is not there or of
 /// another type is an InputError with file, line and the place within the text ("scenes[0].cases").
@@ -63,6 +73,36 @@ class JsonReader {
   std::string file_, path_;
   int line_;
 };
+
+/// What a JsonReader gives, by type; null is NaN where a number is NaN unless it is read.
+void read_into(const JsonReader&, std::string&);
+void read_into(const JsonReader&, bool&);
+void read_into(const JsonReader&, double&);
+void read_into(const JsonReader&, std::size_t&);
+
+/// A member of a struct under its name in JSON: a tuple of these writes the struct and reads it.
+template <class Struct, class Value>
+struct Field {
+  const char* name;
+  Value Struct::*member;
+};
+template <class Struct, class Value>
+Field(const char*, Value Struct::*) -> Field<Struct, Value>;
+/// The members of an object, in the order of the tuple.
+template <class Struct, class... Values>
+Json json_of(const Struct& object, const std::tuple<Field<Struct, Values>...>& fields) {
+  Json json;
+  std::apply([&](const auto&... one) { ((json[one.name] = object.*one.member), ...); }, fields);
+  return json;
+}
+/// The object that has these members, by read_into(). Throws InputError.
+template <class Struct, class... Values>
+Struct read_as(const JsonReader& json, const std::tuple<Field<Struct, Values>...>& fields) {
+  Struct object;
+  std::apply([&](const auto&... one) { (read_into(json.at(one.name), object.*one.member), ...); },
+             fields);
+  return object;
+}
 
 /// The parsed text; throws InputError that names the file.
 Json parse_json_of(std::string_view text, const std::string& file, int line = 0);

@@ -31,10 +31,9 @@ std::string verdict(const Recommendation& recommendation, const SceneBench& benc
   const std::string sure = recommendation.certainty == Certainty::clear ? "clearly " : "likely ";
   if (recommendation.target.budget) return sure + "within the budget";
   if (recommendation.certainty == Certainty::unopposed) return "nothing else timed reaches it";
-  const Record& rival = bench.cases[*recommendation.runner_up].record;
-  const std::string rest = rival.solver == bench.cases[*recommendation.best].record.solver
-                               ? "the next setting"
-                               : rival.solver;
+  const std::string& other = bench.cases[*recommendation.runner_up].record.solver;
+  const std::string rest =
+      other == bench.cases[*recommendation.best].record.solver ? "the next setting" : other;
   if (recommendation.certainty == Certainty::too_noisy) return "too noisy to compare with " + rest;
   if (recommendation.certainty == Certainty::none)
     return same_within(recommendation.tolerance, *recommendation.ratio)
@@ -82,11 +81,11 @@ Recommendation recommend(const SceneBench& bench, const Target& target, const st
   recommendation.best = order.front();
   for (SolverRecommendation& solver : recommendation.solvers)
     if (solver.at) solver.times = bench.ratio(*solver.at, *recommendation.best);
-  const auto rival = std::find_if(order.begin() + 1, order.end(), [&](std::size_t i) {
+  const auto other = std::find_if(order.begin() + 1, order.end(), [&](std::size_t i) {
     return candidates[i].solver != candidates[*recommendation.best].solver;
   });
-  if (rival != order.end())
-    recommendation.runner_up = *rival;
+  if (other != order.end())
+    recommendation.runner_up = *other;
   else if (order.size() > 1)
     recommendation.runner_up = order[1];
   if (recommendation.runner_up)

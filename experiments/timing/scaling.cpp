@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/system/distinct.hpp"
+
 namespace taut {
 
 namespace {
@@ -57,12 +59,7 @@ double plan_bytes(const Record& record) {
 std::vector<ScalingLine> measure_scaling(const std::vector<Case>& cases, double limit,
                                          const Measure& run) {
   std::vector<std::pair<std::string, std::vector<const Case*>>> groups;
-  for (const Case& one : cases) {
-    const std::string setting = one.choice.brief();
-    auto group = std::ranges::find(groups, setting, [](const auto& g) { return g.first; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {setting, {}});
-    group->second.push_back(&one);
-  }
+  for (const Case& one : cases) under(groups, one.choice.brief()).push_back(&one);
   std::vector<ScalingLine> lines;
   for (auto& [setting, members] : groups) {
     std::ranges::stable_sort(members, {}, [](const Case* c) { return c->scene->mesh.size(); });

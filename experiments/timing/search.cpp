@@ -41,7 +41,11 @@ class OpenParameters {
   std::string sweeps() const { return std::string(entry_.accuracy.sweeps); }
 
   Columns columns() const {
-    if (open(entry_.accuracy.sweeps)) return {{sweeps()}, doublings(1, kMostSweeps), true};
+    if (open(entry_.accuracy.sweeps)) {
+      Columns columns{{sweeps()}, {}, true};
+      for (int v = 1; v <= kMostSweeps; v *= 2) columns.values.push_back(std::to_string(v));
+      return columns;
+    }
     Columns columns{parts_of(entry_.accuracy.stiffness.parameters), {}, false};
     std::erase_if(columns.parameters, [&](const std::string& name) { return !open(name); });
     if (columns.parameters.empty()) return {{}, {""}, false};
@@ -60,11 +64,6 @@ class OpenParameters {
   }
 
  private:
-  static std::vector<std::string> doublings(int from, int to) {
-    std::vector<std::string> values;
-    for (int v = from; v <= to; v *= 2) values.push_back(std::to_string(v));
-    return values;
-  }
   std::string base_;
   const SolverEntry& entry_;
 };
@@ -128,7 +127,7 @@ class SettingSearch {
     tried_.push_back(*candidate);
     if (target_.meets(*candidate) && (!best_ || target_.prefers(*candidate, tried_[*best_]))) {
       best_ = tried_.size() - 1;
-      best_values_ = values, best_substeps_ = substeps;
+      best_met_ = {candidate->cost.mid, values, substeps};
     }
     if (target_.meets(*candidate)) met_.push_back({candidate->cost.mid, values, substeps});
     return &tried_.back();
@@ -141,7 +140,7 @@ class SettingSearch {
     return cost;
   }
 
-  /// Quick costs above this are not worth a run. A rival is held to its own best, so that the
+  /// Quick costs above this are not worth a run. A solver is held to its own best, so that the
   /// runner-up is as well chosen as the winner.
   double bar() const { return std::min(kDearer * least(tried_), kHopeless * least(known_)); }
 
@@ -215,8 +214,8 @@ class SettingSearch {
   /// The sweeps of the best.
   void bisect_sweeps() {
     if (!worth_more()) return;
-    Values values = without_substeps(best_values_);
-    const int substeps = best_substeps_;
+    Values values = without_substeps(best_met_.values);
+    const int substeps = best_met_.substeps;
     halve(std::stoi(values[open_.sweeps()]), [&](int sweeps) {
       values[open_.sweeps()] = std::to_string(sweeps);
       return attempt(values, substeps);
@@ -232,16 +231,16 @@ class SettingSearch {
   void alternatives() {
     for (const auto& [name, value] : open_.alternatives()) {
       if (over_) return;
-      Values values = without_substeps(best_values_);
+      Values values = without_substeps(best_met_.values);
       if (values.contains(name) && values[name] == value) continue;
       values[name] = value;
-      const Candidate* candidate = attempt(values, best_substeps_);
+      const Candidate* candidate = attempt(values, best_met_.substeps);
       if (!candidate) return;
       if (target_.budget) {  // a cheaper step buys more of them
         if (candidate->failure.empty() && candidate->cost.mid < 0.8 * *target_.budget) most(values);
         continue;
       }
-      int n = best_substeps_;
+      int n = best_met_.substeps;
       if (target_.meets(*candidate)) {
         while (candidate && target_.meets(*candidate) && n > 1) {
           n = std::min(n - 1, n * 3 / 4);
@@ -275,9 +274,8 @@ class SettingSearch {
   std::vector<Candidate> known_, tried_;
   std::map<std::string, std::size_t> index_;
   std::optional<std::size_t> best_;
-  Values best_values_;
   std::vector<Met> met_;
-  int best_substeps_ = 1;
+  Met best_met_{0, {}, 1};
   bool over_ = false, hopeless_ = false;
 };
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <iomanip>
 #include <limits>
 #include <random>
-#include <sstream>
+
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -23,10 +23,7 @@ double median_of(std::vector<double>& values) {
 }  // namespace
 
 std::string number_text(double value, int digits) {
-  if (std::isnan(value)) return "-";
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
+  return std::isnan(value) ? "-" : formatted("%.*g", digits, value);
 }
 
 std::string interval_text(const Interval& i, double unit) {

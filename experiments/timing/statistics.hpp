@@ -14,6 +14,7 @@ struct Interval {
   double mid = 0;
   double high = 0;
   bool contains(double value) const { return low <= value && value <= high; }
+  Interval operator*(double factor) const { return {low * factor, mid * factor, high * factor}; }
 };
 /// [low, mid, high]: found by the JSON library, wherever an interval becomes JSON.
 template <class Json>

@@ -11,8 +11,10 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -20,10 +22,6 @@ namespace taut {
 namespace {
 
 constexpr int kBenchSchema = 4;
-
-Interval scaled(const Interval& i, double factor) {
-  return {i.low * factor, i.mid * factor, i.high * factor};
-}
 
 Interval interval_of(const JsonReader& j) {
   const std::vector<JsonReader> ends = j.items(3);
@@ -88,9 +86,7 @@ bool BenchedCase::stable() const {
   return timing.failure.empty() && !timing.samples.empty() && completed(record.status);
 }
 
-Interval BenchedCase::cost() const {
-  return scaled(bootstrap_median(timing.samples), 1 / record.dt);
-}
+Interval BenchedCase::cost() const { return bootstrap_median(timing.samples) * (1 / record.dt); }
 
 std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
   std::vector<Candidate> all;
@@ -108,7 +104,7 @@ std::optional<Interval> SceneBench::ratio(std::size_t i, std::size_t j) const {
   if (!a.timing.failure.empty() || !b.timing.failure.empty()) return {};
   const std::size_t samples = a.timing.samples.size();
   if (!in_turns || samples != b.timing.samples.size() || samples % 2 != 0) return {};
-  return scaled(interleaved_ratio(a.timing.samples, b.timing.samples), b.record.dt / a.record.dt);
+  return interleaved_ratio(a.timing.samples, b.timing.samples) * (b.record.dt / a.record.dt);
 }
 
 std::vector<ParameterRange> SceneBench::parameter_ranges(const std::string& solver) const {
@@ -146,11 +142,7 @@ SceneBench bench_scene(const std::string& scene, const std::vector<Record>& reco
 }
 
 std::vector<std::string> solvers_of(const SceneBench& bench) {
-  std::vector<std::string> names;
-  for (const BenchedCase& c : bench.cases)
-    if (std::find(names.begin(), names.end(), c.record.solver) == names.end())
-      names.push_back(c.record.solver);
-  return names;
+  return distinct(bench.cases, [](const BenchedCase& c) { return c.record.solver; });
 }
 
 std::vector<Record> StudyBench::records() const {

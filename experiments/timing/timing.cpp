@@ -42,9 +42,8 @@ StepTime operator/(const StepTime& t, int steps) { return {t.cpu / steps, t.wall
 
 constexpr std::string_view kRefusal = "! ";  ///< begins a worker's answer that gives no time
 
-std::vector<std::string> worker_command(const std::filesystem::path& program,
-                                        const CaseSpec& spec) {
-  std::vector<std::string> words{program, "bench", "--worker", spec.scene, spec.solver};
+std::vector<std::string> worker_command(const CaseSpec& spec) {
+  std::vector<std::string> words{program_of(spec), "bench", "--worker", spec.scene, spec.solver};
   for (const std::string& value : spec.overrides) words.insert(words.end(), {"--set", value});
   return words;
 }
@@ -114,10 +113,10 @@ void pin(int cores) {
   sched_setaffinity(0, sizeof mine, &mine);
 }
 
-TimingWorker::TimingWorker(const std::filesystem::path& program, const CaseSpec& spec)
-    : process_(worker_command(program, spec), {.input = ProcessOptions::Stream::piped,
-                                               .output = ProcessOptions::Stream::piped,
-                                               .errors = ProcessOptions::Stream::inherited}) {
+TimingWorker::TimingWorker(const CaseSpec& spec)
+    : process_(worker_command(spec), {.input = ProcessOptions::Stream::piped,
+                                      .output = ProcessOptions::Stream::piped,
+                                      .errors = ProcessOptions::Stream::inherited}) {
   std::string line;
   if (!process_.read_line(line) || line != "ready")
     throw std::runtime_error("the timing worker of " + spec.scene + " " + spec.solver +
@@ -174,7 +173,7 @@ struct SampledCase {
 SampledCase start_case(const CaseToTime& timed, const TimingOptions& options) {
   SampledCase one;
   one.guard([&] {
-    one.worker = std::make_unique<TimingWorker>(program_of(timed.spec), timed.spec);
+    one.worker = std::make_unique<TimingWorker>(timed.spec);
     if (options.deadline != SteadyClock::time_point::max())
       one.worker->give_up_at(options.deadline);
     const int all = std::max(1, timed.steps);

@@ -53,8 +53,8 @@ struct TimeIsUp : std::runtime_error {
 /// Samples of one case, taken in a process of its own that stays alive between them.
 class TimingWorker {
  public:
-  /// Starts `program --worker` for the case; throws InputError if the case cannot be built.
-  TimingWorker(const std::filesystem::path& program, const CaseSpec&);
+  /// Starts `bench --worker` for the case; throws InputError if the case cannot be built.
+  explicit TimingWorker(const CaseSpec&);
 
   /// Runs the first `steps` steps once and gives their mean; required before sample(). Both throw
   /// std::runtime_error if the worker died.

@@ -113,8 +113,7 @@ TAUT_TRUTH(spring_chain_modes, 4, 7,
         mode.start.x[to_index(i)].y() +=
             0.2 * std::sin((2 * j - 1) * std::numbers::pi * i / (2 * n + 1));
       Simulation sim(mode, solver);
-      std::vector<double> y;
-      for (int k = 0; k < 100; ++k) sim.step(), y.push_back(sim.x(n).y() + n);
+      const auto y = sim.record(100, [&] { return sim.x(n).y() + n; });
       const double measured = std::sqrt(2 - two_term_recurrence(y)[0]) / dt;
       worst = std::max(worst, std::abs(measured / w[to_index(j - 1)] - 1));
     }
@@ -173,13 +172,11 @@ TAUT_TRUTH(discrete_catenary, 4, 9,
                  reference::discrete_catenary(n, 0.8, 1.0 / n, mass * kG).sag(), exact, 5e-13);
   findings.equal("closed form", "sag of the continuum", "m", reference::continuum_sag(1, 0.8),
                  0.265437509140, 5e-13);
-  std::vector<double> lengths, errors;
-  for (const int links : {16, 32, 64, 128}) {
-    lengths.push_back(1.0 / links);
-    errors.push_back(reference::discrete_catenary(links, 0.8, 1.0 / links, 1).sag() -
-                     reference::continuum_sag(1, 0.8));
-  }
-  const PowerLaw order = fit_power_law(lengths, errors);
+  const PowerLaw order = fit_over({1.0 / 16, 1.0 / 32, 1.0 / 64, 1.0 / 128}, [](double link) {
+    const int links = static_cast<int>(1 / link);
+    return reference::discrete_catenary(links, 0.8, link, 1).sag() -
+           reference::continuum_sag(1, 0.8);
+  });
   findings.slope("closed form", "order in the link length", order, 2, 0.02);
   const Scene s = catenary_scene(mass);
   if (findings.wants(kStatic)) {
@@ -190,17 +187,16 @@ TAUT_TRUTH(discrete_catenary, 4, 9,
   // off in second order.
   for (const std::string& solver : {jakobsen(1200), jakobsen(1200, "sqrt-free"), bullet(1200)}) {
     if (!can_run(findings, solver, s)) continue;
-    std::vector<double> dts, off;
-    for (const double rate : {64.0, 128.0, 256.0}) {
+    double off = 0;
+    const PowerLaw slope = fit_over({1.0 / 64, 1.0 / 128, 1.0 / 256}, [&](double dt) {
       Scene finer = s;
-      finer.dt = 1 / rate;
+      finer.dt = dt;
       Simulation sim(finer, solver);
-      settle(sim, 1e-9, 32, static_cast<int>(rate) * 12);
-      dts.push_back(finer.dt), off.push_back(std::abs(sag(sim.state().x) - exact));
-    }
-    const PowerLaw slope = fit_power_law(dts, off);
+      settle(sim, 1e-9, 32, static_cast<int>(12 / dt));
+      return off = std::abs(sag(sim.state().x) - exact);
+    });
     findings.slope(solver, "order in dt of the sag at rest, 1200 sweeps", slope, 2, 0.1);
-    findings.below(solver, "error of the sag at dt = 1/256 s", "m", off.back(), 3e-5);
+    findings.below(solver, "error of the sag at dt = 1/256 s", "m", off, 3e-5);
   }
   const double stiffness = 200;
   const std::string springs = mass_spring("verlet", stiffness, 0.05);
@@ -287,12 +283,9 @@ TAUT_TRUTH(hanging_chain_slopes, 4, 11,
   }
   for (const std::string& solver : {jakobsen(4), bullet(4)}) {
     if (!can_run(findings, solver, hanging(4, 1, 1.0 / 64))) continue;
-    std::vector<double> dt, e;
-    for (const double rate : {32.0, 64.0, 128.0, 256.0, 512.0}) {
-      dt.push_back(1 / rate);
-      e.push_back(largest(settled_strains(solver, 16, 4, 1 / rate, 1e-3)));
-    }
-    const PowerLaw slope = fit_power_law(dt, e);
+    const PowerLaw slope =
+        fit_over({1.0 / 32, 1.0 / 64, 1.0 / 128, 1.0 / 256, 1.0 / 512},
+                 [&](double dt) { return largest(settled_strains(solver, 16, 4, dt, 1e-3)); });
     findings.slope(solver, "slope in dt", slope, 2, 5e-4);
   }
   // One curve in k/dt^2: the large-N sum, within O(1/N).

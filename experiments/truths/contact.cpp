@@ -75,13 +75,11 @@ TAUT_TRUTH(incline_friction, 7, 2,
     const Scene s = above_plane(0, normal, mu);
     if (!can_run(findings, solver, s)) continue;
     Simulation sim(s, solver);
-    double worst = 0;
-    for (int n = 1; n <= 64; ++n) {
-      sim.step();
+    const double worst = sim.worst(64, [&](int n) {
       const double expected =
           kG * (std::sin(slope) - mu * std::cos(slope)) * s.dt * s.dt * n * (n + 1) / 2;
-      worst = std::max(worst, (sim.x(0) - expected * downhill).norm());
-    }
+      return (sim.x(0) - expected * downhill).norm();
+    });
     findings.below(solver, "distance from g (sin - mu cos) dt^2 n(n+1)/2, 30 deg, mu = 0.3", "m",
                    worst, 1e-12);
     for (const double factor : {0.99, 1.01}) {
@@ -130,12 +128,9 @@ TAUT_TRUTH(tunnelling, 7, 3, "tests at step boundaries miss max(0, 1 - D/s) of t
 TAUT_TRUTH(capstan, 7, 4, "T2/T1 -> exp(mu phi) around a rough cylinder, order 2 in the link angle",
            "Euler, Eytelwein; balance of every node") {
   const double mu = 0.3, wrap = std::numbers::pi;
-  std::vector<double> links, errors;
-  for (const int n : {8, 16, 32, 64, 128}) {
-    links.push_back(wrap / n);
-    errors.push_back(reference::capstan_ratio(mu, wrap, wrap / n) - std::exp(mu * wrap));
-  }
-  const PowerLaw order = fit_power_law(links, errors);
+  const PowerLaw order = fit_over(
+      {wrap / 8, wrap / 16, wrap / 32, wrap / 64, wrap / 128},
+      [&](double link) { return reference::capstan_ratio(mu, wrap, link) - std::exp(mu * wrap); });
   findings.slope("closed form", "order in the link angle of T2/T1 - exp(mu phi)", order, 2, 0.02);
   findings.equal("closed form", "T2/T1 for half a turn at mu = 0.3, 128 links", "1",
                  reference::capstan_ratio(mu, wrap, wrap / 128), std::exp(mu * wrap), 2e-4);

@@ -67,13 +67,10 @@ TAUT_TRUTH(free_fall, 3, 1, "x_n = x0 + v0 t + g t^2/2 + g t dt/2; explicit Eule
     for (Vec3& v : s.start.v) v += correction;
     if (!can_run(findings, solver, s)) return;
     Simulation sim(s, solver);
-    double worst = 0;
-    for (int n = 1; n <= 64; ++n) {
-      sim.step();
+    const double worst = sim.worst(64, [&](int n) {
       const double t = n * s.dt;
-      const Vec3 expected = kThrow * t + kGravity * (t * t / 2 + offset * t * s.dt / 2);
-      worst = std::max(worst, (sim.x(0) - expected).norm());
-    }
+      return (sim.x(0) - (kThrow * t + kGravity * (t * t / 2 + offset * t * s.dt / 2))).norm();
+    });
     findings.below(solver, quantity, "m", worst, 1e-12);
   };
   for (const std::string& solver : verlet_like()) {
@@ -100,14 +97,11 @@ TAUT_TRUTH(damping_factor, 3, 2,
     if (!can_run(findings, solver, s)) continue;
     const double q = std::exp(-s.damping * s.dt);
     Simulation sim(s, solver);
-    double worst = 0;
-    for (int n = 1; n <= 64; ++n) {
-      sim.step();
+    const Vec3 a = kGravity * s.dt * s.dt;
+    const double worst = sim.worst(64, [&](int n) {
       const double decay = q * (1 - std::pow(q, n)) / (1 - q);
-      const Vec3 a = kGravity * s.dt * s.dt;
-      const Vec3 expected = kThrow * s.dt * decay + a / (1 - q) * (n - decay);
-      worst = std::max(worst, (sim.x(0) - expected).norm());
-    }
+      return (sim.x(0) - (kThrow * s.dt * decay + a / (1 - q) * (n - decay))).norm();
+    });
     const bool is_bullet = solver.starts_with("bullet");
     findings.below(solver, "distance from the closed form of x + q (x - x') + g dt^2 over 1 s", "m",
                    worst, is_bullet ? 1e-9 : 1e-12);
@@ -125,12 +119,11 @@ TAUT_TRUTH(wind_face, 3, 6, "v_n = (m g/cA)(1 - (1 - cA dt/m)^n); stable iff cA 
     if (!can_run(findings, solver, s)) continue;
     const double rate = c * kArea * s.dt / kMass, terminal = kMass * kG / (c * kArea);
     Simulation sim(s, solver);
-    double worst = 0;
-    for (int n = 1; n <= 64; ++n) {
-      sim.step();
-      const double speed = terminal * (1 - std::pow(1 - rate, n));
-      for (int i = 0; i < 3; ++i) worst = std::max(worst, (sim.v(i) - Vec3(0, -speed, 0)).norm());
-    }
+    const double worst = sim.worst(64, [&](int n) {
+      const Vec3 expected(0, -terminal * (1 - std::pow(1 - rate, n)), 0);
+      return std::max({(sim.v(0) - expected).norm(), (sim.v(1) - expected).norm(),
+                       (sim.v(2) - expected).norm()});
+    });
     findings.below(solver, "distance from (m g/cA)(1 - (1 - cA dt/m)^n)", "m/s", worst, 1e-11);
     sim.step(1000);
     findings.equal(solver, "terminal speed m g/(cA)", "m/s", -sim.v(0).y(), terminal, 1e-11);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "core/model/angle.hpp"
 #include "core/model/index.hpp"
@@ -37,13 +38,8 @@ double quarter_period(const std::function<Vec3()>& next, double dt) {
 /// The angle [rad] to which the mass swings up on the other side.
 double turning_angle(const std::string& solver, double amplitude, double dt) {
   Simulation sim(pendulum(amplitude, dt), solver);
-  double furthest = 0;
   const int half = static_cast<int>(0.6 * reference::pendulum_period(1, kG, amplitude) / dt);
-  for (int n = 0; n < half; ++n) {
-    sim.step();
-    furthest = std::max(furthest, std::atan2(-sim.x(1).x(), -sim.x(1).y()));
-  }
-  return furthest;
+  return sim.worst(half, [&](int) { return std::atan2(-sim.x(1).x(), -sim.x(1).y()); });
 }
 
 double solver_quarter(const std::string& solver, double amplitude, double dt) {
@@ -63,14 +59,14 @@ struct Convergence {
 
 Convergence converge(const std::function<double(double)>& value, double exact, int first, int last,
                      int order) {
-  std::vector<double> dt, error, values;
-  for (int r = first; r <= last; ++r) {
-    dt.push_back(std::ldexp(1, -r));
-    values.push_back(value(dt.back()));
-    error.push_back(std::abs(values.back() - exact));
-  }
-  const double fine = values.back(), coarse = values[values.size() - 2];
-  return {fit_power_law(dt, error), fine + (fine - coarse) / (std::exp2(order) - 1)};
+  std::vector<double> dt;
+  for (int r = first; r <= last; ++r) dt.push_back(std::ldexp(1, -r));
+  double fine = 0, coarse = 0;
+  const PowerLaw law = fit_over(dt, [&](double h) {
+    coarse = std::exchange(fine, value(h));
+    return std::abs(fine - exact);
+  });
+  return {law, fine + (fine - coarse) / (std::exp2(order) - 1)};
 }
 
 /// Settings whose projection has converged for one link.
@@ -135,9 +131,7 @@ TAUT_TRUTH(small_swings, 4, 2,
                          double w, double tolerance) {
     if (!can_run(findings, solver, scene)) return;
     Simulation sim(scene, solver);
-    std::vector<double> y;
-    for (int n = 0; n < 100; ++n) sim.step(), y.push_back(sim.x(mass).x());
-    const auto [p, q] = two_term_recurrence(y);
+    const auto [p, q] = two_term_recurrence(sim.record(100, [&] { return sim.x(mass).x(); }));
     const double radius = std::sqrt(-q);
     findings.equal(solver, "decay rate, " + what, "1/s", -std::log(radius) / dt,
                    std::log1p(w * w * dt * dt) / (2 * dt), tolerance);
@@ -171,9 +165,7 @@ TAUT_TRUTH(chain_swings, 4, 3,
     for (const std::string& solver : {jakobsen(k), bullet(k)}) {
       if (!can_run(findings, solver, s)) continue;
       Simulation sim(s, solver);
-      std::vector<double> y;
-      for (int i = 0; i < 60; ++i) sim.step(), y.push_back(sim.x(n).x());
-      const auto [p, q] = two_term_recurrence(y);
+      const auto [p, q] = two_term_recurrence(sim.record(60, [&] { return sim.x(n).x(); }));
       findings.equal(solver, "2 mu of z^2 - 2 mu z + mu, " + name, "1", p, 2 * mu, 1e-6);
       findings.equal(solver, "mu of z^2 - 2 mu z + mu, " + name, "1", -q, mu, 1e-6);
       findings.deviates(solver, "decay rate, " + name, "1/s", -std::log(std::sqrt(-q)) / dt,

@@ -14,12 +14,7 @@ namespace {
 double peak_stretch(const Scene& s, const std::string& solver) {
   Simulation sim(s, solver);
   const int n = static_cast<int>(s.links.size());
-  double peak = 0;
-  for (int step = 0; step < s.steps; ++step) {
-    sim.step();
-    peak = std::max(peak, -sim.x(n).y() - n * 0.01);
-  }
-  return peak;
+  return sim.worst(s.steps, [&](int) { return -sim.x(n).y() - n * 0.01; });
 }
 
 }  // namespace

@@ -11,6 +11,9 @@ namespace taut {
 
 namespace {
 
+const std::vector<double> kOrderSteps{1.0 / 256, 1.0 / 512,
+                                      1.0 / 1024};  ///< s, to fit an order in dt
+
 /// A draped sheet at its equilibrium, turned about its pin line and let go.
 Scene swung(int n, double degrees) {
   Scene s = under_gravity(bare::sheet(n, n));
@@ -45,14 +48,11 @@ TAUT_TRUTH(shake_order, 9, 2, "the dynamic reference has order 2.00 and knows it
   const auto converged = reference::converged_motion(s, {0.25}, 1.0 / 1024);
   findings.holds(kShake, "has one answer", converged.unique);
   if (!converged.unique) return;
-  std::vector<double> dt, error;
-  for (const int rate : {256, 512, 1024}) {
-    reference::Shake shake(s, 1.0 / rate);
-    for (int n = 0; n < rate / 4; ++n) shake.step();
-    dt.push_back(1.0 / rate);
-    error.push_back(max_distance(shake.state().x, converged.states[0].x));
-  }
-  const PowerLaw order = fit_power_law(dt, error);
+  const PowerLaw order = fit_over(kOrderSteps, [&](double dt) {
+    reference::Shake shake(s, dt);
+    for (int n = 0; n < 0.25 / dt; ++n) shake.step();
+    return max_distance(shake.state().x, converged.states[0].x);
+  });
   findings.slope(kShake, "order in dt, 6x6 swung from 60 deg", order, 2, 0.05);
   findings.below(kShake, "its floor after extrapolation", "m", converged.floor[0], 1e-7);
 }
@@ -65,16 +65,12 @@ TAUT_TRUTH(projection_tends_to_shake, 9, 3,
   const auto converged = reference::converged_motion(s, {0.25}, 1.0 / 1024);
   for (const std::string& solver : {jakobsen(150), bullet(150)}) {
     if (!can_run(findings, solver, s)) continue;
-    std::vector<double> dt, error;
-    for (const int rate : {256, 512, 1024}) {
+    const PowerLaw order = fit_over(kOrderSteps, [&](double dt) {
       Scene finer = s;
-      finer.dt = 1.0 / rate;
-      Simulation sim(finer, solver, rate / 4);
-      dt.push_back(finer.dt);
-      error.push_back(converged.unique ? max_distance(sim.state().x, converged.states[0].x)
-                                       : std::nan(""));
-    }
-    const PowerLaw order = fit_power_law(dt, error);
+      finer.dt = dt;
+      Simulation sim(finer, solver, static_cast<int>(0.25 / dt));
+      return converged.unique ? max_distance(sim.state().x, converged.states[0].x) : std::nan("");
+    });
     findings.slope(solver, "order in dt of the distance from SHAKE, 5x5 swung from 45 deg", order,
                    1, 0.15);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -18,6 +19,20 @@ class Simulation {
   /// After so many steps.
   Simulation(const Scene&, std::string_view solver, int steps = 0);
   void step(int n = 1);
+  /// What `value()` gives after each of so many steps.
+  template <class Value>
+  std::vector<double> record(int steps, const Value& value) {
+    std::vector<double> all;
+    for (int n = 0; n < steps; ++n) step(), all.push_back(value());
+    return all;
+  }
+  /// The largest of what `error(n)` gives after the steps n = 1, 2, ... `steps`.
+  template <class Error>
+  double worst(int steps, const Error& error) {
+    double most = 0;
+    for (int n = 1; n <= steps; ++n) step(), most = std::max(most, error(n));
+    return most;
+  }
   const State& state() const { return state_; }
   const Vec3& x(int i) const { return state_.x[to_index(i)]; }
   const Vec3& v(int i) const { return state_.v[to_index(i)]; }
@@ -38,7 +53,7 @@ constexpr const char* kStatic = "reference:static";  ///< core/reference/static_
 constexpr const char* kShake = "reference:shake";    ///< core/reference/shake
 
 /// The settings that the truths hold to rounding: ours as published, one substep, the links in the
-/// scene's own order, unless `more` says otherwise; and its rivals.
+/// scene's own order, unless `more` says otherwise; and those of the others.
 std::string jakobsen(int iterations, std::string_view projection = "exact",
                      std::string_view more = "");
 std::string bullet(int iterations);
@@ -75,6 +90,14 @@ double max_distance(const std::vector<Vec3>&, const std::vector<Vec3>&);
 /// Runs until the fastest vertex is slower than `speed` [m/s] in 10 successive looks, `every` steps
 /// apart, or for at most `limit` steps; true if it came to rest.
 bool settle(Simulation&, double speed, int every, int limit);
+
+/// The power law through y(x) at these x.
+template <class Y>
+PowerLaw fit_over(const std::vector<double>& x, const Y& y) {
+  std::vector<double> values;
+  for (const double at : x) values.push_back(y(at));
+  return fit_power_law(x, values);
+}
 
 inline constexpr double kG = 9.81;  ///< m/s^2
 

@@ -99,8 +99,7 @@ TAUT_TRUTH(hooke_oscillator, 3, 3,
     for (int r = 5; r <= 9; ++r) {
       const double h = std::ldexp(1, -r);
       Simulation mass(oscillator(h, x0), solver);
-      std::vector<double> y;
-      for (int n = 0; n < 100; ++n) mass.step(), y.push_back(displacement(mass));
+      const auto y = mass.record(100, [&] { return displacement(mass); });
       const double frequency = std::acos(two_term_recurrence(y)[0] / 2) / h;
       steps.push_back(h), errors.push_back(std::abs(frequency - kOmega) / kOmega);
     }
@@ -145,8 +144,7 @@ TAUT_TRUTH(spring_step_limit, 3, 4,
   if (!can_run(findings, euler, oscillator(1.0 / 64, 0))) return;
   const double dt = 1.0 / 1024;
   Simulation sim(oscillator(dt, 1e-6), euler);
-  std::vector<double> y;
-  for (int n = 0; n < 200; ++n) sim.step(), y.push_back(displacement(sim));
+  const auto y = sim.record(200, [&] { return displacement(sim); });
   findings.equal(euler, "growth per step at w dt = 0.02: never stable", "1",
                  std::sqrt(-two_term_recurrence(y)[1]), std::sqrt(1 + std::pow(kOmega * dt, 2)),
                  1e-9);

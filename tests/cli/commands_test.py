@@ -205,7 +205,7 @@ class Verbs(CommandLine):
         self.taut("run", study)
         (self.folder / "file").write_text("")
         self.assertIn("is a folder; name a file in it", self.taut("report", study, "-o", ".", expect=2).err)
-        for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "--out", "file"]]:
+        for words in [["report", study, "-o", "file/x.html"], ["plot", study, "--kind", "series", "-o", "file"]]:
             self.assertIn("file", self.taut(*words, expect=2).err)
         for option in ("--final-state", "--series", "--trajectory"):
             started = time.monotonic()
@@ -479,6 +479,11 @@ class Verbs(CommandLine):
         rows = json.loads(self.taut("bench", "effects", "crumple", "chain", "--sizes", "20,24", *short).out)
         self.assertEqual([(row["scene"], row["vertices"]) for row in rows],
                          [("hang", 400), ("crumple", 400), ("hang", 576), ("crumple", 576)])  # a chain is no sheet
+        rows = json.loads(self.taut("bench", "effects", "chain", "--two-threads", *short).out)
+        self.assertEqual([(row["scene"], row["ns"]) for row in rows], [("hang", []), ("chain", [])])
+        for row in rows:
+            self.assertEqual((len(row["two_threads"]), len(row["unrelated_sheets"])), (4, 4))
+            self.assertGreater(min(row["two_threads"] + row["unrelated_sheets"]), 0)
         solver = "jakobsen:iterations=1,substeps=1000000"
         out = self.taut("bench", "effects", "ball", "--solver", solver, "--rounds", "1").out
         self.assertIn("not timed: in float, gravity's move", out)

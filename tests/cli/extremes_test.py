@@ -152,7 +152,7 @@ class Profiles(CommandLine):
         ratios = self.shares(session)
         self.assertGreaterEqual(len(next(iter(ratios.values()))), 2)
         self.assertTrue(any(math.isinf(r) for of in ratios.values() for r in of), "a failure")
-        self.taut("plot", study, "--kind", "profile", "--out", "figures")
+        self.taut("plot", study, "--kind", "profile", "-o", "figures")
         rows = list(csv.DictReader(next((self.folder / "figures").glob("*.csv")).read_text().splitlines()))
         self.assertEqual({row["solver"] for row in rows}, set(ratios))
         for row in rows:

@@ -397,7 +397,7 @@ class Store(CommandLine):
         study = self.study(rest=self.MANY)
         rows = self.taut("export", study, "--results", "disk/results").out.splitlines()
         self.assertEqual(len(rows), 13)
-        self.taut("plot", study, "--results", "disk/results", "--kind", "convergence", "--out", "figures")
+        self.taut("plot", study, "--results", "disk/results", "--kind", "convergence", "-o", "figures")
         json.loads(self.taut("report", study, "--results", "disk/results", "--json").out)
         self.assertEqual(sorted(place.rglob("*")), before)
 

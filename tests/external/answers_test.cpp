@@ -65,7 +65,8 @@ TEST(Hello, HasParametersOfEveryType) {
   EXPECT_EQ(specs["c"].choices, "a|b");
   EXPECT_EQ(specs["c"].default_value, "b");
   EXPECT_EQ(specs["t"].default_value, "x y");
-  EXPECT_EQ(default_params(*hello), (Json{{"n", 2}, {"r", 0.25}, {"c", "b"}, {"t", "x y"}}));
+  EXPECT_EQ(own_params(*hello, Params("x", hello->params, "")),
+            (Json{{"n", 2}, {"r", 0.25}, {"c", "b"}, {"t", "x y"}}));
   answer["summary"] = "s", answer["source"] = "o", answer["unmeasurable"] = "u";
   const auto told = read_hello(answer);
   EXPECT_EQ(told->summary + told->source + told->unmeasurable, "sou");

@@ -405,8 +405,8 @@ class Reader {
     const auto headline =
         std::ranges::find_if(all, [&](const Claim& c) { return "tile-" + c.id == claim.id; });
     ASSERT_NE(headline, all.end());
-    EXPECT_FALSE(claim.bars().empty());
-    for (const Bar& bar : claim.bars()) {
+    EXPECT_FALSE(claim.bars.empty());
+    for (const Bar& bar : claim.bars) {
       EXPECT_NE(headline->sentence.find(bar.text), std::string::npos) << bar.text;
       EXPECT_EQ(label_of(bar.solver), bar.label);
       if (!bar.value) continue;

@@ -90,19 +90,29 @@ ReportInput full() {
   input.scenes = {{"hang", "A sheet"}};
   const Record& r = sweeps.records.front();
   input.series = {{"hang", r.solver, "J", "stretch.rms", {0, 1, 2}, {0, 1, 1}, r.key}};
-  input.media = {{.scene = "hang", .duration = 2, .bar = {"strain", {"#000000"}, {{0, "0"}}}},
+  const auto object = [](const std::vector<std::string>& keys) {
+    Json made;
+    for (const std::string& key : keys) made[key] = "?";
+    return made;
+  };
+  input.media = {{.scene = "hang", .duration = 2, .bar = object({"title", "stops", "ticks"})},
                  {.scene = "twist", .refused = {{"bullet", "moving pins"}}}};
+  input.media[0].bar["ticks"] = {object({"at", "text"})};
   input.media[0].clips = {{"video/mp4", "x", "y", "image/png", "two", {{r.solver, "1", r.key}}},
                           {"video/mp4", std::string(6'000'000, 'x'), "", "", "", {}}};
   input.media[0].material = {{r.solver, {{1, 0.1, "png"}}}};
-  input.truths = Truths{1, 1, {{"deviates", 1}}, {{"1", "s", "p", "j", "1", "2", "deviates", "w"}}};
+  Json row = object({"section", "statement", "source", "subject", "expected", "measured"});
+  row.update({{"verdict", "deviates"}, {"why", "?"}});
+  input.truths = Truths{{{"truths", 1}, {"findings", 1}, {"verdicts", {{"deviates", 1}}}}};
+  input.truths->shown["rows"] = {row};
   input.truths->assertions[std::string(vasilovici_assertions()[0].assertion)] = {"holds", "1"};
   for (unsigned seed = 0; !input.bench; ++seed) input.bench = made_up::Maker(seed).input().bench;
-  input.regressions = Regressions{1, 1, {{"regression", "hang", "0.1 -> 0.2"}}};
+  input.regressions = {{"cases", 1}, {"values", 1}};
+  (*input.regressions)["rows"] = {object({"study", "case", "change"})};
   Record changed = r;
   changed.values["stretch.rms"] *= 2;
   input.differences = Differences{"a", "b", {{r, changed}}, {}, 0, 0, 0};
-  input.required = {{"hang", "jakobsen", "", "shape", "a", "b", "34 %", "taut"}};
+  input.required = {{"hang", "Jakobsen", "no", "shape", "a", "b", "34 %"}};
   input.frontiers = {ParameterFrontier{}};
   input.left_out = {{"x.json", "cut off"}};
   return input;

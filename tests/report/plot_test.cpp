@@ -137,13 +137,13 @@ TEST_F(Plots, AScriptDrawsEveryRowUnderItsSolverInShownUnitsAndWhatFailedAbove) 
   const PlotFiles plot =
       draw({.kind = "convergence", .title = "Two", .file = "one", .slope = -1}, all);
   EXPECT_EQ(read_text(plot.csv),
-            "curve,solver,label,x,x_low,x_high,y,status,reason,failed,setting,case\n"
-            "0,jakobsen,Jakobsen,1,,,0.08,ok,,no,1 × 1,j1\n"
-            "0,jakobsen,Jakobsen,4,,,0.02,ok,,no,1 × 4,j4\n"
-            "0,jakobsen,Jakobsen,16,,,0,ok,,no,1 × 16,j16\n"
-            "1,bullet,Bullet,1,,,0.3,ok,,no,1 × 1,b1\n"
-            "1,bullet,Bullet,4,,,,exploded,energy,yes,1 × 4,b4\n"
-            "1,bullet,Bullet,16,,,0.05,ok,,no,1 × 16,\"b,16\"\n");
+            "curve,solver,label,x,y,status,reason,failed,setting,case\n"
+            "0,jakobsen,Jakobsen,1,0.08,ok,,no,1 × 1,j1\n"
+            "0,jakobsen,Jakobsen,4,0.02,ok,,no,1 × 4,j4\n"
+            "0,jakobsen,Jakobsen,16,0,ok,,no,1 × 16,j16\n"
+            "1,bullet,Bullet,1,0.3,ok,,no,1 × 1,b1\n"
+            "1,bullet,Bullet,4,,exploded,energy,yes,1 × 4,b4\n"
+            "1,bullet,Bullet,16,0.05,ok,,no,1 × 16,\"b,16\"\n");
   const std::string gp = read_text(plot.gp);
   EXPECT_TRUE(
       gp.starts_with("# convergence: stretch.rms over iterations\n# Again: gnuplot -e \"set "
@@ -158,12 +158,12 @@ TEST_F(Plots, AScriptDrawsEveryRowUnderItsSolverInShownUnitsAndWhatFailedAbove) 
   EXPECT_NEAR(std::stod(range.substr(12)), 2.0 / 3, 1e-12);
   EXPECT_EQ(range.substr(range.find(':')), ":90]");
   const auto rows = [](int curve, const char* failed) {
-    return "'one.csv' skip 1 using (column(1) == " + std::to_string(curve) + " && strcol(10) eq '" +
+    return "'one.csv' skip 1 using (column(1) == " + std::to_string(curve) + " && strcol(8) eq '" +
            failed + "' ? column(4)*1 : NaN):";
   };
   const auto drawn = drawn_by(gp);
   ASSERT_EQ(drawn.size(), 5u);
-  EXPECT_EQ(drawn[0], rows(0, "no") + "(column(7) > 0 ? column(7)*100 : NaN) with linespoints" +
+  EXPECT_EQ(drawn[0], rows(0, "no") + "(column(5) > 0 ? column(5)*100 : NaN) with linespoints" +
                           look("jakobsen") + " title 'Jakobsen'");
   const auto ink = [](const char* solver) {
     return " lc rgb '" + std::string(solver_style(solver).colour.light) + "' title '";
@@ -172,11 +172,11 @@ TEST_F(Plots, AScriptDrawsEveryRowUnderItsSolverInShownUnitsAndWhatFailedAbove) 
     const auto at = text.find(from) + from.size();
     return text.substr(at, text.find(to, at) - at);
   };
-  EXPECT_EQ(drawn[1].find(rows(0, "no") + "(column(7) == 0 ? "), 0u);
-  EXPECT_NEAR(std::stod(part(drawn[1], "(column(7) == 0 ? ", " :")), 2.0 / 3, 1e-12) << "the floor";
+  EXPECT_EQ(drawn[1].find(rows(0, "no") + "(column(5) == 0 ? "), 0u);
+  EXPECT_NEAR(std::stod(part(drawn[1], "(column(5) == 0 ? ", " :")), 2.0 / 3, 1e-12) << "the floor";
   EXPECT_TRUE(drawn[1].ends_with(": NaN) with points pt 10 ps 1.2" + ink("jakobsen") +
                                  "Jakobsen: exactly zero'"));
-  EXPECT_EQ(drawn[2], rows(1, "no") + "(column(7) > 0 ? column(7)*100 : NaN) with linespoints" +
+  EXPECT_EQ(drawn[2], rows(1, "no") + "(column(5) > 0 ? column(5)*100 : NaN) with linespoints" +
                           look("bullet") + " title 'Bullet'");
   EXPECT_EQ(drawn[3], rows(1, "yes") + "(90) with points pt 2 ps 1.2 lw 2" + ink("bullet") +
                           "Bullet: failed'");
@@ -271,14 +271,14 @@ TEST_F(Plots, SeriesAreDrawnAsTheyAreAndProfilesUpToTheLargestFactor) {
       {"hang", "jakobsen", "C", "stretch.rms", {0, 1}, {0.03, 0.04}, "", 1e-7}};
   const PlotFiles plot = draw({.kind = "series", .file = "t"}, {}, series);
   EXPECT_EQ(read_text(plot.csv),
-            "curve,solver,label,x,x_low,x_high,y,status,reason,failed,setting,case\n"
-            "0,jakobsen,A,0,,,0.01,ok,,no,,k\n0,jakobsen,A,0.5,,,,ok,,no,,k\n"
-            "0,jakobsen,A,1,,,0.02,ok,,no,,k\n1,jakobsen,C,0,,,0.03,ok,,no,,\n"
-            "1,jakobsen,C,1,,,0.04,ok,,no,,\n");
+            "curve,solver,label,x,y,status,reason,failed,setting,case\n"
+            "0,jakobsen,A,0,0.01,ok,,no,,k\n0,jakobsen,A,0.5,,ok,,no,,k\n"
+            "0,jakobsen,A,1,0.02,ok,,no,,k\n1,jakobsen,C,0,0.03,ok,,no,,\n"
+            "1,jakobsen,C,1,0.04,ok,,no,,\n");
   const auto drawn = drawn_by(read_text(plot.gp));
   ASSERT_EQ(drawn.size(), 3u);
   const std::string ink = "lc rgb '" + std::string(solver_style("jakobsen").colour.light) + "' dt ";
-  EXPECT_NE(drawn[0].find("(column(7)*100) with lines lw 1.5 " + ink), std::string::npos);
+  EXPECT_NE(drawn[0].find("(column(5)*100) with lines lw 1.5 " + ink), std::string::npos);
   EXPECT_TRUE(drawn[0].ends_with(" title 'A'"));
   EXPECT_TRUE(drawn[1].ends_with(" dt (7,4) title 'C'")) << "another dash of the same solver";
   EXPECT_NEAR(std::stod(drawn[2]), 1e-5, 1e-18) << "the rounding of its file";

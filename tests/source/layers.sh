@@ -33,8 +33,8 @@ experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/model|experiments/(system|case|render/(image|opengl|picture)))/
 experiments/render/film  | (core/(model|io)|experiments/(system|case|study|render/(picture|film)|report))/
 experiments/report       | (core/model|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
-experiments/report/chart | (core/model|experiments/(metrics|case|timing|report/chart))/|experiments/report/input
-experiments/report/claims | experiments/(system|metrics|case|timing|report/(chart|claims))/|experiments/report/input
+experiments/report/chart | (core/model|experiments/(system|metrics|case|timing|report/chart))/|experiments/report/input
+experiments/report/claims | (core/model|experiments/(system|metrics|case|timing|report/(chart|claims)))/|experiments/report/input
 experiments/report/plot  | (core/model|experiments/(system|study/extremes|timing|report/(chart|plot)))/
 experiments/report/model | (core/model|experiments/(system|metrics|case|timing|baseline|truths|report/(chart|claims|model)))/|experiments/report/input
 '
@@ -44,7 +44,7 @@ BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/
 toml\+\+                | ^core/io/document\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
-openssl/                | ^experiments/case/.*\.cpp
+openssl/                | ^experiments/(case|report/chart)/.*\.cpp
 core/model/(solver|params)\.hpp | ^(core|bullet_ref|tests|experiments/[^m])
 '
 

@@ -1,7 +1,6 @@
 """What notices the errors that mutate.py plants: unit tests, truths and tests of the command line, each alone or in a batch."""
 import ast
 import contextlib
-import hashlib
 import os
 import pathlib
 import re
@@ -21,30 +20,33 @@ SCRIPTS = [file for folder in ("cli", "study/cluster", "external", "truths") for
 class Check:
     """A unit test, a truth, or a test of a script."""
 
-    def __init__(self, program, name, file=None):
-        self.program, self.name = program, name
+    def __init__(self, program, name, seconds, file=None):
+        self.program, self.name, self.seconds = program, name, seconds
         self.script = file if file in SCRIPTS else None
         self.folder = file.relative_to(ROOT / "tests").parts[0] if file else "truths"
-        self.source = hashlib.sha256(file.read_bytes()).digest() if file else b""
-        self.seconds, self.green = 0.0, True  # CPU time that it takes
 
 
 def checks_of(build):
+    """Every check, with the seconds that it took when ctest last ran it in BUILD, or more than most take."""
+    took = {}
+    with contextlib.suppress(OSError):
+        took = {words[0]: float(words[2]) for line in (build / "Testing/Temporary/CTestCostData.txt").read_text().splitlines()
+                if len(words := line.split()) == 3 and int(words[1])}
     file_of = {suite: file for file in (ROOT / "tests").rglob("*_test.cpp")
                for suite in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", file.read_text(), re.MULTILINE)}
-    listed = subprocess.run([build.program(UNIT), "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
+    listed = subprocess.run([build / UNIT, "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
                             text=True, capture_output=True).stdout
     checks, suite = [], ""
     for line in listed.splitlines():
         name = line.split("#")[0].strip()
         if line.startswith(" "):
-            checks.append(Check(UNIT, suite + name, file_of.get(suite[:-1].split("/")[-1])))
+            checks.append(Check(UNIT, suite + name, took.get(suite + name, 15), file_of.get(suite[:-1].split("/")[-1])))
         elif name.endswith("."):
             suite = name
-    truths = subprocess.run([build.program(TAUT), "verify", "--list"], check=True, text=True, capture_output=True).stdout
-    checks += [Check(TAUT, line.split("\t")[1]) for line in truths.splitlines()]
+    truths = subprocess.run([build / TAUT, "verify", "--list"], check=True, text=True, capture_output=True).stdout
+    checks += [Check(TAUT, line.split("\t")[1], 15) for line in truths.splitlines()]
     for script in SCRIPTS:
-        checks += [Check(TAUT, f"{of.name}.{test.name}", script) for of in ast.parse(script.read_text()).body
+        checks += [Check(TAUT, f"{of.name}.{test.name}", 30, script) for of in ast.parse(script.read_text()).body
                    if isinstance(of, ast.ClassDef) for test in of.body if getattr(test, "name", "").startswith("test")]
     return checks
 

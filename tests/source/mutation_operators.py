@@ -1,4 +1,5 @@
 """The small errors that mutate.py plants: patterns on a line of code, and what stands there instead."""
+import functools
 import re
 
 NUMBER = r"(?<![\w.'])(\d+\.?\d*(?:e-?\d+)?)(?![\w.'])"
@@ -65,4 +66,30 @@ def sites(file):
                     planted = re.match(" *", line)[0] + ";"
                 if planted != line:
                     found.setdefault(name, []).append((number, planted))
+    return found
+
+
+# Of formatted code without what stands in texts and comments: braces, and where a statement ends.
+TOKEN = re.compile(r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<!\w)\'(?:\\.|[^\'\\\n])+\'|//[^\n]*|/\*.*?\*/|^ *#[^\n]*|[{};]',
+                   re.DOTALL | re.MULTILINE)
+
+
+@functools.cache
+def bodies(text):
+    """(start, end) of what stands between the braces of every function that is not constexpr and not inside of another"""
+    found, opened, last = [], [], 0
+    for token in TOKEN.finditer(text):
+        if token[0] == "{":
+            head = text[last:token.start()]
+            if re.search(r"\)[\s\w:<>*&]*(->[\s\w:<>*&]+)?$", head) and not re.search(r"\bconste(xpr|val)\b", head):
+                kind = "function"
+            else:
+                kind = "scope" if re.search(r"\b(namespace|class|struct|union)\b", head) else "value"
+            opened.append((kind, token.end()))
+        elif token[0] == "}":
+            kind, start = opened.pop()
+            if kind == "function" and all(outer == "scope" for outer, _ in opened):
+                found.append((start, token.start()))
+        if token[0] in "{};":
+            last = token.end()
     return found

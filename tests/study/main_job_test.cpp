@@ -49,7 +49,8 @@ TEST_F(MainJobFile, WhatIsWrongIsNamedAllAtOnce) {
   std::string text;
   for (const std::string& one : all) text += one + "\n";
   for (const char* said :
-       {"1:17: expected the name of a study", "missing key 'preset'", "missing key 'maps'",
+       {"1:17: 'studies' in the main job must be a list of strings, not a whole number",
+        "2:8: 'maps' in the main job must be a list of strings", "missing key 'preset'",
         "missing key 'bench'", "3:1: unknown key 'benhc' in the main job; did you mean 'bench'?"})
     EXPECT_NE(text.find(said), std::string::npos) << said << " in\n" << text;
 }

@@ -118,6 +118,24 @@ TEST_F(PackTest, AResultIsNeverReplacedAndAFailureGivesWay) {
   EXPECT_FALSE(fs::exists(pack("three"))) << "nothing was new";
 }
 
+TEST_F(PackTest, AResultInAPackGoesBeforeAFailureInAFolderUnlessItIsDamaged) {
+  Record failure = record_of(0);
+  failure.status = {Status::Kind::timeout, "wall time", 5, -1};
+  const Store loose = reading();
+  loose.prepare();
+  EXPECT_EQ(loose.commit(loose.stage(failure.key), failure), Store::Commit::stored);
+  Store store = packing("one");
+  EXPECT_EQ(put(store, record_of(0)), Store::Commit::stored);
+  EXPECT_EQ(reading().find(failure.key)->status.kind, Status::Kind::ok);
+  EXPECT_EQ(reading().series(failure.key).rows.size(), 2u) << "of the same entry";
+  EXPECT_EQ(reading().parts(failure.key).size(), 2u);
+  std::string text = read_text(pack("one"));
+  text[text.find("\"a\": 1") + 5] = '2';
+  std::ofstream(pack("one")) << text;
+  EXPECT_EQ(reading().find(failure.key)->status.kind, Status::Kind::timeout);
+  EXPECT_EQ(said_.size(), 1u) << "the damage, once";
+}
+
 TEST_F(PackTest, TwoThatDidNotSeeEachOtherAreCountedOnce) {
   Store a = packing("a"), b = packing("b");
   put(a, record_of(0)), put(b, record_of(0));

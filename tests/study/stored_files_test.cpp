@@ -52,9 +52,7 @@ void use_bench(const fs::path& file) {
 }
 
 std::string trajectory_bytes(const fs::path& folder) {
-  TrajectoryWriter writer(
-      folder / "good",
-      {"hang", "jakobsen", 0.1, 3, {{0, 1, 2}}, TrajectoryHeader::Real::f32, true});
+  TrajectoryWriter writer(folder / "good", {"hang", "jakobsen", 0.1, 3, {{0, 1, 2}}});
   State state{std::vector<Vec3>(3, Vec3::Ones()), std::vector<Vec3>(3, Vec3::Zero())};
   for (int k = 0; k < 3; ++k) writer.append(0.1 * k, state);
   return read_text(folder / "good");

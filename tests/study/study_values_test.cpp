@@ -168,7 +168,7 @@ knd = "x"
             "1:1: missing key 'question' in the study\n"
             "2:19: 'scenes' holds texts, not a whole number\n"
             "3:22: jakobsen: unknown parameter 'iteratons'; did you mean 'iterations'?\n"
-            "4:7: 'set' in the study 'set' must be a list of texts, not a whole number\n"
+            "4:7: 'set' in the study must be a list of texts, not a whole number\n"
             "6:1: no solver of this study has a parameter 'colour' (a scene key has a dot, as "
             "\"time.dt\")\n"
             "7:14: missing key 'steps' in the range\n"
@@ -202,7 +202,7 @@ TEST_F(StudyFile, WhatNobodyCanRunIsRefused) {
   EXPECT_EQ(wrong(good + "set = [\"a b\", \"a\\nb\"]\n"), "4:15" + said);
   EXPECT_EQ(wrong(good + "\"a\\u001fb\" = 1\n"), "4:1" + said);
   EXPECT_EQ(wrong(good + "exclude = 3\n"),
-            "4:11: 'exclude' in the study 'exclude' must be a list of tables\n");
+            "4:11: 'exclude' in the study must be a list of tables\n");
   EXPECT_EQ(wrong(good + "set = [\"time.td=1\"]\n"),
             "4:8: time.td=1: unknown key 'td' in [time]; did you mean 'dt'?\n");
 }

@@ -46,6 +46,43 @@ std::string wrong(const Json& json, const Read& read) {
   return "";
 }
 
+struct Part {
+  std::string name;
+  bool whole = false;
+  std::size_t count = 0;
+  double size = 1, known = std::nan("");
+};
+constexpr std::tuple kFields{Field{"name", &Part::name}, Field{"whole", &Part::whole},
+                             Field{"count", &Part::count}, Field{"size_m", &Part::size},
+                             Field{"known", &Part::known}};
+
+TEST(Fields, WriteAStructInTheirOrderAndReadItBack) {
+  const Json json = json_of(Part{"a", true, 3, 0.1, 2}, kFields);
+  EXPECT_EQ(to_text(json), R"({"name":"a","whole":true,"count":3,"size_m":0.1,"known":2.0})");
+  const Part back = read_as(JsonReader(json, "x.json"), kFields);
+  EXPECT_EQ(to_text(json_of(back, kFields)), to_text(json));
+}
+
+TEST(Fields, NullIsReadOnlyWhereANumberMayBeUnknown) {
+  const std::string unknown = to_text(json_of(Part{}, kFields));
+  EXPECT_EQ(unknown, R"({"name":"","whole":false,"count":0,"size_m":1.0,"known":null})");
+  const auto read = [](const JsonReader& j) { return read_as(j, kFields); };
+  EXPECT_TRUE(std::isnan(read_json(unknown, "x.json", read).known));
+  Json json = parse_json(unknown);
+  json["size_m"] = nullptr;
+  EXPECT_EQ(wrong(json, read), "x.json:7: size_m: expected a number");
+  json["size_m"] = 1, json["count"] = -1;
+  EXPECT_EQ(wrong(json, read), "x.json:7: count: expected a count");
+  json.erase("name");
+  EXPECT_EQ(wrong(json, read), "x.json:7: has no 'name'");
+}
+
+TEST(JsonText, AnArrayIsMadeItemByItemAndIsThereWithoutItems) {
+  const auto square = [](int n) -> Json { return {{"square", n * n}}; };
+  EXPECT_EQ(to_text(json_array(std::vector{2, 3}, square)), R"([{"square":4},{"square":9}])");
+  EXPECT_EQ(to_text(json_array(std::vector<int>{}, square)), "[]");
+}
+
 TEST(JsonReader, NamesFileLineAndThePlaceWithinTheText) {
   const Json json =
       parse_json(R"({"scenes": [{}, {"cases": [1, {"n": "x"}]}], "list": [[1, 2], 3]})");

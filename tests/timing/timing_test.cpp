@@ -123,7 +123,7 @@ std::string failure(const std::function<void()>& what) {
 
 TEST(TimingWorkers, AreAskedLineByLine) {
   const Scripted scripted(kWorker);
-  TimingWorker worker(program_of(kSpec), kSpec);
+  TimingWorker worker(kSpec);
   const StepTime pilot = worker.pilot_run(31), sample = worker.sample(5);
   EXPECT_EQ(pilot.cpu, 0.002);
   EXPECT_EQ(pilot.wall, 0.004);
@@ -139,16 +139,16 @@ TEST(TimingWorkers, AreAskedLineByLine) {
 
 TEST(TimingWorkers, WhatTheyRefuseAndThatTheyDieIsSaid) {
   Scripted scripted("echo ready; read a; echo '! it has no clock'; read a; exit 1");
-  TimingWorker worker(program_of(kSpec), kSpec);
+  TimingWorker worker(kSpec);
   EXPECT_EQ(failure([&] { worker.pilot_run(3); }), "it has no clock");
   EXPECT_EQ(failure([&] { worker.sample(3); }), "the timing worker died");
   for (const char* script : {"exit 0", "echo reddy; sleep 1000"}) {
     scripted.write(script);
-    EXPECT_EQ(failure([] { TimingWorker(program_of(kSpec), kSpec); }),
+    EXPECT_EQ(failure([] { TimingWorker{kSpec}; }),
               "the timing worker of hang scripted:iterations=2 did not start");
   }
   scripted.write("echo ready; exec sleep 1000");
-  TimingWorker silent(program_of(kSpec), kSpec);
+  TimingWorker silent(kSpec);
   const auto start = SteadyClock::now();
   silent.give_up_at(in_seconds(0.15));
   EXPECT_THROW(silent.pilot_run(3), TimeIsUp);
@@ -228,14 +228,14 @@ TEST(Benches, NoRoundBeginsThatMayNotEnd) {
 TEST(Benches, TimeTheStepsOfASolver) {
   const CaseSpec real{"hang", {"cloth.grid=[8, 8]", "time.duration=0.5"}, "jakobsen"};
   EXPECT_EQ(program_of(real), this_program());
-  TimingWorker worker(program_of(real), real);
+  TimingWorker worker(real);
   const StepTime pilot = worker.pilot_run(32), sample = worker.sample(16);
   EXPECT_GT(pilot.cpu, 1e-7);
   EXPECT_LT(pilot.cpu, 0.1);
   EXPECT_GT(sample.cpu, 1e-7);
   EXPECT_GT(sample.wall, 1e-7);
   EXPECT_GT(worker.peak_bytes(), std::size_t{1} << 20);
-  EXPECT_NE(failure([&] { TimingWorker(this_program(), {"hang", {}, "nobody"}); }), "");
+  EXPECT_NE(failure([&] { TimingWorker({"nowhere", {}, "jakobsen"}); }), "");
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "core/io/positions/positions.hpp"
 
-/// What the formats share; for the sources of this folder.
+/// What the formats share: for the sources of this folder, and for taut's own .traj.
 namespace taut {
 
 /// A number at these bytes. `order` is the file's.
@@ -35,6 +35,16 @@ template <class Real>
 void append_vectors(std::string& out, const std::vector<Vec3>& vectors, std::endian order) {
   for (const Vec3& v : vectors)
     for (const double c : v) append_number(out, static_cast<Real>(c), order);
+}
+
+/// The vectors at these bytes, as many as there are already.
+template <class Real>
+void read_vectors(const char* from, std::vector<Vec3>& vectors, std::endian order) {
+  for (Vec3& v : vectors)
+    for (double& c : v) {
+      c = static_cast<double>(number_at<Real>(from, order));
+      from += sizeof(Real);
+    }
 }
 
 /// A file that is being written. Throws InputError with the system's reason.

@@ -4,7 +4,6 @@
 
 #include "core/io/positions/formats.hpp"
 #include "core/io/text_file.hpp"
-#include "core/model/input_error.hpp"
 
 namespace taut {
 
@@ -13,9 +12,9 @@ namespace {
 constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr std::size_t kWritten = 128;  ///< bytes of the header that this program writes
 
-[[noreturn]] void fail(const std::filesystem::path& path, std::size_t byte,
-                       const std::string& why) {
-  throw InputError({{path.string(), 0, 0, "byte " + std::to_string(byte) + ": " + why}});
+[[noreturn]] void fail_at(const std::filesystem::path& path, std::size_t byte,
+                          const std::string& why) {
+  fail_in(path, "byte " + std::to_string(byte) + ": " + why);
 }
 
 /// What follows 'key': in the dictionary of the header, up to `end`; "" if it has no such key.
@@ -68,32 +67,32 @@ std::unique_ptr<PositionReader> open_npy(const std::filesystem::path& path) {
   constexpr std::size_t kMostHeader = 1 << 16;
   const std::string bytes = first_bytes(path, 12 + kMostHeader);
   if (!bytes.starts_with(kNpyMagic) || bytes.size() < 12)
-    fail(path, 0, "an array of NumPy begins with \\x93NUMPY and its version");
+    fail_at(path, 0, "an array of NumPy begins with \\x93NUMPY and its version");
   const int version = bytes[6];
   if (version < 1 || version > 3)
-    fail(path, 6, "version " + std::to_string(version) + "; known are 1 to 3");
+    fail_at(path, 6, "version " + std::to_string(version) + "; known are 1 to 3");
   const std::size_t start = version == 1 ? 10 : 12;
   const std::size_t length = version == 1
                                  ? number_at<std::uint16_t>(bytes.data() + 8, std::endian::little)
                                  : number_at<std::uint32_t>(bytes.data() + 8, std::endian::little);
   if (length > kMostHeader || start + length > bytes.size())
-    fail(path, 8,
-         "a header of " + std::to_string(length) + " bytes, but the file has " +
-             std::to_string(std::filesystem::file_size(path)) + ", or no header is so long");
+    fail_at(path, 8,
+            "a header of " + std::to_string(length) + " bytes, but the file has " +
+                std::to_string(std::filesystem::file_size(path)) + ", or no header is so long");
   const std::string_view dictionary = std::string_view(bytes).substr(start, length);
   std::string_view type = value_of(dictionary, "descr", ',');
   if (type.size() == 5) type = type.substr(1, 3);  // without its quotes
   if (type != "<f4" && type != "<f8" && type != ">f4" && type != ">f8")
-    fail(path, start,
-         "the type is " + std::string(type.substr(0, 40)) +
-             "; positions are float32 or float64: x.astype('float64')");
+    fail_at(path, start,
+            "the type is " + std::string(type.substr(0, 40)) +
+                "; positions are float32 or float64: x.astype('float64')");
   if (value_of(dictionary, "fortran_order", ',') != "False")
-    fail(path, start, "it is in Fortran order; numpy.ascontiguousarray puts it in C order");
+    fail_at(path, start, "it is in Fortran order; numpy.ascontiguousarray puts it in C order");
   const std::vector<std::uint64_t> shape = numbers_of(value_of(dictionary, "shape", ')'));
   if (shape.size() != 3 || shape[2] != 3)
-    fail(path, start,
-         "the shape is " + std::string(value_of(dictionary, "shape", ')').substr(0, 60)) +
-             "); positions are [frames, vertices, 3]");
+    fail_at(path, start,
+            "the shape is " + std::string(value_of(dictionary, "shape", ')').substr(0, 60)) +
+                "); positions are [frames, vertices, 3]");
   return read_block(path,
                     {.first = start + length,
                      .frames = shape[0],

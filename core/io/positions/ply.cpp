@@ -4,7 +4,6 @@
 
 #include "core/io/positions/formats.hpp"
 #include "core/io/text_file.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -42,7 +41,7 @@ class PlyReader {
 
  private:
   [[noreturn]] void fail(const std::string& why) const {
-    throw InputError({{path_.string(), line_, line_ > 0 ? 1 : 0, why}});
+    fail_in(path_, why, line_, line_ > 0 ? 1 : 0);
   }
 
   std::vector<std::string_view> next_line() {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/io/positions/formats.hpp"
-#include "core/model/input_error.hpp"
+#include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -13,16 +13,12 @@ using std::endian;
 constexpr std::string_view kPc2Magic{"POINTCACHE2\0", 12};
 constexpr std::size_t kPc2Header = 32;
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& why) {
-  throw InputError({{path.string(), 0, 0, why}});
-}
-
 std::uint64_t count_at(const std::filesystem::path& path, const std::string& bytes,
                        std::size_t offset, endian order) {
   const auto count = number_at<std::int32_t>(bytes.data() + offset, order);
   if (count <= 0)
-    fail(path, "byte " + std::to_string(offset) + ": " + std::to_string(count) +
-                   " is no number of vertices or frames");
+    fail_in(path, "byte " + std::to_string(offset) + ": " + std::to_string(count) +
+                      " is no number of vertices or frames");
   return static_cast<std::uint64_t>(count);
 }
 
@@ -76,14 +72,15 @@ class MddWriter final : public PositionWriter {
 
 std::unique_ptr<PositionReader> open_pc2(const std::filesystem::path& path) {
   const std::string header = first_bytes(path, kPc2Header);
-  if (!header.starts_with(kPc2Magic)) fail(path, "byte 0: a PC2 file begins with POINTCACHE2");
+  if (!header.starts_with(kPc2Magic)) fail_in(path, "byte 0: a PC2 file begins with POINTCACHE2");
   if (header.size() < kPc2Header)
-    fail(path, "ends at byte " + std::to_string(header.size()) + ", within its header");
+    fail_in(path, "ends at byte " + std::to_string(header.size()) + ", within its header");
   const auto version = number_at<std::int32_t>(header.data() + 12, endian::little);
-  if (version != 1) fail(path, "byte 12: version " + std::to_string(version) + "; known is 1");
+  if (version != 1) fail_in(path, "byte 12: version " + std::to_string(version) + "; known is 1");
   const auto rate = static_cast<double>(number_at<float>(header.data() + 24, endian::little));
   if (!(rate > 0) || !std::isfinite(rate))
-    fail(path, "byte 24: a frame every " + shortest(rate) + " frames; expected a number above 0");
+    fail_in(path,
+            "byte 24: a frame every " + shortest(rate) + " frames; expected a number above 0");
   return read_block(path,
                     {.first = kPc2Header,
                      .frames = count_at(path, header, 28, endian::little),
@@ -95,7 +92,7 @@ std::unique_ptr<PositionReader> open_mdd(const std::filesystem::path& path) {
   constexpr std::size_t kCounts = 8;
   std::string header = first_bytes(path, kCounts);
   if (header.size() < kCounts)
-    fail(path, "ends at byte " + std::to_string(header.size()) + ", within its header");
+    fail_in(path, "ends at byte " + std::to_string(header.size()) + ", within its header");
   const std::uint64_t frames = count_at(path, header, 0, endian::big);
   const FrameBlock block{.first = kCounts + 4 * frames,
                          .frames = frames,

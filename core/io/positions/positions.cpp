@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/io/positions/formats.hpp"
-#include "core/model/input_error.hpp"
+#include "core/io/text_file.hpp"
 
 namespace taut {
 
@@ -35,9 +35,9 @@ const Format* find_format(const std::filesystem::path& path) {
 
 const Format& format_of(const std::filesystem::path& path) {
   if (const Format* format = find_format(path)) return *format;
-  throw InputError({{path.string(), 0, 0,
-                     "positions are in files that end in .npy, .pc2, .mdd, .obj or .ply, or in "
-                     "taut's own .traj"}});
+  fail_in(path,
+          "positions are in files that end in .npy, .pc2, .mdd, .obj or .ply, or in taut's own "
+          ".traj");
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include "core/io/positions/formats.hpp"
 #include "core/io/text_file.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -50,16 +49,14 @@ std::vector<fs::path> files_of(const fs::path& path) {
   if (numbered) prefix.resize(end == prefix.npos ? 0 : end + 1);
   const std::vector<Numbered> all = numbered_files(path, prefix);
   if (all.empty() || (numbered && !fs::exists(path)))
-    throw InputError({{path.string(), 0, 0, "no such file, and no frames of that name"}});
+    fail_in(path, "no such file, and no frames of that name");
   std::vector<fs::path> files;
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (k > 0 && all[k].number == all[k - 1].number)
-      throw InputError(
-          {{all[k].file.string(), 0, 0, "is the same frame as " + all[k - 1].file.string()}});
+      fail_in(all[k].file, "is the same frame as " + all[k - 1].file.string());
     if (k > 1 && all[k].number - all[k - 1].number != all[1].number - all[0].number)
-      throw InputError({{all[k].file.string(), 0, 0,
-                         "the frame before it is missing: number " +
-                             std::to_string(all[k - 1].number + all[1].number - all[0].number)}});
+      fail_in(all[k].file, "the frame before it is missing: number " +
+                               std::to_string(all[k - 1].number + all[1].number - all[0].number));
     files.push_back(all[k].file);
   }
   return files;
@@ -71,8 +68,7 @@ class SequenceReader final : public PositionReader {
     header_.files = files_of(path);
     header_.frames = static_cast<int>(header_.files.size());
     header_.vertices = static_cast<int>(vertices_of(header_.files.front()).size());
-    if (header_.vertices == 0)
-      throw InputError({{header_.files.front().string(), 0, 0, "has no vertices"}});
+    if (header_.vertices == 0) fail_in(header_.files.front(), "has no vertices");
   }
 
   std::vector<Vec3> read(int k) override {
@@ -80,10 +76,9 @@ class SequenceReader final : public PositionReader {
     const fs::path& file = header_.files[static_cast<std::size_t>(k)];
     std::vector<Vec3> x = vertices_of(file);
     if (x.size() != static_cast<std::size_t>(header_.vertices))
-      throw InputError(
-          {{file.string(), 0, 0,
-            "has " + std::to_string(x.size()) + " vertices; " + header_.files.front().string() +
-                " has " + std::to_string(header_.vertices)}});
+      fail_in(file, "has " + std::to_string(x.size()) + " vertices; " +
+                        header_.files.front().string() + " has " +
+                        std::to_string(header_.vertices));
     return x;
   }
 
@@ -135,7 +130,7 @@ std::vector<Vec3> obj_vertices(const fs::path& path, Rounding& rounding) {
     Vec3& v = x.emplace_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto c = axis + 1 < words.size() ? whole<double>(words[axis + 1]) : std::nullopt;
-      if (!c) throw InputError({{path.string(), line, 1, "a vertex needs three numbers"}});
+      if (!c) fail_in(path, "a vertex needs three numbers", line, 1);
       v[static_cast<Eigen::Index>(axis)] = *c;
     }
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <type_traits>
 #include <vector>
 
 #include "core/solver/layout/particles.hpp"
@@ -23,8 +22,12 @@ namespace taut {
 ///
 /// no two of which share a bucket, as a row has eight or more and a layer eight rows. Which sizes
 /// they have depends on the extent of the cloth, so that few cells lie on one another; those that
-/// do are far apart and are compared in vain. Linear in the number of particles and pairs; the
-/// order of the pairs depends on nothing but the positions.
+/// do are far apart and are compared in vain. Linear in the number of particles and pairs.
+///
+/// Pairs come in lists, so that threads can work them off: the particles, in the order of their
+/// cells, are cut into parts, and of part n list n has the pairs inside it, list parts() + n those
+/// with the part after it, and list 2 parts() + n the few others, from one end of the grid to the
+/// other. Lists and their order depend on nothing but the positions.
 template <class Real>
 class NeighbourGrid {
  public:
@@ -38,22 +41,25 @@ class NeighbourGrid {
     starts_.resize(bucket_count_ + 1);
     for (Coordinates* c : {&now_, &moved_, &at_rest_})
       for (auto& array : *c) array.resize(particles + kSearchLanes);
-    parts_.resize(shared() ? pool.threads() : 1);
-    for (Part& part : parts_) {
-      part.blocks.resize(particles + 10);
-      if (&part != parts_.data()) part.ends.resize(bucket_count_);
-      part.before.resize(parts_.size());
+    const bool shared = particles >= ThreadPool::kWorthSharing;
+    parts_.resize(shared ? kParts : 1);
+    for (Part& part : parts_) part.blocks.resize(particles + 10);
+    counts_.resize(shared ? pool.threads() : 1);
+    for (Count& count : counts_) {
+      if (&count != counts_.data()) count.ends.resize(bucket_count_);
+      count.before.resize(counts_.size());
     }
   }
 
   std::size_t size() const { return particles_.size(); }  ///< particles
-  std::size_t parts() const { return parts_.size(); }     ///< that threads search in
+  std::size_t parts() const { return parts_.size(); }
   std::size_t bytes() const {
     std::size_t sum = (3 * particles_.size() + starts_.size()) * sizeof starts_[0] +
                       9 * now_[0].size() * sizeof(Real) + rest_.size() * sizeof rest_[0];
     for (const Part& part : parts_)
-      sum += part.blocks.size() * sizeof(SearchBlock) + part.found.size() * sizeof(CandidatePair) +
-             (part.ends.size() + part.before.size()) * sizeof part.ends[0];
+      sum += part.blocks.size() * sizeof(SearchBlock) + part.found.size() * sizeof(CandidatePair);
+    for (const Count& count : counts_)
+      sum += (count.ends.size() + count.before.size()) * sizeof count.ends[0];
     return sum;
   }
 
@@ -65,8 +71,8 @@ class NeighbourGrid {
     });
   }
 
-  /// Calls visit(a, b) once for every pair less than `reach` [m], > 0, apart; or visit(n, a, b),
-  /// n < parts(), at the same time for different n: part after part it is the same order.
+  /// Calls visit(list, a, b) once for every pair less than `reach` [m], > 0, apart: at the same
+  /// time for the lists of different parts.
   template <class Visit>
   void pairs(const Points<Real>& x, Real reach, const Visit& visit) {
     find(x, nullptr, reach, reach, visit);
@@ -81,22 +87,23 @@ class NeighbourGrid {
   }
 
  private:
-  /// What a thread needs to search for the neighbours of some of the particles.
+  /// What it takes to search for the neighbours of some of the particles.
   struct Part {
     std::vector<SearchBlock> blocks;
     std::vector<CandidatePair> found;
     std::size_t count = 0;  ///< of these
     Vec4T<Real> least, most;
-    /// [bucket_count] where those of this part end in each bucket; the first part's are starts_.
+  };
+  /// What a thread needs to sort some of the particles.
+  struct Count {
+    /// [bucket_count] where they end in each bucket; the first thread's are starts_.
     std::vector<std::uint32_t> ends;
-    std::vector<std::uint32_t> before;  ///< [parts] how many are in a bucket before each share
+    std::vector<std::uint32_t> before;  ///< [threads] how many are in a bucket before each share
   };
   using Coordinates = std::array<std::vector<Real>, 3>;
 
   static constexpr Real kCells = 1000000;
-  template <class Visit>
-  static constexpr bool kInParts =
-      std::is_invocable_v<Visit, std::size_t, std::uint32_t, std::uint32_t>;
+  static constexpr std::size_t kParts = 8;  ///< more than threads, as some have more pairs
 
   /// previous: null if none has moved.
   template <class Visit>
@@ -116,24 +123,18 @@ class NeighbourGrid {
                                  .ignored = ignored_,
                                  .moving = previous != nullptr};
     point_to(now_, search.now), point_to(moved_, search.moved), point_to(at_rest_, search.rest);
-    const auto visit_part = [&](std::size_t n) {
-      for (std::size_t f = 0; f < parts_[n].count; ++f) {
-        const CandidatePair& pair = parts_[n].found[f];
-        if constexpr (kInParts<Visit>)
-          visit(n, particles_[pair.a], particles_[pair.b]);
-        else
-          visit(particles_[pair.a], particles_[pair.b]);
-      }
-    };
     for_each_part([&](std::size_t n, std::size_t begin, std::size_t end) {
       find_part(search, n, begin, end);
-      if constexpr (kInParts<Visit>) visit_part(n);
+      const std::size_t next_end = begin_of(std::min(n + 2, parts()));
+      for (std::size_t f = 0; f < parts_[n].count; ++f) {
+        const auto [a, b] = parts_[n].found[f];
+        const std::size_t kind = b >= begin && b < end ? 0 : b >= end && b < next_end ? 1 : 2;
+        visit(kind * parts() + n, particles_[a], particles_[b]);
+      }
     });
-    if constexpr (!kInParts<Visit>)
-      for (std::size_t n = 0; n < parts_.size(); ++n) visit_part(n);
   }
 
-  /// The pairs of the n-th part of the particles: parts one after the other give the order of one.
+  /// The pairs of the n-th part of the particles with those after them.
   void find_part(NeighbourSearch<Real> search, std::size_t n, std::size_t begin, std::size_t end) {
     Part& part = parts_[n];
     const auto last = static_cast<std::uint32_t>(end);
@@ -147,7 +148,7 @@ class NeighbourGrid {
     }
   }
 
-  bool shared() const { return particles_.size() >= ThreadPool::kWorthSharing; }
+  std::size_t begin_of(std::size_t part) const { return size() * part / parts(); }
 
   /// Calls f(n, begin, end) for every part, n, of the particles.
   template <class F>
@@ -193,37 +194,38 @@ class NeighbourGrid {
     return (number(0) + row_ * number(1) + layer_ * number(2)) & (bucket_count_ - 1);
   }
 
-  std::uint32_t* ends(std::size_t part) {
-    return part == 0 ? starts_.data() : parts_[part].ends.data();
+  std::uint32_t* ends(std::size_t thread) {
+    return thread == 0 ? starts_.data() : counts_[thread].ends.data();
   }
 
-  /// By counting: every part of the particles for itself, then every share of the buckets.
+  /// By counting: every thread a share of the particles, then a share of the buckets.
   template <class At>
   void sort(const Points<Real>& x, const Points<Real>* previous, Real reach, const At& at) {
     fit_grid(x, reach, at);
-    const std::size_t parts = parts_.size();
-    for_each_part([&](std::size_t n, std::size_t begin, std::size_t end) {
+    const std::size_t threads = counts_.size();
+    pool_.run_parts(threads, size(), [&](std::size_t n, std::size_t begin, std::size_t end) {
       std::uint32_t* const count = ends(n);
       std::fill_n(count, bucket_count_, 0);
       for (std::size_t i = begin; i < end; ++i) ++count[buckets_[i] = bucket_of(at(x, i))];
-      for (std::size_t share = 1; share < parts; ++share)
-        parts_[n].before[share] = static_cast<std::uint32_t>(std::count_if(
+      for (std::size_t share = 1; share < threads; ++share)
+        counts_[n].before[share] = static_cast<std::uint32_t>(std::count_if(
             buckets_.data() + begin, buckets_.data() + end,
-            [bound = bucket_count_ * share / parts](std::uint32_t b) { return b < bound; }));
+            [bound = bucket_count_ * share / threads](std::uint32_t b) { return b < bound; }));
     });
-    pool_.run_parts(parts, bucket_count_,
+    pool_.run_parts(threads, bucket_count_,
                     [&](std::size_t share, std::size_t begin, std::size_t end) {
                       std::uint32_t sum = 0;
-                      for (const Part& part : parts_) sum += part.before[share];
+                      for (const Count& count : counts_) sum += count.before[share];
                       std::uint32_t* const starts = starts_.data();
                       for (std::size_t b = begin; b < end; ++b) {
                         sum += starts[b], starts[b] = sum;
-                        for (std::size_t n = 1; n < parts; ++n) sum += ends(n)[b], ends(n)[b] = sum;
+                        for (std::size_t n = 1; n < threads; ++n)
+                          sum += ends(n)[b], ends(n)[b] = sum;
                       }
                     });
-    starts_[bucket_count_] = static_cast<std::uint32_t>(particles_.size());
-    for_each_part([&](std::size_t n, std::size_t begin, std::size_t end) {
-      std::uint32_t* const to = ends(n);  // in the end, of the first part, where the buckets start
+    starts_[bucket_count_] = static_cast<std::uint32_t>(size());
+    pool_.run_parts(threads, size(), [&](std::size_t n, std::size_t begin, std::size_t end) {
+      std::uint32_t* const to = ends(n);  // in the end, of the first one, where the buckets start
       for (std::size_t i = end; i-- > begin;)
         particles_[--to[buckets_[i]]] = static_cast<std::uint32_t>(i);
     });
@@ -252,7 +254,8 @@ class NeighbourGrid {
   Real per_metre_ = 1;
   std::vector<std::uint32_t> starts_;  ///< [bucket_count + 1]
   FindPairs<Real> find_pairs_;
-  std::vector<Part> parts_;  ///< one for each thread
+  std::vector<Part> parts_;
+  std::vector<Count> counts_;  ///< one for each thread
 };
 
 }  // namespace taut

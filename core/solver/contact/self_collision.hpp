@@ -36,7 +36,10 @@ class SelfCollidePass final : public Pass<Real> {
         kernels_(kernels<Real>(simd)),
         pool_(pool),
         grid_(scene.start.x.size(), pool, simd),
-        parts_(grid_.parts()) {
+        close_(3 * grid_.parts()),
+        close_found_(3 * grid_.parts()),
+        others_found_(3 * grid_.parts()),
+        motions_(grid_.parts()) {
     find_close_at_rest(scene);
   }
 
@@ -50,7 +53,7 @@ class SelfCollidePass final : public Pass<Real> {
       stride_ == 1 ? search_step<true>(p, motion(step)) : search_step<false>(p, motion(step));
     } else if (!searched_ || moved_more(p, searched_at_, search, skin_ / 4)) {
       search_steps(p, motion(step));
-      searched_at_ = p.x, searched_ = true;
+      remember_places(p);
     }
   }
 
@@ -60,15 +63,14 @@ class SelfCollidePass final : public Pass<Real> {
 
   std::vector<PassCost> cost() const override {
     std::size_t pairs = 0, bytes = sizeof(*this) + grid_.bytes() + searched_at_.bytes() +
-                                   close_.capacity() * sizeof(Pair);
-    for (const Part& part : parts_) {
-      bytes += sizeof part;
-      for (const Found* found : {&part.close, &part.others}) {
-        pairs += found->pairs.size();
-        bytes +=
-            found->pairs.capacity() * sizeof(Pair) + found->crossing.capacity() * sizeof(Crossing);
+                                   motions_.size() * sizeof(Motions);
+    for (const auto& list : close_) bytes += list.capacity() * sizeof(Pair);
+    for (const auto* lists : {&close_found_, &others_found_})
+      for (const Found& found : *lists) {
+        pairs += found.pairs.size();
+        bytes += sizeof found + found.pairs.capacity() * sizeof(Pair) +
+                 found.crossing.capacity() * sizeof(Crossing);
       }
-    }
     return {{.pass = "self-collide", .items = pairs, .bytes = bytes}};
   }
 
@@ -82,39 +84,54 @@ class SelfCollidePass final : public Pass<Real> {
   struct Crossing : Pair {
     Vec4T<Real> before;  ///< from a to b when the step began [m]
   };
-  struct Found {
+  /// Of one list of the grid.
+  struct alignas(64) Found {
     std::vector<Pair> pairs;
     std::vector<Crossing> crossing;
   };
-  /// What one thread has found, of those close at rest and of others, and in which bounds the
-  /// motions lie that it has seen.
-  struct alignas(64) Part {
-    Found close, others;
+  /// Of some of the particles, and in which bounds they lie.
+  struct alignas(64) Motions {
     MotionBoxes<Real> boxes;
-    Real motion2;  ///< m^2
+    Real largest2;  ///< m^2
   };
 
-  /// In the order in which one thread finds the pairs.
-  std::vector<const Found*> all_found() const {
-    std::vector<const Found*> all;
-    for (const Part& part : parts_) all.push_back(&part.close);
-    for (const Part& part : parts_) all.push_back(&part.others);
-    return all;
+  template <bool packed>
+  void sweep(Points<Real>& x) {
+    for_found(&Found::crossing, [this, &x](const Crossing& pair) {
+      const Vec4T<Real> now = between<packed>(x, pair);
+      if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
+        separate<packed>(x, pair, pair.before);
+    });
+    for_found(&Found::pairs, [this, &x](const Pair& pair) {
+      const Vec4T<Real> now = between<packed>(x, pair);
+      if (squared_norm(now) < pair.least * pair.least) separate<packed>(x, pair, now);
+    });
   }
 
-  template <bool packed>
-  void sweep(Points<Real>& x) const {
-    for (const Found* found : all_found())
-      for (const Crossing& pair : found->crossing) {
-        const Vec4T<Real> now = between<packed>(x, pair);
-        if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
-          separate<packed>(x, pair, pair.before);
-      }
-    for (const Found* found : all_found())
-      for (const Pair& pair : found->pairs) {
-        const Vec4T<Real> now = between<packed>(x, pair);
-        if (squared_norm(now) < pair.least * pair.least) separate<packed>(x, pair, now);
-      }
+  /// Calls f(pair) for all of these, those close at rest first: each list for itself and at the
+  /// same time lists that have no particle in common, so that threads change nothing.
+  template <class P, class F>
+  void for_found(std::vector<P> Found::*pairs, const F& f) {
+    const std::size_t parts = grid_.parts();
+    for (const auto* found : {&close_found_, &others_found_}) {
+      if (std::ranges::all_of(*found, [&](const Found& list) { return (list.*pairs).empty(); }))
+        continue;
+      const auto visit = [f, pairs, lists = found->data()](std::size_t n) {
+        for (const P& pair : lists[n].*pairs) f(pair);
+      };
+      const auto queue = [&](std::size_t first_list, std::size_t first, std::size_t step) {
+        pool_.queue(
+            parts,
+            [visit, first_list, first, step](std::size_t begin, std::size_t end) {
+              for (std::size_t n = begin; n < end; ++n)
+                if (n % step == first) visit(first_list + n);
+            },
+            parts > 1);
+      };
+      queue(0, 0, 1), queue(parts, 0, 2), queue(parts, 1, 2);
+      pool_.finish();
+      for (std::size_t n = 2 * parts; n < found->size(); ++n) visit(n);
+    }
   }
 
   template <bool packed>
@@ -148,7 +165,8 @@ class SelfCollidePass final : public Pass<Real> {
 
   void place(const Particles<Real>& p) {
     stride_ = p.layout->stride();
-    for (Pair& pair : close_) pair = pair_of(p, pair.a, pair.b, pair.least);
+    for (auto& list : close_)
+      for (Pair& pair : list) pair = pair_of(p, pair.a, pair.b, pair.least);
     placed_ = true;
   }
 
@@ -166,12 +184,12 @@ class SelfCollidePass final : public Pass<Real> {
       if (less(squared_norm(before), diameter_ * diameter_, 16 * way2))
         found.crossing.push_back({pair, before});
     };
-    for_close([&](Part& part, const Pair& pair) { consider(part.close, pair); });
+    for_close([&](Found& found, const Pair& pair) { consider(found, pair); });
     const Real reach = within + std::min(2 * motion, 4 * diameter_);
     grid_.moving_pairs(p.x, p.previous, within, reach,
-                       [&](std::size_t n, std::uint32_t a, std::uint32_t b) {
+                       [&](std::size_t list, std::uint32_t a, std::uint32_t b) {
                          if (p.w[a] + p.w[b] != 0)
-                           consider(parts_[n].others, pair_of(p, a, b, diameter_));
+                           consider(others_found_[list], pair_of(p, a, b, diameter_));
                        });
   }
 
@@ -180,28 +198,38 @@ class SelfCollidePass final : public Pass<Real> {
     forget_pairs();
     skin_ = diameter_ / 2 + 2 * motion;
     const Real reach = diameter_ + skin_;
-    for_close([&](Part& part, const Pair& pair) {
-      if (squared_norm(between<false>(p.x, pair)) < reach * reach) part.close.pairs.push_back(pair);
+    for_close([&](Found& found, const Pair& pair) {
+      if (squared_norm(between<false>(p.x, pair)) < reach * reach) found.pairs.push_back(pair);
     });
-    grid_.pairs(p.x, reach, [&](std::size_t n, std::uint32_t a, std::uint32_t b) {
-      if (p.w[a] + p.w[b] != 0) parts_[n].others.pairs.push_back(pair_of(p, a, b, diameter_));
+    grid_.pairs(p.x, reach, [&](std::size_t list, std::uint32_t a, std::uint32_t b) {
+      if (p.w[a] + p.w[b] != 0) others_found_[list].pairs.push_back(pair_of(p, a, b, diameter_));
     });
+  }
+
+  void remember_places(const Particles<Real>& p) {
+    if (searched_at_.empty()) searched_at_ = p.x;
+    pool_.run(p.layout->blocks(), [&](std::size_t begin, std::size_t end) {
+      const Real* const x = p.x.data();
+      const std::size_t first = p.layout->place_of_block(begin);
+      std::copy(x + first, x + p.layout->place_of_block(end), searched_at_.data() + first);
+    });
+    searched_ = true;
   }
 
   void forget_pairs() {
-    for (Part& part : parts_)
-      for (Found* found : {&part.close, &part.others})
-        found->pairs.clear(), found->crossing.clear();
+    for (auto* lists : {&close_found_, &others_found_})
+      for (Found& found : *lists) found.pairs.clear(), found.crossing.clear();
     searched_ = false;
   }
 
-  /// Calls f(part, pair) for those close at rest, shared out in order.
+  /// Calls f(found, pair) for those close at rest, at the same time for different lists.
   template <class F>
   void for_close(const F& f) {
-    pool_.run_parts(parts_.size(), close_.size(),
-                    [&](std::size_t n, std::size_t begin, std::size_t end) {
-                      for (std::size_t k = begin; k < end; ++k) f(parts_[n], close_[k]);
-                    });
+    pool_.run(grid_.parts(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t part = begin; part < end; ++part)
+        for (std::size_t list = part; list < close_.size(); list += grid_.parts())
+          for (const Pair& pair : close_[list]) f(close_found_[list], pair);
+    });
   }
 
   /// Whether a < b + c, of which the squares are given.
@@ -221,11 +249,11 @@ class SelfCollidePass final : public Pass<Real> {
   /// Since the step began, and since they were at `then`.
   MotionBoxes<Real> motion_boxes(Particles<Real>& p, const Points<Real>& then) {
     const ParticleSpan<Real> span = span_of(p, p.x);
-    pool_.run_parts(parts_.size(), span.parts(),
+    pool_.run_parts(motions_.size(), span.parts(),
                     [&](std::size_t n, std::size_t begin, std::size_t end) {
-                      parts_[n].boxes = kernels_.motion_boxes(span, then.data(), begin, end);
+                      motions_[n].boxes = kernels_.motion_boxes(span, then.data(), begin, end);
                     });
-    MotionBoxes<Real> all = parts_.front().boxes;
+    MotionBoxes<Real> all = motions_.front().boxes;
     const auto add = [](MotionBox<Real>& to, const MotionBox<Real>& box) {
       const auto& [least, most] = box;
       to.least = {lesser(to.least.x, least.x), lesser(to.least.y, least.y),
@@ -233,9 +261,9 @@ class SelfCollidePass final : public Pass<Real> {
       to.most = {greater(to.most.x, most.x), greater(to.most.y, most.y),
                  greater(to.most.z, most.z)};
     };
-    for (const Part& part : parts_)
-      add(all.since_previous, part.boxes.since_previous),
-          add(all.since_then, part.boxes.since_then);
+    for (const Motions& some : motions_)
+      add(all.since_previous, some.boxes.since_previous),
+          add(all.since_then, some.boxes.since_then);
     return all;
   }
 
@@ -245,12 +273,12 @@ class SelfCollidePass final : public Pass<Real> {
   Real largest_motion2(Particles<Real>& p, const Points<Real>& then, const MotionBox<Real>& box) {
     const ParticleSpan<Real> span{p.x.data(), then.data(), p.layout->sheet(), p.size()};
     const Vec3T<Real> middle = Real(0.5) * (box.least + box.most);
-    pool_.run_parts(parts_.size(), span.parts(),
+    pool_.run_parts(motions_.size(), span.parts(),
                     [&](std::size_t n, std::size_t begin, std::size_t end) {
-                      parts_[n].motion2 = kernels_.largest_motion2(span, middle, begin, end);
+                      motions_[n].largest2 = kernels_.largest_motion2(span, middle, begin, end);
                     });
     Real largest = 0;
-    for (const Part& part : parts_) largest = greater(largest, part.motion2);
+    for (const Motions& some : motions_) largest = greater(largest, some.largest2);
     return largest;
   }
   Real largest_motion(Particles<Real>& p, const Points<Real>& then, const MotionBox<Real>& box) {
@@ -273,12 +301,12 @@ class SelfCollidePass final : public Pass<Real> {
     for (std::size_t i = 0; i < n; ++i) rest.set(i, scene.mesh.rest[i].template cast<Real>());
     const std::vector<double> w = inverse_masses(scene);
     const Adjacency links(scene.links, static_cast<int>(n));
-    grid_.pairs(rest, kNearby * diameter_, [&](std::uint32_t a, std::uint32_t b) {
+    grid_.pairs(rest, kNearby * diameter_, [&](std::size_t list, std::uint32_t a, std::uint32_t b) {
       const auto leads_to_b = [b](const Adjacency::End& end) { return to_index(end.vertex) == b; };
       const auto ends = links.of(static_cast<int>(a));
       const Real distance = (rest[b] - rest[a]).norm();
       if (w[a] + w[b] != 0 && distance > 0 && std::ranges::none_of(ends, leads_to_b))
-        close_.push_back({a, b, std::min(distance, diameter_), 0});
+        close_[list].push_back({a, b, std::min(distance, diameter_), 0});
     });
     grid_.ignore(rest, kNearby * diameter_);
   }
@@ -289,9 +317,12 @@ class SelfCollidePass final : public Pass<Real> {
   const Kernels<Real>& kernels_;
   ThreadPool& pool_;
   NeighbourGrid<Real> grid_;
-  std::vector<Part> parts_;
-  std::vector<Pair> close_;   ///< at rest within kNearby diameters and not linked
-  bool placed_ = false;       ///< until then by numbers of particles, not slots
+  /// Of each list of the grid at rest: at rest within kNearby diameters and not linked.
+  std::vector<std::vector<Pair>> close_;
+  bool placed_ = false;              ///< until then by numbers of particles, not slots
+  std::vector<Found> close_found_;   ///< of each list of close_
+  std::vector<Found> others_found_;  ///< of each list of the grid
+  std::vector<Motions> motions_;
   Real skin_ = 0;             ///< m
   Points<Real> searched_at_;  ///< m
   bool searched_ = false;

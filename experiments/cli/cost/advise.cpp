@@ -125,7 +125,7 @@ class Advisor {
         record->solver, record->spec.solver, {}, std::abs(record->value(options_.metric)), {}};
     if (!completed(record->status)) found.failure = describe(record->status);
     try {
-      TimingWorker worker(program_of(record->spec), record->spec);
+      TimingWorker worker(record->spec);
       worker.give_up_at(at(end));
       const StepTime step = worker.pilot_run(std::min(kQuickSteps, steps_done(*record)));
       const double cost = step.cpu / record->dt;
@@ -296,7 +296,7 @@ Json json_of(const BenchedCase& c, const std::string& metric) {
           {"case", c.record.id}};
 }
 
-void print_json(const Options& options, const Result& result, double elapsed) {
+Json json_of(const Options& options, const Result& result, double elapsed) {
   Json all{{"scene", options.scene},
            {"metric", options.metric},
            {"best", nullptr},
@@ -306,14 +306,14 @@ void print_json(const Options& options, const Result& result, double elapsed) {
            {"patience_seconds", options.patience},
            {"complete", result.cut.empty()},
            {"not_done", result.cut},
-           {"tried", Json::array()}};
+           {"tried", json_array(result.tried, [](const Candidate& c) -> Json {
+              return {{"setting", parse_solver(c.setting).brief()},
+                      {"error", c.error},
+                      {"quick_cost", c.cost.mid},
+                      {"refused", c.failure.empty() ? Json() : Json(c.failure)}};
+            })}};
   if (result.target.error) all["error"] = *result.target.error;
   if (result.target.budget) all["budget_cpu_seconds_per_second"] = *result.target.budget;
-  for (const Candidate& c : result.tried)
-    all["tried"].push_back({{"setting", parse_solver(c.setting).brief()},
-                            {"error", c.error},
-                            {"quick_cost", c.cost.mid},
-                            {"refused", c.failure.empty() ? Json() : Json(c.failure)}});
   if (const Recommendation& chosen = result.recommendation; chosen.best) {
     all["best"] = json_of(result.best(), options.metric);
     all["best"]["cpu_seconds_per_second"] = result.cost;
@@ -327,7 +327,7 @@ void print_json(const Options& options, const Result& result, double elapsed) {
       all["runner_up"] = json_of(result.bench.cases[*chosen.runner_up], options.metric);
     if (chosen.ratio) all["ratio"] = *chosen.ratio;
   }
-  std::cout << to_text(all, 1) << '\n';
+  return all;
 }
 
 int run(Options options) {
@@ -347,7 +347,7 @@ int run(Options options) {
                          ? "no solver can run scene '" + options.scene + "'"
                          : options.metric + " has no value on scene '" + options.scene + "'");
   if (options.json) {
-    print_json(options, result, advisor.elapsed());
+    print_json(json_of(options, result, advisor.elapsed()));
   } else {
     std::cout << options.scene << ", ";
     if (result.recommendation.best)

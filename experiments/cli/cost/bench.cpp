@@ -12,6 +12,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/timing/recommendation.hpp"
 
 namespace taut::verb::bench {
@@ -92,10 +93,7 @@ std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
   std::vector<std::pair<std::string, std::vector<Record>>> groups;
   for (const Record& record : records) {
     if (record.status.kind == Status::Kind::unsupported) continue;
-    const std::string title = title_among(question_of(record), asked);
-    auto group = std::ranges::find(groups, title, [](const auto& g) { return g.first; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {title, {}});
-    group->second.push_back(record);
+    under(groups, title_among(question_of(record), asked)).push_back(record);
   }
   return groups;
 }

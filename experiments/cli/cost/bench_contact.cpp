@@ -132,7 +132,7 @@ std::function<int()> bind(CLI::App& app) {
       if (!o->json) print(sizes.back(), side);
     }
     if (o->json)
-      std::cout << to_text(json_of(sizes), 1) << '\n';
+      print_json(json_of(sizes));
     else if (sizes.size() > 2)
       print_exponents(sizes);
     if (!o->plot.empty()) plot(sizes, o->plot);

@@ -22,13 +22,23 @@ struct Options {
   std::vector<int> sizes{0};
   int rounds = 11, copies = 0;
   double seconds = 0.01;
-  bool wall = false, json = false;
+  bool two_threads = false, json = false;
 };
 
-void print(const std::vector<EffectRow>& rows, const Options& options, int side) {
+void print_refused(const std::vector<EffectRow>& rows) {
+  for (const EffectRow& row : rows)
+    if (!row.refused.empty()) std::cout << row.scene << " not timed: " << row.refused << '\n';
+  std::cout << std::flush;
+}
+
+void print_heading(const Options& options, int side) {
   std::cout << '\n' << options.solver;
   if (side > 0) std::cout << ", " << side << " x " << side;
-  std::cout << "; ns a vertex and step, " << (options.wall ? "wall" : "CPU")
+}
+
+void print(const std::vector<EffectRow>& rows, const Options& options, int side) {
+  print_heading(options, side);
+  std::cout << "; ns a vertex and step, " << (options.copies > 0 ? "wall" : "CPU")
             << " time; times hang's, a step and a simulated second, times the same cloth's links "
                "alone, and times hang's if the colliders are too far away to be touched, 95 %\n";
   std::vector<Row> table{{"scene", "effects", "vertices", "ns", "x hang, a step", "a second",
@@ -55,9 +65,28 @@ void print(const std::vector<EffectRow>& rows, const Options& options, int side)
     if (!row.traffic.empty())
       std::cout << row.scene << ": to load and store the ends of its links alone would cost "
                 << interval_text(row.traffic_times(unit)) << " x hang\n";
-    if (!row.refused.empty()) std::cout << row.scene << " not timed: " << row.refused << '\n';
   }
-  std::cout << std::flush;
+  print_refused(rows);
+}
+
+void print_two_cores(const std::vector<EffectRow>& rows, const Options& options, int side) {
+  print_heading(options, side);
+  std::cout << "; wall time; two threads on one sheet, and two unrelated sheets at once, as fast "
+               "as so many single threads, 95 %; both cores were free in the rounds in which "
+               "unrelated sheets reached "
+            << TwoCores::kFree << '\n';
+  std::vector<Row> table{{"scene", "effects", "vertices", "two threads", "unrelated sheets",
+                          "two / unrelated", "two, cores free", "free rounds"}};
+  for (const EffectRow& row : rows) {
+    const TwoCores& cores = row.two_cores;
+    table.push_back(
+        {row.scene, row.effects, std::to_string(row.vertices), interval_text(cores.threads()),
+         interval_text(cores.unrelated()), interval_text(cores.share()),
+         interval_text(cores.threads_while_free()),
+         std::to_string(cores.free_rounds()) + " of " + std::to_string(cores.rounds())});
+  }
+  print_columns(table, 2);
+  print_refused(rows);
 }
 
 Json json_of(const std::vector<EffectRow>& rows, int side) {
@@ -73,7 +102,9 @@ Json json_of(const std::vector<EffectRow>& rows, int side) {
                    {"links_alone_ns", row.bare},
                    {"touching_nothing_ns", row.looking},
                    {"link_traffic_ns", row.traffic},
-                   {"copies_ns", row.copies}});
+                   {"copies_ns", row.copies},
+                   {"two_threads", row.two_cores.thread_samples()},
+                   {"unrelated_sheets", row.two_cores.unrelated_samples()}});
   return all;
 }
 
@@ -86,32 +117,34 @@ std::function<int()> bind(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::Range(0, 1024));
   add_samples(app, o->rounds, o->seconds);
-  app.add_flag("--wall", o->wall, "Wall time instead of CPU time: for threads=2");
-  app.add_option("--copies", o->copies,
-                 "Also so many sheets of each scene at once on two threads (implies --wall)")
-      ->check(CLI::Range(1, 4096));
+  CLI::Option* const copies =
+      app.add_option("--copies", o->copies,
+                     "Also so many sheets of each scene at once on two threads; in wall time")
+          ->check(CLI::Range(1, 4096));
+  app.add_flag("--two-threads", o->two_threads,
+               "Instead what two threads are worth beside two unrelated sheets; in wall time")
+      ->excludes(copies);
   add_json(app, o->json, "Every row with its samples");
   return [o] {
     std::vector<std::string> scenes = o->scenes.empty() ? shipped("scenes") : o->scenes;
     std::erase(scenes, kUnit);
     scenes.insert(scenes.begin(), kUnit);
-    o->wall |= o->copies > 0;
     Json all = Json::array();
     for (const int side : o->sizes) {
       const auto rows = bench_effects({.scenes = scenes,
                                        .solver = o->solver,
                                        .side = side,
-                                       .wall = o->wall,
                                        .copies = o->copies,
+                                       .two_threads = o->two_threads,
                                        .rounds = o->rounds,
                                        .seconds = o->seconds,
                                        .progress = Countdown("timing round")});
       if (o->json)
         for (Json& row : json_of(rows, side)) all.push_back(std::move(row));
       else
-        print(rows, *o, side);
+        (o->two_threads ? print_two_cores : print)(rows, *o, side);
     }
-    if (o->json) std::cout << to_text(all, 1) << '\n';
+    if (o->json) print_json(all);
     return kPass;
   };
 }
@@ -125,6 +158,6 @@ TAUT_VERB(bench_effects) = {
     .summary = "Measures what wind, contact and self-collision cost beside links alone",
     .example =
         "taut bench effects\n  taut bench effects ball box --sizes 64,128\n  "
-        "taut bench effects --solver jakobsen:iterations=1,substeps=15,threads=2 --wall\n  "
+        "taut bench effects flag plane crumple --sizes 128 --two-threads --rounds 30\n  "
         "taut bench effects hang --copies 16",
     .bind = taut::verb::effects::bind};

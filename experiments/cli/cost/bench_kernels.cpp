@@ -38,14 +38,14 @@ void print(const KernelBench& bench) {
                           "x textbook", "x Bullet", "floor", "flops", "bytes", "fixed"}};
   const auto bullet = std::ranges::find_if(
       bench.rows, [](const KernelRow& row) { return row.name.starts_with("bullet"); });
-  const bool rival = bullet != bench.rows.end();
+  const bool timed = bullet != bench.rows.end();
   for (std::size_t i = 0; i < bench.rows.size(); ++i) {
     const KernelRow& row = bench.rows[i];
     const auto other = static_cast<std::size_t>(bullet - bench.rows.begin());
     table.push_back({row.name, interval_text(row.cost()), times(bench.ratio(i, 0)),
-                     rival ? times(bench.ratio(i, other)) : "-", number_text(row.fastest),
+                     timed ? times(bench.ratio(i, other)) : "-", number_text(row.fastest),
                      number_text(bench.rows[0].fastest / row.fastest),
-                     rival ? number_text(bullet->fastest / row.fastest) : "-",
+                     timed ? number_text(bullet->fastest / row.fastest) : "-",
                      number_text(row.floor), std::to_string(row.flops), std::to_string(row.bytes),
                      number_text(bootstrap_median(row.fixed).mid)});
   }
@@ -59,33 +59,29 @@ void print(const KernelBench& bench) {
                "projection: "
             << in_both(bench.traffic_float, bench.traffic_double);
   const TwoCores& cores = bench.two_cores;
-  std::cout << "two threads: " << interval_text(cores.threads)
+  std::cout << "two threads: " << interval_text(cores.threads())
             << " times one, wall time; two unrelated sheets at once: "
-            << interval_text(cores.unrelated) << "; so two threads get "
-            << interval_text(cores.share) << " of what two cores give\n";
-  if (cores.free > 0)
-    std::cout << "two threads while both cores were free (" << number_text(100 * cores.free)
-              << " % of the rounds: unrelated sheets at " << TwoCores::kFree
-              << " and more): " << interval_text(cores.threads_while_free) << " times one\n";
+            << interval_text(cores.unrelated()) << "; so two threads get "
+            << interval_text(cores.share()) << " of what two cores give\n";
+  if (cores.free_rounds() > 0)
+    std::cout << "two threads while both cores were free (" << cores.free_rounds() << " of "
+              << cores.rounds() << " rounds: unrelated sheets at " << TwoCores::kFree
+              << " and more): " << interval_text(cores.threads_while_free()) << " times one\n";
   std::cout << std::flush;
 }
 
 Json json_of(const KernelBench& bench) {
-  Json rows = Json::array();
-  for (const KernelRow& row : bench.rows)
-    rows.push_back({{"name", row.name},
-                    {"threads", row.threads},
-                    {"ns_per_projection", row.samples},
-                    {"fastest_ns", row.fastest},
-                    {"floor_ns", row.floor},
-                    {"flops", row.flops},
-                    {"bytes", row.bytes},
-                    {"fixed_sweeps", row.fixed}});
+  const auto row_of = [](const KernelRow& row) -> Json {
+    return {
+        {"name", row.name},          {"threads", row.threads},   {"ns_per_projection", row.samples},
+        {"fastest_ns", row.fastest}, {"floor_ns", row.floor},    {"flops", row.flops},
+        {"bytes", row.bytes},        {"fixed_sweeps", row.fixed}};
+  };
   return {{"side", bench.side},
           {"instructions", to_string(widest())},
-          {"rows", rows},
-          {"two_threads", bench.two_cores.threads},
-          {"unrelated_sheets", bench.two_cores.unrelated}};
+          {"rows", json_array(bench.rows, row_of)},
+          {"two_threads", bench.two_cores.threads()},
+          {"unrelated_sheets", bench.two_cores.unrelated()}};
 }
 
 std::function<int()> bind(CLI::App& app) {
@@ -108,7 +104,7 @@ std::function<int()> bind(CLI::App& app) {
                                                .progress = Countdown("timing round")});
       o->json ? all.push_back(json_of(bench)) : print(bench);
     }
-    if (o->json) std::cout << to_text(all, 1) << '\n';
+    if (o->json) print_json(all);
     return kPass;
   };
 }

@@ -36,7 +36,7 @@ Measured measure(const Case& one, double expected, const Store& store, const Opt
   Timing& timing = benched.timing;
   const Record& record = benched.record;
   if (record.status.kind != Status::Kind::unsupported && record.status.is_result()) try {
-      TimingWorker worker(program_of(one.spec), one.spec);
+      TimingWorker worker(one.spec);
       const int all = steps_done(record);
       const int steps = times_within(0.05, worker.pilot_run(all).cpu, all);
       for (int i = 0; i < options.samples; ++i) {
@@ -115,9 +115,7 @@ int run(const Options& options) {
       [&](const Case& one, double expected) { return measure(one, expected, store, options); });
   const auto file = keep(study, lines, options);
   if (options.json) {
-    Json all;
-    for (const ScalingLine& line : lines) all.push_back(json_of(line));
-    std::cout << to_text(all, 1) << '\n';
+    print_json(json_array(lines, [](const ScalingLine& line) { return json_of(line); }));
     return kPass;
   }
   for (const ScalingLine& line : lines) print(line);

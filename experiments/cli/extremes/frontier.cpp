@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iomanip>
 #include <iostream>
 #include <iterator>
@@ -23,6 +22,7 @@
 #include "experiments/study/extremes/extremes.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut::verb::frontier {
@@ -48,12 +48,6 @@ std::string unit_of(const Options& options, const SolverChoice& choice) {
   return "";
 }
 
-std::string percent(double ratio) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%+.2g %%", 100 * ratio);
-  return text;
-}
-
 /// How theory and the bracket agree.
 std::string agreement(const Prediction& theory, const Frontier& found) {
   if (theory.kind != found.kind)
@@ -61,7 +55,8 @@ std::string agreement(const Prediction& theory, const Frontier& found) {
   if (theory.kind != Frontier::Kind::bracketed) return "agrees";
   if (theory.value >= found.stable && theory.value <= found.unstable) return "inside the bracket";
   const double nearest = theory.value < found.stable ? found.stable : found.unstable;
-  return "measured " + percent(nearest / theory.value - 1) + " from it";
+  const double off = 100 * (nearest / theory.value - 1);
+  return "measured " + (off < 0 ? "" : std::string("+")) + number_text(off, 2) + " % from it";
 }
 
 void print_line(std::string_view label, const std::string& text) {
@@ -288,7 +283,7 @@ int run(const Options& options) {
   if (result.frontier.kind == Frontier::Kind::not_answered) return not_answered(result);
   const std::optional<Prediction> theory = predicted_frontier(question);
   if (options.json) {
-    std::cout << to_text(to_json(options, result, theory), 2) << '\n';
+    print_json(to_json(options, result, theory), 2);
     return kPass;
   }
   const CaseSpec spec = question.base;

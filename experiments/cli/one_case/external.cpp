@@ -1,5 +1,6 @@
 #include "experiments/external/external.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -23,7 +24,7 @@ namespace {
 using external::Check;
 
 struct Options {
-  std::string command, scene, out;
+  std::string command, scene, output;
   std::vector<std::string> settings;
   bool json = false;
 };
@@ -38,17 +39,15 @@ int probe(const Options& options) {
               << "  " << check.name << ": " << check.said << std::endl;
   };
   const std::vector<Check> checks = external::full_probe(command, print);
-  std::size_t failed = 0;
-  Json all = Json::array();
-  for (const Check& check : checks) {
-    failed += check.verdict == Check::Verdict::failed;
-    all.push_back({{"check", check.name},
-                   {"verdict", external::to_string(check.verdict)},
-                   {"said", check.said}});
-  }
+  const auto failed = std::ranges::count(checks, Check::Verdict::failed, &Check::verdict);
   if (options.json)
-    std::cout << to_text({{"command", command.text()}, {"passed", failed == 0}, {"checks", all}}, 1)
-              << '\n';
+    print_json({{"command", command.text()},
+                {"passed", failed == 0},
+                {"checks", json_array(checks, [](const Check& check) -> Json {
+                   return {{"check", check.name},
+                           {"verdict", external::to_string(check.verdict)},
+                           {"said", check.said}};
+                 })}});
   else
     std::cout << (failed == 0 ? "It may be scored.\n"
                               : std::to_string(failed) + " of " + std::to_string(checks.size()) +
@@ -68,10 +67,10 @@ std::function<int()> bind_probe(CLI::App& app) {
 std::function<int()> bind_scene(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   app.add_option("SCENE", o->scene, "Name or path of a scene")->required();
-  app.add_option("-o,--out", o->out, "File to write")->required();
+  add_output(app, o->output, "File to write")->required();
   add_settings(app, o->settings);
   return [o] {
-    write_file(o->out, external::scene_file(load_scene(find_scene(o->scene), o->settings)));
+    write_file(o->output, external::scene_file(load_scene(find_scene(o->scene), o->settings)));
     return kPass;
   };
 }

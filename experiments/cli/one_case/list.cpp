@@ -25,77 +25,68 @@ std::string allowed(const ParamSpec& spec) {
 }
 
 Json list_scenes() {
-  Json all = Json::array();
-  for (const std::string& name : shipped("scenes")) {
+  return json_array(shipped("scenes"), [](const std::string& name) -> Json {
     const Scene scene = load_scene(find_scene(name));
-    all.push_back({{"name", name},
-                   {"summary", scene.summary},
-                   {"vertices", scene.mesh.size()},
-                   {"links", scene.links.size()},
-                   {"dt", scene.dt},
-                   {"duration", scene.duration()}});
-  }
-  return all;
+    return {{"name", name},
+            {"summary", scene.summary},
+            {"vertices", scene.mesh.size()},
+            {"links", scene.links.size()},
+            {"dt", scene.dt},
+            {"duration", scene.duration()}};
+  });
 }
 
 Json list_solvers() {
-  Json all = Json::array();
-  for (const SolverEntry* entry : all_solvers()) {
-    Json params = Json::array();
-    for (const ParamSpec& spec : entry->params)
-      params.push_back({{"name", spec.name},
-                        {"default", spec.default_value},
-                        {"unit", spec.unit},
-                        {"allowed", allowed(spec)},
-                        {"help", spec.help}});
-    all.push_back({{"name", entry->name},
-                   {"summary", entry->summary},
-                   {"source", entry->source},
-                   {"params", params}});
-  }
-  return all;
+  const auto param = [](const ParamSpec& spec) -> Json {
+    return {{"name", spec.name},
+            {"default", spec.default_value},
+            {"unit", spec.unit},
+            {"allowed", allowed(spec)},
+            {"help", spec.help}};
+  };
+  return json_array(all_solvers(), [&](const SolverEntry* entry) -> Json {
+    return {{"name", entry->name},
+            {"summary", entry->summary},
+            {"source", entry->source},
+            {"params", json_array(entry->params, param)}};
+  });
 }
 
 Json list_metrics() {
-  Json all = Json::array();
-  for (const MetricEntry* entry : metrics()) {
-    Json values = Json::array();
-    for (const ValueSpec& spec : entry->values)
-      values.push_back({{"name", spec.name},
-                        {"unit", spec.unit.si},
-                        {"help", spec.help},
-                        {"in_series", spec.in_series}});
-    all.push_back({{"name", entry->name},
-                   {"summary", entry->summary},
-                   {"source", entry->source},
-                   {"values", values}});
-  }
-  return all;
+  const auto value = [](const ValueSpec& spec) -> Json {
+    return {{"name", spec.name},
+            {"unit", spec.unit.si},
+            {"help", spec.help},
+            {"in_series", spec.in_series}};
+  };
+  return json_array(metrics(), [&](const MetricEntry* entry) -> Json {
+    return {{"name", entry->name},
+            {"summary", entry->summary},
+            {"source", entry->source},
+            {"values", json_array(entry->values, value)}};
+  });
 }
 
 Json list_studies() {
-  Json all = Json::array();
-  for (const std::string& name : shipped("studies")) {
+  return json_array(shipped("studies"), [](const std::string& name) -> Json {
     const Study study = load_study(name);
-    all.push_back({{"name", name},
-                   {"question", study.question},
-                   {"presets", study.presets},
-                   {"scenes", study.scenes},
-                   {"solvers", study.solvers}});
-  }
-  return all;
+    return {{"name", name},
+            {"question", study.question},
+            {"presets", study.presets},
+            {"scenes", study.scenes},
+            {"solvers", study.solvers}};
+  });
 }
 
 /// What Vasilovici's report asserts.
 Json list_assertions() {
-  Json all = Json::array();
-  for (const VasiloviciAssertion& assertion : vasilovici_assertions())
-    all.push_back({{"name", assertion.section},
-                   {"summary", assertion.assertion},
-                   {"verdict", to_string(assertion.verdict)},
-                   {"because", assertion.because},
-                   {"truth", assertion.truth.empty() ? Json() : Json(assertion.truth)}});
-  return all;
+  return json_array(vasilovici_assertions(), [](const VasiloviciAssertion& assertion) -> Json {
+    return {{"name", assertion.section},
+            {"summary", assertion.assertion},
+            {"verdict", to_string(assertion.verdict)},
+            {"because", assertion.because},
+            {"truth", assertion.truth.empty() ? Json() : Json(assertion.truth)}};
+  });
 }
 
 constexpr std::pair<const char*, Json (*)()> kKinds[] = {{"scenes", list_scenes},
@@ -134,7 +125,7 @@ int run(const std::string& what, bool as_json) {
   for (const auto& [kind, list] : kKinds)
     if (what.empty() || what == kind) all[kind] = list();
   if (as_json) {
-    std::cout << to_text(what.empty() ? all : all[what], 2) << '\n';
+    print_json(what.empty() ? all : all[what], 2);
     return kPass;
   }
   for (const auto& [kind, items] : all.items()) {

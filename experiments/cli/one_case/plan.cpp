@@ -1,6 +1,7 @@
 #include <iostream>
 #include <memory>
 
+#include "experiments/case/record_io.hpp"
 #include "experiments/command_line/case_options.hpp"
 #include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -9,17 +10,6 @@
 namespace taut::verb::planning {
 
 namespace {
-
-Json to_json(const Case& one, const std::vector<PassCost>& step_cost) {
-  Json passes = Json::array();
-  for (const PassCost& cost : step_cost)
-    passes.push_back({{"pass", cost.pass},
-                      {"items", cost.items},
-                      {"repeats", cost.repeats},
-                      {"bytes", cost.bytes},
-                      {"projections", cost.projections}});
-  return {{"id", one.id}, {"key", one.key}, {"passes", passes}};
-}
 
 void print_text(const Case& one, const std::vector<PassCost>& step_cost) {
   std::vector<Row> rows{{"pass", "items", "repeats", "bytes", "projections"}};
@@ -46,7 +36,7 @@ int run(const Case& one, bool json) {
   const std::unique_ptr<Solver> solver = one.choice.entry->make(*one.scene, one.choice.params);
   solver->load(one.scene->start);
   if (json)
-    std::cout << to_text(to_json(one, solver->step_cost()), 2) << '\n';
+    print_json(Json{{"id", one.id}, {"key", one.key}, {"passes", solver->step_cost()}}, 2);
   else
     print_text(one, solver->step_cost());
   return kPass;

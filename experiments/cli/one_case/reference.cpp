@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<std::string> scenes;
   bool all = false, json = false;
-  std::string out = references_folder().string();
+  std::string output = references_folder().string();
 };
 
 std::vector<fs::path> chosen(const Options& options) {
@@ -78,7 +78,8 @@ int run(const Options& options) {
   const Countdown countdown("scene");
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Scene scene = load_scene(files[i]);
-    for (const Outcome& o : {write_static(scene, options.out), write_motion(scene, options.out)}) {
+    for (const Outcome& o :
+         {write_static(scene, options.output), write_motion(scene, options.output)}) {
       written += o.refused.empty();
       all.push_back({{"scene", o.scene},
                      {"kind", o.kind},
@@ -89,8 +90,8 @@ int run(const Options& options) {
     }
     countdown(i + 1, files.size());
   }
-  if (options.json) std::cout << to_text(all, 1) << '\n';
-  progress() << written << " references in " << options.out << '\n';
+  if (options.json) print_json(all);
+  progress() << written << " references in " << options.output << '\n';
   return written > 0 || options.all ? kPass : kNothing;
 }
 
@@ -98,8 +99,8 @@ std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scenes, "Names of shipped scenes, or scene files");
   app.add_flag("--all", options->all, "Every shipped scene");
-  app.add_option("-o,--out", options->out,
-                 "Where references are kept (default: beside those that came with the program)");
+  add_output(app, options->output,
+             "Where references are kept (default: beside those that came with the program)");
   add_json(app, options->json, "What became of each");
   return [options] { return run(*options); };
 }

@@ -11,6 +11,7 @@
 #include "experiments/render/image/video.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut::verb::render {
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 struct Options {
   RunRequest what;
   std::vector<std::string> at;
-  std::string duration, dt, view = "three-quarter", colour = "strain", exported, out;
+  std::string duration, dt, view = "three-quarter", colour = "strain", exported, output;
   std::string size, quality;
   double range = 0;
   bool sheet = false, video = false, dark = false, json = false;
@@ -70,10 +71,9 @@ Files draw_stills(const Options& options, const RunSet& set, const std::vector<d
   Files files;
   for (std::size_t k = 0; k < times.size(); ++k) {
     fs::path file = out;
-    char suffix[32];
-    std::snprintf(suffix, sizeof suffix, "-t%.2f", times[k]);
     if (times.size() > 1)
-      file.replace_filename(out.stem().string() + suffix + out.extension().string());
+      file.replace_filename(out.stem().string() + formatted("-t%.2f", times[k]) +
+                            out.extension().string());
     write_png(file, compose(renderer, layout, times[k]));
     countdown(k + 1, times.size());
     files.push_back(file.string());
@@ -130,8 +130,8 @@ Files export_frames(const RunSet& set, const fs::path& folder) {
   return {folder.string()};
 }
 
-fs::path output(const Options& options, const std::string& scene) {
-  if (!options.out.empty()) return options.out;
+fs::path output_of(const Options& options, const std::string& scene) {
+  if (!options.output.empty()) return options.output;
   if (!options.exported.empty()) return scene + "-obj";
   return scene + (options.video ? ".mp4" : options.sheet ? "-sheet.png" : ".png");
 }
@@ -140,16 +140,16 @@ fs::path output(const Options& options, const std::string& scene) {
 void check_output(const Options& options) {
   if (options.video + options.sheet + !options.exported.empty() > 1)
     throw InputError("only one of --video (or -o NAME.mp4), --sheet and --export");
-  if (options.out.empty() || !options.exported.empty()) return;
-  if (fs::is_directory(options.out))
-    throw InputError("-o " + options.out + " is a folder; name the file");
+  if (options.output.empty() || !options.exported.empty()) return;
+  if (fs::is_directory(options.output))
+    throw InputError("-o " + options.output + " is a folder; name the file");
   const std::string suffix = options.video ? ".mp4" : ".png";
-  if (!options.out.ends_with(suffix))
-    throw InputError("-o " + options.out + ": what is drawn here ends in " + suffix);
+  if (!options.output.ends_with(suffix))
+    throw InputError("-o " + options.output + ": what is drawn here ends in " + suffix);
 }
 
 int run(Options options) {
-  if (options.out.ends_with(".mp4")) options.video = true;
+  if (options.output.ends_with(".mp4")) options.video = true;
   check_output(options);
   const std::size_t panels = options.what.solvers.size() + options.what.files.size();
   if (panels == 0 || panels > 4)
@@ -177,7 +177,7 @@ int run(Options options) {
   if (!options.size.empty()) parse_size(options.size);
   const RunSet set =
       record_runs(options.what, [](const std::string& text) { progress() << text << '\n'; });
-  const fs::path out = output(options, set.scene.name);
+  const fs::path out = output_of(options, set.scene.name);
   const auto done = [&](const Files& files) {
     print_files(files, options.json);
     return kPass;
@@ -218,7 +218,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--quality", o->quality, "draft, video or still")
       ->check(CLI::IsMember({"draft", "video", "still"}));
   app.add_flag("--dark", o->dark, "The dark background of the report");
-  app.add_option("-o,--out", o->out, "File (.png, .mp4) or, for --export, folder");
+  add_output(app, o->output, "File (.png, .mp4) or, for --export, folder");
   add_json(app, o->json, "The names of the files");
   return [o] { return run(*o); };
 }

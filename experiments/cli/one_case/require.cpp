@@ -315,7 +315,7 @@ int run(const Options& options) {
   if (options.scene != "all") {
     find_scene(options.scene);
     const int code = run_one(options, options.scene, all, rows, true);
-    if (options.json) std::cout << to_text(all.at(0), 1) << '\n';
+    if (options.json) print_json(all.at(0));
     return code;
   }
   int worst = kPass;
@@ -325,7 +325,7 @@ int run(const Options& options) {
     worst = std::max(worst, code);
   }
   if (options.json)
-    std::cout << to_text(all, 1) << '\n';
+    print_json(all);
   else
     for (std::size_t i = 0; i < rows.size(); ++i) {
       for (const std::string& cell : rows[i]) std::cout << "| " << cell << ' ';

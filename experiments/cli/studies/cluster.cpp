@@ -42,7 +42,6 @@ struct Submit {
   int shards = 0;
   double hours = 0;
   Limits limits;
-  double megabytes = static_cast<double>(Limits{}.bytes >> 20);
   bool dry_run = false, json = false;
 };
 
@@ -95,7 +94,7 @@ int submit(const Submit& o) {
   make_folder(folder / "log");
   Manifest manifest;
   try {
-    manifest = plan(study, {o.limits.seconds, static_cast<std::size_t>(o.megabytes) << 20}, folder);
+    manifest = plan(study, o.limits, folder);
     if (manifest.cases.empty()) throw InputError("this study has no case");
     share_out_as_asked(manifest, o);
     write_durably(folder / "study.toml", read_text(study.file));
@@ -113,13 +112,11 @@ int submit(const Submit& o) {
     throw;
   }
   if (o.json)
-    std::cout << to_text(Json{{"folder", folder.string()},
-                              {"cases", manifest.cases.size()},
-                              {"shards", manifest.shards},
-                              {"minutes", shard_minutes(manifest)},
-                              {"digest", manifest.digest}},
-                         1)
-              << '\n';
+    print_json({{"folder", folder.string()},
+                {"cases", manifest.cases.size()},
+                {"shards", manifest.shards},
+                {"minutes", shard_minutes(manifest)},
+                {"digest", manifest.digest}});
   else
     std::cout << folder.string() << ": " << manifest.cases.size() << " cases in " << manifest.shards
               << " shards of at most " << shard_minutes(manifest) << " minutes\n";
@@ -146,10 +143,7 @@ std::function<int()> bind_submit(CLI::App& app) {
       ->delimiter(',');
   app.add_option("--node-file", o->node_file, "A file with a node on each line")
       ->check(CLI::ExistingFile);
-  app.add_option("--timeout", o->limits.seconds, "CPU time limit of a case [s] (default: 120)")
-      ->check(above_zero());
-  app.add_option("--memory", o->megabytes, "Memory limit of a case [MB] (default: 2048)")
-      ->check(CLI::Range(64.0, 1e9));
+  add_limits(app, o->limits);
   app.add_flag("--dry-run", o->dry_run, "Write the folder and start nothing");
   add_json(app, o->json, "Folder and sizes");
   return [o] { return submit(*o); };
@@ -182,11 +176,7 @@ int run(const Run& o) {
                  }});
   attempt.end(campaign.interrupted ? "interrupted" : "all cases");
   progress.finish(campaign);
-  if (campaign.conflicts > 0)
-    std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
-              << (store.root() / "conflicts").string() << '\n';
-  if (campaign.interrupted) return kInterrupted;
-  return campaign.conflicts > 0 ? kConflict : kPass;
+  return exit_code(campaign, store);
 }
 
 std::function<int()> bind_run(CLI::App& app) {
@@ -201,7 +191,14 @@ std::function<int()> bind_run(CLI::App& app) {
 
 // status
 
-constexpr std::size_t kShown = 10;  ///< of a list for people
+/// The first ten.
+void print_list(std::ostream& out, const std::string& word, const std::vector<std::string>& lines) {
+  constexpr std::size_t kShown = 10;
+  for (std::size_t i = 0; i < std::min(kShown, lines.size()); ++i)
+    out << word << ": " << lines[i] << '\n';
+  if (lines.size() > kShown)
+    out << word << ": " << lines.size() - kShown << " more (--json names all)\n";
+}
 
 std::string clock_text(double seconds) {
   const auto minutes = static_cast<long>(seconds / 60);
@@ -220,22 +217,23 @@ std::string commands_of(const std::vector<int>& shards, const fs::path& folder) 
 }
 
 Json to_json(const FolderStatus& all, const fs::path& folder) {
-  Json json{{"cases", all.cases}, {"done", all.done}, {"seconds", nullptr}};
-  if (const auto seconds = all.seconds()) json["seconds"] = *seconds;
-  for (const ShardStatus& one : all.shards) {
-    json["shards"].push_back({{"shard", one.shard},
-                              {"state", taut::cluster::to_string(one.state)},
-                              {"cases", one.cases},
-                              {"done", one.done},
-                              {"host", one.host}});
-  }
-  json["failed"] = Json::array();
-  for (const FailedCase& one : all.failed)
-    json["failed"].push_back(
-        {{"shard", one.shard}, {"id", one.id}, {"status", describe(one.status)}});
-  json["start"] = all.to_start();
-  json["command"] = all.to_start().empty() ? "" : commands_of(all.to_start(), folder);
-  return json;
+  const auto shard = [](const ShardStatus& one) -> Json {
+    return {{"shard", one.shard},
+            {"state", taut::cluster::to_string(one.state)},
+            {"cases", one.cases},
+            {"done", one.done},
+            {"host", one.host}};
+  };
+  const auto failed = [](const FailedCase& one) -> Json {
+    return {{"shard", one.shard}, {"id", one.id}, {"status", describe(one.status)}};
+  };
+  return {{"cases", all.cases},
+          {"done", all.done},
+          {"seconds", all.seconds() ? Json(*all.seconds()) : Json()},
+          {"shards", json_array(all.shards, shard)},
+          {"failed", json_array(all.failed, failed)},
+          {"start", all.to_start()},
+          {"command", all.to_start().empty() ? "" : commands_of(all.to_start(), folder)}};
 }
 
 void print(const FolderStatus& all, const fs::path& folder) {
@@ -248,11 +246,11 @@ void print(const FolderStatus& all, const fs::path& folder) {
               << one.done << "/" << one.cases << (one.host.empty() ? "" : ", on " + one.host)
               << '\n';
   }
-  for (std::size_t i = 0; i < std::min(kShown, all.failed.size()); ++i)
-    std::cout << "failed: " << all.failed[i].id << " (shard " << all.failed[i].shard
-              << "): " << describe(all.failed[i].status) << '\n';
-  if (all.failed.size() > kShown)
-    std::cout << "failed: " << all.failed.size() - kShown << " more (--json names all)\n";
+  std::vector<std::string> failed;
+  for (const FailedCase& one : all.failed)
+    failed.push_back(one.id + " (shard " + std::to_string(one.shard) +
+                     "): " + describe(one.status));
+  print_list(std::cout, "failed", failed);
   if (!all.failed.empty())
     std::cout << "failures again: taut cluster run " << shell_word(folder.string()) << " --shard "
               << all.failed.front().shard << " --only failed\n";
@@ -263,7 +261,7 @@ void print(const FolderStatus& all, const fs::path& folder) {
 int status(const std::string& folder, bool json) {
   const FolderStatus all = status_of(read_manifest(folder), folder);
   if (json)
-    std::cout << to_text(to_json(all, folder), 1) << '\n';
+    print_json(to_json(all, folder));
   else
     print(all, folder);
   return all.complete() ? kPass : kIncomplete;
@@ -285,13 +283,6 @@ struct MergeOptions {
   bool allow_missing = false, json = false;
 };
 
-void print_list(const std::string& word, const std::vector<std::string>& lines) {
-  for (std::size_t i = 0; i < std::min(kShown, lines.size()); ++i)
-    std::cerr << word << ": " << lines[i] << '\n';
-  if (lines.size() > kShown)
-    std::cerr << word << ": " << lines.size() - kShown << " more (--json names all)\n";
-}
-
 int merge(const MergeOptions& o) {
   const Merge merge({o.folders.begin(), o.folders.end()});
   Store store(o.out);
@@ -305,19 +296,17 @@ int merge(const MergeOptions& o) {
     merge.copy(plan, store, Countdown("merging"));
     if (!missing.empty()) mark_missing(store.root(), plan.name, plan.missing);
   }
-  print_list("foreign", plan.foreign);
-  print_list("conflict", plan.conflicts);
-  print_list("missing", missing);
+  print_list(std::cerr, "foreign", plan.foreign);
+  print_list(std::cerr, "conflict", plan.conflicts);
+  print_list(std::cerr, "missing", missing);
   if (o.json)
-    std::cout << to_text(Json{{"cases", plan.cases.size()},
-                              {"there", plan.cases.size() - missing.size()},
-                              {"merged", may},
-                              {"missing", missing},
-                              {"foreign", plan.foreign},
-                              {"conflicts", plan.conflicts},
-                              {"store", store.digest()}},
-                         1)
-              << '\n';
+    print_json({{"cases", plan.cases.size()},
+                {"there", plan.cases.size() - missing.size()},
+                {"merged", may},
+                {"missing", missing},
+                {"foreign", plan.foreign},
+                {"conflicts", plan.conflicts},
+                {"store", store.digest()}});
   else
     std::cout << plan.cases.size() - missing.size() << "/" << plan.cases.size() << " cases"
               << (may ? "" : "; nothing was merged") << "\nstore " << store.digest() << '\n';

@@ -23,7 +23,7 @@ namespace taut::verb::exporting {
 namespace {
 
 struct Options {
-  std::string study, preset, results = default_results(), out;
+  std::string study, preset, results, output;
   bool json = false;
 };
 
@@ -160,11 +160,11 @@ int run(const Options& options) {
   const TidyTable table(known, stored_costs(options, study));
   const std::string text =
       options.json ? to_text(table.json(known.cases), 1) + "\n" : table.csv(known.cases);
-  if (options.out.empty()) {
+  if (options.output.empty()) {
     std::cout << text;
   } else {
-    write_durably(options.out, text);
-    std::cout << options.out << '\n';
+    write_durably(options.output, text);
+    std::cout << options.output << '\n';
   }
   const std::size_t missing = known.cases.size() - known.records.size();
   if (missing > 0) progress() << missing << " cases were not run\n";
@@ -174,10 +174,8 @@ int run(const Options& options) {
 std::function<int()> bind(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
-  app.add_option("--preset", options->preset, "The preset under which it was run");
-  app.add_option("--results", options->results,
-                 "Results folder (default: " + options->results + ")");
-  app.add_option("-o,--out", options->out, "File (default: standard output)");
+  add_stored(app, options->preset, options->results);
+  add_output(app, options->output, "File (default: standard output)");
   add_json(app, options->json, "The same rows");
   return [options] { return run(*options); };
 }

@@ -27,7 +27,7 @@ namespace {
 using report::PlotSpec;
 
 struct Options {
-  std::string study, preset, kind, x, y, title, results = default_results(), out;
+  std::string study, preset, kind, x, y, title, results, output;
   bool json = false;
 };
 
@@ -148,9 +148,9 @@ int run(const Options& options) {
                      study.name + "' is in " + options.results +
                      " as this build would run them; taut run makes them");
   const std::filesystem::path out =
-      options.out.empty() ? std::filesystem::path(options.results) / "figures" /
-                                (study.name + (study.preset.empty() ? "" : "-" + study.preset))
-                          : std::filesystem::path(options.out);
+      options.output.empty() ? std::filesystem::path(options.results) / "figures" /
+                                   (study.name + (study.preset.empty() ? "" : "-" + study.preset))
+                             : std::filesystem::path(options.output);
   const std::vector<PlotSpec> specs = wanted(options, study);
   check(specs, options, study, result.records);
   make_folder(out);  // what cannot be written is said once, not for every scene
@@ -184,18 +184,15 @@ std::function<int()> bind(CLI::App& app) {
   std::vector<std::string> names;
   for (const report::PlotKind& kind : report::plot_kinds()) names.emplace_back(kind.name);
   app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
-  app.add_option("--preset", options->preset, "The preset under which it was run");
+  add_stored(app, options->preset, options->results);
   app.add_option("--kind", options->kind,
                  "One of: " + join(names, ", ") + " (default: what the study asks for)")
       ->check(known("kind of plot", names));
   app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
   app.add_option("--y", options->y, "Value on y, such as stretch.rms");
   app.add_option("--title", options->title, "Title above the figure");
-  app.add_option("--results", options->results,
-                 "Results folder (default: " + options->results + ")");
-  app.add_option(
-      "--out", options->out,
-      "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
+  add_output(app, options->output,
+             "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
   add_json(app, options->json, "The names of the files");
   return [options] { return run(*options); };
 }
@@ -208,7 +205,7 @@ TAUT_VERB(plot) = {.name = "plot",
                    .summary = "Draws the figures of a study: SVG, PDF, gnuplot script and CSV",
                    .example =
                        "taut plot iterations --preset quick\n  taut plot time-steps --kind "
-                       "stability --out figures\n  taut plot trade --kind profile\n  taut plot "
+                       "stability -o figures\n  taut plot trade --kind profile\n  taut plot "
                        "iterations --x projections "
                        "--y stretch.max",
                    .bind = taut::verb::plot::bind};

@@ -19,6 +19,7 @@
 #include "experiments/report/stored.hpp"
 #include "experiments/study/main_job.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
 
@@ -28,7 +29,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> studies, films;
-  std::string preset, results = default_results(), out = "report.html";
+  std::string preset, results, output = "report.html";
   bool no_media = false, json = false;
 };
 
@@ -61,12 +62,8 @@ std::vector<report::SolverInfo> introductions() {
     const Scene scene = load_scene(find_scene(name));
     for (std::size_t i = 0; i < all.size(); ++i)
       for (const std::string& reason :
-           solvers()[i]->unsupported(scene, parse_solver(all[i].name).params)) {
-        auto& reasons = all[i].unsupported;
-        auto at = std::ranges::find(reasons, reason, [](const auto& r) { return r.first; });
-        if (at == reasons.end()) at = reasons.insert(reasons.end(), {reason, {}});
-        at->second.push_back(name);
-      }
+           solvers()[i]->unsupported(scene, parse_solver(all[i].name).params))
+        under(all[i].unsupported, reason).push_back(name);
   }
   return all;
 }
@@ -82,7 +79,7 @@ int compare_folders(const Options& options) {
   if (options.studies.size() < 2 || !is_results_folder(options.studies[1]))
     throw InputError("report " + options.studies[0] +
                      ": one results folder; --results shows it, a second one is compared with it");
-  if (!options.json) test_writable(options.out);
+  if (!options.json) test_writable(options.output);
   const Store a(options.studies[0]), b(options.studies[1]);
   std::vector<std::string> names(options.studies.begin() + 2, options.studies.end());
   std::string preset = options.preset;
@@ -109,8 +106,8 @@ int compare_folders(const Options& options) {
     std::cout << report::make_model(input, 1) << '\n';
     return kPass;
   }
-  write_file(options.out, report::make_report(input));
-  std::cout << options.out << '\n';
+  write_file(options.output, report::make_report(input));
+  std::cout << options.output << '\n';
   return kPass;
 }
 
@@ -126,7 +123,7 @@ int run(Options options) {
     if (options.films.empty()) options.films = shipped("scenes");
     if (options.preset.empty()) options.preset = job.preset;
   }
-  if (!options.json) test_writable(options.out);
+  if (!options.json) test_writable(options.output);
   std::vector<Study> studies;
   for (const std::string& name : options.studies)
     studies.push_back(load_study(name, options.preset));
@@ -173,8 +170,8 @@ int run(Options options) {
       countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());
     });
   }
-  write_file(options.out, report::make_report(input));
-  std::cout << options.out << '\n';
+  write_file(options.output, report::make_report(input));
+  std::cout << options.output << '\n';
   return kPass;
 }
 
@@ -183,9 +180,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("STUDY", options->studies,
                  "Names or paths of studies; none: the main job, preset quick. After two results "
                  "folders A and B: what differs");
-  app.add_option("--preset", options->preset, "The preset under which the studies were run");
-  app.add_option("--results", options->results,
-                 "Results folder (default: " + options->results + ")");
+  add_stored(app, options->preset, options->results);
   app.add_option("--film", options->films,
                  "Also films this scene (name or path), which no study ran; none and no STUDY: all "
                  "shipped scenes")
@@ -193,7 +188,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_flag("--no-media", options->no_media, "Without pictures and videos");
   add_json(app, options->json,
            "The model of the page (experiments/report/model/MODEL.md), without pictures");
-  app.add_option("-o,--out", options->out, "The page (default: report.html)");
+  add_output(app, options->output, "The page (default: report.html)");
   return [options] { return run(*options); };
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <memory>
 
@@ -12,6 +13,7 @@
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/main_job.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/timing/statistics.hpp"
@@ -24,8 +26,7 @@ struct Options {
   std::vector<std::string> studies, values;
   std::string preset, shard, only, out;
   int jobs = 1;
-  double seconds = Limits{}.seconds;
-  double megabytes = static_cast<double>(Limits{}.bytes >> 20);
+  Limits limits;
   bool no_report = false, json = false;
 };
 
@@ -39,7 +40,8 @@ std::string command_line(const Options& options) {
 }
 
 /// What no figure could draw, said before anything runs.
-void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
+void judge_plots(const Study& study) {
+  std::vector<Diagnostic> wrong;
   std::vector<std::string> known = report::quantity_names();
   known.emplace_back("setting");
   for (const StudyAxis& axis : study.axes) known.push_back(axis.name);
@@ -60,42 +62,26 @@ void judge_plots(const Study& study, std::vector<Diagnostic>& wrong) {
                "unknown value '" + at->second + "' for " + axis + suggestion(at->second, known) +
                    " (`taut list metrics`)");
   }
+  if (!wrong.empty()) throw InputError(wrong);
 }
 
 std::vector<Study> load_studies(const Options& options) {
   std::vector<Study> studies;
-  std::vector<Diagnostic> wrong;
-  for (const std::string& name : options.studies) try {
-      Study study = load_study(name, options.preset);
-      judge_plots(study, wrong);
-      studies.push_back(std::move(study));
-    } catch (const InputError& error) {
-      for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);
-    }
-  if (!wrong.empty()) throw InputError(wrong);
+  read_all(options.studies, [&](const std::string& name) {
+    studies.push_back(load_study(name, options.preset));
+    judge_plots(studies.back());
+  });
   return studies;
 }
 
 std::vector<Case> all_cases(const std::vector<Study>& studies) {
   std::vector<Case> cases;
-  std::vector<Diagnostic> wrong;
-  for (const Study& study : studies) try {
-      for (Case& one : cases_of(study)) cases.push_back(std::move(one));
-    } catch (const InputError& error) {
-      for (const Diagnostic& d : error.diagnostics()) wrong.push_back(d);
-    }
-  if (!wrong.empty()) throw InputError(wrong);
-  std::stable_sort(cases.begin(), cases.end(),
-                   [](const Case& a, const Case& b) { return a.key < b.key; });
-  const auto same = [](const Case& a, const Case& b) { return a.key == b.key; };
-  cases.erase(std::unique(cases.begin(), cases.end(), same), cases.end());
+  read_all(studies, [&](const Study& study) {
+    std::ranges::move(cases_of(study), std::back_inserter(cases));
+  });
+  std::ranges::stable_sort(cases, {}, &Case::key);
+  cases.erase(std::ranges::unique(cases, {}, &Case::key).begin(), cases.end());
   return cases;
-}
-
-int exit_code(const CampaignProgress& campaign) {
-  if (campaign.interrupted) return kInterrupted;
-  if (campaign.conflicts > 0) return kConflict;
-  return kPass;
 }
 
 /// What accuracy costs: exclusive, so after everything else has ended. A machine too noisy to judge
@@ -106,7 +92,7 @@ int finish_main_job(const MainJob& job, const Options& options) {
   invoke("bench", {job.bench, "--preset", job.preset, "--seconds", "0.015", "--out", options.out},
          Output::discarded);
   progress() << "holding solvers to closed forms and published numbers\n";
-  invoke("verify", {"-j", jobs, "--out", options.out + "/verify.json"}, Output::discarded);
+  invoke("verify", {"-j", jobs, "-o", options.out + "/verify.json"}, Output::discarded);
   progress() << "comparing with the committed baselines\n";
   if (invoke("check", {"--record", "-j", jobs, "--out", options.out}) == kInterrupted)
     throw Interrupted();
@@ -145,12 +131,10 @@ using ByCell = std::map<std::pair<std::string, std::string>, Record>;
 void print_table(const Study& study, const std::vector<Case>& cases, const ByCell& records,
                  const std::string& value) {
   std::vector<Row> rows{{value}};
-  for (const Case& one : cases)
-    if (std::ranges::find(rows[0], one.scene->name) == rows[0].end())
-      rows[0].push_back(one.scene->name);
-  for (const Case& one : cases) {
-    Row row{setting_of(one, study)};
-    if (std::ranges::any_of(rows, [&](const Row& r) { return r[0] == row[0]; })) continue;
+  for (const std::string& scene : distinct(cases, [](const Case& c) { return c.scene->name; }))
+    rows[0].push_back(scene);
+  for (const auto& setting : distinct(cases, [&](const Case& c) { return setting_of(c, study); })) {
+    Row row{setting};
     for (std::size_t i = 1; i < rows[0].size(); ++i) {
       const auto at = records.find({row[0], rows[0][i]});
       row.push_back(at == records.end() ? "" : cell(at->second, value));
@@ -180,7 +164,7 @@ void print_tables(const std::vector<Study>& studies, const Options& options, con
           all.back()["values"][value] = record.value(value);  // NaN becomes null
     }
   }
-  if (options.json) std::cout << to_text(all, 1) << '\n';
+  if (options.json) print_json(all);
 }
 
 void print_unequal_work(const std::vector<Study>& studies, const Store& store) {
@@ -223,19 +207,16 @@ int run(Options options) {
   }
   const Store store(options.out);
   store.prepare();
-  const CampaignProgress campaign =
-      run_missing(cases, store, command_line(options),
-                  {.jobs = options.jobs,
-                   .limits = {options.seconds, static_cast<std::size_t>(options.megabytes) << 20},
-                   .shard = shard,
-                   .only_failed = options.only == "failed"});
-  if (campaign.conflicts > 0)
-    std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
-              << (store.root() / "conflicts").string() << '\n';
+  const CampaignProgress campaign = run_missing(cases, store, command_line(options),
+                                                {.jobs = options.jobs,
+                                                 .limits = options.limits,
+                                                 .shard = shard,
+                                                 .only_failed = options.only == "failed"});
+  const int ended = exit_code(campaign, store);
   if (campaign.interrupted)
     std::cerr << "interrupted; the same command goes on where this one stopped\n";
   progress() << "store " << store.digest() << '\n';
-  if (const int code = exit_code(campaign); code != kPass) return code;
+  if (ended != kPass) return ended;
   if (campaign.cases == 0 && options.only == "failed")
     progress() << "no stored failure to run again\n";
   if (bare && !options.no_report)
@@ -243,7 +224,7 @@ int run(Options options) {
   if (!options.values.empty())
     print_tables(studies, options, store);
   else if (options.json)
-    std::cout << to_text(to_json(campaign, options, store), 1) << '\n';
+    print_json(to_json(campaign, options, store));
   else if (!bare || options.no_report)
     std::cout << options.out << '\n';
   print_unequal_work(studies, store);
@@ -262,11 +243,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("--only", options->only, "failed: run stored failures again, nothing else")
       ->check(CLI::IsMember({"failed"}));
   add_results(app, options->out);
-  app.add_option("--timeout", options->seconds,
-                 "CPU time limit of a case [s] (default: 120); wall time: five times that")
-      ->check(above_zero());
-  app.add_option("--memory", options->megabytes, "Memory limit of a case [MB] (default: 2048)")
-      ->check(CLI::Range(64.0, 1e9));
+  add_limits(app, options->limits);
   app.add_option("--table", options->values,
                  "Then print this value of a metric, settings by scenes; repeat it for each")
       ->allow_extra_args(false)

@@ -34,10 +34,9 @@ int early_exit(const BaselineStudy& study) {
 
 void print(const BaselineStudy& study, const Comparison& comparison, bool json) {
   if (!json) return print_findings(study, comparison);
-  Json all = Json::array();
-  for (const Change& f : comparison.findings)
-    all.push_back({{"case", f.id}, {"solver", f.solver}, {"change", f.text}});
-  std::cout << to_text(all, 1) << '\n';
+  print_json(json_array(comparison.findings, [](const Change& f) -> Json {
+    return {{"case", f.id}, {"solver", f.solver}, {"change", f.text}};
+  }));
 }
 
 int diff(const Options& options) {

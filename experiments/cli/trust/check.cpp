@@ -54,13 +54,11 @@ bool same_toolchain(const BaselineStudy& study, bool strict) {
 }
 
 int exit_code(const BaselineStudy& study, const Comparison& comparison) {
-  int code = kPass;
-  if (study.interrupted) code = worse(code, kInterrupted);
-  if (study.conflict) code = worse(code, kConflict);
-  if (!study.not_run.empty()) code = worse(code, kIncomplete);
-  if (comparison.mismatched() || comparison.cases == 0) code = worse(code, kNothing);
-  if (comparison.regressed()) code = worse(code, kRegression);
-  return code;
+  if (study.interrupted) return kInterrupted;
+  if (study.conflict) return kConflict;
+  if (comparison.regressed()) return kRegression;
+  if (comparison.mismatched() || comparison.cases == 0) return kNothing;
+  return study.not_run.empty() ? kPass : kIncomplete;
 }
 
 void summarise(const BaselineStudy& study, const Comparison& comparison) {
@@ -113,20 +111,20 @@ struct Notes {
       if (f.is_regression() || f.is_mismatch())
         findings.push_back(
             {{"study", study.name}, {"case", f.id.empty() ? f.solver : f.id}, {"change", f.text}});
-    Json moved = Json::array();
-    for (const MovedValue& m : roll_up(comparison))
-      moved.push_back({{"scene", m.scene},
-                       {"value", m.value},
-                       {"unit", unit_of(m.value).si},
-                       {"cases", m.cases},
-                       {"less", m.less},
-                       {"more", m.more},
-                       {"less_is_better", unit_of(m.value).less_is_better},
-                       {"largest_change", {{"case", m.largest->id}, {"text", m.largest->text}}}});
+    const auto moved = [](const MovedValue& m) -> Json {
+      return {{"scene", m.scene},
+              {"value", m.value},
+              {"unit", unit_of(m.value).si},
+              {"cases", m.cases},
+              {"less", m.less},
+              {"more", m.more},
+              {"less_is_better", unit_of(m.value).less_is_better},
+              {"largest_change", {{"case", m.largest->id}, {"text", m.largest->text}}}};
+    };
     studies.push_back({{"study", study.name},
                        {"cases", comparison.cases},
                        {"values", comparison.values},
-                       {"moved", moved},
+                       {"moved", json_array(roll_up(comparison), moved)},
                        {"not_run", study.not_run}});
   }
   void write(const std::string& results) const {
@@ -185,8 +183,7 @@ int check(Options options) {
     write_file(options.junit, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n" +
                                   suites + "</testsuites>\n");
   if (options.record && notes.cases > 0) notes.write(options.out);
-  if (options.json)
-    std::cout << to_text(Json{{"studies", notes.studies}, {"findings", notes.findings}}, 1) << '\n';
+  if (options.json) print_json(Json{{"studies", notes.studies}, {"findings", notes.findings}});
   return code;
 }
 

@@ -109,10 +109,10 @@ int run(bool as_json) {
   const char* verdict = trusted ? "timing can be trusted here"
                                 : "timing is for display only here: the machine is not quiet";
   if (as_json) {
-    Json all = Json::array();
-    for (const Check& f : checks)
-      all.push_back({{"name", f.name}, {"value", f.value}, {"good", f.good}});
-    std::cout << to_text(Json{{"findings", all}, {"timing_trusted", trusted}}, 2) << '\n';
+    const Json all = json_array(checks, [](const Check& f) -> Json {
+      return {{"name", f.name}, {"value", f.value}, {"good", f.good}};
+    });
+    print_json({{"findings", all}, {"timing_trusted", trusted}}, 2);
     return kPass;
   }
   for (const Check& f : checks)

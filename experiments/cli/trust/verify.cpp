@@ -6,7 +6,7 @@
 #include <iostream>
 #include <memory>
 #include <mutex>
-#include <sstream>
+#include <ranges>
 #include <string>
 #include <thread>
 
@@ -19,8 +19,10 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/clock.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/truths/truth.hpp"
 #include "experiments/truths/vasilovici/assertions.hpp"
 
@@ -32,7 +34,7 @@ struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
   bool json = false, verbose = false, assertions = false, update = false;
-  std::string out, baselines;
+  std::string output, baselines;
 
   /// Whether every truth that an assertion rests on is checked, for every solver.
   bool of_all_assertions() const { return names.empty() && solvers.empty() && section == 0; }
@@ -104,42 +106,40 @@ std::vector<JudgedAssertion> judged(const std::vector<Outcome>& outcomes) {
 }
 
 Json to_json(const std::vector<Outcome>& outcomes) {
-  Json list = Json::array();
-  for (const auto& [truth, findings, seconds] : outcomes) {
-    Json rows = Json::array();
-    for (const Finding& f : findings)
-      rows.push_back({{"subject", f.subject},
-                      {"quantity", f.quantity},
-                      {"unit", f.unit},
-                      {"measured", f.measured},
-                      {"expected", f.expected},
-                      {"tolerance", f.tolerance},
-                      {"uncertainty", f.uncertainty},
-                      {"verdict", to_string(f.verdict)},
-                      {"why", f.why}});
-    list.push_back({{"name", truth->name},
-                    {"section", truth->section},
-                    {"section_title", section_title(truth->section)},
-                    {"row", truth->row},
-                    {"statement", truth->statement},
-                    {"source", truth->source},
-                    {"findings", rows}});
-  }
-  Json assertions = Json::array();
-  for (const auto& [section, assertion, verdict, figure] : judged(outcomes))
-    assertions.push_back(
-        {{"section", section}, {"assertion", assertion}, {"verdict", verdict}, {"figure", figure}});
+  const auto finding = [](const Finding& f) -> Json {
+    return {{"subject", f.subject},
+            {"quantity", f.quantity},
+            {"unit", f.unit},
+            {"measured", f.measured},
+            {"expected", f.expected},
+            {"tolerance", f.tolerance},
+            {"uncertainty", f.uncertainty},
+            {"verdict", to_string(f.verdict)},
+            {"why", f.why}};
+  };
+  const auto truth = [&](const Outcome& outcome) -> Json {
+    return {{"name", outcome.truth->name},
+            {"section", outcome.truth->section},
+            {"section_title", section_title(outcome.truth->section)},
+            {"row", outcome.truth->row},
+            {"statement", outcome.truth->statement},
+            {"source", outcome.truth->source},
+            {"findings", json_array(outcome.findings, finding)}};
+  };
+  const auto assertion = [](const JudgedAssertion& a) -> Json {
+    return {{"section", a.section},
+            {"assertion", a.assertion},
+            {"verdict", a.verdict},
+            {"figure", a.figure}};
+  };
   return {{"schema", "taut-truths-2"},
           {"program", program_digest()},
-          {"truths", list},
-          {"assertions", assertions}};
+          {"truths", json_array(outcomes, truth)},
+          {"assertions", json_array(judged(outcomes), assertion)}};
 }
 
 std::string value(double v) {
-  std::ostringstream text;
-  text.precision(std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3);
-  text << v;
-  return text.str();
+  return formatted("%.*g", std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3, v);
 }
 
 std::string line(const Finding& f) {
@@ -165,13 +165,10 @@ std::vector<Finding> worst_by_subject(const std::vector<Finding>& findings) {
     return std::pair(f.verdict, std::isnan(share) ? 1e300 : share);
   };
   std::vector<Finding> worst;
-  for (const Finding& f : findings) {
-    const auto same = std::find_if(worst.begin(), worst.end(),
-                                   [&](const Finding& w) { return w.subject == f.subject; });
-    if (same == worst.end())
-      worst.push_back(f);
-    else if (badness(f) > badness(*same))
-      *same = f;
+  for (const std::string& subject : distinct(findings, &Finding::subject)) {
+    const auto of = [&](const Finding& f) { return f.subject == subject; };
+    auto own = findings | std::views::filter(of);
+    worst.push_back(*std::ranges::max_element(own, {}, badness));
   }
   return worst;
 }
@@ -247,7 +244,7 @@ int run(const Options& options) {
         "--update keeps the verdicts of all assertions: taut verify --assertions --update");
   const std::vector<Outcome> outcomes = check(choose(options), options);
   const std::string json = to_text(to_json(outcomes), 1);
-  if (!options.out.empty()) write_file(options.out, json + "\n");
+  if (!options.output.empty()) write_file(options.output, json + "\n");
   if (options.json)
     std::cout << json << '\n';
   else if (options.assertions)
@@ -281,7 +278,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_option("-j,--jobs", options->jobs,
                  "Threads (default: " + std::to_string(options->jobs) + ")")
       ->check(CLI::Range(1, 64));
-  app.add_option("-o,--out", options->out, "Also write the findings as JSON to this file");
+  add_output(app, options->output, "Also write the findings as JSON to this file");
   app.add_flag("--json", options->json, "Findings as JSON instead of a table");
   app.add_flag("--assertions", options->assertions,
                "Only what holds the assertions of Vasilovici's report, and their verdicts");

@@ -15,6 +15,8 @@
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -28,19 +30,16 @@ constexpr std::size_t kMostPanels = 4;
 struct Film {
   std::string scene, summary;
   RunRequest request;
-  struct Panel {
-    std::string label;     ///< "Bullet float"
-    std::string settings;  ///< "1 × 16, order=mesh"
-    std::string key;       ///< of its case; "": no study ran it
-  };
-  std::vector<Panel> panels;  ///< of the solvers, in the order of the request's
+  std::vector<report::Clip::Panel> panels;  ///< of the solvers, in the order of the request's
+  std::vector<std::string> labels;          ///< theirs: "Bullet float"
   std::vector<std::pair<std::string, std::string>> refused;  ///< solver, why
   double speed = 1;
   bool studied = true;
 
   void add(const std::string& solver, const std::string& label, const std::string& key) {
     request.solvers.push_back(solver);
-    panels.push_back({label, report::brief_settings(solver), key});
+    panels.push_back({solver_name(solver), report::brief_settings(solver), key});
+    labels.push_back(label);
   }
 };
 
@@ -122,29 +121,25 @@ MediaOptions options_of(const Film& film, std::size_t runs) {
   return options;
 }
 
-report::ColourBar bar_of(const ColourScale& scale) {
+/// As the model of a report has it.
+Json bar_of(const ColourScale& scale) {
   constexpr int kStops = 17;
-  report::ColourBar bar{scale.title(), {}, {}};
+  Json bar{{"title", scale.title()}};
   for (int k = 0; k < kStops; ++k) {
     const Rgb8 c = scale.map().at(static_cast<double>(k) / (kStops - 1));
-    char text[8];
-    std::snprintf(text, sizeof text, "#%02X%02X%02X", c.r, c.g, c.b);
-    bar.stops.emplace_back(text);
+    bar["stops"].push_back(formatted("#%02X%02X%02X", c.r, c.g, c.b));
   }
   for (const double value : scale.ticks())
-    bar.ticks.emplace_back(scale.position(value), scale.text(value));
+    bar["ticks"].push_back({{"at", scale.position(value)}, {"text", scale.text(value)}});
   return bar;
 }
 
 report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
   report::Clip clip;
-  std::string who;
-  for (std::size_t k = 0; k < set.runs.size(); ++k) {
-    const RecordedRun& run = set.runs[k];
-    clip.panels.push_back(
-        {solver_name(run.trajectory.header.solver), film.panels[k].settings, film.panels[k].key});
-    who += (k > 0 ? " and " : "") + run.title + " (" + run.settings + ")";
-  }
+  clip.panels = film.panels;
+  const std::string who = join(set.runs, " and ", [](const RecordedRun& run) {
+    return run.title + " (" + run.settings + ")";
+  });
   clip.alt = set.scene.name + ": " + who + (set.runs.size() > 1 ? " side by side" : "") +
              " from the left, coloured by " + media.scale.title() + ", full red at " +
              media.scale.text(media.scale.high) +
@@ -185,7 +180,7 @@ FilmResult make_film(const Film& film) {
     std::ranges::move(
         report::shown_series(set.series[k], {film.scene,
                                              solver_name(set.runs[k].trajectory.header.solver),
-                                             film.panels[k].label,
+                                             film.labels[k],
                                              "",
                                              {},
                                              {}}),

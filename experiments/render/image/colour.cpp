@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/model/input_error.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -62,12 +63,6 @@ std::vector<Rgb8> tabulate(const Function& colour) {
 }
 
 constexpr double kLight = 0.955, kDark = 0.445;  ///< lightness at zero and at the ends
-
-std::string trimmed(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
 
 /// How each of them is named and shown, in the order of the enumeration.
 struct Style {
@@ -129,7 +124,7 @@ double ColourScale::shown() const { return style(colour_by).shown; }
 std::string ColourScale::text(double value) const {
   if (colour_by == ColourBy::strain && value == 0) return "0";
   const char* sign = colour_by != ColourBy::strain ? "" : value < 0 ? "\u2212" : "+";
-  return sign + trimmed(std::abs(shown() * value)) + " " + style(colour_by).unit;
+  return sign + formatted("%.3g %s", std::abs(shown() * value), style(colour_by).unit);
 }
 
 std::vector<double> ColourScale::ticks() const {

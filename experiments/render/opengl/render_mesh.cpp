@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/model/index.hpp"
 
 namespace taut {
 
@@ -60,13 +63,20 @@ std::vector<std::array<std::uint32_t, 3>> lattice_triangles(int nu, int nv) {
   return triangles;
 }
 
-/// Two triangles for each quad of rows of `columns` + 1 points, the first of which is `first`.
-void join_rows(RenderMesh& mesh, std::size_t first, int rows, int columns) {
-  const auto row = static_cast<std::uint32_t>(columns + 1);
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      const auto a = static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(j) * row +
-                     static_cast<std::uint32_t>(i);
+/// Adds a surface of rows x columns quads, two triangles each; at(j, i) gives the position and the
+/// normal of its point i of row j.
+template <class At>
+void append_surface(RenderMesh& mesh, int rows, int columns, float value, const At& at) {
+  const auto first = static_cast<std::uint32_t>(mesh.position.size()),
+             row = static_cast<std::uint32_t>(columns + 1);
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= columns; ++i) {
+      const std::pair<Vec3f, Vec3f> point = at(j, i);
+      mesh.position.push_back(point.first);
+      mesh.normal.push_back(point.second);
+      mesh.value.push_back(value);
+      if (j == rows || i == columns) continue;
+      const auto a = first + static_cast<std::uint32_t>(j) * row + static_cast<std::uint32_t>(i);
       mesh.triangles.push_back({a, a + 1, a + row});
       mesh.triangles.push_back({a + 1, a + row + 1, a + row});
     }
@@ -92,8 +102,6 @@ void append_cylinder(RenderMesh& mesh, const Vec3f& from, const Vec3f& to, float
     mesh.triangles.push_back({a + 1, b, b + 1});
   }
 }
-
-bool has_faces(const Scene& scene) { return !scene.mesh.triangles.empty(); }
 
 bool is_sheet(const Scene& scene) {
   return scene.mesh.grid && scene.mesh.grid->nu > 1 && scene.mesh.grid->nv > 1;
@@ -128,12 +136,9 @@ ClothMesher::ClothMesher(const Scene& scene, int finest) : scene_(scene) {
 
 RenderMesh ClothMesher::mesh(const std::vector<Vec3>& x, const std::vector<double>& values,
                              const std::vector<double>& depths) const {
-  RenderMesh made = is_sheet(scene_)    ? sheet(x, values, depths)
-                    : has_faces(scene_) ? faces(x, values)
-                                        : tube(x, values);
-  made.uv.resize(made.position.size(), Eigen::Vector2f::Zero());
-  made.hidden.resize(made.position.size(), 0);
-  return made;
+  return is_sheet(scene_)                 ? sheet(x, values, depths)
+         : !scene_.mesh.triangles.empty() ? faces(x, values)
+                                          : tube(x, values);
 }
 
 RenderMesh ClothMesher::sheet(const std::vector<Vec3>& x, const std::vector<double>& values,
@@ -173,31 +178,25 @@ RenderMesh ClothMesher::tube(const std::vector<Vec3>& x, const std::vector<doubl
   RenderMesh mesh;
   const std::vector<Vec3f> points = to_float(x);
   const float radius = static_cast<float>(extent(scene_)) * 0.006f;
-  const auto value = [&](int i) { return static_cast<float>(values[static_cast<std::size_t>(i)]); };
+  const auto value = [&](int i) { return static_cast<float>(values[to_index(i)]); };
   for (const Link& link : scene_.links)
     if (link.family == Family::structural)
-      append_cylinder(mesh, points[static_cast<std::size_t>(link.a)],
-                      points[static_cast<std::size_t>(link.b)], radius, 12, value(link.a),
-                      value(link.b));
+      append_cylinder(mesh, points[to_index(link.a)], points[to_index(link.b)], radius, 12,
+                      value(link.a), value(link.b));
   for (int i = 0; i < scene_.mesh.size(); ++i)
-    append_ball(mesh, points[static_cast<std::size_t>(i)], 2 * radius, 14, value(i));
+    append_ball(mesh, points[to_index(i)], 2 * radius, 14, value(i));
   return mesh;
 }
 
 void append_ball(RenderMesh& mesh, const Vec3f& centre, float radius, int segments, float value) {
-  const std::size_t first = mesh.position.size();
   const int rings = segments / 2;
-  for (int j = 0; j <= rings; ++j)
-    for (int i = 0; i <= segments; ++i) {
-      const float down = 3.1415927f * static_cast<float>(j) / static_cast<float>(rings);
-      const float turn = 6.2831853f * static_cast<float>(i) / static_cast<float>(segments);
-      const Vec3f out(std::sin(down) * std::cos(turn), std::cos(down),
-                      std::sin(down) * std::sin(turn));
-      mesh.position.push_back(centre + radius * out);
-      mesh.normal.push_back(out);
-      mesh.value.push_back(value);
-    }
-  join_rows(mesh, first, rings, segments);
+  append_surface(mesh, rings, segments, value, [&](int j, int i) {
+    const float down = 3.1415927f * static_cast<float>(j) / static_cast<float>(rings);
+    const float turn = 6.2831853f * static_cast<float>(i) / static_cast<float>(segments);
+    const Vec3f out(std::sin(down) * std::cos(turn), std::cos(down),
+                    std::sin(down) * std::sin(turn));
+    return std::pair<Vec3f, Vec3f>(centre + radius * out, out);
+  });
 }
 
 namespace {
@@ -217,29 +216,24 @@ RenderMesh box_mesh(const Box& box, double inset, double rounding) {
   const double radius = std::min(rounding, 0.4 * half.minCoeff());
   const Vec3 inner = half.array() - radius;
   RenderMesh mesh;
+  // Points crowd towards the edges, where the rounding is.
+  const auto place = [](int k) {
+    const double s = 2.0 * k / kPieces - 1;
+    return s * (1.5 - 0.5 * s * s);
+  };
   for (int axis = 0; axis < 3; ++axis)
-    for (const double sign : {-1.0, 1.0}) {
-      const std::size_t first = mesh.position.size();
-      // Points crowd towards the edges, where the rounding is.
-      const auto place = [](int k) {
-        const double s = 2.0 * k / kPieces - 1;
-        return s * (1.5 - 0.5 * s * s);
-      };
-      for (int j = 0; j <= kPieces; ++j)
-        for (int i = 0; i <= kPieces; ++i) {
-          Vec3 p;
-          p[axis] = sign * half[axis];
-          p[(axis + 1) % 3] = place(i) * half[(axis + 1) % 3];
-          p[(axis + 2) % 3] = place(j) * half[(axis + 2) % 3];
-          const Vec3 core = p.cwiseMax(-inner).cwiseMin(inner);
-          const Vec3 out = (p - core).normalized();
-          mesh.position.push_back(
-              (box.center + box.rotation * (core + radius * out)).cast<float>());
-          mesh.normal.push_back((box.rotation * out).cast<float>());
-          mesh.value.push_back(0);
-        }
-      join_rows(mesh, first, kPieces, kPieces);
-    }
+    for (const double sign : {-1.0, 1.0})
+      append_surface(mesh, kPieces, kPieces, 0, [&](int j, int i) {
+        Vec3 p;
+        p[axis] = sign * half[axis];
+        p[(axis + 1) % 3] = place(i) * half[(axis + 1) % 3];
+        p[(axis + 2) % 3] = place(j) * half[(axis + 2) % 3];
+        const Vec3 core = p.cwiseMax(-inner).cwiseMin(inner);
+        const Vec3 out = (p - core).normalized();
+        return std::pair<Vec3f, Vec3f>(
+            (box.center + box.rotation * (core + radius * out)).cast<float>(),
+            (box.rotation * out).cast<float>());
+      });
   return mesh;
 }
 
@@ -248,14 +242,11 @@ RenderMesh plane_mesh(const Plane& plane, double inset, const Vec3& centre, doub
   const Vec3 u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
   const Vec3 foot = centre - plane.normal * (plane.normal.dot(centre) - plane.offset + inset);
   RenderMesh mesh;
-  for (int j = 0; j <= kPieces; ++j)
-    for (int i = 0; i <= kPieces; ++i) {
-      const double a = reach * (2.0 * i / kPieces - 1), b = reach * (2.0 * j / kPieces - 1);
-      mesh.position.push_back((foot + a * u + b * v).cast<float>());
-      mesh.normal.push_back(plane.normal.cast<float>());
-      mesh.value.push_back(0);
-    }
-  join_rows(mesh, 0, kPieces, kPieces);
+  append_surface(mesh, kPieces, kPieces, 0, [&](int j, int i) {
+    const double a = reach * (2.0 * i / kPieces - 1), b = reach * (2.0 * j / kPieces - 1);
+    return std::pair<Vec3f, Vec3f>((foot + a * u + b * v).cast<float>(),
+                                   plane.normal.cast<float>());
+  });
   return mesh;
 }
 
@@ -268,16 +259,9 @@ double liftable(const Plane&, const Scene& scene) { return 0.04 * extent(scene);
 
 RenderMesh collider_mesh(const Collider& collider, double t, const ColliderLook& look) {
   const Shape shape = shape_at(collider, t);
-  RenderMesh mesh;
-  if (const auto* ball = std::get_if<Ball>(&shape))
-    mesh = ball_mesh(*ball, look.inset);
-  else if (const auto* box = std::get_if<Box>(&shape))
-    mesh = box_mesh(*box, look.inset, look.rounding);
-  else
-    mesh = plane_mesh(std::get<Plane>(shape), look.inset, look.centre, look.reach);
-  mesh.uv.assign(mesh.position.size(), Eigen::Vector2f::Zero());
-  mesh.hidden.assign(mesh.position.size(), 0);
-  return mesh;
+  if (const auto* ball = std::get_if<Ball>(&shape)) return ball_mesh(*ball, look.inset);
+  if (const auto* box = std::get_if<Box>(&shape)) return box_mesh(*box, look.inset, look.rounding);
+  return plane_mesh(std::get<Plane>(shape), look.inset, look.centre, look.reach);
 }
 
 void lift_out_of_colliders(RenderMesh& mesh, const Scene& scene, double t, double clearance) {

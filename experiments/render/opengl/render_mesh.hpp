@@ -13,8 +13,8 @@ namespace taut {
 struct RenderMesh {
   std::vector<Vec3f> position;      ///< m
   std::vector<Vec3f> normal;        ///< unit
-  std::vector<Eigen::Vector2f> uv;  ///< material coordinates in quads; (0, 0) where there is none
-  std::vector<float> hidden;        ///< particles' depth below a collider [m]
+  std::vector<Eigen::Vector2f> uv;  ///< of a sheet: material coordinates in quads
+  std::vector<float> hidden;        ///< of a sheet: particles' depth below a collider [m]
   std::vector<float> value;         ///< the quantity that colours it, SI
   std::vector<float> front, back;   ///< baked light on either side; 1: open, facing the sky
   std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -65,10 +65,12 @@ std::vector<Vertex> vertices_of(const RenderMesh& mesh) {
   vertices.reserve(mesh.position.size());
   for (std::size_t i = 0; i < mesh.position.size(); ++i) {
     const Vec3f &p = mesh.position[i], &n = mesh.normal[i];
-    vertices.push_back({{p.x(), p.y(), p.z()},
-                        {n.x(), n.y(), n.z()},
-                        {mesh.uv[i].x(), mesh.uv[i].y()},
-                        {mesh.front[i], mesh.back[i], mesh.value[i], mesh.hidden[i]}});
+    Vertex& v = vertices.emplace_back(Vertex{{p.x(), p.y(), p.z()},
+                                             {n.x(), n.y(), n.z()},
+                                             {},
+                                             {mesh.front[i], mesh.back[i], mesh.value[i], 0}});
+    if (mesh.uv.empty()) continue;
+    v.uv[0] = mesh.uv[i].x(), v.uv[1] = mesh.uv[i].y(), v.data[3] = mesh.hidden[i];
   }
   return vertices;
 }

@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/model/text.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
 namespace {
 
 constexpr Rgb8 kAlarm = rgb(0xB3261E);
-
-std::string formatted(const char* format, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 /// "t = 2.48 s    max |ε| = 4.10 %    mean ε = +0.72 %    33 × 33 vertices"
 std::vector<std::string> caption(const SceneRenderer& renderer, const RecordedRun& run, double t) {
@@ -235,10 +229,9 @@ Image compose_sheet(const SceneRenderer& renderer, const std::vector<double>& ti
       if (run.stop && t > run.stop->t) mark_stop(panel, *run.stop, u * 0.8);
       const auto& frame = run.at(t);
       const LiveFigures live = live_figures(renderer.scene(), frame.state, frame.t);
-      char time[32];
-      std::snprintf(time, sizeof time, "t = %.2f s    ", frame.t);
       Canvas(panel).text({18 * u, 30 * u},
-                         time + caption_of(renderer.scale().colour_by, live).front(),
+                         formatted("t = %.2f s    ", frame.t) +
+                             caption_of(renderer.scale().colour_by, live).front(),
                          {15 * u, on_background});
       picture.paste(panel, column * (wide + gap), head + row * (high + gap));
     }

@@ -123,7 +123,7 @@ void lay_flat(Media& media, const SceneRenderer& renderer) {
 }  // namespace
 
 Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
-                   const MediaOptions& options, const std::function<void(int, int)>& progress) {
+                   const MediaOptions& options) {
   assert(!runs.empty() && runs.size() <= 4);
   Media media;
   media.t = frame_times(scene, runs, options);
@@ -137,8 +137,6 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   look.height = options.height;
   look.theme = Theme::dark();
   look.quality = options.quality;
-  look.view = options.view;
-  look.colour_by = options.colour_by;
   look.frame = {-0.94, 0.84, -0.64, 0.74};
   look.to = media.t.back();
   const SceneRenderer renderer(scene, runs, look);
@@ -157,11 +155,9 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   const std::filesystem::path file = scratch.path() / "film.mp4";
   VideoWriter video(file, {options.width, options.height,
                            frame_rate((media.t[1] - media.t[0]) / options.speed), options.crf});
-  for (std::size_t k = 0; k < media.t.size(); ++k) {
+  for (std::size_t k = 0; k < media.t.size(); ++k)
     if (!video.write(k == poster ? poster_image : side_by_side(renderer, options, media.t[k])))
       break;
-    if (progress) progress(static_cast<int>(k) + 1, static_cast<int>(media.t.size()));
-  }
   if (video.finish().empty()) media.mp4 = read_text(file);
   return media;
 }

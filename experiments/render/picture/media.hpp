@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "experiments/render/image/video.hpp"
 #include "experiments/render/picture/scene_renderer.hpp"
 
@@ -15,8 +13,6 @@ struct MediaOptions {
   double duration = 4;            ///< s of the scene's beginning
   double speed = 1;               ///< simulated seconds per second of video
   double fps = 22;  ///< of the video; frames are whole steps: the nearest rate that dt allows
-  ColourBy colour_by = ColourBy::strain;
-  View view;
   RenderQuality quality = RenderQuality::video();
   int crf = 25;
 };
@@ -40,9 +36,7 @@ struct Media {
   ColourScale scale;                            ///< of the pictures
 };
 
-/// Draws the runs. `progress(done, total)` is told after each frame. Throws InputError without a
-/// renderer. Preconditions: one to four runs.
-Media render_media(const Scene&, const std::vector<RecordedRun>&, const MediaOptions& = {},
-                   const std::function<void(int, int)>& progress = {});
+/// Draws the runs. Throws InputError without a renderer. Precondition: one to four runs.
+Media render_media(const Scene&, const std::vector<RecordedRun>&, const MediaOptions&);
 
 }  // namespace taut

@@ -25,11 +25,14 @@ std::vector<Vec3> collider_points(const Collider& collider, double t) {
   return points;
 }
 
-Eigen::AlignedBox3d box_around(const std::vector<Vec3>& points, double margin) {
+Eigen::AlignedBox3d box_around(const std::vector<Vec3>& points) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : points) box.extend(x);
-  const Vec3 rim = Vec3::Constant(margin);
-  return {box.min() - rim, box.max() + rim};
+  return box;
+}
+
+Eigen::AlignedBox3d widened(const Eigen::AlignedBox3d& box, double margin) {
+  return {box.min() - Vec3::Constant(margin), box.max() + Vec3::Constant(margin)};
 }
 
 const Collider* level_floor(const Scene& scene, const Vec3& up) {
@@ -59,16 +62,14 @@ std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Recor
                                      const std::vector<double>& times) {
   std::vector<Vec3> points;
   for (const double t : times) {
-    const auto at_cloth = box_around(cloth_points(runs, {t}, false), 0.1 * extent(scene));
+    const auto at_cloth = widened(box_around(cloth_points(runs, {t}, false)), 0.1 * extent(scene));
     for (const Collider& collider : scene.colliders) {
       const std::vector<Vec3> solid = collider_points(collider, t);
-      if (collider.motion.at_rest() || at_cloth.intersects(box_around(solid, 0)))
+      if (collider.motion.at_rest() || at_cloth.intersects(box_around(solid)))
         points.insert(points.end(), solid.begin(), solid.end());
     }
   }
-  Eigen::AlignedBox3d near;
-  for (const Vec3& x : points) near.extend(x);
-  for (const Vec3& x : scene.start.x) near.extend(x);
+  Eigen::AlignedBox3d near = box_around(scene.start.x).extend(box_around(points));
   // What is held swings within the cloth's own size; what lands spreads a little; down an endless
   // slope it slides.
   const bool slope = std::ranges::any_of(scene.colliders, [&](const Collider& collider) {
@@ -76,8 +77,7 @@ std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Recor
     return plane && plane->normal.dot(up_direction(scene)) < 0.9999;
   });
   const double share = slope ? 3 : scene.pins.empty() ? 0.3 : 0.6;
-  const Vec3 margin = Vec3::Constant(share * extent(scene));
-  near = {near.min() - margin, near.max() + margin};
+  near = widened(near, share * extent(scene));
   for (const Vec3& x : cloth)
     if (near.contains(x)) points.push_back(x);
   return points.empty() ? scene.start.x : points;
@@ -142,12 +142,13 @@ Placing place(const Scene& scene, const std::vector<RecordedRun>& runs,
   const std::vector<Vec3> cloth = cloth_points(runs, times, p.follows);
   const std::vector<Vec3> points =
       p.follows ? cloth : points_of_interest(scene, runs, cloth, times);
-  Eigen::AlignedBox3d box;
-  double lowest = 1e300;
-  for (const Vec3& x : points) box.extend(x), lowest = std::min(lowest, x.dot(p.up));
-  p.centre = box.center();
+  p.centre = box_around(points).center();
   p.radius = 0;
-  for (const Vec3& x : points) p.radius = std::max(p.radius, (x - p.centre).norm());
+  double lowest = 1e300;
+  for (const Vec3& x : points) {
+    p.radius = std::max(p.radius, (x - p.centre).norm());
+    lowest = std::min(lowest, x.dot(p.up));
+  }
   p.camera = fit_camera(points, p.up, telling_view(view, cloth, p.up), aspect, frame);
   p.floor = level_floor(scene, p.up);
   p.ground = p.floor ? std::get<Plane>(p.floor->shape).offset - inset : lowest - 0.08 * p.radius;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/index.hpp"
+
 namespace taut {
 
 SceneRenderer::SceneRenderer(const Scene& scene, const std::vector<RecordedRun>& runs,
@@ -64,10 +66,8 @@ std::vector<RenderMesh> SceneRenderer::meshes(const TrajectoryReader::Frame& fra
     if (&collider != placing_.floor) meshes.push_back(collider_mesh(collider, frame.t, look));
   RenderMesh& pins = meshes.emplace_back();
   for (const int pin : scene_.pins)
-    append_ball(pins, frame.state.x[static_cast<std::size_t>(pin)].cast<float>(),
+    append_ball(pins, frame.state.x[to_index(pin)].cast<float>(),
                 static_cast<float>(0.009 * extent(scene_)), 16, 0);
-  pins.uv.assign(pins.position.size(), Eigen::Vector2f::Zero());
-  pins.hidden.assign(pins.position.size(), 0);
   return meshes;
 }
 
@@ -120,9 +120,7 @@ Image SceneRenderer::material_space(std::size_t index, double t, int longest_sid
   const auto& frame = runs_[index].at(t);
   const std::vector<double> values = vertex_values(scene_, scale_.colour_by, frame.state, frame.t);
   const auto side = [&](int from, int to) {
-    return (scene_.mesh.rest[static_cast<std::size_t>(to)] -
-            scene_.mesh.rest[static_cast<std::size_t>(from)])
-        .norm();
+    return (scene_.mesh.rest[to_index(to)] - scene_.mesh.rest[to_index(from)]).norm();
   };
   const double across = side(grid.index(0, 0), grid.index(grid.nu - 1, 0));
   const double down = side(grid.index(0, 0), grid.index(0, grid.nv - 1));
@@ -140,7 +138,7 @@ Image SceneRenderer::material_space(std::size_t index, double t, int longest_sid
       const auto [i, a] = locate(x, image.width(), grid.nu);
       const auto [j, b] = locate(y, image.height(), grid.nv);
       const auto at = [&, i = i, j = j](int di, int dj) {
-        return values[static_cast<std::size_t>(
+        return values[to_index(
             grid.index(std::min(i + di, grid.nu - 1), std::min(j + dj, grid.nv - 1)))];
       };
       image.at(x, y) = scale_.colour((1 - b) * ((1 - a) * at(0, 0) + a * at(1, 0)) +

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/index.hpp"
+
 namespace taut {
 
 namespace {
 
 double strain(const Link& link, const State& state) {
-  const Vec3& a = state.x[static_cast<std::size_t>(link.a)];
-  const Vec3& b = state.x[static_cast<std::size_t>(link.b)];
-  return ((b - a).norm() - link.rest) / link.rest;
+  return ((state.x[to_index(link.b)] - state.x[to_index(link.a)]).norm() - link.rest) / link.rest;
 }
 
 std::vector<double> vertex_strains(const Scene& scene, const State& state) {
@@ -18,8 +18,7 @@ std::vector<double> vertex_strains(const Scene& scene, const State& state) {
   for (const Link& link : scene.links) {
     if (link.family == Family::bend) continue;
     const double e = strain(link, state);
-    for (const int end : {link.a, link.b})
-      sum[static_cast<std::size_t>(end)] += e, count[static_cast<std::size_t>(end)] += 1;
+    for (const int end : {link.a, link.b}) sum[to_index(end)] += e, count[to_index(end)] += 1;
   }
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(count[i], 1.0);
   return sum;

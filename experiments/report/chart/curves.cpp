@@ -58,15 +58,13 @@ std::vector<Curve> make_curves(const Records& records, const std::string& x, con
     return seen[{key == "dt" || key == "scene" ? "" : record.solver, key}].size() > 1;
   };
   std::vector<Curve> curves;
-  std::map<std::string, std::size_t> index;  // by solver and settings
+  std::map<std::pair<std::string, Settings>, std::size_t> index;  // by solver
   std::map<std::string, int> variants;
   const SettingLabels labels(records);
   for (const Record* one : records) {
     const Record& record = *one;
     const Settings all = settings(record, free);
-    std::string name = record.solver;
-    for (const auto& [key, value] : all) name += "\n" + key + "=" + value;
-    const auto [where, fresh] = index.try_emplace(name, curves.size());
+    const auto [where, fresh] = index.try_emplace({record.solver, all}, curves.size());
     if (fresh) {
       Curve curve{solver_title(record.solver), record.solver, variants[record.solver]++, {}};
       for (const auto& [key, value] : all)

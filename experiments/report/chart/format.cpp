@@ -1,10 +1,13 @@
 #include "experiments/report/chart/format.hpp"
 
+#include <openssl/evp.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <functional>
 #include <utility>
+
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -58,17 +61,10 @@ std::string gnuplot_string(std::string_view text) {
 }
 
 std::string base64(std::string_view bytes) {
-  static constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
-  }
+  std::string out((bytes.size() + 2) / 3 * 4, '\0');
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(out.data()),
+                  reinterpret_cast<const unsigned char*>(bytes.data()),
+                  static_cast<int>(bytes.size()));
   return out;
 }
 
@@ -86,9 +82,9 @@ std::string slug(std::string_view text) {
   out.resize(std::min(out.size(), kMost));
   while (!out.empty() && (out.back() == '-' || out.back() == '.')) out.pop_back();
   if (!out.empty() && out == text) return out;
-  char digits[20];  // what was replaced or cut off still tells names apart
-  std::snprintf(digits, sizeof digits, "-%08zx", std::hash<std::string_view>{}(text)&0xFFFFFFFFU);
-  return (out.empty() ? "x" : out) + digits;
+  // What was replaced or cut off still tells names apart.
+  return (out.empty() ? "x" : out) +
+         formatted("-%08zx", std::hash<std::string_view>{}(text)&0xFFFFFFFFU);
 }
 
 }  // namespace taut::report

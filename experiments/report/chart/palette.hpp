@@ -9,7 +9,6 @@ namespace taut::report {
 
 /// A colour of the light theme (paper, figures) with its twin of the dark theme.
 struct Colour {
-  std::string_view name;
   std::string_view light;  ///< "#0B6BCB"
   std::string_view dark;
 };

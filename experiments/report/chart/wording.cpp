@@ -5,7 +5,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <utility>
@@ -13,16 +12,11 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
 namespace {
-
-std::string print(const char* format, int precision, double value) {
-  std::array<char, 400> text{};
-  const int size = std::snprintf(text.data(), text.size(), format, precision, value);
-  return {text.data(), static_cast<std::size_t>(std::max(0, size))};
-}
 
 constexpr std::array<const char*, 10> kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
 
@@ -50,7 +44,7 @@ std::string powers(const std::string& scientific) {
 
 std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return significant(value);
-  const std::string text = print("%.*f", decimals, std::abs(value));
+  const std::string text = formatted("%.*f", decimals, std::abs(value));
   const bool nothing = text.find_first_not_of("0.") == std::string::npos;
   return (value < 0 && !nothing ? "−" : "") + text;
 }
@@ -68,28 +62,22 @@ std::string significant(double value, int digits) {
   if (value == 0) return "0";
   const double magnitude = std::abs(value);
   // Rounded first, so that 9.96 with two digits becomes "10" and not "10.0".
-  const std::string rounded = print("%.*e", digits - 1, magnitude);
+  const std::string rounded = formatted("%.*e", digits - 1, magnitude);
   const int exponent = std::stoi(rounded.substr(rounded.find('e') + 1));
   std::string text;
   if (exponent < -4 || exponent > 5)
     text = powers(rounded);
   else
-    text = print("%.*f", std::max(0, digits - 1 - exponent), magnitude);
+    text = formatted("%.*f", std::max(0, digits - 1 - exponent), magnitude);
   return (value < 0 ? "−" : "") + text;
 }
 
 std::string exact(double value) { return std::isnan(value) ? "" : shortest(value); }
 
 std::string typeset(std::string_view plain) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSigns{{{"^2", "²"},
-                                                                                 {"^3", "³"},
-                                                                                 {">=", "≥"},
-                                                                                 {"<=", "≤"},
-                                                                                 {"+-", "±"},
-                                                                                 {" x ", " × "},
-                                                                                 {" - ", " − "},
-                                                                                 {"mu", "μ"},
-                                                                                 {"pi", "π"}}};
+  constexpr std::pair<std::string_view, std::string_view> kSigns[] = {
+      {"^2", "²"},    {"^3", "³"},    {">=", "≥"}, {"<=", "≤"}, {"+-", "±"},
+      {" x ", " × "}, {" - ", " − "}, {"mu", "μ"}, {"pi", "π"}};
   const auto at = [&](std::size_t i) { return i < plain.size() ? plain[i] : ' '; };
   const auto letter = [&](std::size_t i) {
     return at(i) == '_' || std::isalnum(static_cast<unsigned char>(at(i)));
@@ -107,7 +95,7 @@ std::string typeset(std::string_view plain) {
     if (at(end) == '-' || at(end) == '+') ++end;
     const std::size_t digits = end;
     while (digit(end)) ++end;
-    if (found != kSigns.end()) {
+    if (found != std::end(kSigns)) {
       out += found->second, i += found->first.size();
     } else if (at(i) == 'e' && digit(i - 1) && end > digits && !letter(end)) {
       out += "×" + power_of_ten(std::stoi(std::string(plain.substr(i + 1, end - i - 1)))), i = end;
@@ -268,7 +256,7 @@ std::vector<std::string> accuracy_parameters(const std::string& solver) {
   std::vector<std::string> all{parameter_of(solver, kSubsteps), parameter_of(solver, kSweeps)};
   const SolverEntry* entry = find_entry(solver);
   for (const std::string& name : parts_of(entry ? entry->accuracy.labelled : ""))
-    if (std::ranges::find(all, name) == all.end()) all.push_back(name);
+    add_new(all, name);
   return all;
 }
 

@@ -12,11 +12,7 @@
 
 namespace taut::report {
 
-namespace {
-
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 std::string_view to_string(ClaimKind kind) {
   constexpr std::array<std::string_view, 3> kWords{"headline", "tile", "note"};
@@ -68,30 +64,12 @@ Claim::Claim(std::string name, ClaimKind what, std::string of, std::string text,
     throw std::logic_error("a claim without its basis: " + sentence);
 }
 
-Claim::Claim(const Claim& of, std::string heading, std::string what, std::vector<Bar> bars)
-    : id("tile-" + of.id),
-      kind(ClaimKind::tile),
-      about(of.about),
-      sentence(std::move(what)),
-      sure(of.sure),
-      basis(of.basis),
-      quoted_(of.quoted_),
-      heading_(std::move(heading)),
-      bars_(std::move(bars)) {}
-
-Claim& Claim::emphasise(const std::vector<std::string>& parts) {
-  for (const std::string& part : parts)
-    if (!part.empty() && sentence.find(part) != std::string::npos) strong_.push_back(part);
-  return *this;
-}
-
-Claim& Claim::quotes() {
-  quoted_ = true;
-  return *this;
-}
-
-Claim Claim::tile(std::string heading, std::string what, std::vector<Bar> bars) const {
-  return {*this, std::move(heading), std::move(what), std::move(bars)};
+Claim Claim::tile(std::string title, std::string what, std::vector<Bar> all) const {
+  Claim made = *this;
+  made.id = "tile-" + id, made.kind = ClaimKind::tile;
+  made.sentence = std::move(what), made.strong.clear();
+  made.heading = std::move(title), made.bars = std::move(all);
+  return made;
 }
 
 Interval geometric_mean(const std::vector<Interval>& ratios) {
@@ -120,15 +98,19 @@ std::string share_text(double ratio) {
   return ratio <= 0.55 ? "1/" + significant(1 / ratio, 2) : fixed(100 * ratio, 0) + "\u00A0%";
 }
 
+std::string undecided(Certainty sure) {
+  return sure == Certainty::too_noisy ? "too noisy to judge" : "no difference that can be told";
+}
+
 Json json_of(const Claim& claim, Citations& refs) {
   Json one{{"id", claim.id},
            {"kind", to_string(claim.kind)},
            {"about", claim.about},
            {"sentence", claim.sentence},
            {"sure", to_string(claim.sure)}};
-  add_if(one, "strong", claim.strong());
-  add_if(one, "heading", claim.heading());
-  for (const Bar& bar : claim.bars()) {
+  add_if(one, "strong", claim.strong);
+  add_if(one, "heading", claim.heading);
+  for (const Bar& bar : claim.bars) {
     Json at{{"solver", bar.solver},
             {"label", bar.label},
             {"value", bar.value ? json_number(*bar.value) : Json()},
@@ -136,7 +118,7 @@ Json json_of(const Claim& claim, Citations& refs) {
     if (bar.interval) at["low"] = bar.interval->low, at["high"] = bar.interval->high;
     one["bars"].push_back(std::move(at));
   }
-  if (!claim.bars().empty()) one["metric"] = claim.basis->front().quantity().name;
+  if (!claim.bars.empty()) one["metric"] = claim.basis->front().quantity().name;
   for (const Evidence& evidence : *claim.basis) {
     const Quantity& q = refs.use(evidence.quantity().name);
     Json basis{{"metric", q.name},
@@ -155,7 +137,8 @@ Json json_of(const Claim& claim, Citations& refs) {
     }
     if (listed.size() > kMostValues) {  // what has no value is listed first
       basis["unlisted"] = listed.size() - kMostValues;
-      std::ranges::stable_partition(listed, [](const auto* s) { return !std::isfinite(s->value); });
+      std::stable_partition(listed.begin(), listed.end(),
+                            [](const auto* s) { return !std::isfinite(s->value); });
       listed.resize(kMostValues);
     }
     for (const Evidence::Seen* seen : listed) {

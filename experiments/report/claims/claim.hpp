@@ -66,40 +66,25 @@ struct Bar {
 
 /// A comparison in words. There is no other way to put one on the page, and none without the values
 /// that it rests on.
-class Claim {
- public:
+struct Claim {
   /// `about`: "all", a scene, "cost", "only", "failures", "differences". Throws std::logic_error
   /// without evidence or with evidence that looked at no case.
   Claim(std::string id, ClaimKind, std::string about, std::string sentence, Certainty,
         std::vector<Evidence>);
 
-  const std::string id;
-  const ClaimKind kind;
-  const std::string about, sentence;
-  const Certainty sure;
-  const std::shared_ptr<const std::vector<Evidence>> basis;  ///< its tile has the same
+  std::string id;
+  ClaimKind kind;
+  std::string about, sentence;
+  Certainty sure;
+  std::shared_ptr<const std::vector<Evidence>> basis;  ///< its tile has the same
+  std::vector<std::string> strong = {};                ///< parts of the sentence to emphasise
+  bool quotes = false;  ///< its values are of the quoted cases alone: a film may show just these
+  std::string heading = {};    ///< of a tile
+  std::vector<Bar> bars = {};  ///< of a tile: of the first evidence's quantity
 
-  /// Parts of the sentence to emphasise; what is not in it is left out.
-  Claim& emphasise(const std::vector<std::string>&);
-  const std::vector<std::string>& strong() const { return strong_; }
-
-  /// Says that its values are those of the quoted cases alone: a film may show just these.
-  Claim& quotes();
-  bool quoted() const { return quoted_; }
-
-  /// The claim as a tile on the same basis: a heading, a bar for each solver (of the first
-  /// evidence's quantity) and what the bars are. Each bar's text is in the claim's sentence.
+  /// The claim as a tile on the same basis: a heading, a bar for each solver and what the bars are.
+  /// Each bar's text is in the claim's sentence.
   Claim tile(std::string heading, std::string what, std::vector<Bar>) const;
-  const std::string& heading() const { return heading_; }
-  const std::vector<Bar>& bars() const { return bars_; }
-
- private:
-  /// The tile of a claim.
-  Claim(const Claim&, std::string heading, std::string what, std::vector<Bar>);
-  std::vector<std::string> strong_;
-  bool quoted_ = false;
-  std::string heading_;
-  std::vector<Bar> bars_;
 };
 
 /// The value of kErrorMetric whose price heads the page.
@@ -128,4 +113,7 @@ double geometric_mean(const std::vector<double>&);
 std::string sentence_if(const std::string& opening, const std::vector<std::string>& names);
 /// "1/11" or "71 %" of what is compared with; below 1.
 std::string share_text(double ratio);
+/// Why there is nothing to say of two costs: "too noisy to judge". Precondition: no difference.
+std::string undecided(Certainty);
+
 }  // namespace taut::report

@@ -3,8 +3,10 @@
 #include <functional>
 #include <set>
 
+#include "core/model/text.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -68,10 +70,6 @@ void look_at(Evidence& evidence, const Timed& scene, const Pair& pair, const Adm
   }
 }
 
-std::string share_interval(const Interval& r) {
-  return "95\u00A0% interval " + share_text(r.low) + " to " + share_text(r.high);
-}
-
 std::string ratio_text(const Interval& r) {
   return fixed(r.mid, 2) + ", 95\u00A0% interval " + fixed(r.low, 2) + " to " + fixed(r.high, 2);
 }
@@ -88,8 +86,7 @@ std::string not_reached(const SceneBench& scene, const std::string& solver,
 
 /// "Two runs of identical code differed by up to 3 %."
 std::string noise_text(double noise) {
-  return " Two runs of identical code differed by up to " + significant(100 * noise, 2) +
-         "\u00A0%.";
+  return " Two runs of identical code differed by up to " + shown(kShare, noise) + ".";
 }
 
 /// Of two that were judged; where there is no difference nothing was.
@@ -101,7 +98,7 @@ Certainty less_sure(Certainty a, Certainty b) {
 struct Verdicts {
   std::string text;
   Certainty sure = Certainty::none;  ///< the least sure of all that was judged
-  std::string strong;                ///< the factor
+  std::vector<std::string> strong;   ///< the factor, if there is a difference
 };
 
 Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
@@ -128,15 +125,14 @@ Verdicts judge_all(const std::vector<SceneRatio>& ratios, const Pair& pair) {
   if (is_difference(judged)) {
     const bool less = mean.mid < 1;
     const Interval share = less ? mean : inverse(mean);
-    verdicts.strong = share_text(share.mid) + " of the CPU time";
-    verdicts.text = (less ? pair.first_label : pair.other_label) + " uses " + verdicts.strong +
-                    " of " + (less ? pair.other_label : pair.first_label) + " (" +
-                    share_interval(share) + over + ".";
+    verdicts.strong = {share_text(share.mid) + " of the CPU time"};
+    verdicts.text = (less ? pair.first_label : pair.other_label) + " uses " +
+                    verdicts.strong.front() + " of " +
+                    (less ? pair.other_label : pair.first_label) + " (95\u00A0% interval " +
+                    share_text(share.low) + " to " + share_text(share.high) + over + ".";
   } else {
-    verdicts.text = std::string(judged == Certainty::too_noisy ? "too noisy to judge"
-                                                               : "no difference that can be told") +
-                    " (" + pair.first_label + " over " + pair.other_label + " " + ratio_text(mean) +
-                    over + ".";
+    verdicts.text = undecided(judged) + " (" + pair.first_label + " over " + pair.other_label +
+                    " " + ratio_text(mean) + over + ".";
   }
   verdicts.text += sentence_if(" Less with " + pair.first_label + " on ", ours) +
                    sentence_if(" Less with " + pair.other_label + " on ", theirs) +
@@ -210,7 +206,8 @@ void claim_price(const std::vector<Timed>& scenes, const Pair& pair, bool with_t
       id, ClaimKind::headline, "cost",
       opening + verdicts.text + rest + " CPU time per simulated second: " + joined(parts) + ".",
       verdicts.sure, {evidence});
-  claims.push_back(claim.emphasise({verdicts.strong}));
+  claim.strong = verdicts.strong;
+  claims.push_back(claim);
   if (with_tile)
     claims.push_back(claim.tile("CPU time for " + level,
                                 "Per simulated second, each at the cheapest setting tried with "
@@ -257,7 +254,8 @@ void claim_same_work(const std::vector<Timed>& scenes, const Pair& pair,
   Claim claim("work-" + pair.other, ClaimKind::headline, "cost",
               "For a step of the same substeps × sweeps (" + joined(names) + "): " + verdicts.text,
               verdicts.sure, {evidence});
-  claims.push_back(claim.emphasise({verdicts.strong}));
+  claim.strong = verdicts.strong;
+  claims.push_back(claim);
 }
 
 /// What a solver gains by a parameter that the other one lacks, said apart.
@@ -308,8 +306,7 @@ void claim_extras(const std::vector<Timed>& timed_scenes, const Pair& pair,
     clauses.push_back(text);
   }
   if (clauses.empty()) return;
-  std::string text;
-  for (const std::string& one : clauses) text += (text.empty() ? "" : "; ") + one;
+  std::string text = join(clauses, "; ");
   if (!missed.empty()) text += "; not reached by the settings tried on " + joined(missed);
   claims.emplace_back(
       "only-" + pair.first + "-" + pair.other, ClaimKind::note, "only",
@@ -328,19 +325,17 @@ std::vector<Claim> cost_claims(const ReportInput& input) {
   std::vector<Timed> scenes;
   for (const SceneBench& scene : input.bench->scenes) {
     scenes.push_back({scene});
-    for (const std::string& solver : solvers_of(scene))
-      if (std::ranges::find(names, solver) == names.end()) names.push_back(solver);
+    for (const std::string& solver : solvers_of(scene)) add_new(names, solver);
   }
   if (names.empty()) return claims;  // nothing was timed
   const std::string first = names.front();
-  const auto label = [&](const std::string& solver) { return solver_title(solver); };
   for (const std::string& other : names) {
     if (other == first) continue;
-    const Pair pair{first, other, label(first), label(other)};
+    const Pair pair{first, other, solver_title(first), solver_title(other)};
     claim_same_work(scenes, pair, claims);
     claim_price(scenes, pair, names.size() == 2, claims);
     claim_extras(scenes, pair, claims);
-    claim_extras(scenes, {other, first, label(other), label(first)}, claims);
+    claim_extras(scenes, {other, first, pair.other_label, pair.first_label}, claims);
   }
   return claims;
 }

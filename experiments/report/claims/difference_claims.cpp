@@ -5,6 +5,7 @@
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -83,13 +84,11 @@ Claim claim_cost(const Differences& differences, const std::string& solver) {
   if (ratios.empty())
     text += "none completed in both";
   else if (!is_difference(judged))
-    text += (judged == Certainty::too_noisy ? "too noisy to judge (B over A "
-                                            : "no difference that can be told (B over A ") +
-            fixed(mean, 2) + ")";
+    text += undecided(judged) + " (B over A " + fixed(mean, 2) + ")";
   else
     text += (mean < 1 ? "B uses " : "A uses ") + share_text(mean < 1 ? mean : 1 / mean) +
             " of the CPU time of " + (mean < 1 ? "A" : "B");
-  text += "; identical code differed by up to " + significant(100 * noise, 2) + "\u00A0%.";
+  text += "; identical code differed by up to " + shown(kShare, noise) + ".";
   const Certainty sure =
       ratios.empty() ? Certainty::single_run : std::max(judged, Certainty::likely);
   return {"differences-cost-" + solver, ClaimKind::headline, "differences", text, sure, {evidence}};
@@ -106,9 +105,7 @@ std::vector<Claim> difference_claims(const ReportInput& input) {
     if (const auto claim = claim_values(differences, std::string(value->name)))
       claims.push_back(*claim);
   std::vector<std::string> solvers;
-  for (const auto& [a, b] : differences.timed)
-    if (std::ranges::find(solvers, a.record.solver) == solvers.end())
-      solvers.push_back(a.record.solver);
+  for (const auto& [a, b] : differences.timed) add_new(solvers, a.record.solver);
   for (const std::string& solver : solvers) claims.push_back(claim_cost(differences, solver));
   return claims;
 }

@@ -2,10 +2,12 @@
 #include <cmath>
 #include <set>
 
+#include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -130,7 +132,7 @@ void claim_error(const Rivals& rivals, const ValueSpec& error, std::vector<Claim
     claims.emplace_back(topic(error), ClaimKind::headline, "all",
                         opening + ": no scene has a value above that of every solver." + rest,
                         Certainty::single_run, std::vector{evidence});
-    claims.back().quotes();
+    claims.back().quotes = true;
     return;
   }
   std::vector<Bar> bars;
@@ -147,7 +149,8 @@ void claim_error(const Rivals& rivals, const ValueSpec& error, std::vector<Claim
                   joined(parts) + "." + (bars.size() > 1 ? winners(rivals, common, nothing) : "") +
                   rest,
               Certainty::single_run, {evidence});
-  claims.push_back(claim.emphasise(parts).quotes());
+  claim.strong = parts, claim.quotes = true;
+  claims.push_back(claim);
   claims.push_back(claim.tile(capitalised(q.title) + ", " + std::string(to_string(q.window)),
                               "Geometric mean over " + joined(names) + at_work(rivals) + ".",
                               bars));
@@ -195,7 +198,7 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
         // A case that failed lacks all three: it is said once.
         const bool only_here = here.lacking.find("has no value") != std::string::npos;
         const std::string what = (only_here ? quantity(metric).title + " on " : "") + here.lacking;
-        if (std::ranges::find(lacking, what) == lacking.end()) lacking.push_back(what);
+        add_new(lacking, what);
         continue;
       }
       if (counted.insert(here.scene).second) names.push_back(here.scene);
@@ -215,7 +218,7 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
     claims.emplace_back("depth", ClaimKind::headline, "all",
                         opening + ": no scene has a value of every solver." + rest,
                         Certainty::single_run, basis);
-    claims.back().quotes();
+    claims.back().quotes = true;
     return;
   }
   std::string text;
@@ -244,7 +247,8 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
       "depth", ClaimKind::headline, "all",
       opening + at_step(rivals, names) + ", deepest of " + joined(names) + ": " + text + "." + rest,
       Certainty::single_run, basis);
-  claims.push_back(claim.quotes());
+  claim.quotes = true;
+  claims.push_back(claim);
   claims.push_back(claim.tile("Peak penetration, vertices and faces",
                               "Whole run, deepest of " + joined(names) + at_work(rivals) + ".",
                               bars));
@@ -335,9 +339,9 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
       same->second.push_back(scene);
   }
   if (clauses.empty()) return;
-  std::string text;
-  for (const auto& [clause, scenes] : clauses)
-    text += (text.empty() ? "on " : "; on ") + joined(scenes) + clause;
+  std::string text = join(clauses, "; ", [](const auto& clause) {
+    return "on " + joined(clause.second) + clause.first;
+  });
   std::vector<Bar> bars;
   std::vector<std::string> means;
   for (std::size_t i = 0; i < with_sweeps.size() && !none; ++i) {
@@ -373,11 +377,11 @@ void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
       if (completed(r->status) || r->status.kind == Status::Kind::unsupported) continue;
       ++failures, ++failed[std::string(to_string(r->status.kind))];
     }
-    std::string kinds;
-    for (const auto& [kind, count] : failed)
-      kinds += (kinds.empty() ? " (" : ", ") + std::to_string(count) + " " + kind;
+    const std::string kinds = join(failed, ", ", [](const auto& kind) {
+      return std::to_string(kind.second) + " " + kind.first;
+    });
     parts.push_back(name + " " + (failures == 0 ? "none" : std::to_string(failures)) + " of " +
-                    std::to_string(cases.size()) + kinds + (kinds.empty() ? "" : ")"));
+                    std::to_string(cases.size()) + (kinds.empty() ? "" : " (" + kinds + ")"));
     if (unsupported > 0) refused.push_back(name + " " + std::to_string(unsupported));
   }
   if (evidence.seen().empty()) return;
@@ -420,7 +424,7 @@ void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Cl
               (parts[i].empty() ? " " + why_none(quoted.cases[i]) : parts[i]);
     claims.emplace_back(id + "-" + scene, ClaimKind::note, scene, opening + at + ": " + text + ".",
                         Certainty::single_run, basis);
-    claims.back().quotes();
+    claims.back().quotes = true;
   };
   std::vector<std::pair<std::string, std::string>> depths;
   for (const ValueSpec* value : values_with_role()) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -19,13 +20,11 @@ std::map<std::string, std::string> choice_of(const Record& r) {
 
 Rival choose(const std::string& solver, const std::vector<const Record*>& cases) {
   std::vector<std::vector<const Record*>> groups;
-  std::map<std::string, std::size_t> index;
+  std::map<std::map<std::string, std::string>, std::size_t> index;
   std::map<std::pair<std::string, std::string>, std::size_t> having;  // groups with that setting
   for (const Record* r : cases) {
     const auto choice = choice_of(*r);
-    std::string text;
-    for (const auto& [name, value] : choice) text += name + "=" + value + "\n";
-    const auto [at, fresh] = index.try_emplace(text, groups.size());
+    const auto [at, fresh] = index.try_emplace(choice, groups.size());
     if (fresh) groups.emplace_back();
     if (fresh)
       for (const auto& setting : choice) ++having[setting];
@@ -139,14 +138,11 @@ Rivals rivals_of(const ReportInput& input) {
     std::erase_if(question.overrides, [](const auto& s) { return s.starts_with("time."); });
     return question;
   };
-  const auto add = [](std::vector<std::string>& names, const std::string& name) {
-    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-  };
   for (const StudyResult& study : input.studies) {
-    add(rivals.studies, study.name);
+    add_new(rivals.studies, study.name);
     for (const Record& r : study.records) {
       if (!keys.insert(r.key.empty() ? r.id : r.key).second) continue;
-      add(solvers, r.solver), add(scenes, r.scene);
+      add_new(solvers, r.solver), add_new(scenes, r.scene);
       asked.insert(untimed(question_of(r)));
       rivals.by_solver[r.solver].push_back(&r);
     }

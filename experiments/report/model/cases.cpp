@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/wording.hpp"
@@ -21,9 +22,7 @@ std::string range_of(const std::set<double>& values, const Quantity& q) {
   if (values.size() > 3)
     return one(*values.begin()) + " to " + one(*values.rbegin()) + unit + " (" +
            std::to_string(values.size()) + " values)";
-  std::string out;
-  for (const double v : values) out += (out.empty() ? "" : ", ") + one(v);
-  return out + unit;
+  return join(values, ", ", one) + unit;
 }
 
 }  // namespace

@@ -12,11 +12,14 @@ namespace taut::report {
 
 namespace {
 
-std::string span_text(const Interval& i, const Unit& unit) {
-  const int decimals = decimals_for((i.high - i.low) * unit.scale);
-  const auto number = [&](double v) { return fixed(v * unit.scale, decimals); };
-  return number(i.mid) + "\u00A0" + std::string(unit.shown) + " (" + number(i.low) + "–" +
-         number(i.high) + ")";
+/// "1.23 ms (1.20–1.26)", with as many decimals as its width lets matter.
+std::string with_interval(const Interval& i, double scale, const std::string& unit) {
+  const int decimals = decimals_for((i.high - i.low) * scale);
+  const auto number = [&](double v) { return fixed(v * scale, decimals); };
+  return number(i.mid) + unit + " (" + number(i.low) + "–" + number(i.high) + ")";
+}
+std::string milliseconds(const Interval& seconds, double scale = 1e3) {
+  return with_interval(seconds, scale, "\u00A0ms");
 }
 
 /// Settings of one solver on one scene that a table speaks of.
@@ -52,15 +55,18 @@ struct CostScene {
 };
 
 /// How a solver's cheapest compares with the cheapest of all.
-void add_ratio(Json& cell, const Interval& times, const Interval& control) {
-  const Certainty sure = judge(times, control);
-  const int decimals = decimals_for(times.high - times.low);
-  cell["note"] = fixed(times.mid, decimals) + " × the cheapest (" + fixed(times.low, decimals) +
-                 "–" + fixed(times.high, decimals) + ")" +
-                 (sure == Certainty::none        ? ", no difference that can be told"
-                  : sure == Certainty::too_noisy ? ", too noisy to judge"
-                                                 : "");
-  if (sure != Certainty::none) cell["sure"] = to_string(sure);
+std::string ratio_note(const Interval& times, Certainty sure) {
+  return with_interval(times, 1, " × the cheapest") +
+         (is_difference(sure) ? "" : ", " + undecided(sure));
+}
+
+/// Columns of a table: the first, then the metric of every solver.
+Json solver_columns(const SceneBench& scene, Json first, const std::string& metric) {
+  Json columns;
+  columns.push_back(std::move(first));
+  for (const std::string& solver : solvers_of(scene))
+    columns.push_back({{"title", solver_title(solver)}, {"metric", metric}});
+  return columns;
 }
 
 /// Without the cases that use a parameter which another solver of the scene lacks: a table compares
@@ -77,16 +83,13 @@ SceneBench with_shared_parameters(SceneBench bench) {
 }
 
 Json levels_table(const CostScene& scene) {
-  const Quantity q = quantity(kErrorMetric), cpu = quantity("cpu.per_second");
-  Json table{{"id", "cost-levels-" + slug(scene.bench.scene)},
-             {"title", "Cost of an error"},
-             {"caption",
-              "CPU time per simulated second, its 95 % interval, and the setting: the cheapest "
-              "that was tried, with what all solvers of the scene have."},
-             {"columns", Json::array()}};
-  table["columns"].push_back({{"title", "to reach"}, {"metric", kErrorMetric}});
-  for (const std::string& solver : solvers_of(scene.bench))
-    table["columns"].push_back({{"title", solver_title(solver)}, {"metric", cpu.name}});
+  const Quantity q = quantity(kErrorMetric);
+  Json table = json_table(
+      "cost-levels-" + slug(scene.bench.scene), "Cost of an error",
+      "CPU time per simulated second, its 95 % interval, and the setting: the cheapest that was "
+      "tried, with what all solvers of the scene have.",
+      solver_columns(scene.bench, {{"title", "to reach"}, {"metric", kErrorMetric}},
+                     "cpu.per_second"));
   for (const double level : kErrorLevels) {
     Json row = Json::array();
     row.push_back({{"text", q.text(level, 1)}, {"value", level}});
@@ -96,9 +99,13 @@ Json levels_table(const CostScene& scene) {
         row.push_back(scene.missed(r.solver));
         continue;
       }
-      Json cell = scene.cell(*r.at, span_text(scene.bench.cases[*r.at].cost(), cpu.unit) + ", " +
-                                        scene.setting(*r.at));
-      if (r.times && r.times->mid > 1) add_ratio(cell, *r.times, scene.bench.control);
+      Json cell = scene.cell(
+          *r.at, milliseconds(scene.bench.cases[*r.at].cost()) + ", " + scene.setting(*r.at));
+      if (r.times && r.times->mid > 1) {
+        const Certainty sure = judge(*r.times, scene.bench.control);
+        cell["note"] = ratio_note(*r.times, sure);
+        if (sure != Certainty::none) cell["sure"] = to_string(sure);
+      }
       row.push_back(std::move(cell));
     }
     table["rows"].push_back(std::move(row));
@@ -108,17 +115,12 @@ Json levels_table(const CostScene& scene) {
 
 Json budgets_table(const CostScene& scene) {
   const Quantity q = quantity(kErrorMetric);
-  const Unit ms{"s", "ms", 1e3 * kFrame};
-  Json table{{"id", "cost-budgets-" + slug(scene.bench.scene)},
-             {"title", "Error within a budget"},
-             {"caption",
-              "The least error within a budget of CPU time per frame of 1/60 s, what it "
-              "costs and with which setting, of those that were tried with what all solvers have."},
-             {"columns", Json::array()}};
-  table["columns"].push_back({{"title", "within, per frame"}});
+  Json table = json_table(
+      "cost-budgets-" + slug(scene.bench.scene), "Error within a budget",
+      "The least error within a budget of CPU time per frame of 1/60 s, what it costs and with "
+      "which setting, of those that were tried with what all solvers have.",
+      solver_columns(scene.bench, {{"title", "within, per frame"}}, kErrorMetric));
   const std::vector<Candidate> candidates = scene.bench.candidates(kErrorMetric);
-  for (const std::string& solver : solvers_of(scene.bench))
-    table["columns"].push_back({{"title", solver_title(solver)}, {"metric", kErrorMetric}});
   for (const double budget : kFrameBudgets) {
     Json row = Json::array();
     row.push_back({{"text", significant(1e3 * budget, 2) + "\u00A0ms"}, {"value", budget}});
@@ -129,7 +131,8 @@ Json budgets_table(const CostScene& scene) {
         continue;
       }
       row.push_back({{"text", q.text(candidates[*at].error) + " for " +
-                                  span_text(candidates[*at].cost, ms) + ", " + scene.setting(*at)},
+                                  milliseconds(candidates[*at].cost, 1e3 * kFrame) + ", " +
+                                  scene.setting(*at)},
                      {"value", candidates[*at].error},
                      {"case", scene.refs.key(scene.bench.cases[*at].record)}});
     }
@@ -157,12 +160,11 @@ Json cheapest_row(const CostScene& scene) {
       others += scene.missed(r.solver);
       continue;
     }
-    Json cell;
-    add_ratio(cell, *r.times, bench.control);
-    others += cell["note"].get<std::string>() + " with " + scene.setting(*r.at);
+    others +=
+        ratio_note(*r.times, judge(*r.times, bench.control)) + " with " + scene.setting(*r.at);
   }
   return {bench.scene, solver_title(c.record.solver) + " " + scene.setting(*best),
-          scene.cell(*best, span_text(c.cost(), quantity("cpu.per_second").unit)),
+          scene.cell(*best, milliseconds(c.cost())),
           others.empty() ? "no other solver can run this scene" : others, again};
 }
 
@@ -170,25 +172,19 @@ Json cheapest_row(const CostScene& scene) {
 Json profile_table(const std::vector<SceneBench>& scenes) {
   const std::vector<PerformanceProfile> profiles = performance_profiles(scenes, kErrorMetric);
   const std::size_t problems = profiles.empty() ? 0 : profiles.front().ratios.size();
-  Json table{{"id", "cost-profiles"},
-             {"title", "How often each solver is within a factor of the cheapest"},
-             {"caption", "Share of " + std::to_string(problems) + " problems: an error of " +
-                             quantity(kErrorMetric).title +
-                             " to be reached on a scene. Every solver has equally many settings of "
-                             "a scene, with what all of its solvers have."},
-             {"columns", Json::array({{{"title", "solver"}}})},
-             {"rows", Json::array()}};
-  constexpr double kFactors[] = {1, 1.5, 2, 4, 10};
-  for (const double factor : kFactors)
-    table["columns"].push_back(
-        {{"title", factor == 1 ? "the cheapest" : "within " + exact(factor) + " ×"}});
-  table["columns"].push_back({{"title", "at any cost"}});
+  constexpr double kFactors[] = {1, 1.5, 2, 4, 10, std::numeric_limits<double>::max()};
+  Json table = json_table(
+      "cost-profiles", "How often each solver is within a factor of the cheapest",
+      "Share of " + std::to_string(problems) + " problems: an error of " +
+          quantity(kErrorMetric).title +
+          " to be reached on a scene. Every solver has equally many settings of a scene, with what "
+          "all of its solvers have.",
+      {"solver", "the cheapest", "within 1.5 ×", "within 2 ×", "within 4 ×", "within 10 ×",
+       "at any cost"});
   for (const PerformanceProfile& profile : profiles) {
     if (problems == 0) break;
     Json row = Json::array({solver_title(profile.solver)});
-    for (const double factor : kFactors)
-      row.push_back(significant(100 * profile.share(factor)) + "\u00A0%");
-    row.push_back(significant(100 * profile.share(std::numeric_limits<double>::max())) + "\u00A0%");
+    for (const double factor : kFactors) row.push_back(shown(kShare, profile.share(factor)));
     table["rows"].push_back(std::move(row));
   }
   return table;
@@ -198,15 +194,12 @@ Json profile_table(const std::vector<SceneBench>& scenes) {
 
 Json json_of_cost(const StudyBench& study, Citations& refs, Json& charts, Json& tables) {
   Json cost{{"machine", study.machine}};
-  Json cheapest{
-      {"id", "cost-cheapest"},
-      {"title", "Cheapest setting for " + quantity(kErrorMetric).text(kPricedError, 1) + " " +
-                    quantity(kErrorMetric).title},
-      {"caption", "With what all solvers of a scene have; what only one has is said apart."},
-      {"columns", Json::array()}};
-  for (const char* title :
-       {"scene", "cheapest setting", "CPU time per simulated second", "the others", "ask again"})
-    cheapest["columns"].push_back({{"title", title}});
+  Json cheapest = json_table(
+      "cost-cheapest",
+      "Cheapest setting for " + quantity(kErrorMetric).text(kPricedError, 1) + " " +
+          quantity(kErrorMetric).title,
+      "With what all solvers of a scene have; what only one has is said apart.",
+      {"scene", "cheapest setting", "CPU time per simulated second", "the others", "ask again"});
   refs.use("cpu.per_second"), refs.use("cpu.per_step");
   std::vector<SceneBench> shared;
   for (const SceneBench& bench : study.scenes) {
@@ -219,27 +212,20 @@ Json json_of_cost(const StudyBench& study, Citations& refs, Json& charts, Json& 
                                   bench.cases.empty() ? 0 : bench.cases[0].timing.samples.size())},
         {"noisy", spread(bench.control) > kTolerance},
         {"noise", "Timing noise: two runs of identical code differed by up to " +
-                      significant(100 * spread(bench.control), 2) + "\u00A0%."}};
+                      shown(kShare, spread(bench.control)) + "."}};
     try {
-      const Chart chart = cost_chart(bench, records);
-      charts.push_back(json_of(chart, refs));
-      one["charts"].push_back(chart.id);
+      add_by_id(one, "charts", json_of(cost_chart(bench, records), refs), charts);
     } catch (const InputError&) {
       // nothing completed: the tables say so
     }
-    for (Json& table : std::vector{levels_table(scene), budgets_table(scene)}) {
-      one["tables"].push_back(table["id"]);
-      tables.push_back(std::move(table));
-    }
+    for (Json& table : std::vector{levels_table(scene), budgets_table(scene)})
+      add_by_id(one, "tables", std::move(table), tables);
     cheapest["rows"].push_back(cheapest_row(scene));
     cost["scenes"].push_back(std::move(one));
   }
-  cost["tables"].push_back("cost-cheapest");
-  tables.push_back(std::move(cheapest));
-  if (Json profiles = profile_table(shared); !profiles["rows"].empty()) {
-    cost["tables"].push_back(profiles["id"]);
-    tables.push_back(std::move(profiles));
-  }
+  add_by_id(cost, "tables", std::move(cheapest), tables);
+  if (Json profiles = profile_table(shared); !profiles["rows"].empty())
+    add_by_id(cost, "tables", std::move(profiles), tables);
   return cost;
 }
 

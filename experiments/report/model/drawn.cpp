@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/rivals.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -83,12 +85,6 @@ Json json_of(const MaterialRow& row) {
                               {"rms", m.rms},
                               {"text", shown(kErrorShare, m.rms)},
                               {"image", "data:image/png;base64," + base64(m.png)}});
-  return one;
-}
-
-Json json_of(const ColourBar& bar) {
-  Json one{{"title", bar.title}, {"stops", bar.stops}};
-  for (const auto& [at, text] : bar.ticks) one["ticks"].push_back({{"at", at}, {"text", text}});
   return one;
 }
 
@@ -200,15 +196,15 @@ Json json_of(const SceneMedia& media, const ReportInput& input, Citations& refs,
     film["poster_t"] = media.poster, film["duration"] = media.duration;
     film["frame"] = media.frame, film["speed"] = media.speed;
     film["alt"] = clip.alt;
-    std::string caption;
     for (const Clip::Panel& panel : clip.panels) {
       Json one{{"solver", panel.solver}, {"settings", panel.settings}};
       add_if(one, "case", refs.key(panel.key));
       film["panels"].push_back(std::move(one));
-      caption += (caption.empty() ? "" : "; ") + solver_title(panel.solver) + ": " + panel.settings;
     }
-    film["caption"] = caption;
-    if (!media.bar.stops.empty()) film["bar"] = json_of(media.bar);
+    film["caption"] = join(clip.panels, "; ", [](const Clip::Panel& panel) {
+      return solver_title(panel.solver) + ": " + panel.settings;
+    });
+    add_if(film, "bar", media.bar);
     add_if(film, "tracks", json_of_tracks(media.scene, media.duration, input, refs));
     films.push_back(std::move(film));
   }
@@ -238,8 +234,7 @@ Json json_of_resolved_settings(const QuotedScene& quoted, const Rivals& rivals, 
     panel["columns"].push_back({{"solver", r->solver},
                                 {"case", refs.key(*r)},
                                 {"text", rivals.all[i].label + " " + work_of(*r).text()}});
-    for (const auto& [name, value] : r->resolved_settings)
-      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    for (const auto& [name, value] : r->resolved_settings) add_new(names, name);
   }
   if (cases.empty()) return {};
   const auto row = [&](const std::string& name, const auto& cell) {
@@ -260,11 +255,9 @@ Json json_of_resolved_settings(const QuotedScene& quoted, const Rivals& rivals, 
       return at == r.resolved_settings.end() ? std::string("–") : at->second;
     });
   row("passes of a step, in order", [](const Record& r) {
-    std::string passes;
-    for (const PassCost& pass : r.step_cost)
-      passes += (passes.empty() ? "" : ", ") + pass.pass +
-                (pass.repeats > 1 ? " × " + std::to_string(pass.repeats) : "");
-    return passes;
+    return join(r.step_cost, ", ", [](const PassCost& pass) {
+      return pass.pass + (pass.repeats > 1 ? " × " + std::to_string(pass.repeats) : "");
+    });
   });
   row("work: constraint projections per step",
       [](const Record& r) { return std::to_string(r.projections); });

@@ -11,6 +11,11 @@
 
 namespace taut::report {
 
+/// Appends a chart, a map, a film or a table to those of the model, and its id to a list of `part`.
+void add_by_id(Json& part, const char* list, Json one, Json& all);
+/// A table without rows; a column is a title, or an object of title and metric.
+Json json_table(const std::string& id, const std::string& title, const std::string& caption,
+                const Json& columns);
 /// {low, mid, high, n}, as MODEL.md has intervals.
 Json json_interval(const Interval&, std::size_t n);
 

@@ -3,39 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/model/solver.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut::report {
 
+void add_by_id(Json& part, const char* list, Json one, Json& all) {
+  part[list].push_back(one["id"]);
+  all.push_back(std::move(one));
+}
+
+Json json_table(const std::string& id, const std::string& title, const std::string& caption,
+                const Json& columns) {
+  Json table{{"id", id}, {"title", title}, {"caption", caption}};
+  for (const Json& column : columns)
+    table["columns"].push_back(column.is_string() ? Json{{"title", column}} : column);
+  table["rows"] = Json::array();
+  return table;
+}
+
 namespace {
-
-Json columns(const std::vector<std::string>& titles) {
-  Json all = Json::array();
-  for (const std::string& title : titles) all.push_back({{"title", title}});
-  return all;
-}
-
-Json required_table(const std::vector<RequiredModel>& required) {
-  Json rows = Json::array();
-  for (const RequiredModel& one : required)
-    rows.push_back(Json::array({one.scene, solver_title(solver_name(one.solver)),
-                                one.chaotic.empty() ? "no" : one.chaotic, one.answers, one.drop,
-                                one.keep, one.time}));
-  return {
-      {"id", "required"},
-      {"title", "The smallest model that keeps a scene's answers"},
-      {"caption",
-       "taut require takes away or coarsens one effect at a time and then all that can go; an "
-       "answer may move by its tolerance, or by what a rounding error at the start moves it. Of "
-       "a chaotic scene only statistics are kept."},
-      {"columns", columns({"scene", "solver", "chaotic", "kept answers", "can go", "required",
-                           "CPU time left"})},
-      {"rows", rows}};
-}
 
 std::string setting_text(double value, const ParameterFrontier& one) {
   return significant(value, 3) + (one.unit.empty() ? "" : "\u00A0" + one.unit);
@@ -49,43 +39,43 @@ std::string end_text(const ParameterFrontier& one) {
 }
 
 Json frontier_table(const std::vector<ParameterFrontier>& frontiers) {
-  std::vector<std::string> solvers, parameters;
-  for (const ParameterFrontier& f : frontiers) {
-    if (!std::ranges::count(solvers, f.solver)) solvers.push_back(f.solver);
-    if (!std::ranges::count(parameters, f.parameter)) parameters.push_back(f.parameter);
-  }
-  std::vector<std::string> titles{"parameter"};
-  titles.insert(titles.end(), solvers.begin(), solvers.end());
-  Json rows = Json::array();
+  std::vector<std::string> columns{"parameter"}, parameters;
+  for (const ParameterFrontier& f : frontiers)
+    add_new(columns, f.solver), add_new(parameters, f.parameter);
+  Json table = json_table(
+      "frontiers", "How far every parameter goes on a small swinging sheet",
+      "The hardest setting up to which nothing was wrong, and what goes wrong first beyond it, "
+      "by its own metric; taut frontier --all.",
+      columns);
   for (const std::string& parameter : parameters) {
     Json row = Json::array({parameter});
-    for (const std::string& solver : solvers) {
-      const auto at = std::ranges::find_if(
-          frontiers, [&](const auto& f) { return f.parameter == parameter && f.solver == solver; });
+    for (std::size_t i = 1; i < columns.size(); ++i) {
+      const auto at = std::ranges::find_if(frontiers, [&](const auto& f) {
+        return f.parameter == parameter && f.solver == columns[i];
+      });
       row.push_back(at == frontiers.end() ? "–" : end_text(*at));
     }
-    rows.push_back(std::move(row));
+    table["rows"].push_back(std::move(row));
   }
-  return {
-      {"id", "frontiers"},
-      {"title", "How far every parameter goes on a small swinging sheet"},
-      {"caption",
-       "The hardest setting up to which nothing was wrong, and what goes wrong first beyond it, "
-       "by its own metric; taut frontier --all."},
-      {"columns", columns(titles)},
-      {"rows", rows}};
+  return table;
 }
 
 }  // namespace
 
 Json json_of_limits(const ReportInput& input, Json& tables) {
   Json limits;
-  const auto add = [&](Json table) {
-    limits["tables"].push_back(table["id"]);
-    tables.push_back(std::move(table));
-  };
-  if (!input.required.empty()) add(required_table(input.required));
-  if (!input.frontiers.empty()) add(frontier_table(input.frontiers));
+  if (!input.required.empty()) {
+    Json table = json_table(
+        "required", "The smallest model that keeps a scene's answers",
+        "taut require takes away or coarsens one effect at a time and then all that can go; an "
+        "answer may move by its tolerance, or by what a rounding error at the start moves it. Of "
+        "a chaotic scene only statistics are kept.",
+        {"scene", "solver", "chaotic", "kept answers", "can go", "required", "CPU time left"});
+    table["rows"] = input.required;
+    add_by_id(limits, "tables", std::move(table), tables);
+  }
+  if (!input.frontiers.empty())
+    add_by_id(limits, "tables", frontier_table(input.frontiers), tables);
   return limits;
 }
 
@@ -137,7 +127,7 @@ Json row_of(const Changed& changed, Citations& refs) {
           q.title,
           q.text(before, 4),
           q.text(now, 4),
-          before == 0 ? "–" : significant(100 * (now / before - 1), 2) + "\u00A0%",
+          before == 0 ? "–" : shown(kShare, now / before - 1),
           !q.unit.less_is_better ? ""
           : now < before         ? "better"
                                  : "worse"};
@@ -150,16 +140,13 @@ Json json_of(const Differences& differences, Citations& refs, Json& tables) {
   Json one{{"a", differences.a}, {"b", differences.b}};
   if (changed.empty()) return one;
   const std::size_t rows = std::min(changed.size(), kMostRows);
-  Json table{{"id", "differences-values"},
-             {"title", "Values that differ"},
-             {"caption", "The " + std::to_string(rows) + " largest relative changes of " +
-                             std::to_string(changed.size()) +
-                             "; better and worse where a value is an error."},
-             {"columns", columns({"case", "value", "A", "B", "change", "judged"})},
-             {"rows", Json::array()}};
+  Json table = json_table("differences-values", "Values that differ",
+                          "The " + std::to_string(rows) + " largest relative changes of " +
+                              std::to_string(changed.size()) +
+                              "; better and worse where a value is an error.",
+                          {"case", "value", "A", "B", "change", "judged"});
   for (std::size_t i = 0; i < rows; ++i) table["rows"].push_back(row_of(changed[i], refs));
-  one["tables"].push_back(table["id"]);
-  tables.push_back(std::move(table));
+  add_by_id(one, "tables", std::move(table), tables);
   return one;
 }
 

@@ -1,23 +1,17 @@
 'use strict';
 // Charts of points over a setting or a cost: lines, error bars, failed cases above the plot, zeros on the axis.
 
-const pentagon = {draw(context, size) {
-  const r = Math.sqrt(size / 2.378);
-  for (let i = 0; i < 5; ++i) {
-    const a = (2 * Math.PI * i) / 5 - Math.PI / 2;
-    context[i ? 'lineTo' : 'moveTo'](r * Math.cos(a), r * Math.sin(a));
+/** A regular polygon; `first` is the direction of its first corner [rad]. */
+const polygon = (corners, first) => ({draw(context, area) {
+  const radius = Math.sqrt(2 * area / (corners * Math.sin(2 * Math.PI / corners)));
+  for (const i of d3.range(corners)) {
+    const angle = first + 2 * Math.PI * i / corners;
+    context[i ? 'lineTo' : 'moveTo'](radius * Math.cos(angle), radius * Math.sin(angle));
   }
   context.closePath();
-}};
-const triangleDown = {draw(context, size) {
-  const r = Math.sqrt(size / (3 * Math.sqrt(3)));
-  context.moveTo(0, 2 * r);
-  context.lineTo(-Math.sqrt(3) * r, -r);
-  context.lineTo(Math.sqrt(3) * r, -r);
-  context.closePath();
-}};
+}});
 const markers = {circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle,
-                 'triangle-down': triangleDown, diamond: d3.symbolDiamond, pentagon};
+                 'triangle-down': polygon(3, Math.PI / 2), diamond: d3.symbolDiamond, pentagon: polygon(5, -Math.PI / 2)};
 const markerPath = (name, size) => d3.symbol().type(markers[name] ?? d3.symbolCircle).size(size)();
 /** Dashes of a solver's further settings. */
 const variantDashes = ['', '7 4', '2 3', '10 3 2 3', '16 4', '4 2', '10 3 2 3 2 3', '2 6'];

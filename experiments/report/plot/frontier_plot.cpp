@@ -1,4 +1,3 @@
-
 #include <algorithm>
 #include <cmath>
 
@@ -8,18 +7,11 @@
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
 namespace {
-
-std::vector<std::string> distinct(const std::vector<ParameterFrontier>& all,
-                                  std::string ParameterFrontier::*name) {
-  std::vector<std::string> found;
-  for (const ParameterFrontier& one : all)
-    if (!std::ranges::count(found, one.*name)) found.push_back(one.*name);
-  return found;
-}
 
 std::string symptom_text(const ParameterFrontier& one) {
   if (!one.lacks.empty()) return "";
@@ -34,8 +26,9 @@ double theory_headroom(const ParameterFrontier& one) {
 
 std::filesystem::path plot_frontiers(const std::vector<ParameterFrontier>& all,
                                      const std::filesystem::path& folder, const std::string& stem) {
-  const std::vector<std::string> parameters = distinct(all, &ParameterFrontier::parameter),
-                                 solvers = distinct(all, &ParameterFrontier::solver);
+  std::vector<std::string> parameters, solvers;
+  for (const ParameterFrontier& one : all)
+    add_new(parameters, one.parameter), add_new(solvers, one.solver);
   const double height = 0.8 / static_cast<double>(std::max<std::size_t>(solvers.size(), 1));
   std::string csv = "solver,parameter,y,half,headroom,theory,end\n", ticks;
   double most = 10;

@@ -49,7 +49,7 @@ struct Sheet {
 
 /// Rows whose first column is this curve and whose status is, or is not, a failure.
 std::string only(std::size_t curve, bool failures, const char* x, const char* y) {
-  return "'@CSV@' skip 1 using (column(1) == " + std::to_string(curve) + " && strcol(10) eq '" +
+  return "'@CSV@' skip 1 using (column(1) == " + std::to_string(curve) + " && strcol(8) eq '" +
          (failures ? "yes" : "no") + "' ? " + x + " : NaN):" + y;
 }
 
@@ -102,25 +102,20 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
                exact(tick * chart.x.unit.scale);
     sheet.settings += "set xtics (" + ticks + ")\n";
   }
-  sheet.csv = "curve,solver,label,x,x_low,x_high,y,status,reason,failed,setting,case\n";
+  sheet.csv = "curve,solver,label,x,y,status,reason,failed,setting,case\n";
   std::map<std::string, int> variants;
   for (std::size_t i = 0; i < chart.curves.size(); ++i) {
     const Curve& curve = chart.curves[i];
-    bool failures = false, zeros = false, bars = false;
+    bool failures = false, zeros = false;
     for (const Point& p : curve.points) {
       const Record& r = *p.record;
-      const auto cost = chart.cost.find(r.key);
       const bool none = failed(p);
       failures = failures || none, zeros = zeros || (!none && p.y == 0);
-      bars = bars || cost != chart.cost.end();
-      sheet.csv +=
-          std::to_string(i) + "," + csv_field(curve.solver) + "," + csv_field(curve.label) + "," +
-          exact(p.x) + "," +
-          (cost == chart.cost.end() ? std::string(",")
-                                    : exact(cost->second.low) + "," + exact(cost->second.high)) +
-          "," + (none ? "" : exact(p.y)) + "," + std::string(to_string(r.status.kind)) + "," +
-          csv_field(r.status.reason) + "," + (none ? "yes" : "no") + "," +
-          csv_field(work_of(r).text()) + "," + csv_field(r.id) + "\n";
+      sheet.csv += std::to_string(i) + "," + csv_field(curve.solver) + "," +
+                   csv_field(curve.label) + "," + exact(p.x) + "," + (none ? "" : exact(p.y)) +
+                   "," + std::string(to_string(r.status.kind)) + "," + csv_field(r.status.reason) +
+                   "," + (none ? "yes" : "no") + "," + csv_field(work_of(r).text()) + "," +
+                   csv_field(r.id) + "\n";
     }
     const std::string scale_x = exact(chart.x.unit.scale), scale_y = exact(chart.y.unit.scale);
     const std::string x = "column(4)*" + scale_x;
@@ -128,21 +123,17 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
                              dash_of(curve.solver, variants[curve.solver]++) + " pt " +
                              std::to_string(solver_style(curve.solver).marker);
     const std::string y =
-        log_y ? "(column(7) > 0 ? column(7)*" + scale_y + " : NaN)" : "(column(7)*" + scale_y + ")";
+        log_y ? "(column(5) > 0 ? column(5)*" + scale_y + " : NaN)" : "(column(5)*" + scale_y + ")";
     sheet.draw(only(i, false, x.c_str(), y.c_str()) +
                (chart.join ? " with linespoints" : " with points") + look + " title " +
                gnuplot_string(curve.label));
-    if (bars)
-      sheet.draw(only(i, false, x.c_str(), y.c_str()) + ":(column(5)*" + scale_x + "):(column(6)*" +
-                 scale_x + ") with xerrorbars pt 0 lc rgb '" + colour_of(curve.solver) +
-                 "' notitle");
     if (failures)
       sheet.draw(only(i, true, x.c_str(), ("(" + exact(top) + ")").c_str()) +
                  " with points pt 2 ps 1.2 lw 2 lc rgb '" + colour_of(curve.solver) + "' title " +
                  gnuplot_string(curve.label + ": failed"));
     if (zeros && log_y)
       sheet.draw(
-          only(i, false, x.c_str(), ("(column(7) == 0 ? " + exact(floor) + " : NaN)").c_str()) +
+          only(i, false, x.c_str(), ("(column(5) == 0 ? " + exact(floor) + " : NaN)").c_str()) +
           " with points pt 10 ps 1.2 lc rgb '" + colour_of(curve.solver) + "' title " +
           gnuplot_string(curve.label + ": exactly zero"));
   }
@@ -168,16 +159,16 @@ Sheet series_sheet(std::span<const TimeSeries> all, const std::string& value,
   const Quantity x = quantity("t"), y = quantity(value);
   sheet.settings = "set title " + gnuplot_string(title) + "\n" + axis_commands("x", x, false) +
                    axis_commands("y", y, false);
-  sheet.csv = "curve,solver,label,x,x_low,x_high,y,status,reason,failed,setting,case\n";
+  sheet.csv = "curve,solver,label,x,y,status,reason,failed,setting,case\n";
   std::map<std::string, int> variants;
   std::size_t i = 0;
   for (const TimeSeries& series : all) {
     if (series.value != value) continue;
     for (std::size_t k = 0; k < series.t.size(); ++k)
       sheet.csv += std::to_string(i) + "," + csv_field(series.solver) + "," +
-                   csv_field(series.label) + "," + exact(series.t[k]) + ",,," + exact(series.y[k]) +
+                   csv_field(series.label) + "," + exact(series.t[k]) + "," + exact(series.y[k]) +
                    ",ok,,no,," + csv_field(series.key) + "\n";
-    sheet.draw(only(i++, false, "column(4)", ("(column(7)*" + exact(y.unit.scale) + ")").c_str()) +
+    sheet.draw(only(i++, false, "column(4)", ("(column(5)*" + exact(y.unit.scale) + ")").c_str()) +
                " with lines lw 1.5 lc rgb '" + colour_of(series.solver) + "' dt " +
                dash_of(series.solver, variants[series.solver]++) + " title " +
                gnuplot_string(series.label));
@@ -369,34 +360,17 @@ PlotFiles make_profile_plot(PlotSpec spec, const StudyBench& bench,
 
 namespace fs = std::filesystem;
 
-namespace {
-
-fs::path temporary(const fs::path& path) {
-  return path.parent_path() / ("." + path.filename().string() + "." + unique_suffix());
-}
-
-/// Runs `program -e commands script` in the script's folder; gives its exit code and what it said.
-std::pair<int, std::string> run_program(const std::string& program, const fs::path& script,
-                                        const std::string& commands) try {
-  Process process({program, "-e", commands, "./" + script.filename().string()},
-                  {.errors = ProcessOptions::Stream::piped, .folder = script.parent_path()});
-  const std::string said = process.read_all();
-  return {process.wait()->exit_code, said};
-} catch (const InputError& error) {
-  throw PlotError(std::string(error.what()) +
-                  ": install the Debian package gnuplot-nox to get figures");
-}
-
-}  // namespace
-
 void run_gnuplot(const fs::path& script, const std::string& terminal, const fs::path& out,
-                 const std::string& program) {
-  const fs::path absolute = fs::absolute(script);
-  const fs::path temp = temporary(fs::absolute(out));
+                 const std::string& program) try {
+  const fs::path temp =
+      fs::absolute(out).parent_path() / ("." + out.filename().string() + "." + unique_suffix());
   const EndsWithProgram tie(temp);
-  const auto [code, said] =
-      run_program(program, absolute,
-                  "set terminal " + terminal + "; set output " + gnuplot_string(temp.string()));
+  Process process(
+      {program, "-e", "set terminal " + terminal + "; set output " + gnuplot_string(temp.string()),
+       "./" + script.filename().string()},
+      {.errors = ProcessOptions::Stream::piped, .folder = fs::absolute(script).parent_path()});
+  const std::string said = process.read_all();
+  const int code = process.wait()->exit_code;
   std::error_code missing;
   const auto size = fs::file_size(temp, missing);
   if (code == 0 && !missing && size > 0) {
@@ -406,6 +380,9 @@ void run_gnuplot(const fs::path& script, const std::string& terminal, const fs::
   fs::remove(temp, missing);
   throw PlotError("gnuplot could not draw " + script.string() + ": " +
                   (said.empty() ? "exit code " + std::to_string(code) : said));
+} catch (const InputError& error) {
+  throw PlotError(std::string(error.what()) +
+                  ": install the Debian package gnuplot-nox to get figures");
 }
 
 }  // namespace taut::report

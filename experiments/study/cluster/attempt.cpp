@@ -20,29 +20,24 @@ namespace {
 constexpr const char* kBeatsFile = "beats";
 constexpr const char* kStates[] = {"claiming", "running", "ended"};
 
+constexpr std::tuple kBeatFields{
+    Field{"done", &Beat::done},       Field{"cases", &Beat::cases},
+    Field{"work", &Beat::work},       Field{"work_done", &Beat::work_done},
+    Field{"seconds", &Beat::seconds}, Field{"why", &Beat::why}};
+
 Beat beat_of(const JsonReader& j) {
-  Beat beat;
+  Beat beat = read_as(j, kBeatFields);
   const std::string state = j.at("state").text();
   const auto known = std::ranges::find(kStates, state);
   if (known == std::end(kStates)) j.at("state").fail("unknown state '" + state + "'");
   beat.state = static_cast<Beat::State>(known - std::begin(kStates));
-  beat.done = j.at("done").count();
-  beat.cases = j.at("cases").count();
-  beat.work = j.at("work").number();
-  beat.work_done = j.at("work_done").number();
-  beat.seconds = j.at("seconds").number();
-  beat.why = j.at("why").text();
   return beat;
 }
 
 std::string line_of(const Beat& beat) {
-  return to_text(Json{{"state", kStates[static_cast<int>(beat.state)]},
-                      {"done", beat.done},
-                      {"cases", beat.cases},
-                      {"work", beat.work},
-                      {"work_done", beat.work_done},
-                      {"seconds", beat.seconds},
-                      {"why", beat.why}});
+  Json json{{"state", kStates[static_cast<int>(beat.state)]}};
+  json.update(json_of(beat, kBeatFields));
+  return to_text(json);
 }
 
 /// What a session has said so far; a line that is being written is not counted.

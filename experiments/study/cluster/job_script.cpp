@@ -64,15 +64,18 @@ int shards_for(const Manifest& manifest, double hours) {
   double all = 0;
   for (const PlannedCase& one : manifest.cases) all += estimated_seconds(one.work);
   const int most = std::min(kMostShards, static_cast<int>(manifest.cases.size()));
-  shared.shards = std::clamp(static_cast<int>(std::min(std::ceil(2 * all / room), 1e6)), 1, most);
-  for (;; shared.shards = std::min(most, shared.shards + 1 + shared.shards / 8)) {
+  const auto fits = [&](int shards) {
+    shared.shards = shards;
     share_out(shared);
-    if (shard_minutes(shared) <= 60 * hours) return shared.shards;
-    if (shared.shards == most)
-      throw InputError("--hours " + shortest(hours) + ": " + std::to_string(most) +
-                       " shards, as many as there can be, take " +
-                       std::to_string(shard_minutes(shared)) + " minutes each");
-  }
+    return shard_minutes(shared) <= 60 * hours;
+  };
+  if (!fits(most))
+    throw InputError("--hours " + shortest(hours) + ": " + std::to_string(most) +
+                     " shards, as many as there can be, take " +
+                     std::to_string(shard_minutes(shared)) + " minutes each");
+  int fewest = std::clamp(static_cast<int>(std::min(std::ceil(2 * all / room), 1e6)), 1, most);
+  while (!fits(fewest)) ++fewest;
+  return fewest;
 }
 
 std::string job_script(const Manifest& manifest, Scheduler on) {

@@ -72,32 +72,31 @@ class SceneFiles {
 };
 
 Json line_of(const PlannedCase& one) {
-  return {{"key", one.key},           {"shard", one.shard},
-          {"work", one.work},         {"id", one.id},
-          {"scene", one.spec.scene},  {"overrides", one.spec.overrides},
-          {"solver", one.spec.solver}};
+  Json json{{"key", one.key}, {"shard", one.shard}, {"work", one.work}, {"id", one.id}};
+  json.update(Json(one.spec));
+  return json;
 }
 
 PlannedCase planned(const JsonReader& j, int shards) {
   PlannedCase one{j.at("key").text(),
                   j.at("id").text(),
-                  {j.at("scene").text(), j.at("overrides").texts(), j.at("solver").text()},
+                  {},
                   j.at("shard").integer(1, shards),
                   j.at("work").number()};
+  read_into(j, one.spec);
   if (!is_key(one.key)) j.at("key").fail("expected 64 hexadecimal digits");
   return one;
 }
 
+constexpr std::tuple kFields{Field{"study", &Manifest::study}, Field{"preset", &Manifest::preset},
+                             Field{"build", &Manifest::build}, Field{"digest", &Manifest::digest},
+                             Field{"case_memory", &Manifest::case_memory}};
+
 Manifest header_of(const JsonReader& j) {
   j.require_schema(kSchema);
-  Manifest manifest;
-  manifest.study = j.at("study").text();
-  manifest.preset = j.at("preset").text();
-  manifest.build = j.at("build").text();
-  manifest.digest = j.at("digest").text();
+  Manifest manifest = read_as(j, kFields);
   manifest.shards = j.at("shards").integer(1, kMostShards);
   manifest.limits = {j.at("case_seconds").number(), j.at("case_bytes").count()};
-  manifest.case_memory = j.at("case_memory").count();
   return manifest;
 }
 
@@ -115,8 +114,8 @@ double Manifest::seconds_of(int shard) const {
 void share_out(Manifest& manifest) {
   std::vector<PlannedCase*> longest;
   for (PlannedCase& one : manifest.cases) longest.push_back(&one);
-  std::ranges::sort(longest, [](const PlannedCase* a, const PlannedCase* b) {
-    return a->work != b->work ? a->work > b->work : a->key < b->key;
+  std::ranges::sort(longest, {}, [](const PlannedCase* one) {
+    return std::pair(-one->work, std::string_view(one->key));
   });
   using Load = std::pair<double, int>;  // seconds and shard
   std::priority_queue<Load, std::vector<Load>, std::greater<>> least;
@@ -146,17 +145,13 @@ std::string manifest_text(Manifest& manifest) {
   std::string lines;
   for (const PlannedCase& one : manifest.cases) lines += to_text(line_of(one)) + '\n';
   manifest.digest = sha256(lines);
-  return to_text(Json{{"schema", kSchema},
-                      {"study", manifest.study},
-                      {"preset", manifest.preset},
-                      {"build", manifest.build},
-                      {"cases", manifest.cases.size()},
-                      {"shards", manifest.shards},
-                      {"case_seconds", manifest.limits.seconds},
-                      {"case_bytes", manifest.limits.bytes},
-                      {"case_memory", manifest.case_memory},
-                      {"digest", manifest.digest}}) +
-         '\n' + lines;
+  Json head{{"schema", kSchema},
+            {"cases", manifest.cases.size()},
+            {"shards", manifest.shards},
+            {"case_seconds", manifest.limits.seconds},
+            {"case_bytes", manifest.limits.bytes}};
+  head.update(json_of(manifest, kFields));
+  return to_text(head) + '\n' + lines;
 }
 
 Manifest read_manifest(const fs::path& folder) {

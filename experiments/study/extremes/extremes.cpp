@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/model/text.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/study/extremes/symptom.hpp"
 #include "experiments/system/json.hpp"
@@ -27,120 +28,73 @@ JudgedRun look(const Case& one, const Record& record, const Store& store) {
   return seen;
 }
 
-/// The search along one parameter.
-class ParameterSearch {
- public:
-  ParameterSearch(ExtremeSetting setting, std::string solver, const Store& store)
-      : setting_(std::move(setting)), store_(store) {
-    found_.solver = std::move(solver), found_.parameter = setting_.name,
-    found_.unit = setting_.unit;
-    found_.lacks = setting_.lacks;
+void tell_theory(const ExtremeSetting& setting, ParameterFrontier& found) {
+  if (!setting.theory) return;
+  found.law = setting.theory->law;
+  const double end = setting.theory->value;
+  if (setting.theory->kind == Frontier::Kind::bracketed && end < setting.question.range.to)
+    found.theory = setting.question.setting(end);
+}
+
+void tell(const Frontier& frontier, const FrontierQuestion& question, ParameterFrontier& found) {
+  using Kind = Frontier::Kind;
+  if (frontier.kind == Kind::not_answered) {
+    found.lacks = "not answered: no time or memory, or interrupted";
+    return;
   }
+  if (frontier.kind != Kind::none_stable) found.good = question.setting(frontier.stable);
+  if (frontier.kind == Kind::all_stable) return;
+  found.bad = question.setting(frontier.unstable);
+  found.symptom = frontier.at(frontier.unstable)->symptom;
+  found.beyond = question.at(frontier.unstable);
+}
 
-  /// False: interrupted.
-  bool run(const Session& session, const CampaignOptions& options) {
-    if (!found_.lacks.empty()) return true;
-    const FrontierQuestion& question = setting_.question;
-    found_.downwards = question.direction != Direction::up;
-    found_.from = question.setting(question.range.from);
-    found_.to = question.setting(question.range.to);
-    const Case first = make_case(question.at(question.range.from));
-    if (run_cases({first}, store_, session, options).interrupted) return false;
-    const std::optional<Record> record = store_.find(first);
-    if (!record) return false;
-    if (!ran(*record)) {
-      found_.lacks = record->status.reason.empty() ? std::string(to_string(record->status.kind))
-                                                   : record->status.reason;
-      return true;
-    }
-    start_ = look(first, *record, store_);
-    known_ = symptoms(*start_, nullptr);
-    found_.at_start = join(known_, ", ");
-    tell_theory();
-    const CaseFrontier result =
-        find_frontier(question, store_, session, options,
-                      [&](const Case& one, const Record& r) { return judge(one, r); });
-    found_.cases = result.frontier.probes.size(), found_.ran = result.ran;
-    tell(result.frontier);
-    return !result.interrupted;
+/// The search along one parameter; nothing: interrupted.
+std::optional<ParameterFrontier> search(const ExtremeSetting& setting, const std::string& solver,
+                                        const Store& store, const Session& session,
+                                        const CampaignOptions& options) {
+  ParameterFrontier found;
+  found.solver = solver, found.parameter = setting.name, found.unit = setting.unit;
+  found.lacks = setting.lacks;
+  if (!found.lacks.empty()) return found;
+  const FrontierQuestion& question = setting.question;
+  found.downwards = question.direction != Direction::up;
+  found.from = question.setting(question.range.from);
+  found.to = question.setting(question.range.to);
+  const Case first = make_case(question.at(question.range.from));
+  if (run_cases({first}, store, session, options).interrupted) return {};
+  const std::optional<Record> record = store.find(first);
+  if (!record) return {};
+  if (!ran(*record)) {
+    found.lacks = record->status.reason.empty() ? std::string(to_string(record->status.kind))
+                                                : record->status.reason;
+    return found;
   }
-
-  ParameterFrontier take() { return std::move(found_); }
-
- private:
-  std::string judge(const Case& one, const Record& record) const {
-    std::vector<std::string> wrong = symptoms(look(one, record, store_), &*start_);
-    std::erase_if(wrong, [&](const std::string& name) { return std::ranges::count(known_, name); });
+  const JudgedRun start = look(first, *record, store);
+  const std::vector<std::string> known = symptoms(start, nullptr);
+  found.at_start = join(known, ", ");
+  tell_theory(setting, found);
+  const Judge judge = [&](const Case& one, const Record& r) {
+    std::vector<std::string> wrong = symptoms(look(one, r, store), &start);
+    std::erase_if(wrong, [&](const std::string& name) { return std::ranges::count(known, name); });
     return join(wrong, ", ");
-  }
-
-  void tell_theory() {
-    if (!setting_.theory) return;
-    found_.law = setting_.theory->law;
-    const double end = setting_.theory->value;
-    if (setting_.theory->kind == Frontier::Kind::bracketed && end < setting_.question.range.to)
-      found_.theory = setting_.question.setting(end);
-  }
-
-  void tell(const Frontier& frontier) {
-    using Kind = Frontier::Kind;
-    const FrontierQuestion& question = setting_.question;
-    if (frontier.kind == Kind::not_answered) {
-      found_.lacks = "not answered: no time or memory, or interrupted";
-      return;
-    }
-    if (frontier.kind != Kind::none_stable) found_.good = question.setting(frontier.stable);
-    if (frontier.kind == Kind::all_stable) return;
-    found_.bad = question.setting(frontier.unstable);
-    found_.symptom = frontier.at(frontier.unstable)->symptom;
-    found_.beyond = question.at(frontier.unstable);
-  }
-
-  ExtremeSetting setting_;
-  const Store& store_;
-  std::optional<JudgedRun> start_;
-  std::vector<std::string> known_;  ///< symptoms at the start of the range
-  ParameterFrontier found_;
-};
+  };
+  const CaseFrontier result = find_frontier(question, store, session, options, judge);
+  found.cases = result.frontier.probes.size(), found.ran = result.ran;
+  tell(result.frontier, question, found);
+  if (result.interrupted) return {};
+  return found;
+}
 
 constexpr const char* kSchema = "taut-frontiers-2";
 
-ParameterFrontier frontier_of(const JsonReader& json) {
-  ParameterFrontier one;
-  one.solver = json.at("solver").text();
-  one.parameter = json.at("parameter").text(), one.unit = json.at("unit").text();
-  one.lacks = json.at("lacks").text();
-  one.downwards = json.at("downwards").flag();
-  one.from = json.at("from").number(), one.to = json.at("to").number();
-  one.good = json.at("good").number_or_null(), one.bad = json.at("bad").number_or_null();
-  one.symptom = json.at("symptom").text(), one.at_start = json.at("at_start").text();
-  one.theory = json.at("theory").number_or_null(), one.law = json.at("law").text();
-  const JsonReader beyond = json.at("beyond");
-  one.beyond = {beyond.at("scene").text(), beyond.at("overrides").texts(),
-                beyond.at("solver").text()};
-  one.cases = json.at("cases").count();
-  return one;
-}
-
-Json json_of(const ParameterFrontier& k) {
-  return {
-      {"solver", k.solver},
-      {"parameter", k.parameter},
-      {"unit", k.unit},
-      {"lacks", k.lacks},
-      {"downwards", k.downwards},
-      {"from", k.from},
-      {"to", k.to},
-      {"good", k.good},
-      {"bad", k.bad},
-      {"symptom", k.symptom},
-      {"at_start", k.at_start},
-      {"theory", k.theory},
-      {"law", k.law},
-      {"beyond",
-       {{"scene", k.beyond.scene}, {"overrides", k.beyond.overrides}, {"solver", k.beyond.solver}}},
-      {"cases", k.cases}};
-}
+using F = ParameterFrontier;
+constexpr std::tuple kFields{
+    Field{"solver", &F::solver},   Field{"parameter", &F::parameter}, Field{"unit", &F::unit},
+    Field{"lacks", &F::lacks},     Field{"downwards", &F::downwards}, Field{"from", &F::from},
+    Field{"to", &F::to},           Field{"good", &F::good},           Field{"bad", &F::bad},
+    Field{"symptom", &F::symptom}, Field{"at_start", &F::at_start},   Field{"theory", &F::theory},
+    Field{"law", &F::law},         Field{"beyond", &F::beyond},       Field{"cases", &F::cases}};
 
 }  // namespace
 
@@ -151,10 +105,10 @@ Extremes find_extremes(const std::string& solver, const Store& store, const Sess
   const std::vector<ExtremeSetting> settings = extreme_settings(solver);
   const std::string name = parse_solver(solver).brief();
   for (const ExtremeSetting& setting : settings) {
-    ParameterSearch search(setting, name, store);
-    all.interrupted = !search.run(session, options);
+    const auto found = search(setting, name, store, session, options);
+    all.interrupted = !found;
     if (all.interrupted) return all;
-    all.frontiers.push_back(search.take());
+    all.frontiers.push_back(*found);
     progress(all.frontiers.size(), settings.size());
   }
   return all;
@@ -162,7 +116,7 @@ Extremes find_extremes(const std::string& solver, const Store& store, const Sess
 
 std::string to_json(const std::vector<ParameterFrontier>& frontiers, std::string_view program) {
   Json all{{"schema", kSchema}, {"program", program}, {"parameters", Json::array()}};
-  for (const ParameterFrontier& one : frontiers) all["parameters"].push_back(json_of(one));
+  for (const F& one : frontiers) all["parameters"].push_back(json_of(one, kFields));
   return to_text(all, 1) + "\n";
 }
 
@@ -173,7 +127,8 @@ std::optional<std::vector<ParameterFrontier>> read_frontiers(const std::filesyst
     std::optional<std::vector<ParameterFrontier>> found;
     if (root.at("program").text() != program) return found;
     found.emplace();
-    for (const JsonReader& one : root.at("parameters").items()) found->push_back(frontier_of(one));
+    for (const JsonReader& one : root.at("parameters").items())
+      found->push_back(read_as(one, kFields));
     return found;
   });
 }

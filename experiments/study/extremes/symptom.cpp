@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "core/model/index.hpp"
 
@@ -20,8 +21,7 @@ bool passive(const Scene& scene) {
 
 /// m g L, the unit of the energy metrics [J].
 double energy_unit(const Scene& scene) {
-  double mass = 0;
-  for (const double m : scene.mesh.mass) mass += m;
+  const double mass = std::accumulate(scene.mesh.mass.begin(), scene.mesh.mass.end(), 0.0);
   return mass * scene.gravity.norm() * extent(scene);
 }
 

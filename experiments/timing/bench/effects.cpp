@@ -26,9 +26,10 @@ std::optional<Scene> scene_of(const std::string& name, int side) {
   const std::string n = std::to_string(side);
   std::vector<std::string> changes{"cloth.grid=[" + n + "," + n + "]"};
   if (scene.self_collision) {
-    const int least = std::min(scene.mesh.grid->nu, scene.mesh.grid->nv);
+    const double finer = (std::min(scene.mesh.grid->nu, scene.mesh.grid->nv) - 1.0) / (side - 1);
     changes.push_back("self_collision.radius=" +
-                      std::to_string(scene.self_collision->radius * (least - 1) / (side - 1)));
+                      std::to_string(scene.self_collision->radius * finer));
+    changes.push_back("cloth.thickness=" + std::to_string(scene.thickness * finer));
   }
   return load_scene(file, changes);
 }
@@ -83,7 +84,8 @@ class Copies final : public Solver {
 /// One scene, with its effects and without them.
 class TimedScene {
  public:
-  TimedScene(const Scene& scene, const EffectBenchOptions& options) : wall_(options.wall) {
+  TimedScene(const Scene& scene, const EffectBenchOptions& options)
+      : wall_(options.copies > 0 || options.two_threads) {
     const SolverChoice choice = parse_solver(options.solver);
     row_ = {.scene = scene.name,
             .effects = effects_of(scene),
@@ -94,17 +96,20 @@ class TimedScene {
             .bare = {},
             .copies = {},
             .looking = {},
-            .traffic = {}};
+            .traffic = {},
+            .two_cores = {}};
     if (const auto reasons = choice.entry->unsupported(scene, choice.params); !reasons.empty()) {
       row_.refused = reasons.front();
       return;
     }
     whole_ = choice.entry->make(scene, choice.params);
-    bare_ = choice.entry->make(without_effects(scene), choice.params);
-    if (!scene.colliders.empty())
-      looking_ = choice.entry->make(touching_nothing(scene), choice.params);
-    if (!scene.mesh.grid) any_mesh_ = scene;
-    if (options.copies > 0) copies_ = std::make_unique<Copies>(scene, choice, options.copies);
+    if (options.two_threads) {
+      const SolverChoice two = parse_solver(with(options.solver, "threads=2"));
+      two_threads_ = two.entry->make(scene, two.params);
+      copies_ = std::make_unique<Copies>(scene, choice, 2);
+    } else {
+      make_others(scene, choice, options.copies);
+    }
     run_.emplace(scene, *whole_, scene.steps);
     State end;
     whole_->store(end);
@@ -119,6 +124,11 @@ class TimedScene {
 
   void sample() {
     if (!row_.refused.empty()) return;
+    if (two_threads_) {
+      const double one = time(*whole_), two = time(*two_threads_), again = time(*whole_);
+      row_.two_cores.add(one, two, again, time(*copies_));
+      return;
+    }
     row_.whole.push_back(time(*whole_));
     row_.bare.push_back(time(*bare_));
     if (looking_) row_.looking.push_back(time(*looking_));
@@ -129,6 +139,15 @@ class TimedScene {
   EffectRow take() { return std::move(row_); }
 
  private:
+  /// What the whole is compared with.
+  void make_others(const Scene& scene, const SolverChoice& choice, int copies) {
+    bare_ = choice.entry->make(without_effects(scene), choice.params);
+    if (!scene.colliders.empty())
+      looking_ = choice.entry->make(touching_nothing(scene), choice.params);
+    if (!scene.mesh.grid) any_mesh_ = scene;
+    if (copies > 0) copies_ = std::make_unique<Copies>(scene, choice, copies);
+  }
+
   double time(Solver& solver) const {
     const StepTime step = run_->sample(solver, steps_);
     return 1e9 * (wall_ ? step.wall : step.cpu) / static_cast<double>(row_.vertices);
@@ -141,7 +160,7 @@ class TimedScene {
 
   EffectRow row_;
   bool wall_;
-  std::unique_ptr<Solver> whole_, bare_, looking_, copies_;
+  std::unique_ptr<Solver> whole_, bare_, looking_, copies_, two_threads_;
   std::optional<Scene> any_mesh_;
   std::optional<CheckpointedRun> run_;
   int steps_ = 1;

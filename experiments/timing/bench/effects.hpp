@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/timing/bench/two_cores.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut {
@@ -23,6 +24,7 @@ struct EffectRow {
   /// Likewise, of the links alone: loading and storing their ends as colour batches do, in float,
   /// with an addition in the place of the projection, at its fastest. Empty: a sheet.
   std::vector<double> traffic;
+  TwoCores two_cores;  ///< in the place of all these, if EffectBenchOptions::two_threads
 
   Interval cost() const { return bootstrap_median(whole); }
   /// The copies over one sheet alone.
@@ -42,8 +44,10 @@ struct EffectBenchOptions {
   std::vector<std::string> scenes;  ///< names or files
   std::string solver;               ///< "jakobsen:iterations=1,substeps=15"
   int side = 0;                     ///< sheets of side x side vertices; 0: as the scene has it
-  bool wall = false;  ///< wall time, as it has to be with threads; else CPU time of the process
-  int copies = 0;     ///< of each scene, to be timed together on two threads; needs `wall`; 0: none
+  int copies = 0;  ///< of each scene, to be timed together on two threads; all is wall time then,
+                   ///< else CPU time of the process; 0: none
+  /// Time two threads on one sheet and two unrelated sheets instead.
+  bool two_threads = false;
   int rounds = 11;
   double seconds = 0.01;  ///< of one sample
   std::function<void(std::size_t done, std::size_t all)> progress = [](auto, auto) {};
@@ -51,7 +55,7 @@ struct EffectBenchOptions {
 
 /// All scenes in one interleaved session, in rounds of alternating order (ABBA). A sample begins at
 /// up to four states spread over the scene's whole run. Scenes that are no sheet are left out where
-/// `side` is set; the radius of self-collision shrinks with the spacing.
+/// `side` is set; radius and thickness of a cloth that meets itself shrink with the spacing.
 std::vector<EffectRow> bench_effects(const EffectBenchOptions&);
 
 }  // namespace taut

@@ -198,29 +198,21 @@ double time_of_both(Solver& a, Solver& b, int steps, double dt) {
 }
 
 /// Interleaved: each round times one thread, two threads, one thread again and two unrelated
-/// sheets, `seconds` each. The first single thread is what the threads are compared with and the
-/// second one what the unrelated sheets are: no slow sample is in both ratios.
+/// sheets, `seconds` each.
 TwoCores bench_two_cores(const Scene& scene, int rounds, double seconds) {
   const auto one = sweeping(scene, 1), another = sweeping(scene, 1), two = sweeping(scene, 2);
   const double dt = scene.dt;
   for (Solver* solver : {another.get(), two.get()}) time_of(*solver, 1, dt);
   const double step = std::min(time_of(*one, 1, dt), time_of(*one, 1, dt));
   const int steps = times_within(seconds, step, 100000);
-  std::vector<double> threads, unrelated, share, while_free;
+  TwoCores cores;
   for (int round = 0; round < rounds; ++round) {
     const double before = time_of(*one, steps, dt), shared = time_of(*two, steps, dt);
     const double after = time_of(*one, steps, dt);  // meanwhile the second thread falls asleep
     const double both = time_of_both(*one, *another, steps, dt);
-    threads.push_back(before / shared);
-    unrelated.push_back(2 * after / both);
-    share.push_back(both / 2 / shared);
-    if (unrelated.back() >= TwoCores::kFree) while_free.push_back(threads.back());
+    cores.add(before, shared, after, both);
   }
-  return {.threads = bootstrap_median(threads),
-          .unrelated = bootstrap_median(unrelated),
-          .share = bootstrap_median(share),
-          .threads_while_free = bootstrap_median(while_free),
-          .free = static_cast<double>(while_free.size()) / static_cast<double>(rounds)};
+  return cores;
 }
 
 }  // namespace

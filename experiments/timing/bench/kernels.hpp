@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/scene.hpp"
+#include "experiments/timing/bench/two_cores.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut {
@@ -25,18 +26,6 @@ struct KernelRow {
   /// structural links alone, one of each round.
   std::vector<double> fixed;
   Interval cost() const { return bootstrap_median(samples); }
-};
-
-/// What a second thread is worth, and what a second core is worth where none has to wait for the
-/// other: the one cannot exceed the other by more than noise. Wall time throughout.
-struct TwoCores {
-  Interval threads;    ///< speed of two threads on one sheet, in single threads
-  Interval unrelated;  ///< of two sheets at the same time, a thread and no word between them
-  Interval share;      ///< threads over unrelated, round by round
-  /// threads in those rounds in which the unrelated sheets reached kFree: both cores were free.
-  Interval threads_while_free;
-  double free = 0;  ///< share of such rounds
-  static constexpr double kFree = 1.9;
 };
 
 struct KernelBench {

@@ -201,8 +201,9 @@ TEST(NeighbourGrid, AreThoseOfAllPairs) {
         if (!available(simd)) continue;
         Pairs found;
         NeighbourGrid<double>(cloud.size(), one_thread, simd)
-            .pairs(x, reach,
-                   [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
+            .pairs(x, reach, [&](std::size_t, std::uint32_t a, std::uint32_t b) {
+              found.insert(std::minmax(a, b));
+            });
         EXPECT_EQ(found, brute) << reach << ' ' << to_string(simd);
       }
     }
@@ -223,9 +224,9 @@ TEST(NeighbourGrid, MovingPairsAreThoseWithinTheirOwnWay) {
     NeighbourGrid<float> neighbours(400, one_thread, simd);
     neighbours.ignore(at_rest, ignored);
     Pairs found, brute;
-    neighbours.moving_pairs(x, previous, within, reach, [&](std::uint32_t a, std::uint32_t b) {
-      found.insert(std::minmax(a, b));
-    });
+    neighbours.moving_pairs(
+        x, previous, within, reach,
+        [&](std::size_t, std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
     std::size_t left_out = 0;
     for (std::uint32_t a = 0; a < 400; ++a)
       for (std::uint32_t b = a + 1; b < 400; ++b) {
@@ -242,22 +243,68 @@ TEST(NeighbourGrid, MovingPairsAreThoseWithinTheirOwnWay) {
   }
 }
 
-TEST(NeighbourGrid, ComeInOneOrderFromEveryInstructionSetAndAnyThreads) {
-  constexpr std::size_t all = ThreadPool::kWorthSharing + 1000;
-  const Points<float> x = points<float>(anywhere(all, 2, 6));
+using Lists = std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>;
+
+template <class Real>
+Lists lists_of(NeighbourGrid<Real>& grid, const Points<Real>& x, Real reach) {
+  Lists lists(3 * grid.parts());
+  grid.pairs(x, reach, [&](std::size_t list, std::uint32_t a, std::uint32_t b) {
+    lists[list].emplace_back(a, b);
+  });
+  return lists;
+}
+
+constexpr std::size_t kShared = ThreadPool::kWorthSharing + 1000;
+
+TEST(NeighbourGrid, ListsAreTheSameFromEveryInstructionSetAndAnyThreads) {
+  const Points<float> x = points<float>(anywhere(kShared, 2, 6));
   for (const float reach : {0.4F, 0.1F}) {  // few of the buckets are used, and most of them
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> first;
+    Lists first;
     for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
       for (const int threads : {1, 2, 3}) {
         if (!available(simd)) continue;
         ThreadPool pool(threads);
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
-        NeighbourGrid<float>(all, pool, simd)
-            .pairs(x, reach, [&](std::uint32_t a, std::uint32_t b) { found.emplace_back(a, b); });
+        NeighbourGrid<float> grid(kShared, pool, simd);
+        const Lists found = lists_of(grid, x, reach);
         if (first.empty()) first = found;
-        EXPECT_GT(found.size(), 1000u);
+        EXPECT_GT(found.front().size(), 100u);
         EXPECT_TRUE(found == first) << to_string(simd) << ", threads " << threads;
       }
+  }
+}
+
+// In a cube, in a plane, and on a line so long that it wraps around the grid.
+TEST(NeighbourGrid, ListsOfPartsThatAreNoNeighboursShareNoParticle) {
+  ThreadPool one_thread(1);
+  for (const Vec3& size : {Vec3(1, 1, 1), Vec3(1e-3, 1, 1), Vec3(1e-3, 1e-3, 1e5)}) {
+    std::vector<Vec3> cloud = anywhere(kShared, 1, 7);
+    for (Vec3& p : cloud) p = p.cwiseProduct(size);
+    NeighbourGrid<double> grid(kShared, one_thread);
+    const Points<double> x = points<double>(cloud);
+    const bool wraps = size.z() > 1;
+    const double reach = wraps ? 20 : 0.08;
+    const Lists lists = lists_of(grid, x, reach);
+    const std::size_t parts = grid.parts();
+    ASSERT_GT(parts, 2u);
+    std::size_t all = 0;
+    for (const auto& list : lists) all += list.size();
+    EXPECT_EQ(all, all_within(x, kShared, reach).size());
+    const auto at_once = [&](std::size_t first, std::size_t end, std::size_t step) {
+      std::set<std::uint32_t> seen;
+      std::size_t pairs = 0;
+      for (std::size_t n = first; n < end; n += step) {
+        std::set<std::uint32_t> own;
+        for (const auto& [a, b] : lists[n]) own.insert({a, b}), ++pairs;
+        for (const std::uint32_t i : own) EXPECT_TRUE(seen.insert(i).second) << i;
+      }
+      return pairs;
+    };
+    EXPECT_GT(at_once(0, parts, 1), kShared / 2) << "inside parts";
+    EXPECT_GT(at_once(parts, 2 * parts, 2), 0u) << "from the even ones to the next";
+    EXPECT_GT(at_once(parts + 1, 2 * parts, 2), 0u) << "from the odd ones";
+    std::size_t others = 0;
+    for (std::size_t n = 2 * parts; n < lists.size(); ++n) others += lists[n].size();
+    if (wraps) EXPECT_GT(others, 0u) << "from the last part to the first";
   }
 }
 

@@ -57,6 +57,7 @@ TEST(ShareOut, TheFewestShardsThatEndInTime) {
   EXPECT_EQ(refused(manifest, 0.25),
             "--hours 0.25: 100 shards, as many as there can be, take 23 minutes each");
   EXPECT_EQ(refused(manifest, 23. / 60), "100") << "just";
+  EXPECT_EQ(refused(manifest, 1.5), "17") << "six cases each; by their sum 16 would do";
   EXPECT_EQ(refused(manifest, 1000), "1");
   const Manifest many = of_seconds(std::vector<double>(1500, 60.0), 1);
   EXPECT_EQ(refused(many, 0.2),

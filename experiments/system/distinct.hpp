@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace taut {
+
+/// The different values of key(item), in order of appearance.
+template <class Range, class Key = std::identity>
+auto distinct(const Range& range, const Key& key = {}) {
+  std::vector<std::decay_t<decltype(std::invoke(key, *std::begin(range)))>> keys;
+  for (const auto& item : range)
+    if (const auto& one = std::invoke(key, item); std::ranges::find(keys, one) == keys.end())
+      keys.push_back(one);
+  return keys;
+}
+
+/// The values under a name, made empty if there are none: names stay in order of appearance.
+template <class Value>
+std::vector<Value>& under(std::vector<std::pair<std::string, std::vector<Value>>>& groups,
+                          const std::string& name) {
+  auto at = std::ranges::find(groups, name, &std::pair<std::string, std::vector<Value>>::first);
+  if (at == groups.end()) at = groups.insert(at, {name, {}});
+  return at->second;
+}
+
+}  // namespace taut
