@@ -10,11 +10,11 @@
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -26,7 +26,8 @@ Json json_of(const Colour& colour) { return {{"light", colour.light}, {"dark", c
 std::string report_title(const ReportInput& input) {
   if (!input.title.empty()) return input.title;
   std::vector<std::string> names;
-  for (const Rival& rival : rivals_of(input).all) names.push_back(solver_title(rival.solver));
+  for (const ComparedSolver& solver : compared_solvers_of(input).all)
+    names.push_back(solver_title(solver.name));
   return joined(names);
 }
 
@@ -34,18 +35,18 @@ std::string report_title(const ReportInput& input) {
 class Builder {
  public:
   explicit Builder(const ReportInput& input)
-      : input_(input), rivals_(rivals_of(input)), refs_(input) {
+      : input_(input), compared_(compared_solvers_of(input)), refs_(input) {
     for (const Claim& claim : difference_claims(input)) claims_.push_back(claim);
-    for (const Claim& claim : physics_claims(rivals_)) claims_.push_back(claim);
+    for (const Claim& claim : physics_claims(compared_)) claims_.push_back(claim);
     for (const Claim& claim : cost_claims(input)) claims_.push_back(claim);
   }
 
   Json build() {
     Json scenes = Json::array();
-    for (const QuotedScene& quoted : rivals_.scenes) scenes.push_back(scene(quoted));
+    for (const QuotedScene& quoted : compared_.scenes) scenes.push_back(scene(quoted));
     std::size_t filmed = 0;
     for (const SceneMedia& media : input_.media)
-      if (!rivals_.quoted(media.scene)) scenes.push_back(filmed_scene(media)), ++filmed;
+      if (!compared_.quoted(media.scene)) scenes.push_back(filmed_scene(media)), ++filmed;
     Json cost;
     if (input_.bench) {
       cost = json_of_cost(*input_.bench, refs_, charts_, tables_);
@@ -129,7 +130,7 @@ class Builder {
   Json solvers() const {
     Json all;
     std::vector<std::string> names;
-    for (const Rival& rival : rivals_.all) add_new(names, rival.solver);
+    for (const ComparedSolver& solver : compared_.all) add_new(names, solver.name);
     for (const Record* r : refs_.cases()) add_new(names, r->solver);
     for (const SceneMedia& media : input_.media)
       for (const auto& [solver, why] : media.refused) add_new(names, solver);
@@ -147,9 +148,9 @@ class Builder {
           one["unsupported"].push_back({{"reason", reason}, {"scenes", scenes}});
       }
       std::string settings;
-      for (const Rival& rival : rivals_.all)
-        if (rival.solver == solver)
-          for (const auto& [key, value] : rival.cases.front()->params)
+      for (const ComparedSolver& compared : compared_.all)
+        if (compared.name == solver)
+          for (const auto& [key, value] : compared.cases.front()->params)
             if (key != parameter_of(solver, kSweeps) && key != parameter_of(solver, kSubsteps))
               settings += (settings.empty() ? "" : ", ") + key + "=" + value;
       one["settings"] = settings;
@@ -213,7 +214,7 @@ class Builder {
       add_by_id(one, "maps", json_of(map, id, refs_), maps_);
     }
     std::set<std::pair<std::string, std::string>> refusals;
-    for (const auto& [solver, cases] : rivals_.by_solver)
+    for (const auto& [solver, cases] : compared_.by_solver)
       for (const Record* r : cases) {
         if (r->scene != name) continue;
         Json& count = one["statuses"][solver][std::string(to_string(r->status.kind))];
@@ -224,7 +225,7 @@ class Builder {
     one["facts"] = facts_of(input_, name);
     for (const auto& [solver, reason] : refusals)
       one["refusals"].push_back({{"solver", solver}, {"reason", reason}});
-    add_if(one, "resolved_settings", json_of_resolved_settings(quoted, rivals_, refs_));
+    add_if(one, "resolved_settings", json_of_resolved_settings(quoted, compared_, refs_));
     return one;
   }
 
@@ -292,7 +293,7 @@ class Builder {
           one["film"] = "film-" + scene;
       }
     if (filmed && !one.contains("film") && claim.about != "failures")
-      one["film_note"] = "The films show " + rivals_.work_text() + ".";
+      one["film_note"] = "The films show " + compared_.work_text() + ".";
     return one;
   }
 
@@ -328,7 +329,7 @@ class Builder {
                                                       : std::string("trade --preset quick")));
     if (input_.media.empty())
       add("films", "No pictures were rendered.",
-          "taut render " + rivals_.scenes.front().question.scene + " --video");
+          "taut render " + compared_.scenes.front().question.scene + " --video");
     if (!input_.truths)
       add("truths", "Closed forms and published numbers were not evaluated by this build.",
           "taut verify -o results/runs/verify.json");
@@ -339,7 +340,7 @@ class Builder {
   }
 
   const ReportInput& input_;
-  Rivals rivals_;
+  ComparedSolvers compared_;
   Citations refs_;
   std::vector<Claim> claims_;
   Json charts_, maps_, films_, tables_;

@@ -10,7 +10,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/study/session.hpp"
 #include "experiments/system/files.hpp"
 
@@ -38,15 +38,15 @@ double strain_floor(const Record& r) {
 }
 
 /// Values over time of the quoted cases of a scene.
-std::vector<TimeSeries> series_of(const QuotedScene& quoted, const Rivals& rivals,
+std::vector<TimeSeries> series_of(const QuotedScene& quoted, const ComparedSolvers& compared,
                                   const Store& store) {
   std::vector<TimeSeries> all;
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
     if (!quoted.cases[i]) continue;
     const Record& r = *quoted.cases[i];
-    for (TimeSeries& series :
-         shown_series(store.series(r.key),
-                      {r.scene, r.solver, rivals.all[i].label, "", {}, {}, r.key, strain_floor(r)}))
+    for (TimeSeries& series : shown_series(
+             store.series(r.key),
+             {r.scene, r.solver, compared.all[i].label, "", {}, {}, r.key, strain_floor(r)}))
       all.push_back(std::move(series));
   }
   return all;
@@ -66,7 +66,7 @@ Record slim(Record r) {
 /// Gives those cases back their passes and settings whose settings the page shows side by side.
 void complete_quoted(ReportInput& input, const Store& store) {
   std::set<const Record*> quoted;
-  for (const QuotedScene& scene : rivals_of(input).scenes)
+  for (const QuotedScene& scene : compared_solvers_of(input).scenes)
     quoted.insert(scene.cases.begin(), scene.cases.end());
   for (StudyResult& study : input.studies)
     for (Record& r : study.records)
@@ -311,9 +311,9 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
     input.studies.push_back(std::move(result));
   }
   complete_quoted(input, store);
-  const Rivals rivals = rivals_of(input);
-  for (const QuotedScene& quoted : rivals.scenes)
-    for (TimeSeries& series : series_of(quoted, rivals, store))
+  const ComparedSolvers compared = compared_solvers_of(input);
+  for (const QuotedScene& quoted : compared.scenes)
+    for (TimeSeries& series : series_of(quoted, compared, store))
       input.series.push_back(std::move(series));
   return input;
 }

@@ -27,4 +27,10 @@ std::vector<Value>& under(std::vector<std::pair<std::string, std::vector<Value>>
   return at->second;
 }
 
+/// Appends what the list does not have yet: each once, in their order of appearance.
+template <class T, class Value>
+void add_new(std::vector<T>& list, const Value& value) {
+  if (std::ranges::find(list, value) == list.end()) list.emplace_back(value);
+}
+
 }  // namespace taut

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <string>
-#include <vector>
 
 namespace taut {
 
@@ -16,12 +14,6 @@ namespace taut {
   std::vsnprintf(text, sizeof text, format, values);
   va_end(values);
   return text;
-}
-
-/// Appends what the list does not have yet: each once, in their order of appearance.
-template <class T, class Value>
-void add_new(std::vector<T>& list, const Value& value) {
-  if (std::ranges::find(list, value) == list.end()) list.emplace_back(value);
 }
 
 }  // namespace taut

@@ -427,10 +427,10 @@ class Reader {
 };
 
 std::vector<Claim> claims_of(const ReportInput& input) {
-  const Rivals rivals = rivals_of(input);
+  const ComparedSolvers compared = compared_solvers_of(input);
   std::vector<Claim> all;
   for (const Claim& c : difference_claims(input)) all.push_back(c);
-  for (const Claim& c : physics_claims(rivals)) all.push_back(c);
+  for (const Claim& c : physics_claims(compared)) all.push_back(c);
   for (const Claim& c : cost_claims(input)) all.push_back(c);
   return all;
 }

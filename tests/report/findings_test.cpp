@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
@@ -203,8 +203,8 @@ TEST_F(StoredStudy, IsReadWithItsPlanItsSlopeAndTheMotionsOfTheQuotedCases) {
   ASSERT_EQ(input.scenes.size(), 1u);
   EXPECT_EQ(input.scenes[0].name + ": " + input.scenes[0].summary, "s: A strip");
   std::set<std::string> quoted;
-  const Rivals rivals = rivals_of(input);
-  for (const Record* r : rivals.scenes.at(0).cases) {
+  const ComparedSolvers compared = compared_solvers_of(input);
+  for (const Record* r : compared.scenes.at(0).cases) {
     ASSERT_TRUE(r);
     EXPECT_EQ(r->dt, 1.0 / 64);
     EXPECT_EQ(r->params.at("iterations"), "16");

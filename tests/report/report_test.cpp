@@ -11,7 +11,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -256,10 +256,10 @@ TEST(Model, CostTablesCompareWhatAllSolversOfASceneHave) {
     for (const Json& one : model["cases"]) cases[one["key"]] = one;
     for (const Json& table : model["tables"]) {
       const std::string id = table["id"];
-      const bool rivals = table["columns"].size() > 2;  // of one solver alone all is compared
+      const bool several = table["columns"].size() > 2;  // of one solver alone all is compared
       for (const Json& row : table["rows"])
         for (const Json& cell : row) {
-          if (!id.starts_with("cost-levels-") || !rivals || !cell.contains("case")) continue;
+          if (!id.starts_with("cost-levels-") || !several || !cell.contains("case")) continue;
           EXPECT_NE(cases.at(cell["case"])["parameters"].value("tethers", "off"), "on") << id;
           ++seen;
         }
@@ -290,16 +290,16 @@ TEST(Model, ScenesThatNoStudyRanAreThereWithWhoRefusesThem) {
   EXPECT_EQ(scenes.back()["refusals"][0]["solver"], "bullet");
 }
 
-TEST(Rivals, OnlyWhatAnswersTheSameQuestionIsQuotedSideBySide) {
+TEST(ComparedSolvers, OnlyWhatAnswersTheSameQuestionIsQuotedSideBySide) {
   ReportInput input = example();
   for (Record& r : input.studies[0].records)
     if (r.solver == "bullet") r.spec.overrides = {"cloth.grid=[8, 8]"};
   input.studies.pop_back();
-  const Rivals rivals = rivals_of(input);
-  for (const QuotedScene& quoted : rivals.scenes)
+  const ComparedSolvers compared = compared_solvers_of(input);
+  for (const QuotedScene& quoted : compared.scenes)
     EXPECT_EQ(std::ranges::count(quoted.cases, nullptr), 1) << "another grid is another question";
-  for (const Rival& rival : rivals.all) EXPECT_EQ(rival.work.sweeps, 16);
-  EXPECT_EQ(rivals.work_text(), "1 × 16 (substeps × sweeps)");
+  for (const ComparedSolver& solver : compared.all) EXPECT_EQ(solver.work.sweeps, 16);
+  EXPECT_EQ(compared.work_text(), "1 × 16 (substeps × sweeps)");
 }
 
 TEST(Files, WhatCannotBeWrittenIsSaidBeforeAnythingIsDone) {

@@ -25,7 +25,7 @@ class Reported {
     return input.studies.front().records.back();
   }
   std::string sentence(const std::string& id) const {
-    for (const Claim& claim : physics_claims(rivals_of(input)))
+    for (const Claim& claim : physics_claims(compared_solvers_of(input)))
       if (claim.id == id) return claim.sentence;
     return "";
   }
@@ -94,11 +94,11 @@ TEST(Sentences, SettingsOfASceneAreSaidWhereTheyDiffer) {
             std::string::npos)
       << made.sentence("stretch-hang");
   EXPECT_EQ(made.sentence("stretch-ball").find(" on ball"), std::string::npos);
-  const Rivals rivals = rivals_of(made.input);
-  ASSERT_EQ(rivals.scenes.size(), 2u);
+  const ComparedSolvers compared = compared_solvers_of(made.input);
+  ASSERT_EQ(compared.scenes.size(), 2u);
   for (const std::string scene : {"hang", "ball"}) {
-    ASSERT_TRUE(rivals.quoted(scene)) << "by its name, as pages and films ask";
-    EXPECT_EQ(rivals.quoted(rivals.quoted(scene)->title), rivals.quoted(scene));
+    ASSERT_TRUE(compared.quoted(scene)) << "by its name, as pages and films ask";
+    EXPECT_EQ(compared.quoted(compared.quoted(scene)->title), compared.quoted(scene));
   }
 }
 

@@ -12,7 +12,7 @@
 #include "core/model/text.hpp"
 #include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/render/picture/media.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
@@ -44,7 +44,7 @@ struct Film {
 };
 
 /// The cases that are quoted: pictures show what sentences speak of.
-Film studied_film(const report::Rivals& rivals, const report::QuotedScene& quoted) {
+Film studied_film(const report::ComparedSolvers& compared, const report::QuotedScene& quoted) {
   Film film{.scene = quoted.question.scene};
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
     const Record* one = quoted.cases[i];
@@ -54,7 +54,7 @@ Film studied_film(const report::Rivals& rivals, const report::QuotedScene& quote
       continue;
     }
     film.request.scene = one->spec.scene, film.request.overrides = one->spec.overrides;
-    film.add(one->spec.solver, rivals.all[i].label, one->key);
+    film.add(one->spec.solver, compared.all[i].label, one->key);
   }
   return film;
 }
@@ -69,35 +69,35 @@ double watchable_speed(const Scene& scene) {
   return 0.125;
 }
 
-Film other_film(const report::Rivals& rivals, const std::string& name) {
+Film other_film(const report::ComparedSolvers& compared, const std::string& name) {
   const Scene scene = load_scene(find_scene(name));
   Film film{.scene = scene.name, .summary = scene.summary, .studied = false};
   film.speed = watchable_speed(scene);
   film.request.scene = name;
   if (scene.duration() > kSeconds)
     film.request.overrides.push_back("time.duration=" + std::to_string(kSeconds));
-  for (const report::Rival& rival : rivals.all) {
+  for (const report::ComparedSolver& solver : compared.all) {
     const auto quoted = std::ranges::find_if(
-        rival.cases, [&](const Record* r) { return report::work_of(*r) == rival.work; });
-    if (quoted == rival.cases.end() || film.request.solvers.size() == kMostPanels) continue;
+        solver.cases, [&](const Record* r) { return report::work_of(*r) == solver.work; });
+    if (quoted == solver.cases.end() || film.request.solvers.size() == kMostPanels) continue;
     const SolverChoice choice = parse_solver((*quoted)->spec.solver);
     const std::string why = join(choice.entry->unsupported(scene, choice.params), "; ");
     if (why.empty())
-      film.add((*quoted)->spec.solver, rival.label, "");
+      film.add((*quoted)->spec.solver, solver.label, "");
     else
-      film.refused.emplace_back(rival.solver, why);
+      film.refused.emplace_back(solver.name, why);
   }
   return film;
 }
 
 std::vector<Film> all_films(const report::ReportInput& input,
                             const std::vector<std::string>& others) {
-  const report::Rivals rivals = report::rivals_of(input);
+  const report::ComparedSolvers compared = report::compared_solvers_of(input);
   std::vector<Film> films;
-  for (const report::QuotedScene& quoted : rivals.scenes)
-    films.push_back(studied_film(rivals, quoted));
+  for (const report::QuotedScene& quoted : compared.scenes)
+    films.push_back(studied_film(compared, quoted));
   for (const std::string& name : others) {
-    Film film = other_film(rivals, name);
+    Film film = other_film(compared, name);
     if (std::ranges::find(films, film.scene, &Film::scene) == films.end())
       films.push_back(std::move(film));
   }

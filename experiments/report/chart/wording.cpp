@@ -12,6 +12,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut::report {

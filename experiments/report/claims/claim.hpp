@@ -8,7 +8,7 @@
 
 #include "experiments/report/chart/citations.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/study_bench.hpp"
 
@@ -94,7 +94,7 @@ inline constexpr double kPricedError = 0.01;
 Json json_of(const Claim&, Citations&);
 
 /// Errors, penetration, largest stable time step and failures, over all scenes and scene by scene.
-std::vector<Claim> physics_claims(const Rivals&);
+std::vector<Claim> physics_claims(const ComparedSolvers&);
 /// What a step of the same work costs, then the priced error, each at its best, and apart from that
 /// with what only one has.
 /// Empty without a bench.

@@ -6,7 +6,7 @@
 #include "core/model/text.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
-#include "experiments/system/text.hpp"
+#include "experiments/system/distinct.hpp"
 
 namespace taut::report {
 

@@ -5,7 +5,7 @@
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
-#include "experiments/system/text.hpp"
+#include "experiments/system/distinct.hpp"
 
 namespace taut::report {
 

@@ -7,7 +7,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
-#include "experiments/system/text.hpp"
+#include "experiments/system/distinct.hpp"
 
 namespace taut::report {
 
@@ -17,14 +17,14 @@ namespace {
 constexpr std::size_t kLeastSteps = 3;
 constexpr double kLeastRange = 4;
 
-std::string at_work(const Rivals& rivals) { return " at " + rivals.work_text(); }
+std::string at_work(const ComparedSolvers& compared) { return " at " + compared.work_text(); }
 
 std::string dt_text(double dt) { return quantity("dt").text(dt, 3); }
 
 /// ", time step 15.6 ms": of these scenes, if it is one for all.
-std::string at_step(const Rivals& rivals, const std::vector<std::string>& scenes) {
+std::string at_step(const ComparedSolvers& compared, const std::vector<std::string>& scenes) {
   std::set<double> steps;
-  for (const std::string& title : scenes) steps.insert(rivals.quoted(title)->question.dt);
+  for (const std::string& title : scenes) steps.insert(compared.quoted(title)->question.dt);
   if (steps.size() == 1) return ", time step " + dt_text(*steps.begin());
   return ", time steps " + dt_text(*steps.begin()) + " to " + dt_text(*steps.rbegin());
 }
@@ -36,25 +36,25 @@ std::string why_none(const Record* r) {
   return "ended as " + std::string(to_string(r->status.kind));
 }
 
-/// What all rivals have on a scene, or why not.
+/// What all solvers compared have on a scene, or why not.
 struct SceneValues {
   std::string scene;                          ///< its title
-  std::vector<std::optional<double>> values;  ///< of each rival
+  std::vector<std::optional<double>> values;  ///< of each solver compared
   std::string lacking;                        ///< "box (Bullet ended as exploded)"; "": nothing
   bool any = false;                           ///< somebody has a value
 };
 
-std::vector<SceneValues> look_at_all(const Rivals& rivals, Evidence& evidence) {
+std::vector<SceneValues> look_at_all(const ComparedSolvers& compared, Evidence& evidence) {
   std::vector<SceneValues> all;
-  for (const QuotedScene& quoted : rivals.scenes) {
+  for (const QuotedScene& quoted : compared.scenes) {
     SceneValues here{.scene = quoted.title, .values = {}, .lacking = {}};
     std::string why;
-    for (std::size_t i = 0; i < rivals.all.size(); ++i) {
+    for (std::size_t i = 0; i < compared.all.size(); ++i) {
       const Record* r = quoted.cases[i];
-      here.values.push_back(r ? evidence.look(rivals.all[i].label, *r) : std::nullopt);
+      here.values.push_back(r ? evidence.look(compared.all[i].label, *r) : std::nullopt);
       here.any = here.any || here.values.back();
       if (!here.values.back())
-        why += (why.empty() ? "" : ", ") + rivals.all[i].label + " " + why_none(r);
+        why += (why.empty() ? "" : ", ") + compared.all[i].label + " " + why_none(r);
     }
     if (!why.empty()) here.lacking = here.scene + " (" + why + ")";
     all.push_back(std::move(here));
@@ -81,9 +81,9 @@ std::string topic(const ValueSpec& error) {
 
 /// Who has least of it on which scenes; less than `negligible` counts as that: else a scene in free
 /// fall (1e-17 against 1e-13) would have a winner.
-std::string winners(const Rivals& rivals, const std::vector<SceneValues>& common,
+std::string winners(const ComparedSolvers& compared, const std::vector<SceneValues>& common,
                     double negligible) {
-  std::vector<std::vector<std::string>> least(rivals.all.size());
+  std::vector<std::vector<std::string>> least(compared.all.size());
   std::vector<std::string> alike;
   for (const SceneValues& here : common) {
     std::vector<double> v;
@@ -97,15 +97,16 @@ std::string winners(const Rivals& rivals, const std::vector<SceneValues>& common
       least[best].push_back(here.scene);
   }
   std::string text;
-  const std::string word = rivals.all.size() > 2 ? " Least" : " Less";
-  for (std::size_t i = 0; i < rivals.all.size(); ++i)
-    text += sentence_if(word + " with " + rivals.all[i].label + " on ", least[i]);
-  return text + sentence_if(rivals.all.size() > 2 ? " The two least within 5\u00A0% on "
-                                                  : " Within 5\u00A0% of each other on ",
+  const std::string word = compared.all.size() > 2 ? " Least" : " Less";
+  for (std::size_t i = 0; i < compared.all.size(); ++i)
+    text += sentence_if(word + " with " + compared.all[i].label + " on ", least[i]);
+  return text + sentence_if(compared.all.size() > 2 ? " The two least within 5\u00A0% on "
+                                                    : " Within 5\u00A0% of each other on ",
                             alike);
 }
 
-void claim_error(const Rivals& rivals, const ValueSpec& error, std::vector<Claim>& claims) {
+void claim_error(const ComparedSolvers& compared, const ValueSpec& error,
+                 std::vector<Claim>& claims) {
   const std::string metric(error.name);
   const Quantity q = quantity(metric);
   const double nothing = error.negligible;
@@ -113,7 +114,7 @@ void claim_error(const Rivals& rivals, const ValueSpec& error, std::vector<Claim
                                 " counts as " + q.text(nothing, 1));
   std::vector<SceneValues> common;
   std::vector<std::string> names, below, lacking;
-  for (const SceneValues& here : look_at_all(rivals, evidence)) {
+  for (const SceneValues& here : look_at_all(compared, evidence)) {
     if (!here.lacking.empty()) {
       lacking.push_back(here.lacking);
     } else if (std::ranges::all_of(here.values, [&](const auto& v) { return *v < nothing; })) {
@@ -124,7 +125,7 @@ void claim_error(const Rivals& rivals, const ValueSpec& error, std::vector<Claim
     }
   }
   if (evidence.seen().empty()) return;
-  const std::string opening = capitalised(in_window(q)) + at_work(rivals);
+  const std::string opening = capitalised(in_window(q)) + at_work(compared);
   const std::string rest = sentence_if(" Below " + q.text(nothing, 1) + " with all on ", below) +
                            sentence_if(" Left out: ", lacking);
   if (!lacking.empty()) evidence.leave_out("Left out: " + joined(lacking) + ".");
@@ -137,22 +138,22 @@ void claim_error(const Rivals& rivals, const ValueSpec& error, std::vector<Claim
   }
   std::vector<Bar> bars;
   std::vector<std::string> parts;
-  for (std::size_t i = 0; i < rivals.all.size(); ++i) {
+  for (std::size_t i = 0; i < compared.all.size(); ++i) {
     std::vector<double> values;
     for (const SceneValues& here : common) values.push_back(std::max(*here.values[i], nothing));
     const double mean = geometric_mean(values);
-    bars.push_back({rivals.all[i].solver, rivals.all[i].label, mean, {}, q.text(mean)});
-    parts.push_back(q.text(mean) + " with " + rivals.all[i].label);
+    bars.push_back({compared.all[i].name, compared.all[i].label, mean, {}, q.text(mean)});
+    parts.push_back(q.text(mean) + " with " + compared.all[i].label);
   }
   Claim claim(topic(error), ClaimKind::headline, "all",
-              opening + at_step(rivals, names) + ", geometric mean over " + joined(names) + ": " +
-                  joined(parts) + "." + (bars.size() > 1 ? winners(rivals, common, nothing) : "") +
-                  rest,
+              opening + at_step(compared, names) + ", geometric mean over " + joined(names) + ": " +
+                  joined(parts) + "." +
+                  (bars.size() > 1 ? winners(compared, common, nothing) : "") + rest,
               Certainty::single_run, {evidence});
   claim.strong = parts, claim.quotes = true;
   claims.push_back(claim);
   claims.push_back(claim.tile(capitalised(q.title) + ", " + std::string(to_string(q.window)),
-                              "Geometric mean over " + joined(names) + at_work(rivals) + ".",
+                              "Geometric mean over " + joined(names) + at_work(compared) + ".",
                               bars));
 }
 
@@ -169,14 +170,14 @@ std::string place_of(Role role) {
                                     : " passages of vertices through a collider";
 }
 
-/// The largest of one rival over scenes on which all have the value.
+/// The largest of one solver over scenes on which all have the value.
 struct Deepest {
   double value = -1;  ///< m; < 0: none
   std::string scene;
 };
 
-void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
-  const std::size_t n = rivals.all.size();
+void claim_depth(const ComparedSolvers& compared, std::vector<Claim>& claims) {
+  const std::size_t n = compared.all.size();
   std::vector<Evidence> basis;
   std::vector<Deepest> deepest[2]{std::vector<Deepest>(n), std::vector<Deepest>(n)};
   std::vector<double> passages(n);
@@ -189,11 +190,11 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
     const bool sum = value->role == Role::passages;
     Evidence evidence(metric, sum ? "sum over scenes" : "largest over scenes");
     Evidence all_of_it = evidence;  // scenes without colliders are no evidence
-    for (const SceneValues& here : look_at_all(rivals, all_of_it)) {
+    for (const SceneValues& here : look_at_all(compared, all_of_it)) {
       if (!here.any) continue;
-      const QuotedScene& quoted = *rivals.quoted(here.scene);
+      const QuotedScene& quoted = *compared.quoted(here.scene);
       for (std::size_t i = 0; i < n; ++i)
-        if (quoted.cases[i]) evidence.look(rivals.all[i].label, *quoted.cases[i]);
+        if (quoted.cases[i]) evidence.look(compared.all[i].label, *quoted.cases[i]);
       if (!here.lacking.empty()) {
         // A case that failed lacks all three: it is said once.
         const bool only_here = here.lacking.find("has no value") != std::string::npos;
@@ -213,7 +214,7 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
   if (basis.empty()) return;
   const std::string rest = sentence_if(" Left out: ", lacking);
   if (!lacking.empty()) basis.front().leave_out("Left out: " + joined(lacking) + ".");
-  const std::string opening = "Peak penetration over the whole run" + at_work(rivals);
+  const std::string opening = "Peak penetration over the whole run" + at_work(compared);
   if (names.empty()) {
     claims.emplace_back("depth", ClaimKind::headline, "all",
                         opening + ": no scene has a value of every solver." + rest,
@@ -224,8 +225,8 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
   std::string text;
   std::vector<Bar> bars;
   for (std::size_t i = 0; i < n; ++i) {
-    text += (i > 0 ? "; " : "") + rivals.all[i].label;
-    Bar bar{rivals.all[i].solver, rivals.all[i].label, {}, {}, ""};
+    text += (i > 0 ? "; " : "") + compared.all[i].label;
+    Bar bar{compared.all[i].name, compared.all[i].label, {}, {}, ""};
     bool said = false;
     for (std::size_t k = 0; k < 2; ++k) {
       const Deepest& d = deepest[k][i];
@@ -241,37 +242,37 @@ void claim_depth(const Rivals& rivals, std::vector<Claim>& claims) {
   if (passages_known) {
     text += "; passages of vertices through a collider:";
     for (std::size_t i = 0; i < n; ++i)
-      text += (i > 0 ? ", " : " ") + rivals.all[i].label + " " + exact(passages[i]);
+      text += (i > 0 ? ", " : " ") + compared.all[i].label + " " + exact(passages[i]);
   }
-  Claim claim(
-      "depth", ClaimKind::headline, "all",
-      opening + at_step(rivals, names) + ", deepest of " + joined(names) + ": " + text + "." + rest,
-      Certainty::single_run, basis);
+  Claim claim("depth", ClaimKind::headline, "all",
+              opening + at_step(compared, names) + ", deepest of " + joined(names) + ": " + text +
+                  "." + rest,
+              Certainty::single_run, basis);
   claim.quotes = true;
   claims.push_back(claim);
   claims.push_back(claim.tile("Peak penetration, vertices and faces",
-                              "Whole run, deepest of " + joined(names) + at_work(rivals) + ".",
+                              "Whole run, deepest of " + joined(names) + at_work(compared) + ".",
                               bars));
 }
 
 /// A case as it is asked of every solver, the time step apart.
 using Column = std::pair<std::vector<std::string>, Work>;
 
-/// Which time steps every rival tried in which columns on one scene, and how each case ended.
+/// Which time steps every solver tried in which columns on one scene, and how each case ended.
 struct StepMap {
   std::set<double> steps;
   std::set<Work> works;
-  std::vector<std::map<double, std::vector<const Record*>>> cases;  ///< [rival][time step]
+  std::vector<std::map<double, std::vector<const Record*>>> cases;  ///< [solver][time step]
 };
 
-StepMap step_map(const std::vector<const Rival*>& rivals, const std::string& scene) {
-  std::vector<std::map<std::pair<double, Column>, const Record*>> tried(rivals.size());
-  for (std::size_t i = 0; i < rivals.size(); ++i)
-    for (const Record* r : rivals[i]->cases)
+StepMap step_map(const std::vector<const ComparedSolver*>& compared, const std::string& scene) {
+  std::vector<std::map<std::pair<double, Column>, const Record*>> tried(compared.size());
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    for (const Record* r : compared[i]->cases)
       if (r->scene == scene)
         tried[i].try_emplace({r->dt, {question_of(*r).overrides, work_of(*r)}}, r);
   StepMap map;
-  map.cases.resize(rivals.size());
+  map.cases.resize(compared.size());
   std::map<Column, std::set<double>> columns;
   for (const auto& [at, record] : tried.front())
     if (std::ranges::all_of(tried, [&, at = at](const auto& own) { return own.contains(at); }))
@@ -281,7 +282,7 @@ StepMap step_map(const std::vector<const Rival*>& rivals, const std::string& sce
     map.works.insert(column.second);
     for (const double dt : steps) {
       map.steps.insert(dt);
-      for (std::size_t i = 0; i < rivals.size(); ++i)
+      for (std::size_t i = 0; i < compared.size(); ++i)
         map.cases[i][dt].push_back(tried[i].at({dt, column}));
     }
   }
@@ -298,11 +299,11 @@ double largest_stable(const std::map<double, std::vector<const Record*>>& cases)
   return largest;
 }
 
-void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
-  std::vector<const Rival*> with_sweeps;
-  for (const Rival& rival : rivals.all)
-    if (std::ranges::any_of(rival.cases, [](const Record* r) { return work_of(*r).sweeps > 0; }))
-      with_sweeps.push_back(&rival);
+void claim_step(const ComparedSolvers& compared, std::vector<Claim>& claims) {
+  std::vector<const ComparedSolver*> with_sweeps;
+  for (const ComparedSolver& solver : compared.all)
+    if (std::ranges::any_of(solver.cases, [](const Record* r) { return work_of(*r).sweeps > 0; }))
+      with_sweeps.push_back(&solver);
   if (with_sweeps.empty()) return;
   Evidence evidence("dt",
                     "largest time step up to which every case completed, over all the work "
@@ -311,7 +312,7 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
   std::vector<std::vector<double>> found(with_sweeps.size());
   std::vector<std::string> names;
   bool limited = false, none = false;
-  for (const QuotedScene& quoted : rivals.scenes) {
+  for (const QuotedScene& quoted : compared.scenes) {
     const std::string& scene = quoted.question.scene;
     const StepMap map = step_map(with_sweeps, scene);
     if (map.steps.size() < kLeastSteps) continue;
@@ -346,7 +347,7 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
   std::vector<std::string> means;
   for (std::size_t i = 0; i < with_sweeps.size() && !none; ++i) {
     const double mean = geometric_mean(found[i]);
-    bars.push_back({with_sweeps[i]->solver, with_sweeps[i]->label, mean, {}, dt_text(mean)});
+    bars.push_back({with_sweeps[i]->name, with_sweeps[i]->label, mean, {}, dt_text(mean)});
     means.push_back(with_sweeps[i]->label + " " + dt_text(mean));
   }
   if (clauses.size() > 1 && !none) text += "; geometric mean over these scenes " + joined(means);
@@ -363,14 +364,14 @@ void claim_step(const Rivals& rivals, std::vector<Claim>& claims) {
                    bars));
 }
 
-void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
+void claim_failures(const ComparedSolvers& compared, std::vector<Claim>& claims) {
   Evidence evidence("steps", "count of cases by status, all settings");
   std::vector<std::string> parts, refused;
-  for (const Rival& rival : rivals.all) {
-    const std::vector<const Record*>& cases = rivals.by_solver.at(rival.solver);
+  for (const ComparedSolver& solver : compared.all) {
+    const std::vector<const Record*>& cases = compared.by_solver.at(solver.name);
     std::map<std::string, int> failed;
     int failures = 0, unsupported = 0;
-    const std::string name = solver_title(rival.solver);
+    const std::string name = solver_title(solver.name);
     for (const Record* r : cases) {
       evidence.look(name, *r);
       if (r->status.kind == Status::Kind::unsupported) ++unsupported;
@@ -387,30 +388,31 @@ void claim_failures(const Rivals& rivals, std::vector<Claim>& claims) {
   if (evidence.seen().empty()) return;
   claims.emplace_back("failures", ClaimKind::headline, "failures",
                       "Cases that failed: " + joined(parts) + "." +
-                          sentence_if(rivals.studies.size() == 1 ? " Counted in the study "
-                                                                 : " Counted in the studies ",
-                                      rivals.studies) +
+                          sentence_if(compared.studies.size() == 1 ? " Counted in the study "
+                                                                   : " Counted in the studies ",
+                                      compared.studies) +
                           sentence_if(" Not supported: ", refused),
                       Certainty::single_run, std::vector{evidence});
 }
 
 /// One scene, values side by side, failures by name.
-void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Claim>& claims) {
+void claim_scene(const ComparedSolvers& compared, const QuotedScene& quoted,
+                 std::vector<Claim>& claims) {
   const std::string& scene = quoted.question.scene;
-  const std::string at = (quoted.title == scene ? "" : " on " + quoted.title) + at_work(rivals) +
+  const std::string at = (quoted.title == scene ? "" : " on " + quoted.title) + at_work(compared) +
                          ", time step " + dt_text(quoted.question.dt);
   const auto side_by_side = [&](const std::string& id, const std::string& opening,
                                 const std::vector<std::pair<std::string, std::string>>& values) {
     std::vector<Evidence> basis;
-    std::vector<std::string> parts(rivals.all.size());
+    std::vector<std::string> parts(compared.all.size());
     bool any = false;
     for (const auto& [metric, suffix] : values) {
       const Quantity q = quantity(metric);
       Evidence evidence(metric, "values side by side");
       bool here = false;
-      for (std::size_t i = 0; i < rivals.all.size(); ++i) {
+      for (std::size_t i = 0; i < compared.all.size(); ++i) {
         if (!quoted.cases[i]) continue;
-        const auto value = evidence.look(rivals.all[i].label, *quoted.cases[i]);
+        const auto value = evidence.look(compared.all[i].label, *quoted.cases[i]);
         if (value) parts[i] += (parts[i].empty() ? " " : ", ") + q.text(*value) + suffix;
         here = here || value;
       }
@@ -420,7 +422,7 @@ void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Cl
     if (!any) return;
     std::string text;
     for (std::size_t i = 0; i < parts.size(); ++i)
-      text += (i > 0 ? "; " : "") + rivals.all[i].label +
+      text += (i > 0 ? "; " : "") + compared.all[i].label +
               (parts[i].empty() ? " " + why_none(quoted.cases[i]) : parts[i]);
     claims.emplace_back(id + "-" + scene, ClaimKind::note, scene, opening + at + ": " + text + ".",
                         Certainty::single_run, basis);
@@ -438,15 +440,15 @@ void claim_scene(const Rivals& rivals, const QuotedScene& quoted, std::vector<Cl
 
 }  // namespace
 
-std::vector<Claim> physics_claims(const Rivals& rivals) {
+std::vector<Claim> physics_claims(const ComparedSolvers& compared) {
   std::vector<Claim> claims;
-  if (rivals.all.empty()) return claims;
+  if (compared.all.empty()) return claims;
   for (const ValueSpec* value : values_with_role())
-    if (value->role == Role::error) claim_error(rivals, *value, claims);
-  claim_depth(rivals, claims);
-  claim_step(rivals, claims);
-  claim_failures(rivals, claims);
-  for (const QuotedScene& quoted : rivals.scenes) claim_scene(rivals, quoted, claims);
+    if (value->role == Role::error) claim_error(compared, *value, claims);
+  claim_depth(compared, claims);
+  claim_step(compared, claims);
+  claim_failures(compared, claims);
+  for (const QuotedScene& quoted : compared.scenes) claim_scene(compared, quoted, claims);
   return claims;
 }
 

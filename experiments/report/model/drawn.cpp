@@ -5,9 +5,9 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/report/model/parts.hpp"
-#include "experiments/system/text.hpp"
+#include "experiments/system/distinct.hpp"
 
 namespace taut::report {
 
@@ -223,7 +223,8 @@ Json json_of(const SceneMedia& media, const ReportInput& input, Citations& refs,
   return films;
 }
 
-Json json_of_resolved_settings(const QuotedScene& quoted, const Rivals& rivals, Citations& refs) {
+Json json_of_resolved_settings(const QuotedScene& quoted, const ComparedSolvers& compared,
+                               Citations& refs) {
   Json panel{{"caption", "Settings each solver used for this scene"}};
   std::vector<const Record*> cases;
   std::vector<std::string> names;
@@ -233,7 +234,7 @@ Json json_of_resolved_settings(const QuotedScene& quoted, const Rivals& rivals, 
     cases.push_back(r);
     panel["columns"].push_back({{"solver", r->solver},
                                 {"case", refs.key(*r)},
-                                {"text", rivals.all[i].label + " " + work_of(*r).text()}});
+                                {"text", compared.all[i].label + " " + work_of(*r).text()}});
     for (const auto& [name, value] : r->resolved_settings) add_new(names, name);
   }
   if (cases.empty()) return {};

@@ -6,7 +6,7 @@
 
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/citations.hpp"
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {
@@ -34,7 +34,7 @@ Json json_of(const Differences&, Citations&, Json& tables);
 Json json_of_limits(const ReportInput&, Json& tables);
 /// What Vasilovici's report asserts, with verdicts: as its truths say now, if they were checked.
 Json json_of_vasilovici(const std::optional<Truths>&);
-/// Settings of every rival on a scene, row by row; null without a case.
-Json json_of_resolved_settings(const QuotedScene&, const Rivals&, Citations&);
+/// Settings of every solver on a scene, row by row; null without a case.
+Json json_of_resolved_settings(const QuotedScene&, const ComparedSolvers&, Citations&);
 
 }  // namespace taut::report

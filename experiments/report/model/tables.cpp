@@ -6,7 +6,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
-#include "experiments/system/text.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut::report {

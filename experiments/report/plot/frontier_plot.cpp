@@ -6,8 +6,8 @@
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/plot/plot.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut::report {
 

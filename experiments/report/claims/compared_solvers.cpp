@@ -1,4 +1,4 @@
-#include "experiments/report/claims/rivals.hpp"
+#include "experiments/report/claims/compared_solvers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/system/text.hpp"
+#include "experiments/system/distinct.hpp"
 
 namespace taut::report {
 
@@ -18,7 +18,7 @@ std::map<std::string, std::string> choice_of(const Record& r) {
   return params;
 }
 
-Rival choose(const std::string& solver, const std::vector<const Record*>& cases) {
+ComparedSolver choose(const std::string& solver, const std::vector<const Record*>& cases) {
   std::vector<std::vector<const Record*>> groups;
   std::map<std::map<std::string, std::string>, std::size_t> index;
   std::map<std::pair<std::string, std::string>, std::size_t> having;  // groups with that setting
@@ -31,10 +31,10 @@ Rival choose(const std::string& solver, const std::vector<const Record*>& cases)
     groups[at->second].push_back(r);
   }
   const auto most = std::ranges::max_element(groups, {}, [](const auto& g) { return g.size(); });
-  Rival rival{solver, solver_title(solver), *most};
+  ComparedSolver chosen{solver, solver_title(solver), *most};
   for (const auto& setting : choice_of(*most->front()))
-    if (having.at(setting) < groups.size()) rival.label += " " + setting.second;
-  return rival;
+    if (having.at(setting) < groups.size()) chosen.label += " " + setting.second;
+  return chosen;
 }
 
 /// How far from 1 × 16, which every comparison in the literature is near to.
@@ -44,9 +44,9 @@ double distance(const Work& work) {
 
 /// What a solver ran most often among the works that `admits`; of equals the one nearest to 1 × 16.
 template <class Admits>
-Work commonest_work(const Rival& rival, Admits admits) {
+Work commonest_work(const ComparedSolver& solver, Admits admits) {
   std::map<Work, int> counts;
-  for (const Record* r : rival.cases)
+  for (const Record* r : solver.cases)
     if (const Work work = work_of(*r); admits(work)) ++counts[work];
   const auto best = std::ranges::max_element(counts, {}, [](const auto& entry) {
     return std::pair(entry.second, -distance(entry.first));
@@ -54,16 +54,16 @@ Work commonest_work(const Rival& rival, Admits admits) {
   return best == counts.end() ? Work{} : best->first;
 }
 
-/// Gives each rival the work at which it is quoted: the one that all who have sweeps ran, nearest
-/// to 1 × 16; else each its own, of the same sweeps if there are any.
-void choose_work(std::vector<Rival>& rivals) {
+/// Gives each solver compared the work at which it is quoted: the one that all who have sweeps ran,
+/// nearest to 1 × 16; else each its own, of the same sweeps if there are any.
+void choose_work(std::vector<ComparedSolver>& compared) {
   std::map<Work, int> counts;
   std::map<int, int> sweep_counts;
   int having = 0;
-  for (const Rival& rival : rivals) {
+  for (const ComparedSolver& solver : compared) {
     std::set<Work> works;
     std::set<int> sweeps;
-    for (const Record* r : rival.cases)
+    for (const Record* r : solver.cases)
       if (const Work work = work_of(*r); work.sweeps > 0)
         works.insert(work), sweeps.insert(work.sweeps);
     having += !works.empty();
@@ -77,24 +77,25 @@ void choose_work(std::vector<Rival>& rivals) {
   const auto same_sweeps = std::ranges::min_element(sweep_counts, {}, [](const auto& entry) {
     return distance({1, entry.first});
   });
-  for (Rival& rival : rivals)
-    rival.work = commonest_work(rival, [&](const Work& work) {
+  for (ComparedSolver& solver : compared)
+    solver.work = commonest_work(solver, [&](const Work& work) {
       if (work.sweeps <= 0) return true;
       if (!counts.empty()) return work == nearest->first;
       return sweep_counts.empty() || work.sweeps == same_sweeps->first;
     });
 }
 
-/// The question that most rivals answered at their work; of equals the time step nearest to 1/64 s.
-QuotedScene quote(const std::string& scene, const std::vector<Rival>& rivals) {
+/// The question that most compared answered at their work; of equals the time step nearest to 1/64
+/// s.
+QuotedScene quote(const std::string& scene, const std::vector<ComparedSolver>& compared) {
   std::vector<QuotedScene> asked;
-  for (std::size_t i = 0; i < rivals.size(); ++i)
-    for (const Record* r : rivals[i].cases) {
-      if (r->scene != scene || work_of(*r) != rivals[i].work) continue;
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    for (const Record* r : compared[i].cases) {
+      if (r->scene != scene || work_of(*r) != compared[i].work) continue;
       const Question question = question_of(*r);
       auto at = std::ranges::find(asked, question, &QuotedScene::question);
       if (at == asked.end())
-        at = asked.insert(at, {question, scene, std::vector<const Record*>(rivals.size())});
+        at = asked.insert(at, {question, scene, std::vector<const Record*>(compared.size())});
       if (!at->cases[i]) at->cases[i] = r;
     }
   const auto rank = [](const QuotedScene& q) {
@@ -102,25 +103,25 @@ QuotedScene quote(const std::string& scene, const std::vector<Rival>& rivals) {
   };
   const auto best = std::ranges::min_element(asked, {}, rank);
   if (best == asked.end())
-    return {{scene, {}, 0}, scene, std::vector<const Record*>(rivals.size())};
+    return {{scene, {}, 0}, scene, std::vector<const Record*>(compared.size())};
   return *best;
 }
 
 }  // namespace
 
-const QuotedScene* Rivals::quoted(const std::string& scene_or_title) const {
+const QuotedScene* ComparedSolvers::quoted(const std::string& scene_or_title) const {
   const auto at = std::ranges::find_if(scenes, [&](const QuotedScene& q) {
     return q.title == scene_or_title || q.question.scene == scene_or_title;
   });
   return at == scenes.end() ? nullptr : &*at;
 }
 
-std::string Rivals::work_text() const {
+std::string ComparedSolvers::work_text() const {
   std::string own;
   std::set<Work> works;
-  for (const Rival& rival : all) {
-    works.insert(rival.work);
-    own += (own.empty() ? "" : ", ") + rival.label + " " + rival.work.text();
+  for (const ComparedSolver& solver : all) {
+    works.insert(solver.work);
+    own += (own.empty() ? "" : ", ") + solver.label + " " + solver.work.text();
   }
   const bool both = std::ranges::any_of(
       works, [](const Work& work) { return work.sweeps > 0 && work.substeps > 0; });
@@ -129,8 +130,8 @@ std::string Rivals::work_text() const {
   return "unequal work (" + own + (both ? "; " + order : "") + ")";
 }
 
-Rivals rivals_of(const ReportInput& input) {
-  Rivals rivals;
+ComparedSolvers compared_solvers_of(const ReportInput& input) {
+  ComparedSolvers compared;
   std::vector<std::string> solvers, scenes;
   std::set<std::string_view> keys;
   std::set<Question> asked;
@@ -139,22 +140,22 @@ Rivals rivals_of(const ReportInput& input) {
     return question;
   };
   for (const StudyResult& study : input.studies) {
-    add_new(rivals.studies, study.name);
+    add_new(compared.studies, study.name);
     for (const Record& r : study.records) {
       if (!keys.insert(r.key.empty() ? r.id : r.key).second) continue;
       add_new(solvers, r.solver), add_new(scenes, r.scene);
       asked.insert(untimed(question_of(r)));
-      rivals.by_solver[r.solver].push_back(&r);
+      compared.by_solver[r.solver].push_back(&r);
     }
   }
   for (const std::string& solver : solvers)
-    rivals.all.push_back(choose(solver, rivals.by_solver[solver]));
-  choose_work(rivals.all);
+    compared.all.push_back(choose(solver, compared.by_solver[solver]));
+  choose_work(compared.all);
   for (const std::string& scene : scenes) {
-    QuotedScene& quoted = rivals.scenes.emplace_back(quote(scene, rivals.all));
+    QuotedScene& quoted = compared.scenes.emplace_back(quote(scene, compared.all));
     quoted.title = title_among(untimed(quoted.question), asked);
   }
-  return rivals;
+  return compared;
 }
 
 }  // namespace taut::report

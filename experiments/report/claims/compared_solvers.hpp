@@ -12,8 +12,8 @@ namespace taut::report {
 
 /// One solver with the settings under which it is compared: of several choices the one with most
 /// cases, so that its name means one thing in every sentence.
-struct Rival {
-  std::string solver;
+struct ComparedSolver {
+  std::string name;
   std::string label;  ///< "Bullet", or "Bullet float" if other choices were run too
   std::vector<const Record*> cases;
   Work work = {};  ///< at which single values are quoted: the same for all, or its own
@@ -23,12 +23,12 @@ struct Rival {
 struct QuotedScene {
   Question question;
   std::string title;  ///< the scene's name, with the settings that not all of its cases share
-  std::vector<const Record*> cases;  ///< of each rival; nullptr: was not run like this
+  std::vector<const Record*> cases;  ///< of each solver compared; nullptr: was not run like this
 };
 
 /// Who is compared, and at which work single values are quoted. Points into the input.
-struct Rivals {
-  std::vector<Rival> all;           ///< in order of appearance
+struct ComparedSolvers {
+  std::vector<ComparedSolver> all;  ///< in order of appearance
   std::vector<QuotedScene> scenes;  ///< every scene that a study ran
   std::vector<std::string> studies;
 
@@ -38,6 +38,6 @@ struct Rivals {
   /// "1 × 16 (substeps × sweeps)", or that it is unequal and what it is of each.
   std::string work_text() const;
 };
-Rivals rivals_of(const ReportInput&);
+ComparedSolvers compared_solvers_of(const ReportInput&);
 
 }  // namespace taut::report
