@@ -251,7 +251,7 @@ TEST_F(MotionFiles, AVertexMayBeginATenThousandthOfTheExtentOffItsPlace) {
   const double tolerance = 1e-4 * extent(scene);
   for (const auto& [share, good] : {std::pair{0.98, true}, {1.02, false}}) {
     for (const bool shuffled : {false, true}) {
-      const MotionOptions file = write("a.npy", scene, [&](std::vector<Vec3> x) {
+      const MotionOptions file = write("a.npy", scene, [&, share = share](std::vector<Vec3> x) {
         x[20] += share * tolerance * Vec3(0.6, 0, 0.8);
         if (shuffled) std::swap(x[20], x[40]);
         return x;

@@ -119,7 +119,8 @@ TEST(Definitions, Stretch) {
       {"structural", {Family::structural}},
       {"shear", {Family::shear}},
       {"bend", {Family::bend}}};
-  for (const auto& [name, families] : groups) {
+  for (const auto& [name, members] : groups) {
+    const auto& families = members;  // a structured binding cannot be captured by clang++ 14
     const auto square = [&](const State& s, double) {
       double sum = 0;
       const auto all = strains(families, s);

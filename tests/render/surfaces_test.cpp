@@ -16,15 +16,16 @@ namespace {
 double volume(const RenderMesh& mesh) {
   double six = 0;
   for (const auto& [a, b, c] : mesh.triangles)
-    six += double{std::abs(mesh.position[a].cross(mesh.position[b]).dot(mesh.position[c]))};
+    six += static_cast<double>(
+        std::abs(mesh.position[a].cross(mesh.position[b]).dot(mesh.position[c])));
   return six / 6;
 }
 
 double area(const RenderMesh& mesh) {
   double two = 0;
   for (const auto& [a, b, c] : mesh.triangles)
-    two += double{
-        (mesh.position[b] - mesh.position[a]).cross(mesh.position[c] - mesh.position[a]).norm()};
+    two += static_cast<double>(
+        (mesh.position[b] - mesh.position[a]).cross(mesh.position[c] - mesh.position[a]).norm());
   return two / 2;
 }
 

@@ -20,13 +20,15 @@ TEST(BenchEffects, EveryCopyMakesEveryStep) {
 
 TEST(TwoCores, AreJudgedWhereBothWereFree) {
   TwoCores cores;
-  cores.add(2, 1.25, 3, 2);         // 1.6 and 2
+  cores.add(2, 1.25, 2, 2);         // 1.6 and 2
   cores.add(2, 4, 2, 2.5);          // half, and 1.6: another program had the second core
-  cores.add(2.5, 1.25, 2, 2.0001);  // 1.6 and 1.9998
-  cores.add(2, 1.25, 6, 4);  // 1.6 and 1: it also slowed down the single thread that came after
-  EXPECT_EQ(cores.rounds(), 4u);
+  cores.add(2.5, 1.25, 2, 2.0001);  // 2 and 1.9998
+  cores.add(2, 1.25, 2, 4);         // 1.6 and 1
+  cores.add(9, 1.25, 2, 4);  // 7.2 and 1: a slow single thread is not what calls the cores free
+  EXPECT_EQ(cores.rounds(), 5u);
   EXPECT_EQ(cores.free_rounds(), 2u);
   EXPECT_DOUBLE_EQ(cores.threads_while_free().low, 1.6);
+  EXPECT_DOUBLE_EQ(cores.threads_while_free().high, 2);
   EXPECT_DOUBLE_EQ(cores.threads().low, 0.5);
   EXPECT_DOUBLE_EQ(cores.unrelated().high, 2);
   EXPECT_DOUBLE_EQ(cores.unrelated().low, 1);

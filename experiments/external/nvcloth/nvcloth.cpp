@@ -85,9 +85,15 @@ struct NvCloth {
     std::vector<std::string> reasons;
     if (scene["wind"].something()) reasons.push_back("its wind follows another law");
     if (scene["pin_motions"].something()) reasons.push_back("moving pins: not mapped to NvCloth");
-    for (const Json& collider : scene["colliders"].items)
+    std::size_t planes = 0;
+    for (const Json& collider : scene["colliders"].items) {
+      planes += collider["type"].text == "plane" ? 1 : collider["type"].text == "box" ? 6 : 0;
       if (collider["motion"].something())
         reasons.push_back("moving colliders: not mapped to NvCloth");
+      if (collider["friction"].number != scene["colliders"][0]["friction"].number)
+        reasons.push_back("one coefficient of friction for all colliders");
+    }
+    if (planes > 32) reasons.push_back("at most 32 planes, six for a box");
     if (scene["vertices"].integer() > 65000) reasons.push_back("indices of 16 bits");
     return reasons;
   }

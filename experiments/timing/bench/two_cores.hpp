@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "experiments/timing/statistics.hpp"
@@ -15,12 +14,11 @@ class TwoCores {
   static constexpr double kFree = 1.9;
 
   /// A round: the same work by one thread and by two, then by one thread again and twice by two
-  /// solvers that know nothing of each other [s, or any other unit of time]. The faster of the
-  /// single threads is what both are compared with: a slow one would flatter them.
+  /// solvers that know nothing of each other [s, or any other unit of time]. No time is in both
+  /// ratios, or a slow single thread would be called free cores and flatter what it counts for.
   void add(double one, double two, double one_again, double unrelated) {
-    one = std::min(one, one_again);
     threads_.push_back(one / two);
-    unrelated_.push_back(2 * one / unrelated);
+    unrelated_.push_back(2 * one_again / unrelated);
     share_.push_back(unrelated / 2 / two);
     if (unrelated_.back() >= kFree) threads_while_free_.push_back(threads_.back());
   }
