@@ -156,8 +156,10 @@ Command command_of(const std::string& text) {
   for (const ParamItem& item : param_items(std::string_view(text).substr(9)))
     if (item.key == "timeout")
       ours += "timeout=" + item.value;
-    else if (item.key == "cmd")
+    else if (item.key == "cmd") {
+      if (!item.problem.empty()) throw InputError(item.problem);  // half a command is not called
       cmd = item.value;
+    }
   Command command = split_command(cmd, "");
   try {
     command.seconds = Params("external", kLeading, ours).real("timeout");
