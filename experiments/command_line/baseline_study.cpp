@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/model/text.hpp"
-#include "experiments/baseline/frontier_baseline.hpp"
+#include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"

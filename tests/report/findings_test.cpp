@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/claims/compared_solvers.hpp"
+#include "experiments/report/claims/claim.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"

@@ -41,7 +41,7 @@ experiments/report/model | (core/model|experiments/(system|metrics|case|timing|b
 # what is included | files that may include it
 owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/(.*\.cpp|bullet_solver\.hpp)
-toml\+\+                | ^core/io/document\.cpp
+toml\+\+                | ^core/io/section\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
 openssl/                | ^experiments/(case|report/chart)/.*\.cpp
@@ -128,7 +128,7 @@ experiments/timing/bench/planted.cpp|"experiments/study/store.hpp"
 experiments/render/picture/planted.cpp|"experiments/render/film/film.hpp"
 experiments/require/planted.cpp|"experiments/report/chart/format.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
-experiments/report/chart/planted.hpp|"experiments/report/claims/compared_solvers.hpp"
+experiments/report/chart/planted.hpp|"experiments/report/claims/claim.hpp"
 experiments/report/claims/planted.cpp|"experiments/report/model/parts.hpp"
 experiments/report/plot/planted.cpp|"experiments/report/claims/claim.hpp"
 experiments/report/model/planted.cpp|"experiments/report/plot/plot.hpp"

@@ -12,7 +12,7 @@
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/probe.hpp"
-#include "experiments/external/scene_file.hpp"
+#include "experiments/external/protocol.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"

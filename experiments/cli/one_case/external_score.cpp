@@ -10,7 +10,7 @@
 #include "experiments/command_line/case_options.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/external/recorded.hpp"
+#include "experiments/external/motion_file.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 

@@ -7,7 +7,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/render/film/recorded_runs.hpp"
+#include "experiments/render/film/film.hpp"
 #include "experiments/render/image/video.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/system/files.hpp"

@@ -12,7 +12,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/baseline/assertions_baseline.hpp"
+#include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/colour.hpp"
 #include "experiments/command_line/options.hpp"
