@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "experiments/baseline/baseline.hpp"
-#include "experiments/study/frontier.hpp"
+#include "experiments/study/frontier/frontier.hpp"
 
 namespace taut {
 

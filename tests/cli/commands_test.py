@@ -122,7 +122,7 @@ colour = "red"
         plot = '[[plot]]\nkind = "convergance"\ny = "stretch.rmss"\n'
         self.refuse("run", self.study(rest=plot),
                     says=["study.toml:5:8: unknown kind of plot 'convergance'; did you mean 'convergence'?",
-                          "study.toml:6:5: unknown value 'stretch.rmss' for y; did you mean 'stretch.rms'?"])
+                          "study.toml:6:5: unknown value 'stretch.rmss'; did you mean 'stretch.rms'?"])
         nothing = self.taut("run", self.study(rest='exclude = [{ solver = "jakobsen" }]\n'), expect=4)
         self.assertIn("no case", nothing.err)
 
@@ -211,8 +211,8 @@ class Verbs(CommandLine):
             started = time.monotonic()
             self.assertIn("file: cannot create", self.taut("case", "hang", "bullet:iterations=3000", option, "file/x.csv", expect=2).err)
             self.assertLess(time.monotonic() - started, 10, "it would take minutes")
-        self.assertIn("taut run", self.taut("plot", study, "--results", "nowhere", expect=2).err)
-        self.assertIn("no results folder nowhere; taut run makes it", self.taut("report", study, "--results", "nowhere", expect=2).err)
+        self.assertIn("taut run", self.taut("plot", study, "--out", "nowhere", expect=2).err)
+        self.assertIn("no results folder nowhere; taut run makes it", self.taut("report", study, "--out", "nowhere", expect=2).err)
         self.assertRegex(self.taut("plot", study, "--kind", "pie", expect=2).err, "unknown kind of plot 'pie'.*one of .*stability")
         self.assertIn("--y: unknown value 'strech.rms'; did you mean 'stretch.rms'?",
                       self.taut("plot", study, "--y", "strech.rms", expect=2).err)

@@ -2,9 +2,7 @@
 #include <iostream>
 #include <memory>
 
-#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"

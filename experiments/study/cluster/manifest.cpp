@@ -1,5 +1,3 @@
-#include "experiments/study/cluster/manifest.hpp"
-
 #include <algorithm>
 #include <map>
 #include <queue>
@@ -13,6 +11,7 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"

@@ -167,11 +167,11 @@ class Shards(Cluster):
         self.shard(1)
         merged = self.merge("c", "--out", "m", "--allow-missing", expect=3)
         self.assertTrue(merged["merged"])
-        model = json.loads(self.taut("report", "./study.toml", "--results", "m", "--json").out)
+        model = json.loads(self.taut("report", "./study.toml", "--out", "m", "--json").out)
         self.assertIn(f"merged although {len(merged['missing'])} planned cases were missing", json.dumps(model["left_out"]))
         self.shard(2)
         self.merge("c", "--out", "m")
-        model = json.loads(self.taut("report", "./study.toml", "--results", "m", "--json").out)
+        model = json.loads(self.taut("report", "./study.toml", "--out", "m", "--json").out)
         self.assertNotIn("left_out", model)
 
     def test_a_shard_that_does_not_exist(self):

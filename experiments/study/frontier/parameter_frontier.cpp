@@ -1,4 +1,4 @@
-#include "experiments/study/extremes/extremes.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -6,7 +6,7 @@
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
-#include "experiments/study/extremes/symptom.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {
@@ -23,12 +23,11 @@ bool ran(const Record& record) {
 JudgedRun look(const Case& one, const Record& record, const Store& store) {
   JudgedRun seen{one, record, {}};
   if (!ran(record) || !store.has_frames(one.key)) return seen;
-  TrajectoryReader motion(store.folder(one.key) / kFramesFile);
-  if (motion.frames() > 0) seen.end = motion.read(motion.frames() - 1).state.x;
+  seen.end = store.motion(one.key).frames.back().state.x;
   return seen;
 }
 
-void tell_theory(const ExtremeSetting& setting, ParameterFrontier& found) {
+void tell_theory(const FrontierSetting& setting, ParameterFrontier& found) {
   if (!setting.theory) return;
   found.law = setting.theory->law;
   const double end = setting.theory->value;
@@ -50,9 +49,8 @@ void tell(const Frontier& frontier, const FrontierQuestion& question, ParameterF
 }
 
 /// The search along one parameter; nothing: interrupted.
-std::optional<ParameterFrontier> search(const ExtremeSetting& setting, const std::string& solver,
-                                        const Store& store, const Session& session,
-                                        const CampaignOptions& options) {
+std::optional<ParameterFrontier> search(const FrontierSetting& setting, const std::string& solver,
+                                        const Store& store, const CampaignOptions& options) {
   ParameterFrontier found;
   found.solver = solver, found.parameter = setting.name, found.unit = setting.unit;
   found.lacks = setting.lacks;
@@ -62,7 +60,7 @@ std::optional<ParameterFrontier> search(const ExtremeSetting& setting, const std
   found.from = question.setting(question.range.from);
   found.to = question.setting(question.range.to);
   const Case first = make_case(question.at(question.range.from));
-  if (run_cases({first}, store, session, options).interrupted) return {};
+  if (run_cases({first}, store, options).interrupted) return {};
   const std::optional<Record> record = store.find(first);
   if (!record) return {};
   if (!ran(*record)) {
@@ -79,7 +77,7 @@ std::optional<ParameterFrontier> search(const ExtremeSetting& setting, const std
     std::erase_if(wrong, [&](const std::string& name) { return std::ranges::count(known, name); });
     return join(wrong, ", ");
   };
-  const CaseFrontier result = find_frontier(question, store, session, options, judge);
+  const CaseFrontier result = find_frontier(question, store, options, judge);
   found.cases = result.frontier.probes.size(), found.ran = result.ran;
   tell(result.frontier, question, found);
   if (result.interrupted) return {};
@@ -98,20 +96,19 @@ constexpr std::tuple kFields{
 
 }  // namespace
 
-Extremes find_extremes(const std::string& solver, const Store& store, const Session& session,
-                       const CampaignOptions& options,
-                       const std::function<void(std::size_t done, std::size_t all)>& progress) {
-  Extremes all;
-  const std::vector<ExtremeSetting> settings = extreme_settings(solver);
+std::optional<std::vector<ParameterFrontier>> find_frontiers(
+    const std::string& solver, const Store& store, const CampaignOptions& options,
+    const std::function<void(std::size_t done, std::size_t all)>& progress) {
+  std::vector<ParameterFrontier> frontiers;
+  const std::vector<FrontierSetting> settings = frontier_settings(solver);
   const std::string name = parse_solver(solver).brief();
-  for (const ExtremeSetting& setting : settings) {
-    const auto found = search(setting, name, store, session, options);
-    all.interrupted = !found;
-    if (all.interrupted) return all;
-    all.frontiers.push_back(*found);
-    progress(all.frontiers.size(), settings.size());
+  for (const FrontierSetting& setting : settings) {
+    const auto found = search(setting, name, store, options);
+    if (!found) return {};
+    frontiers.push_back(*found);
+    progress(frontiers.size(), settings.size());
   }
-  return all;
+  return frontiers;
 }
 
 std::string to_json(const std::vector<ParameterFrontier>& frontiers, std::string_view program) {

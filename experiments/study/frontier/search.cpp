@@ -1,5 +1,3 @@
-#include "experiments/study/frontier.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -10,6 +8,7 @@
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/reference/linear_stability.hpp"
+#include "experiments/study/frontier/frontier.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut {
@@ -211,15 +210,14 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
 }
 
 CaseFrontier find_frontier(const FrontierQuestion& question, const Store& store,
-                           const Session& session, const CampaignOptions& options,
-                           const Judge& judge) {
+                           const CampaignOptions& options, const Judge& judge) {
   CaseFrontier result;
   CaseMaker maker;
   std::vector<std::pair<double, Record>> seen;
   result.frontier = find_frontier(question.range, [&](const std::vector<double>& values) {
     std::vector<Case> cases;
     for (const double value : values) cases.push_back(maker.make(question.at(value)));
-    const CampaignProgress campaign = run_cases(cases, store, session, options);
+    const CampaignProgress campaign = run_cases(cases, store, options);
     result.ran += campaign.ran;
     result.interrupted = result.interrupted || campaign.interrupted;
     std::vector<Outcome> outcomes;

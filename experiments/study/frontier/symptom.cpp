@@ -1,10 +1,9 @@
-#include "experiments/study/extremes/symptom.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
 #include "core/model/index.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 
 namespace taut {
 

@@ -3,11 +3,24 @@
 #include <chrono>
 #include <iosfwd>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/study/campaign.hpp"
 
 namespace taut {
+
+enum class Colour { red = 31, green = 32, yellow = 33 };
+
+/// The text in a colour if stdout is a terminal and $NO_COLOR is not set; else as it is.
+std::string coloured(std::string_view text, Colour);
+
+using Row = std::vector<std::string>;
+
+/// Rows on stdout in columns, two blanks before each: the first `names` columns and the last are
+/// flush left, the others flush right. All rows are as long as the first. Widths count characters
+/// of UTF-8.
+void print_columns(const std::vector<Row>&, std::size_t names);
 
 /// Shows a campaign on stderr: one line that is rewritten, with the time left, on a terminal; a
 /// line per case otherwise.

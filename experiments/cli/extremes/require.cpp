@@ -2,22 +2,15 @@
 
 #include <chrono>
 #include <cmath>
-#include <iostream>
-#include <memory>
 
-#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/command_line/columns.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
 
 namespace taut::verb::requiring {
@@ -29,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr double kPictureSeconds = 8;  ///< for which there has to be time
 
 struct Options {
-  std::string scene, solver = "jakobsen", picture, out;
+  std::string scene, solver = "jakobsen", output, out;
   std::vector<std::string> keep, settings;
   double patience = 120;
   int jobs = 1;
@@ -192,7 +185,7 @@ Json json_of(const Requirement& found, const Store& store, const std::string& pi
 /// One model's cloth at its end, under its own camera.
 Image panel(const CaseSpec& spec, const std::string& title, const Store& store) {
   const Case one = make_case(spec);
-  RecordedRun run = recorded_run(*one.scene, read_trajectory(store.folder(one.key) / kFramesFile));
+  RecordedRun run = recorded_run(*one.scene, store.motion(one.key));
   run.title = title;
   run.settings = report::brief_settings(one.choice.canonical());
   run.colour = kInk;
@@ -280,7 +273,7 @@ int run_one(const Options& options, const std::string& scene, Json& all, std::ve
   }
   const Store store(options.out);
   store.prepare();
-  const Session session(store, "taut require " + full.id, {}, {});
+  begin_session(store, "taut require " + full.id);
   const fs::path folder =
       fs::path(options.out) / "require" / (full.scene->name + "-" + full.key.substr(0, 8));
   Progress shown;
@@ -292,12 +285,12 @@ int run_one(const Options& options, const std::string& scene, Json& all, std::ve
                                                   [&](const CampaignProgress& c, const Record* r) {
                                                     if (r) shown.show(c, r);
                                                   }},
-                                             store, session, folder);
+                                             store, folder);
   std::string picture;
   if (found.smallest && seconds() + kPictureSeconds < options.patience)
     picture =
         draw(found, store,
-             options.picture.empty() || !alone ? folder / "models.png" : fs::path(options.picture));
+             options.output.empty() || !alone ? folder / "models.png" : fs::path(options.output));
   rows.push_back(summary(found));
   if (!found.answers.empty()) leave(found, rows.back(), folder);
   if (options.json)
@@ -334,25 +327,23 @@ int run(const Options& options) {
   return worst;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("SCENE", o->scene, "Name or path of a scene; all: every shipped one, as a table")
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("SCENE", o.scene, "Name or path of a scene; all: every shipped one, as a table")
       ->required();
-  app.add_option("SOLVER", o->solver, "NAME or NAME:key=value,... (default: jakobsen)");
-  app.add_option("--keep", o->keep,
+  app.add_option("SOLVER", o.solver, "NAME or NAME:key=value,... (default: jakobsen)");
+  app.add_option("--keep", o.keep,
                  "An answer to keep: shape or a metric value, and :TOLERANCE in SI units, in the "
                  "unit shown (:2mm) or in % of the cloth, of the duration or of the value; repeat "
                  "it (default: shape, stretch, depth, crossings, settling time)")
       ->allow_extra_args(false);
-  add_settings(app, o->settings);
-  app.add_option("--patience", o->patience, "For all of a scene's work [s] (default: 120)")
+  add_settings(app, o.settings);
+  app.add_option("--patience", o.patience, "For all of a scene's work [s] (default: 120)")
       ->check(above_zero());
-  app.add_option("--picture", o->picture,
-                 "Where to draw both models (default: models.png beside the smallest scene)");
-  add_jobs(app, o->jobs);
-  add_results(app, o->out);
-  add_json(app, o->json, "The table, the smallest model and all that was tried");
-  return [o] { return run(*o); };
+  add_output(app, o.output,
+             "Where to draw both models (default: models.png beside the smallest scene)");
+  add_jobs(app, o.jobs);
+  add_results(app, o.out);
+  add_json(app, o.json, "The table, the smallest model and all that was tried");
 }
 
 }  // namespace
@@ -360,10 +351,10 @@ std::function<int()> bind(CLI::App& app) {
 
 TAUT_VERB(require) = {
     .name = "require",
-    .group = VerbGroup::one_case,
+    .group = VerbGroup::extremes,
     .summary = "Finds the smallest model of a scene that keeps its answers",
     .example =
         "taut require flag\n  taut require ball jakobsen:faces=on --keep shape:2% --keep "
         "stretch.max:0.5%\n  taut require my/scene.toml bullet --json\n"
         "Exit: 0 found; 3 stopped by --patience; 6 the smallest model does not repeat bit for bit",
-    .bind = taut::verb::requiring::bind};
+    .bind = taut::bind_verb<taut::verb::requiring::add_options, taut::verb::requiring::run>};

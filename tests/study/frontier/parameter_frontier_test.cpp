@@ -1,6 +1,6 @@
 // What is wrong with a run, how a setting becomes cases, and frontiers against those that were
 // kept.
-#include "experiments/study/extremes/extremes.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
-#include "experiments/study/extremes/symptom.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/statistics.hpp"
 
-namespace taut::extremes_test {
+namespace taut::frontier_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -112,10 +112,10 @@ TEST(Symptoms, WhatASwingSetsFreeIsItsFallToThePlumbLine) {
     EXPECT_EQ(swing_energy(*make_case({"swing", {active}, "jakobsen"}).scene), 0) << active;
 }
 
-TEST(ExtremeSettings, StartWhereTheyAreEasyAndMakeCases) {
+TEST(FrontierSettings, StartWhereTheyAreEasyAndMakeCases) {
   for (const char* solver : {"jakobsen", "bullet:iterations=4", "mass-spring", "xpbd"}) {
     std::size_t answered = 0;
-    for (const ExtremeSetting& setting : extreme_settings(solver)) {
+    for (const FrontierSetting& setting : frontier_settings(solver)) {
       if (!setting.lacks.empty()) continue;
       ++answered;
       for (const double at : {setting.question.range.from, setting.question.range.to})
@@ -123,14 +123,14 @@ TEST(ExtremeSettings, StartWhereTheyAreEasyAndMakeCases) {
     }
     EXPECT_GE(answered, 8u) << solver;
   }
-  EXPECT_THROW(extreme_settings("nobody"), InputError);
+  EXPECT_THROW(frontier_settings("nobody"), InputError);
 }
 
 // Where a search begins it has changed nothing yet: the scene is the standard one, the solver the
 // one that was asked about.
-TEST(ExtremeSettings, BeginAtWhatTheStandardSceneHas) {
+TEST(FrontierSettings, BeginAtWhatTheStandardSceneHas) {
   for (const std::string solver : {"jakobsen", "bullet:iterations=4", "mass-spring", "xpbd"})
-    for (const ExtremeSetting& setting : extreme_settings(solver)) {
+    for (const FrontierSetting& setting : frontier_settings(solver)) {
       if (!setting.lacks.empty() || setting.name == "sweeps") continue;  // these begin with many
       const FrontierQuestion& question = setting.question;
       const Case base = make_case(question.base),
@@ -146,10 +146,10 @@ TEST(ExtremeSettings, BeginAtWhatTheStandardSceneHas) {
 }
 
 // From where it is easy to where it is absurd. Downwards a search goes up in 1/setting.
-TEST(ExtremeSettings, GoThisFar) {
+TEST(FrontierSettings, GoThisFar) {
   const auto all = [](const std::string& solver) {
     std::string text;
-    for (const ExtremeSetting& one : extreme_settings(solver)) {
+    for (const FrontierSetting& one : frontier_settings(solver)) {
       const FrontierQuestion& q = one.question;
       text += one.name + " [" + one.unit + "]: ";
       if (one.lacks.empty())
@@ -192,8 +192,8 @@ TEST(ExtremeSettings, GoThisFar) {
                 scene);
 }
 
-TEST(ExtremeSettings, TheoriesAreClosedForms) {
-  for (const ExtremeSetting& setting : extreme_settings("jakobsen:substeps=1,contact=discrete")) {
+TEST(FrontierSettings, TheoriesAreClosedForms) {
+  for (const FrontierSetting& setting : frontier_settings("jakobsen:substeps=1,contact=discrete")) {
     if (setting.name == "wind") {
       EXPECT_NEAR(setting.theory->value, 2 * 0.2 * 240, 1e-9);
     }
@@ -207,8 +207,8 @@ TEST(ExtremeSettings, TheoriesAreClosedForms) {
       EXPECT_NE(far / 2 + fall, far / 2) << "and it does at half of it";
     }
   }
-  EXPECT_FALSE(extreme_settings("jakobsen")[5].theory) << "continuous detection knows no limit";
-  for (const ExtremeSetting& setting : extreme_settings("mass-spring"))
+  EXPECT_FALSE(frontier_settings("jakobsen")[5].theory) << "continuous detection knows no limit";
+  for (const FrontierSetting& setting : frontier_settings("mass-spring"))
     if (setting.name == "time step") {
       // Below 2/w: a 20 x 20 grid with both diagonals holds to 0.71 sqrt(m/k) without its borders.
       EXPECT_NEAR(setting.theory->value / 32 / std::sqrt(0.2 / 64 / 50), 0.7, 0.2);
@@ -242,4 +242,4 @@ TEST(Frontiers, AreReadBackOfTheProgramThatFoundThemAndDamageIsNamed) {
 }
 
 }  // namespace
-}  // namespace taut::extremes_test
+}  // namespace taut::frontier_test

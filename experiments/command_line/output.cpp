@@ -1,18 +1,24 @@
-#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/output.hpp"
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <iostream>
 
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/command_line/verb.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut {
 
 namespace {
+
+std::size_t characters(const std::string& text) {
+  const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins));
+}
 
 bool g_shown = true;
 
@@ -21,6 +27,26 @@ std::string clock_text(double seconds) {
 }
 
 }  // namespace
+
+std::string coloured(std::string_view text, Colour colour) {
+  static const bool terminal = isatty(1) == 1 && std::getenv("NO_COLOR") == nullptr;
+  if (!terminal) return std::string(text);
+  return "\033[" + std::to_string(static_cast<int>(colour)) + "m" + std::string(text) + "\033[0m";
+}
+
+void print_columns(const std::vector<Row>& rows, std::size_t names) {
+  std::vector<std::size_t> width(rows.front().size());
+  for (const Row& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], characters(row[i]));
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const bool last = i + 1 == row.size();
+      const std::string blanks(width[i] - characters(row[i]), ' ');
+      std::cout << "  " << (i < names || last ? row[i] + (last ? "" : blanks) : blanks + row[i]);
+    }
+    std::cout << '\n';
+  }
+}
 
 std::string counts(const CampaignProgress& campaign) {
   if (campaign.by_status.empty()) return "no case";
@@ -79,10 +105,10 @@ void Progress::finish(const CampaignProgress& campaign) {
 
 CampaignProgress run_missing(const std::vector<Case>& cases, const Store& store,
                              const std::string& command, CampaignOptions options) {
-  const Session session(store, command, cases, options.shard);
+  begin_session(store, command, cases, options.shard);
   Progress display;
   options.progress = [&](const CampaignProgress& t, const Record* r) { display.show(t, r); };
-  const CampaignProgress campaign = run_cases(cases, store, session, options);
+  const CampaignProgress campaign = run_cases(cases, store, options);
   display.finish(campaign);
   return campaign;
 }

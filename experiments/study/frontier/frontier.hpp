@@ -106,8 +106,8 @@ struct CaseFrontier {
 using Judge = std::function<std::string(const Case&, const Record&)>;
 
 /// Every probe is a case of its own process, through the store.
-CaseFrontier find_frontier(const FrontierQuestion&, const Store&, const Session&,
-                           const CampaignOptions&, const Judge& = {});
+CaseFrontier find_frontier(const FrontierQuestion&, const Store&, const CampaignOptions&,
+                           const Judge& = {});
 
 /// Where linear theory has the frontier (linear_stability.hpp).
 struct Prediction {

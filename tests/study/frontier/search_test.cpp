@@ -1,13 +1,12 @@
 // Where a setting stops being stable: the search on made-up outcomes, then springs and sweeps
 // beside their closed forms.
-#include "experiments/study/frontier.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/model/input_error.hpp"
 #include "core/reference/linear_stability.hpp"
+#include "experiments/study/frontier/frontier.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut::frontier_test {

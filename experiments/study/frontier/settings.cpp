@@ -1,8 +1,8 @@
-#include "experiments/study/extremes/extreme_settings.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "experiments/study/frontier/parameter_frontier.hpp"
 
 namespace taut {
 
@@ -21,11 +21,11 @@ std::vector<std::string> standard(const std::vector<std::string>& more) {
 }
 
 /// What is asked of one solver.
-class ExtremeSettings {
+class FrontierSettings {
  public:
-  explicit ExtremeSettings(const std::string& solver) : choice_(parse_solver(solver)) {}
+  explicit FrontierSettings(const std::string& solver) : choice_(parse_solver(solver)) {}
 
-  std::vector<ExtremeSetting> all() {
+  std::vector<FrontierSetting> all() {
     linear(add("time step", "s", "dt", kStep, 1));
     add_sweeps();
     add_stiffness();
@@ -38,8 +38,8 @@ class ExtremeSettings {
     add("size, up", "m", "cloth.size.0|cloth.size.1", 1, 1e5);
     add("size, down", "m", "cloth.size.0|cloth.size.1", 1, 1e5, Direction::down);
     add_distance();
-    ExtremeSetting& wind = add("wind", "N s/m^3", "wind.strength", 0.01, 1e5, Direction::up,
-                               {"wind={ velocity = [0, 0, 5], strength = 0.01 }"});
+    FrontierSetting& wind = add("wind", "N s/m^3", "wind.strength", 0.01, 1e5, Direction::up,
+                                {"wind={ velocity = [0, 0, 5], strength = 0.01 }"});
     wind.theory = {Frontier::Kind::bracketed, 2 * kDensity / substep(), 0,
                    "explicit drag of a face: c h/sigma < 2"};
     return std::move(all_);
@@ -58,10 +58,10 @@ class ExtremeSettings {
     return kStep / (substeps.empty() ? 1 : choice_.params.integer(substeps));
   }
 
-  ExtremeSetting& add(const std::string& name, const std::string& unit, const std::string& of,
-                      double from, double to, Direction direction = Direction::up,
-                      const std::vector<std::string>& more = {}) {
-    ExtremeSetting one{name, unit, {{"swing", standard(more), choice_.brief()}, of, {}}, "", {}};
+  FrontierSetting& add(const std::string& name, const std::string& unit, const std::string& of,
+                       double from, double to, Direction direction = Direction::up,
+                       const std::vector<std::string>& more = {}) {
+    FrontierSetting one{name, unit, {{"swing", standard(more), choice_.brief()}, of, {}}, "", {}};
     one.question.direction = direction;
     one.question.range = {.from = from, .to = to, .tolerance = kTolerance};
     all_.push_back(std::move(one));
@@ -72,14 +72,14 @@ class ExtremeSettings {
     all_.push_back({name, "", {}, why, {}});
   }
 
-  static void linear(ExtremeSetting& one) { one.theory = predicted_frontier(one.question); }
+  static void linear(FrontierSetting& one) { one.theory = predicted_frontier(one.question); }
 
   /// On a finer sheet in long, whole steps, where they matter.
   void add_sweeps() {
     const std::string sweeps(choice_.entry->accuracy.sweeps);
     if (sweeps.empty()) return lacking("sweeps", "it has none");
-    ExtremeSetting& one = add("sweeps", "", sweeps, 1.0 / 64, 1, Direction::down_in_whole_numbers,
-                              {"cloth.grid=[17, 17]", "time.dt=\"1/30\""});
+    FrontierSetting& one = add("sweeps", "", sweeps, 1.0 / 64, 1, Direction::down_in_whole_numbers,
+                               {"cloth.grid=[17, 17]", "time.dt=\"1/30\""});
     const std::string substeps(choice_.entry->accuracy.substeps);
     if (!substeps.empty()) set_parameter(one.question.base.solver, substeps, "1");
   }
@@ -97,7 +97,7 @@ class ExtremeSettings {
 
   /// A free sheet falls on a plate that rises.
   void add_speed() {
-    ExtremeSetting& one =
+    FrontierSetting& one =
         add("speed of a collider", "m/s", "collider.0.velocity.1", 0.1, 1000, Direction::up,
             {"cloth.pins=[]", "cloth.tilt=0", "cloth.v=[0, 0, 1]", "cloth.origin=[-0.5, 0.2, -0.5]",
              "cloth.thickness=0.01",
@@ -109,7 +109,7 @@ class ExtremeSettings {
   }
 
   void add_distance() {
-    ExtremeSetting& one =
+    FrontierSetting& one =
         add("distance from the origin", "m", "cloth.origin.0|cloth.origin.1|cloth.origin.2", 1, 1e5,
             Direction::up, {"cloth.origin=[1, 1, 1]"});
     if (!parameter("precision") || !choice_.params.is("precision", "float")) return;
@@ -120,13 +120,13 @@ class ExtremeSettings {
   }
 
   SolverChoice choice_;
-  std::vector<ExtremeSetting> all_;
+  std::vector<FrontierSetting> all_;
 };
 
 }  // namespace
 
-std::vector<ExtremeSetting> extreme_settings(const std::string& solver) {
-  return ExtremeSettings(solver).all();
+std::vector<FrontierSetting> frontier_settings(const std::string& solver) {
+  return FrontierSettings(solver).all();
 }
 
 }  // namespace taut
