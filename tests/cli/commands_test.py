@@ -479,11 +479,11 @@ class Verbs(CommandLine):
         rows = json.loads(self.taut("bench", "effects", "crumple", "chain", "--sizes", "20,24", *short).out)
         self.assertEqual([(row["scene"], row["vertices"]) for row in rows],
                          [("hang", 400), ("crumple", 400), ("hang", 576), ("crumple", 576)])  # a chain is no sheet
-        rows = json.loads(self.taut("bench", "effects", "chain", "--two-threads", *short).out)
-        self.assertEqual([(row["scene"], row["ns"]) for row in rows], [("hang", []), ("chain", [])])
-        for row in rows:
-            self.assertEqual((len(row["two_threads"]), len(row["unrelated_sheets"])), (4, 4))
-            self.assertGreater(min(row["two_threads"] + row["unrelated_sheets"]), 0)
+        rows = json.loads(self.taut("bench", "effects", "hang", "--two-threads", "--sizes", "0,92", *short).out)
+        self.assertEqual([(row["vertices"], row["ns"]) for row in rows], [(1024, []), (8464, [])])
+        self.assertEqual([len(row["two_threads"]) for row in rows], [0, 4])
+        self.assertIn("fewer than 8192 vertices take one thread", rows[0]["refused"])
+        self.assertGreater(min(rows[1]["two_threads"] + rows[1]["unrelated_sheets"]), 0)
         solver = "jakobsen:iterations=1,substeps=1000000"
         out = self.taut("bench", "effects", "ball", "--solver", solver, "--rounds", "1").out
         self.assertIn("not timed: in float, gravity's move", out)
