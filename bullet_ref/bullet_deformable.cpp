@@ -13,7 +13,6 @@
 #include <cmath>
 
 #include "bullet_ref/bullet_solver.hpp"
-#include "bullet_ref/convert.hpp"
 #include "core/model/index.hpp"
 #include "core/model/wind.hpp"
 

@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include "bullet_ref/bullet_solver.hpp"
-#include "bullet_ref/convert.hpp"
 #include "core/model/wind.hpp"
 
 namespace taut::solver::bullet_soft_body {

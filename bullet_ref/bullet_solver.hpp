@@ -4,9 +4,9 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "bullet_ref/cloth.hpp"
 #include "bullet_ref/read_back.hpp"
 #include "bullet_ref/rigid_colliders.hpp"
 #include "core/model/solver.hpp"
@@ -14,6 +14,35 @@
 class btDiscreteDynamicsWorld;
 
 namespace taut {
+
+/// The scalar type of the Bullet library that this copy of the code is compiled for.
+inline constexpr std::string_view kBulletPrecision = sizeof(btScalar) == 8 ? "double" : "float";
+
+inline btVector3 to_bullet(const Vec3& v) {
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
+inline Vec3 from_bullet(const btVector3& v) {
+  return Eigen::Matrix<btScalar, 3, 1>(v.x(), v.y(), v.z()).cast<double>();
+}
+
+/// What a scene leaves open about its cloth.
+struct ClothOptions {
+  double stiffness = 1;  ///< kLST of every link
+  double margin = 0;     ///< m, on top of the scene's thickness
+  bool faces = true;     ///< the mesh's, in its order; without them Bullet computes no normals
+  bool reorder = false;  ///< links by ReoptimizeLinkOrder; else in the scene's order
+};
+
+/// The scene's cloth, node by node and link by link, at rest in its rest shape; material i is that
+/// of family i; deactivation is off.
+std::unique_ptr<btSoftBody> build_cloth(btSoftBodyWorldInfo&, const Scene&, const ClothOptions&);
+
+/// Which of a link's two fields its solver reads for the rest length.
+enum class RestLength { m_rl, m_c1 };
+
+/// Links that share a vertex with the link before them in the order in which they are solved: each
+/// waits for what the one before it writes.
+int waiting_links(const btSoftBody&);
 
 /// What both of Bullet's cloths are: the scene's cloth and colliders in a world of Bullet's, which
 /// the derived class owns, advanced by substeps. Only the .cpp files of this folder include this.
@@ -102,4 +131,5 @@ ResolvedSettings contact_settings(const Scene&, const Params&, const std::string
 std::string short_text(double);
 
 }  // namespace bullet_ref
+
 }  // namespace taut

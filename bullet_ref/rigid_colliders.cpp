@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "bullet_ref/convert.hpp"
+#include "bullet_ref/bullet_solver.hpp"
 
 namespace taut {
 
@@ -17,6 +17,14 @@ struct RigidPose {
 };
 
 namespace {
+
+btTransform transform_of(const Eigen::Quaterniond& rotation, const Vec3& origin) {
+  const Eigen::Matrix3d m = rotation.toRotationMatrix();
+  const auto at = [&](int i, int j) { return static_cast<btScalar>(m(i, j)); };
+  const btMatrix3x3 basis(at(0, 0), at(0, 1), at(0, 2), at(1, 0), at(1, 1), at(1, 2), at(2, 0),
+                          at(2, 1), at(2, 2));
+  return btTransform(basis, to_bullet(origin));
+}
 
 /// Half extents of a plane's slab [m]: wide enough for every scene, and so thick that no cloth gets
 /// to its far side; its solid side is -y. Larger slabs gain nothing and cost GJK digits in float.
@@ -78,7 +86,7 @@ struct RigidColliders::Body {
   }
 
   btTransform at(double t) const {
-    return to_bullet(motion.rotation(t) * start.rotation, motion.moved(start.origin, t));
+    return transform_of(motion.rotation(t) * start.rotation, motion.moved(start.origin, t));
   }
 
   RigidPose start;

@@ -183,70 +183,6 @@ void stretch_start(Section& cloth, Scene& scene) {
   for (Vec3& x : scene.start.x) x = fixed + factor * (x - fixed);
 }
 
-/// Vertices that are heavier or lighter than the lumping says.
-void read_weights(Section& cloth, Scene& scene) {
-  for (const Value* entry : cloth.tables("weights")) {
-    Section weight(cloth.diagnostics(), *entry, "'weights' in [cloth]");
-    weight.need({"vertices", "factor"});
-    const double factor = weight.number("factor", {1e-9, 1e9}, 1);
-    for (const int vertex : read_vertices(weight, "vertices", scene.mesh))
-      scene.mesh.mass[to_index(vertex)] *= factor;
-    weight.finish();
-  }
-}
-
-/// What a value names by itself: an array is a pair [i, j].
-std::vector<int> vertices_of(const Value&, Section&, const std::string& key, const Mesh&);
-
-/// Vertices that start elsewhere than the shape says.
-void read_placed(Section& cloth, Scene& scene) {
-  for (const Value* entry : cloth.tables("placed")) {
-    Section placed(cloth.diagnostics(), *entry, "'placed' in [cloth]");
-    placed.need({"vertex", "at"});
-    const Value* vertex = placed.find("vertex");
-    const auto target = placed.vec3("at", kFar);
-    placed.finish();
-    if (!vertex || !target) continue;
-    const auto vertices = vertices_of(*vertex, placed, "vertex", scene.mesh);
-    if (vertices.size() > 1) placed.report("vertex", "must name one vertex");
-    if (vertices.size() == 1) scene.start.x[to_index(vertices[0])] = *target;
-  }
-}
-
-/// Keys that mean nothing for this kind of cloth; they are named here so that the message can say
-/// why.
-void refuse(Section& cloth, const std::vector<std::string>& keys, const std::string& why) {
-  for (const std::string& key : keys)
-    if (cloth.find(key)) cloth.report(key, why);
-}
-
-}  // namespace
-
-bool read_cloth(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
-                Scene& scene) {
-  const bool surface = cloth.find("mesh");
-  if (surface)
-    refuse(cloth, {"grid", "size", "u", "v", "span", "tilt"}, "belongs to a grid, not to a mesh");
-  else
-    refuse(cloth, {"scale", "rotation"}, "belongs to a mesh, not to a grid");
-  scene.thickness = cloth.number("thickness", Range::non_negative(kFar), 0);
-  const Vec3 velocity = cloth.vec3("velocity", kFar, Vec3::Zero());
-  const bool built =
-      surface ? read_surface(cloth, folder, links, scene) : read_sheet(cloth, links, scene);
-  for (const char* key : {"span", "tilt", "stretch", "weights", "pins", "placed"})
-    cloth.find(key);  // known in any case
-  if (!built) return false;
-  scene.start.v.assign(scene.start.x.size(), velocity);
-  scene.pins = read_vertices(cloth, "pins", scene.mesh);
-  for (const int pin : scene.pins) scene.start.v[to_index(pin)].setZero();
-  stretch_start(cloth, scene);
-  read_weights(cloth, scene);
-  read_placed(cloth, scene);
-  return true;
-}
-
-namespace {
-
 /// Rows and columns of a grid that a name stands for.
 struct Part {
   std::string name;
@@ -348,6 +284,7 @@ class VertexReader {
   std::vector<int> all_;
 };
 
+/// What a value names by itself: an array is a pair [i, j].
 std::vector<int> vertices_of(const Value& value, Section& section, const std::string& key,
                              const Mesh& mesh) {
   VertexReader reader(section, key, mesh);
@@ -355,7 +292,64 @@ std::vector<int> vertices_of(const Value& value, Section& section, const std::st
   return reader.take();
 }
 
+/// Vertices that are heavier or lighter than the lumping says.
+void read_weights(Section& cloth, Scene& scene) {
+  for (const Value* entry : cloth.tables("weights")) {
+    Section weight(cloth.diagnostics(), *entry, "'weights' in [cloth]");
+    weight.need({"vertices", "factor"});
+    const double factor = weight.number("factor", {1e-9, 1e9}, 1);
+    for (const int vertex : read_vertices(weight, "vertices", scene.mesh))
+      scene.mesh.mass[to_index(vertex)] *= factor;
+    weight.finish();
+  }
+}
+
+/// Vertices that start elsewhere than the shape says.
+void read_placed(Section& cloth, Scene& scene) {
+  for (const Value* entry : cloth.tables("placed")) {
+    Section placed(cloth.diagnostics(), *entry, "'placed' in [cloth]");
+    placed.need({"vertex", "at"});
+    const Value* vertex = placed.find("vertex");
+    const auto target = placed.vec3("at", kFar);
+    placed.finish();
+    if (!vertex || !target) continue;
+    const auto vertices = vertices_of(*vertex, placed, "vertex", scene.mesh);
+    if (vertices.size() > 1) placed.report("vertex", "must name one vertex");
+    if (vertices.size() == 1) scene.start.x[to_index(vertices[0])] = *target;
+  }
+}
+
+/// Keys that mean nothing for this kind of cloth; they are named here so that the message can say
+/// why.
+void refuse(Section& cloth, const std::vector<std::string>& keys, const std::string& why) {
+  for (const std::string& key : keys)
+    if (cloth.find(key)) cloth.report(key, why);
+}
+
 }  // namespace
+
+bool read_cloth(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
+                Scene& scene) {
+  const bool surface = cloth.find("mesh");
+  if (surface)
+    refuse(cloth, {"grid", "size", "u", "v", "span", "tilt"}, "belongs to a grid, not to a mesh");
+  else
+    refuse(cloth, {"scale", "rotation"}, "belongs to a mesh, not to a grid");
+  scene.thickness = cloth.number("thickness", Range::non_negative(kFar), 0);
+  const Vec3 velocity = cloth.vec3("velocity", kFar, Vec3::Zero());
+  const bool built =
+      surface ? read_surface(cloth, folder, links, scene) : read_sheet(cloth, links, scene);
+  for (const char* key : {"span", "tilt", "stretch", "weights", "pins", "placed"})
+    cloth.find(key);  // known in any case
+  if (!built) return false;
+  scene.start.v.assign(scene.start.x.size(), velocity);
+  scene.pins = read_vertices(cloth, "pins", scene.mesh);
+  for (const int pin : scene.pins) scene.start.v[to_index(pin)].setZero();
+  stretch_start(cloth, scene);
+  read_weights(cloth, scene);
+  read_placed(cloth, scene);
+  return true;
+}
 
 std::vector<int> read_vertices(Section& section, const std::string& key, const Mesh& mesh) {
   const Value* value = section.find(key);

@@ -9,7 +9,6 @@
 #include <numeric>
 #include <set>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "core/io/text_file.hpp"
@@ -144,42 +143,6 @@ void judge_surface(const Polygons& p, SurfaceErrors& errors) {
                         std::to_string(edge.faces.size()) + " faces; a cloth has two at most");
 }
 
-}  // namespace
-
-double area(const Polygons& p) {
-  double sum = 0;
-  for (const auto& face : p.faces) sum += face_area(p, face);
-  return sum;
-}
-
-Mesh make_mesh(const Polygons& p, double mass, Lumping lumping) {
-  assert(!p.faces.empty() && mass > 0);
-  Mesh mesh;
-  mesh.rest = p.vertices;
-  for (std::vector<int> face : p.faces) {
-    const auto x = [&](std::size_t k) { return p.vertices[to_index(face[k])]; };
-    if (face.size() == 4 && (x(1) - x(3)).squaredNorm() < (x(0) - x(2)).squaredNorm())
-      std::rotate(face.begin(), face.begin() + 1, face.end());
-    for (std::size_t k = 1; k + 1 < face.size(); ++k)
-      mesh.triangles.push_back({face[0], face[k], face[k + 1]});
-  }
-  const auto n = p.vertices.size();
-  if (lumping == Lumping::equal) {
-    mesh.mass.assign(n, mass / static_cast<double>(n));
-    return mesh;
-  }
-  mesh.mass.assign(n, 0.0);
-  const double density = mass / area(p);
-  for (const auto& face : p.faces) {
-    const auto share = shares(p, face);
-    for (std::size_t k = 0; k < face.size(); ++k)
-      mesh.mass[to_index(face[k])] += density * share[k];
-  }
-  return mesh;
-}
-
-namespace {
-
 /// The vertex beside `of` in the face, on the side away from `other`, which is its other neighbour.
 int beside(const std::vector<int>& face, int of, int other) {
   const auto n = face.size();
@@ -187,42 +150,6 @@ int beside(const std::vector<int>& face, int of, int other) {
   const int before = face[(k + n - 1) % n], after = face[(k + 1) % n];
   return before == other ? after : before;
 }
-
-}  // namespace
-
-std::vector<Link> mesh_links(const Polygons& p, const LinkChoice& choice) {
-  using Pair = std::pair<int, int>;
-  const auto edges = edges_of(p);
-  std::set<Pair> edge_pairs, diagonals, across;
-  for (const Edge& e : edges) edge_pairs.emplace(e.a, e.b);
-  const auto add = [&](std::set<Pair>& to, int a, int b, const std::set<Pair>& except) {
-    const Pair pair = std::minmax(a, b);
-    if (a != b && !edge_pairs.count(pair) && !except.count(pair)) to.insert(pair);
-  };
-  for (const auto& face : p.faces)
-    if (face.size() == 4) {
-      add(diagonals, face[0], face[2], {});
-      add(diagonals, face[1], face[3], {});
-    }
-  const std::set<Pair> sheared = choice.shear ? diagonals : std::set<Pair>{};
-  for (const auto& [a, b, faces] : edges) {
-    if (faces.size() != 2) continue;
-    const auto &left = p.faces[to_index(faces[0])], &right = p.faces[to_index(faces[1])];
-    add(across, beside(left, a, b), beside(right, a, b), sheared);
-    add(across, beside(left, b, a), beside(right, b, a), sheared);
-  }
-  std::vector<Link> links;
-  const auto emit = [&](const std::set<Pair>& pairs, Family family) {
-    for (const auto& [a, b] : pairs)
-      links.push_back({a, b, (p.vertices[to_index(b)] - p.vertices[to_index(a)]).norm(), family});
-  };
-  if (choice.structural) emit(edge_pairs, Family::structural);
-  if (choice.shear) emit(diagonals, Family::shear);
-  if (choice.bend) emit(across, Family::bend);
-  return links;
-}
-
-namespace {
 
 /// Keywords that say nothing about the shape.
 constexpr std::string_view kSkipped[] = {"vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib"};
@@ -313,6 +240,70 @@ class ObjReader {
 };
 
 }  // namespace
+
+double area(const Polygons& p) {
+  double sum = 0;
+  for (const auto& face : p.faces) sum += face_area(p, face);
+  return sum;
+}
+
+Mesh make_mesh(const Polygons& p, double mass, Lumping lumping) {
+  assert(!p.faces.empty() && mass > 0);
+  Mesh mesh;
+  mesh.rest = p.vertices;
+  for (std::vector<int> face : p.faces) {
+    const auto x = [&](std::size_t k) { return p.vertices[to_index(face[k])]; };
+    if (face.size() == 4 && (x(1) - x(3)).squaredNorm() < (x(0) - x(2)).squaredNorm())
+      std::rotate(face.begin(), face.begin() + 1, face.end());
+    for (std::size_t k = 1; k + 1 < face.size(); ++k)
+      mesh.triangles.push_back({face[0], face[k], face[k + 1]});
+  }
+  const auto n = p.vertices.size();
+  if (lumping == Lumping::equal) {
+    mesh.mass.assign(n, mass / static_cast<double>(n));
+    return mesh;
+  }
+  mesh.mass.assign(n, 0.0);
+  const double density = mass / area(p);
+  for (const auto& face : p.faces) {
+    const auto share = shares(p, face);
+    for (std::size_t k = 0; k < face.size(); ++k)
+      mesh.mass[to_index(face[k])] += density * share[k];
+  }
+  return mesh;
+}
+
+std::vector<Link> mesh_links(const Polygons& p, const LinkChoice& choice) {
+  using Pair = std::pair<int, int>;
+  const auto edges = edges_of(p);
+  std::set<Pair> edge_pairs, diagonals, across;
+  for (const Edge& e : edges) edge_pairs.emplace(e.a, e.b);
+  const auto add = [&](std::set<Pair>& to, int a, int b, const std::set<Pair>& except) {
+    const Pair pair = std::minmax(a, b);
+    if (a != b && !edge_pairs.count(pair) && !except.count(pair)) to.insert(pair);
+  };
+  for (const auto& face : p.faces)
+    if (face.size() == 4) {
+      add(diagonals, face[0], face[2], {});
+      add(diagonals, face[1], face[3], {});
+    }
+  const std::set<Pair> sheared = choice.shear ? diagonals : std::set<Pair>{};
+  for (const auto& [a, b, faces] : edges) {
+    if (faces.size() != 2) continue;
+    const auto &left = p.faces[to_index(faces[0])], &right = p.faces[to_index(faces[1])];
+    add(across, beside(left, a, b), beside(right, a, b), sheared);
+    add(across, beside(left, b, a), beside(right, b, a), sheared);
+  }
+  std::vector<Link> links;
+  const auto emit = [&](const std::set<Pair>& pairs, Family family) {
+    for (const auto& [a, b] : pairs)
+      links.push_back({a, b, (p.vertices[to_index(b)] - p.vertices[to_index(a)]).norm(), family});
+  };
+  if (choice.structural) emit(edge_pairs, Family::structural);
+  if (choice.shear) emit(diagonals, Family::shear);
+  if (choice.bend) emit(across, Family::bend);
+  return links;
+}
 
 Polygons parse_obj(const std::string& file, const std::string& text) {
   SurfaceErrors errors(file);

@@ -1,14 +1,260 @@
 #include "core/io/section.hpp"
 
+#include <toml++/toml.h>
+
 #include <algorithm>
-#include <charconv>
+#include <cctype>
 #include <cmath>
+#include <cstdint>
+#include <sstream>
+#include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "core/io/scene_io.hpp"
+#include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
+
+namespace {
+
+SourceLocation place_of(const toml::source_region& region, int override) {
+  return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), override};
+}
+
+/// The TOML library goes down a level for each part of a dotted key, and has no bound of its own.
+constexpr int kMostKeyParts = 16;
+/// Levels of a document: what is deeper means nothing here.
+constexpr int kMostLevels = 64;
+
+/// Where the first dotted key with more parts than that stands, 0-based; npos: there is none.
+std::size_t too_long_key(std::string_view text) {
+  const auto bare = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  };
+  const auto after_part = [&](std::size_t at) {  // `at` itself: no part of a key stands here
+    if (at < text.size() && (text[at] == '"' || text[at] == '\'')) {
+      const std::size_t end = text.find_first_of(std::string{text[at], '\n'}, at + 1);
+      return end != text.npos && text[end] == text[at] ? end + 1 : at;
+    }
+    while (at < text.size() && bare(text[at])) ++at;
+    return at;
+  };
+  const auto after_blanks = [&](std::size_t at) {
+    return std::min(text.find_first_not_of(" \t", at), text.size());
+  };
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t at = begin;
+    for (int parts = 1;; ++parts) {
+      const std::size_t end = after_part(at);
+      if (end == at) break;
+      if (parts > kMostKeyParts) return begin;
+      at = after_blanks(end);
+      if (at == text.size() || text[at] != '.') break;
+      at = after_blanks(at + 1);
+    }
+    begin = std::max(at, begin + 1);
+  }
+  return text.npos;
+}
+
+toml::table parse_bounded(std::string_view text) {
+  if (const std::size_t at = too_long_key(text); at != text.npos) {
+    const auto line =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    const std::size_t start = text.rfind('\n', at) + 1;  // npos + 1 is 0
+    const toml::source_position place{static_cast<toml::source_index>(line + 1),
+                                      static_cast<toml::source_index>(at - start + 1)};
+    throw toml::parse_error("a key of more than 16 parts", place, nullptr);
+  }
+  return toml::parse(text);
+}
+
+Value convert(const toml::node& node, int override, int level = 0) {
+  if (level > kMostLevels)
+    throw toml::parse_error("nested more than 64 levels deep", node.source());
+  Value value;
+  value.place = place_of(node.source(), override);
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, child] : *table) {
+      value.keys.push_back({std::string(key.str()), place_of(key.source(), override)});
+      value.items.push_back(convert(child, override, level + 1));
+    }
+  } else if (const toml::array* array = node.as_array()) {
+    value.kind = Value::Kind::array;
+    for (const toml::node& child : *array)
+      value.items.push_back(convert(child, override, level + 1));
+  } else if (node.is_string()) {
+    value.kind = Value::Kind::string;
+    value.string = node.value_or(std::string());
+  } else if (node.is_boolean()) {
+    value.kind = Value::Kind::boolean;
+    value.boolean = node.value_or(false);
+  } else if (node.is_number()) {
+    value.kind = node.is_integer() ? Value::Kind::integer : Value::Kind::real;
+    value.number = node.value_or(0.0);
+  } else {
+    value.kind = Value::Kind::date;
+  }
+  return value;
+}
+
+/// The element of an array that a dotted key names by its number; nullptr: none such.
+Value* element(Value& array, const std::string& key) {
+  const auto index = whole<std::size_t>(key);
+  return index && *index < array.items.size() ? &array.items[*index] : nullptr;
+}
+
+/// Puts what the override says over what is there. Tables that were written with dotted keys merge;
+/// everything else is replaced.
+void assign(Value& target, const toml::table& from, int override,
+            std::vector<std::string>& problems) {
+  for (const auto& [key, child] : from) {
+    const std::string name(key.str());
+    Value* slot = nullptr;
+    if (target.is_array()) {
+      slot = element(target, name);
+      if (!slot) {
+        problems.push_back("no element '" + name + "' among the " +
+                           std::to_string(target.items.size()) + " of this array");
+        continue;
+      }
+    } else {
+      if (!target.is_table()) target = Value{};  // judged later: the schema wants another type
+      slot = const_cast<Value*>(target.find(name));
+      if (!slot) {
+        target.keys.push_back({name, place_of(key.source(), override)});
+        target.items.push_back({});
+        slot = &target.items.back();
+        slot->place = place_of(key.source(), override);
+      }
+    }
+    const toml::table* table = child.as_table();
+    if (table && !table->is_inline())
+      assign(*slot, *table, override, problems);
+    else
+      *slot = convert(child, override);
+  }
+}
+
+/// The syntax error as ours; its line is kept inside the text even if the end is what is missing.
+Diagnostic syntax_error(const toml::parse_error& error, const Document& document,
+                        const std::string& text, int override) {
+  SourceLocation place = place_of(error.source(), override);
+  const auto breaks = std::count(text.begin(), text.end(), '\n');
+  const int lines = static_cast<int>(breaks) + (text.empty() || text.back() != '\n' ? 1 : 0);
+  place.line = std::clamp(place.line, 1, std::max(1, lines));
+  place.column = std::max(1, place.column);
+  return document.diagnostic(place, std::string(error.description()));
+}
+
+/// Where a value of the library's goes: into an array, or into a table under a key.
+struct Place {
+  toml::array* array = nullptr;
+  toml::table* table = nullptr;
+  std::string key = {};
+  template <class T>
+  void put(T value) const {
+    if (array)
+      array->push_back(std::move(value));
+    else
+      table->insert(key, std::move(value));
+  }
+};
+
+toml::table table_of(const Value& table);
+
+void hand_over(const Value& value, const Place& to) {
+  switch (value.kind) {
+    case Value::Kind::boolean:
+      return to.put(value.boolean);
+    case Value::Kind::integer:
+      return to.put(static_cast<std::int64_t>(value.number));
+    case Value::Kind::real:
+      return to.put(value.number);
+    case Value::Kind::string:
+      return to.put(value.string);
+    case Value::Kind::table:
+      return to.put(table_of(value));
+    case Value::Kind::date:
+      throw InputError("a date or time cannot be written");
+    case Value::Kind::array:
+      break;
+  }
+  toml::array array;
+  for (const Value& item : value.items) hand_over(item, {.array = &array});
+  to.put(std::move(array));
+}
+
+toml::table table_of(const Value& value) {
+  toml::table table;
+  for (std::size_t i = 0; i < value.items.size(); ++i)
+    hand_over(value.items[i], {.table = &table, .key = value.keys[i].text});
+  return table;
+}
+
+}  // namespace
+
+const Value* Value::find(const std::string& key) const {
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (keys[i].text == key) return &items[i];
+  return nullptr;
+}
+
+std::string describe(const Value& value) {
+  using enum Value::Kind;
+  if (value.kind == boolean) return value.boolean ? "true" : "false";
+  if (value.kind == string) return "the string \"" + value.string + "\"";
+  if (value.kind == array) return "an array of " + std::to_string(value.items.size());
+  return value.kind == integer ? "a whole number"
+         : value.kind == real  ? "a number"
+         : value.kind == table ? "a table"
+                               : "a date or time";
+}
+
+Diagnostic Document::diagnostic(const SourceLocation& place, const std::string& message) const {
+  if (place.override < 0) return {file, place.line, place.column, message};
+  const std::string& text = overrides[static_cast<std::size_t>(place.override)];
+  return {text, 0, place.column, message};
+}
+
+Document parse_document(const std::string& file, const std::string& text,
+                        const std::vector<std::string>& overrides) {
+  Document document{file, overrides, {}};
+  std::vector<Diagnostic> found;
+  try {
+    document.root = convert(parse_bounded(text), -1);
+  } catch (const toml::parse_error& error) {
+    found.push_back(syntax_error(error, document, text, -1));
+  }
+  for (int i = 0; i < static_cast<int>(overrides.size()); ++i) {
+    const std::string& assignment = overrides[static_cast<std::size_t>(i)];
+    try {
+      std::vector<std::string> problems;
+      assign(document.root, parse_bounded(assignment), i, problems);
+      for (const std::string& problem : problems)
+        found.push_back(document.diagnostic({1, 1, i}, problem));
+    } catch (const toml::parse_error& error) {
+      found.push_back(syntax_error(error, document, assignment, i));
+      if (found.back().message.starts_with("Error while parsing"))  // the library's words
+        found.back().message += "; a text stands in quotes: key=\"text\"";
+    }
+  }
+  if (!found.empty()) throw InputError(found);
+  return document;
+}
+
+Document read_document(const std::filesystem::path& path,
+                       const std::vector<std::string>& overrides) {
+  return parse_document(path.string(), read_text(path, kMostSceneBytes), overrides);
+}
+
+std::string to_toml(const Value& root) {
+  std::ostringstream out;
+  out << table_of(root) << '\n';
+  return out.str();
+}
 
 void Diagnostics::throw_if_any() {
   if (found_.empty()) return;
@@ -30,11 +276,10 @@ std::string Range::text() const {
 
 double parse_number(const std::string& text) {
   const auto part = [&](std::string_view s) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), value);
-    if (error != std::errc() || end != s.data() + s.size() || !std::isfinite(value))
+    const auto value = whole<double>(s);
+    if (!value || !std::isfinite(*value))
       throw InputError("'" + text + "' is not a number; write 0.015625 or \"1/64\"");
-    return value;
+    return *value;
   };
   const std::string_view all = text;
   const auto slash = all.find('/');

@@ -28,6 +28,27 @@ std::vector<Vec3> wind_forces(const Scene& scene, const std::vector<Vec3>& x,
   return f;
 }
 
+/// States at the times; empty if a projection failed.
+std::vector<State> run(const Scene& scene, const std::vector<double>& times, double dt) {
+  Shake shake(scene, dt);
+  std::vector<State> states;
+  for (const double t : times) {
+    while (shake.time() < t - dt / 2)
+      if (!shake.step()) return {};
+    states.push_back(shake.state());
+  }
+  return states;
+}
+
+State extrapolate(const State& coarse, const State& fine) {
+  State s = fine;
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    s.x[i] += (fine.x[i] - coarse.x[i]) / 3;
+    s.v[i] += (fine.v[i] - coarse.v[i]) / 3;
+  }
+  return s;
+}
+
 }  // namespace
 
 struct Shake::Impl {
@@ -158,31 +179,6 @@ std::vector<std::string> refuse_dynamic(const Scene& scene) {
   }
   return reasons;
 }
-
-namespace {
-
-/// States at the times; empty if a projection failed.
-std::vector<State> run(const Scene& scene, const std::vector<double>& times, double dt) {
-  Shake shake(scene, dt);
-  std::vector<State> states;
-  for (const double t : times) {
-    while (shake.time() < t - dt / 2)
-      if (!shake.step()) return {};
-    states.push_back(shake.state());
-  }
-  return states;
-}
-
-State extrapolate(const State& coarse, const State& fine) {
-  State s = fine;
-  for (std::size_t i = 0; i < s.x.size(); ++i) {
-    s.x[i] += (fine.x[i] - coarse.x[i]) / 3;
-    s.v[i] += (fine.v[i] - coarse.v[i]) / 3;
-  }
-  return s;
-}
-
-}  // namespace
 
 Trajectory converged_motion(const Scene& scene, const std::vector<double>& times, double dt) {
   Trajectory m;

@@ -61,41 +61,50 @@ ThreadPool::~ThreadPool() {
 /// Returns once the part has done so many stages: does itself what nobody is doing, of its
 /// neighbours too.
 void ThreadPool::advance(Member& me, std::size_t part, std::uint32_t stages) {
-  std::atomic<std::uint32_t>& state = parts_[part].state;
+  Part& p = parts_[part];
   Wait wait;
   for (;;) {
-    std::uint32_t now = state.load(std::memory_order_acquire);
-    const std::uint32_t done = now / 2;
-    if (done >= stages) return;
-    if (now % 2 != 0) {
-      wait();
-      continue;
-    }
+    std::uint32_t next = p.done.load(std::memory_order_acquire);
+    if (next >= stages) return;
     const bool alone = gate_.load(std::memory_order_relaxed) == 1;
     if (!me.owns(part) && me.patience > 0 && !alone) {
       --me.patience, pause();
       continue;
     }
-    if (part > 0) advance(me, part - 1, done);
-    if (part + 1 < part_count_) advance(me, part + 1, done);
-    if (!state.compare_exchange_strong(now, now + 1, std::memory_order_acquire)) continue;
-    stages_[done](count_ * part / part_count_, count_ * (part + 1) / part_count_);
-    state.store(now + 2, std::memory_order_release);
+    if (p.begun.load(std::memory_order_relaxed) != next) {
+      wait();
+      continue;
+    }
+    if (part > 0 && next > 0 && stages_[next - 1].crosses) advance(me, part - 1, next);
+    if (part + 1 < part_count_ && stages_[next].crosses) advance(me, part + 1, next);
+    if (!p.begun.compare_exchange_strong(next, next + 1, std::memory_order_relaxed)) continue;
+    if (next + 1 < stages_.size()) __builtin_prefetch(&stages_[next + 1]);
+    stages_[next](begin_of(part), begin_of(part + 1));
+    p.done.store(next + 1, std::memory_order_release);
   }
 }
 
 void ThreadPool::work_off(std::size_t member) {
   Member me{part_count_ * member / threads(), part_count_ * (member + 1) / threads(), kPatience};
-  for (std::uint32_t stage = 1; stage <= stages_.size(); ++stage)
+  const auto count = static_cast<std::uint32_t>(stages_.size());
+  for (std::uint32_t stage = 1; stage <= count; ++stage) {
+    // Stages that nobody waits for: all of them while a part is in the cache.
+    if (stage < count && !stages_[stage - 1].crosses && !stages_[stage].crosses) continue;
     for (std::size_t k = 0; k < me.end - me.begin; ++k)  // both ends first: others wait for them
       advance(me, k % 2 == 0 ? me.begin + k / 2 : me.end - 1 - k / 2, stage);
+  }
   for (std::size_t part = 0; part < part_count_; ++part)  // whose thread is late
-    advance(me, part, static_cast<std::uint32_t>(stages_.size()));
+    advance(me, part, count);
 }
 
 void ThreadPool::dispatch() {
-  part_count_ = std::min(count_, parts_.size());
-  for (Part& part : parts_) part.state.store(0, std::memory_order_relaxed);
+  const bool pairs = std::ranges::any_of(stages_, &Stage::crosses);
+  grain_ = pairs ? 2 : 1;
+  part_count_ = std::min((count_ + grain_ - 1) / grain_, parts_.size());
+  for (Part& part : parts_) {
+    part.done.store(0, std::memory_order_relaxed);
+    part.begun.store(0, std::memory_order_relaxed);
+  }
   gate_.fetch_or(1, std::memory_order_release);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();

@@ -53,19 +53,33 @@ class ThreadPool {
     });
   }
 
-  /// A stage of work on blocks of particles: calls work(begin, end) on parts of [0, blocks), on
-  /// each block after it and its two neighbours are done with the stage before. So a stage may work
-  /// on a block and, if no two blocks that it works on are neighbours, on the one after it. With
-  /// one thread or not `shared` at once, otherwise not before finish(); `work` is copied.
+  /// A stage of work on blocks of particles, each for itself: calls work(begin, end) on parts of
+  /// [0, blocks), after what is queued before it has been done to them. With one thread or not
+  /// `shared` at once, otherwise not before finish(); `work` is copied.
   template <class Work>
   void queue(std::size_t blocks, const Work& work, bool shared = true) {
     if (threads_.empty() || !shared) {
       work(std::size_t{0}, blocks);
       return;
     }
-    if (blocks != count_ || stages_.size() == kMostStages) finish();
-    count_ = blocks;
-    stages_.emplace_back(work);
+    add_stage(blocks, false, work);
+  }
+
+  /// Two stages, the even blocks and then the odd ones: calls work(block), which may work on the
+  /// one after it, too.
+  template <class Work>
+  void queue_pairs(std::size_t blocks, const Work& work, bool shared = true) {
+    const auto stage = [&](std::size_t parity) {
+      return [work, parity](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin + (begin + parity) % 2; block < end; block += 2) work(block);
+      };
+    };
+    if (threads_.empty() || !shared) {
+      stage(0)(0, blocks), stage(1)(0, blocks);
+      return;
+    }
+    add_stage(blocks, false, stage(0));  // parts begin with an even block
+    add_stage(blocks, true, stage(1));
   }
 
   /// Returns when all that is queued is done.
@@ -77,8 +91,8 @@ class ThreadPool {
   class Stage {
    public:
     template <class Work>
-    explicit Stage(const Work& work)
-        : call_([](const std::byte* w, std::size_t begin, std::size_t end) {
+    Stage(bool crosses_parts, const Work& work)
+        : crosses(crosses_parts), call_([](const std::byte* w, std::size_t begin, std::size_t end) {
             (*std::launder(reinterpret_cast<const Work*>(w)))(begin, end);
           }) {
       static_assert(sizeof(Work) <= sizeof work_ && std::is_trivially_copyable_v<Work>);
@@ -86,13 +100,16 @@ class ThreadPool {
     }
     void operator()(std::size_t begin, std::size_t end) const { call_(work_, begin, end); }
 
+    bool crosses;  ///< works on the first block of the next part, too
+
    private:
     void (*call_)(const std::byte*, std::size_t, std::size_t);
     alignas(16) std::byte work_[368];  // a box that moves, in double
   };
-  /// Twice the number of stages that are done, and 1 while a thread is at the next.
-  struct alignas(64) Part {
-    std::atomic<std::uint32_t> state{0};
+  /// Numbers of stages. Only who takes a part on looks at `begun`: it stays in that core's cache.
+  struct Part {
+    alignas(64) std::atomic<std::uint32_t> done{0};
+    alignas(64) std::atomic<std::uint32_t> begun{0};
   };
 
   /// Of a slice, at most. Each costs 0.2 us a stage, and with one a thread would always wait for
@@ -107,6 +124,15 @@ class ThreadPool {
     bool owns(std::size_t part) const { return begin <= part && part < end; }
   };
 
+  template <class Work>
+  void add_stage(std::size_t blocks, bool crosses, const Work& work) {
+    if (blocks != count_ || stages_.size() == kMostStages) finish();
+    count_ = blocks;
+    stages_.emplace_back(crosses, work);
+  }
+  std::size_t begin_of(std::size_t part) const {
+    return std::min(count_, (count_ + grain_ - 1) / grain_ * part / part_count_ * grain_);
+  }
   void dispatch();
   void serve(std::size_t member);
   void work_off(std::size_t member);
@@ -114,6 +140,7 @@ class ThreadPool {
 
   std::vector<Stage> stages_;
   std::size_t count_ = 0;    ///< what their parts are parts of
+  std::size_t grain_ = 1;    ///< parts begin at multiples of it
   std::vector<Part> parts_;  ///< room for those of all threads
   std::size_t part_count_ = 0;
   std::atomic<std::uint32_t> round_{0};  ///< how often work has been dispatched

@@ -58,14 +58,13 @@ class SheetWindPass final : public WindPass<Real> {
 
   void apply(Particles<Real>& p, double, double dt) override {
     const WindStep<Real> step = this->step(p, dt);
-    for (const std::size_t parity : {0U, 1U})
-      pool_.queue(
-          p.layout->blocks(),
-          [this, step, parity](std::size_t begin, std::size_t end) {
-            visit_rows_of(parity, begin, end, quad_rows_,
-                          [&](int from, int to) { blow_(step, faces_, from, to); });
-          },
-          p.size() >= ThreadPool::kWorthSharing);
+    pool_.queue_pairs(
+        p.layout->blocks(),
+        [this, step](std::size_t block) {
+          const auto [begin, end] = rows_of_block(block, quad_rows_);
+          blow_(step, faces_, begin, end);
+        },
+        p.size() >= ThreadPool::kWorthSharing);
   }
   bool queues() const override { return true; }
 

@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 
+#include "core/model/solver.hpp"
+#include "core/model/text.hpp"
+#include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut {
@@ -136,6 +142,58 @@ void compare_case(const BaselineRow& row, const Baseline& before, const Baseline
   }
 }
 
+std::string escaped(const std::string& text) {
+  std::string xml;
+  for (const char c : text) {
+    if (c == '&')
+      xml += "&amp;";
+    else if (c == '<')
+      xml += "&lt;";
+    else if (c == '>')
+      xml += "&gt;";
+    else if (c == '"')
+      xml += "&quot;";
+    else
+      xml += c;
+  }
+  return xml;
+}
+
+double relative_change(const Change& c) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const double share = c.before == 0 ? kNone : (c.now - c.before) / std::abs(c.before);
+  return std::isfinite(share) ? share : kNone;
+}
+
+std::string figure_text(const Finding& f) {
+  return solver_name(f.subject) + ": " + f.quantity + formatted(" %.4g", f.measured) +
+         (f.unit == "1" ? "" : " " + f.unit) +
+         (f.expected == 0 ? formatted(" (at most %.3g)", f.tolerance)
+                          : formatted(" (%.4g +- %.3g)", f.expected, f.tolerance));
+}
+
+/// What speaks for an assertion: a number that breaks it, else the first that is measured and
+/// begins so.
+const Finding* telling(const std::vector<Finding>& findings, std::string_view begins) {
+  const Finding* told = nullptr;
+  for (const Finding& f : findings) {
+    if (f.verdict == TruthVerdict::broken) return &f;
+    const bool quoted = f.quantity.starts_with(begins) && f.verdict != TruthVerdict::not_applicable;
+    if (!told && quoted) told = &f;
+  }
+  return told;
+}
+
+const JudgedAssertion* find(const std::vector<JudgedAssertion>& all, const JudgedAssertion& one) {
+  const auto at = std::ranges::find_if(
+      all, [&](const auto& c) { return c.section == one.section && c.assertion == one.assertion; });
+  return at == all.end() ? nullptr : &*at;
+}
+
+std::string name(const JudgedAssertion& assertion) {
+  return assertion.section + " \"" + assertion.assertion + "\"";
+}
+
 }  // namespace
 
 const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
@@ -215,6 +273,122 @@ Baseline updated(const Baseline& before, const Baseline& now, const Tolerances& 
   }
   std::ranges::sort(rows, {}, &BaselineRow::id);
   return rows;
+}
+
+std::string reproduce(const CaseSpec& spec) {
+  std::string command = "taut case " + shell_word(spec.scene) + " " + shell_word(spec.solver);
+  for (const std::string& text : spec.overrides) command += " --set " + shell_word(text);
+  return command;
+}
+
+std::string reproduce(const BaselineRow& row) {
+  const std::string command = reproduce(row.spec);
+  if (row.frontier.empty()) return command;
+  return "taut frontier" + command.substr(std::string_view("taut case").size()) + " " +
+         row.frontier;
+}
+
+std::string junit(const std::string& study, const Baseline& now, const Comparison& comparison) {
+  std::map<std::string, std::string> failures;  // by test case
+  std::set<std::string> names;
+  for (const BaselineRow& row : now) names.insert(row.id);
+  for (const Change& finding : comparison.findings) {
+    if (!finding.is_regression() && !finding.is_mismatch()) continue;
+    const std::string name = finding.id.empty() ? "solver " + finding.solver : finding.id;
+    names.insert(name);
+    failures[name] += finding.text + "\n";
+  }
+  std::string xml = "<testsuite name=\"" + escaped(study) + "\" tests=\"" +
+                    std::to_string(names.size()) + "\" failures=\"" +
+                    std::to_string(failures.size()) + "\">\n";
+  for (const std::string& name : names) {
+    xml += "  <testcase classname=\"" + escaped(study) + "\" name=\"" + escaped(name) + "\"";
+    const auto failure = failures.find(name);
+    xml += failure == failures.end()
+               ? "/>\n"
+               : "><failure>" + escaped(failure->second) + "</failure></testcase>\n";
+  }
+  return xml + "</testsuite>\n";
+}
+
+double MovedValue::relative() const { return relative_change(*largest); }
+
+std::vector<MovedValue> roll_up(const Comparison& comparison) {
+  std::map<std::pair<std::string, std::string>, MovedValue> groups;
+  for (const Change& c : comparison.findings) {
+    if (!c.is_regression()) continue;
+    MovedValue& group = groups[{c.scene, c.value}];
+    group.scene = c.scene, group.value = c.value;
+    ++group.cases, group.less += c.now<c.before, group.more += c.now> c.before;
+    if (!group.largest || std::abs(relative_change(c)) > std::abs(group.relative()))
+      group.largest = &c;
+  }
+  std::vector<MovedValue> all;
+  for (const auto& [name, group] : groups) all.push_back(group);
+  std::ranges::stable_sort(all, [](const MovedValue& a, const MovedValue& b) {
+    return std::abs(a.relative()) > std::abs(b.relative());
+  });
+  return all;
+}
+
+std::string text(const MovedValue& moved, std::string_view unit) {
+  if (moved.largest->kind == Change::Kind::status_changed) return moved.largest->text;
+  const std::string change = formatted("%.4g -> %.4g", moved.largest->before, moved.largest->now) +
+                             (unit == "1" || unit.empty() ? "" : " " + std::string(unit));
+  return std::isfinite(moved.relative())
+             ? formatted("%+.3g %% (", 100 * moved.relative()) + change + ")"
+             : change;
+}
+
+std::vector<JudgedAssertion> judge_assertions(const FindingsOf& findings_of) {
+  std::vector<JudgedAssertion> all;
+  for (const VasiloviciAssertion& assertion : vasilovici_assertions()) {
+    JudgedAssertion judged{std::string(assertion.section), std::string(assertion.assertion),
+                           std::string(to_string(assertion.verdict)), ""};
+    if (!assertion.truth.empty()) {
+      const std::vector<Finding>* findings = findings_of(assertion.truth);
+      if (!findings) continue;
+      const Finding* told = telling(*findings, assertion.figure);
+      if (!told || told->verdict == TruthVerdict::broken) judged.verdict = "overturned";
+      if (told) judged.figure = figure_text(*told);
+    }
+    all.push_back(std::move(judged));
+  }
+  return all;
+}
+
+std::string to_json_lines(const std::vector<JudgedAssertion>& assertions) {
+  std::string text;
+  for (const auto& [section, assertion, verdict, figure] : assertions)
+    text += to_text(Json{{"section", section},
+                         {"assertion", assertion},
+                         {"verdict", verdict},
+                         {"figure", figure}}) +
+            "\n";
+  return text;
+}
+
+std::vector<JudgedAssertion> read_assertions(const std::filesystem::path& file) {
+  return read_json_lines(file, [](const JsonReader& json) {
+    const auto text = [&](const char* key) { return printable(json.at(key).text()); };
+    return JudgedAssertion{text("section"), text("assertion"), text("verdict"), text("figure")};
+  });
+}
+
+std::vector<std::string> compare_assertions(const std::vector<JudgedAssertion>& before,
+                                            const std::vector<JudgedAssertion>& now) {
+  std::vector<std::string> changes;
+  for (const JudgedAssertion& is : now) {
+    const JudgedAssertion* was = find(before, is);
+    if (!was)
+      changes.push_back("assertion " + name(is) + " is not in the baseline");
+    else if (was->verdict != is.verdict)
+      changes.push_back("assertion " + name(is) + ": '" + was->verdict + "' -> '" + is.verdict +
+                        "'" + (is.figure.empty() ? "" : "; " + is.figure));
+  }
+  for (const JudgedAssertion& was : before)
+    if (!find(now, was)) changes.push_back("assertion " + name(was) + " is gone");
+  return changes;
 }
 
 }  // namespace taut

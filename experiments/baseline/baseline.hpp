@@ -1,12 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "core/model/solver.hpp"
 #include "experiments/case/record.hpp"
+#include "experiments/study/frontier/frontier.hpp"
+#include "experiments/truths/truth.hpp"
+#include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut {
 
@@ -138,5 +142,40 @@ void write_baseline(const std::filesystem::path& folder, const Baseline&);
 /// reason, each named by a value, a metric or "default". No file: the built-in default. Throws
 /// InputError.
 Tolerances read_tolerances(const std::filesystem::path& folder);
+
+/// Which frontiers belong to a study's baseline: frontiers.toml of its folder, tables [[frontier]]
+/// with scene, solver, of, from, to, tolerance and set (scene overrides). No file: none. Throws
+/// InputError with file and line.
+std::vector<FrontierQuestion> read_frontiers(const std::filesystem::path& folder);
+
+/// What was found as a row: its status is the kind of frontier, its values are the ends of the
+/// bracket and the number of stable values above it.
+BaselineRow frontier_row(const FrontierQuestion&, const CaseFrontier&);
+
+/// Id of the row of a question.
+std::string frontier_id(const FrontierQuestion&);
+
+/// An assertion of Vasilovici's report with the verdict that its truth gives now.
+struct JudgedAssertion {
+  std::string section, assertion;
+  std::string verdict;  ///< to_string(AssertionVerdict), or "overturned": its truth is broken
+  std::string figure;  ///< of the truth: "jakobsen: RMS stretch 0.061 (0.06 +- 0.01)"; may be empty
+  bool operator==(const JudgedAssertion&) const = default;
+};
+
+/// The findings of a truth by name; nullptr: it was not checked.
+using FindingsOf = std::function<const std::vector<Finding>*(std::string_view truth)>;
+
+/// Every assertion whose truth was checked, and those that no truth can hold.
+std::vector<JudgedAssertion> judge_assertions(const FindingsOf&);
+
+/// JSON lines. Reading throws InputError with file and line.
+std::string to_json_lines(const std::vector<JudgedAssertion>&);
+std::vector<JudgedAssertion> read_assertions(const std::filesystem::path&);
+
+/// A sentence for each assertion that has another verdict than before, that is new or that is gone.
+/// Figures may differ: the truth's tolerance judges them.
+std::vector<std::string> compare_assertions(const std::vector<JudgedAssertion>& before,
+                                            const std::vector<JudgedAssertion>& now);
 
 }  // namespace taut

@@ -6,10 +6,10 @@
 #include <set>
 
 #include "core/model/text.hpp"
-#include "experiments/baseline/frontier_baseline.hpp"
+#include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
+#include "experiments/command_line/output.hpp"
 #include "experiments/study/store.hpp"
 
 namespace taut {
@@ -44,9 +44,9 @@ void mark_flaky(const std::vector<Case>& cases, const Store& store, const Baseli
 void add_frontiers(const Store& store, const BaselineOptions& options, BaselineStudy& result) {
   const std::vector<FrontierQuestion> questions = read_frontiers(result.folder);
   if (questions.empty()) return;
-  const Session session(store, "taut check " + result.name, {}, {});
+  begin_session(store, "taut check " + result.name);
   for (const FrontierQuestion& question : questions) {
-    const CaseFrontier found = find_frontier(question, store, session, {.jobs = options.jobs});
+    const CaseFrontier found = find_frontier(question, store, {.jobs = options.jobs});
     result.interrupted = result.interrupted || found.interrupted;
     if (found.frontier.kind == Frontier::Kind::not_answered)
       result.not_run.push_back(frontier_id(question));

@@ -1,14 +1,18 @@
 #include "experiments/command_line/options.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <thread>
 
-#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/report/plot/plot.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
@@ -69,8 +73,7 @@ void add_limits(CLI::App& app, Limits& limits) {
 
 void add_stored(CLI::App& app, std::string& preset, std::string& results) {
   app.add_option("--preset", preset, "The preset under which it was run");
-  results = default_results();
-  app.add_option("--results", results, "Results folder (default: " + results + ")");
+  add_results(app, results);
 }
 
 CLI::Option* add_output(CLI::App& app, std::string& path, const std::string& what) {
@@ -111,8 +114,83 @@ CLI::Option* add_json(CLI::App& app, bool& json, const std::string& what) {
   return app.add_flag("--json", json, what + " as JSON");
 }
 
+Study load_study_to_plot(const std::string& name, const std::string& preset) {
+  Study study = load_study(name, preset);
+  std::vector<Diagnostic> wrong;
+  std::vector<std::string> known = report::quantity_names();
+  known.emplace_back("setting");
+  for (const StudyAxis& axis : study.axes) known.push_back(axis.name);
+  const auto report = [&](std::size_t i, const char* key, const std::string& text) {
+    const SourceLocation& place = study.plots[i].places.at(key);
+    wrong.push_back({study.file, place.line, place.column, text});
+  };
+  for (std::size_t i = 0; i < study.plots.size(); ++i) {
+    try {
+      report::find_plot_kind(study.plots[i].kind);
+    } catch (const InputError& error) {
+      report(i, "kind", error.diagnostics().front().text());
+    }
+    for (const char* axis : {"x", "y", "along"})
+      if (const auto at = study.plots[i].options.find(axis);
+          at != study.plots[i].options.end() && std::ranges::count(known, at->second) == 0)
+        report(i, axis,
+               "unknown value '" + at->second + "'" + suggestion(at->second, known) +
+                   " (`taut list metrics`)");
+  }
+  if (!wrong.empty()) throw InputError(wrong);
+  return study;
+}
+
 void check_solvers(const std::vector<std::string>& texts) {
   read_all(texts, [](const std::string& text) { parse_solver(text); });
+}
+
+void CaseOptions::bind(CLI::App& app) {
+  app.add_option("SCENE", scene_, "Name of a shipped scene, or a path")->required();
+  app.add_option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)")->required();
+  app.add_option("--dt", dt_, "Time step [s], a number or a fraction such as 1/120");
+  app.add_option("--duration", duration_, "Simulated time [s]");
+  add_settings(app, settings_);
+}
+
+CaseSpec CaseOptions::spec() const {
+  CaseSpec spec{scene_, settings_, solver_};
+  if (!dt_.empty()) spec.overrides.push_back("time.dt=\"" + dt_ + "\"");
+  if (!duration_.empty()) spec.overrides.push_back("time.duration=\"" + duration_ + "\"");
+  return spec;
+}
+
+Case CaseOptions::make() const { return make_case(spec()); }
+
+void continue_in_right_program(const SolverChoice& choice) {
+  const std::string needed(choice.entry->program ? choice.entry->program(choice.params) : "");
+  if (needed.empty() || needed == this_program().filename()) return;
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(in, word, '\0');) words.push_back(word);
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const std::string program = sibling_program(needed);
+  execv(program.c_str(), argv.data());
+  throw InputError(choice.brief() + " needs the program " + program + ", which cannot be run");
+}
+
+void print_record(const Record& record) {
+  std::cout << record.id << "\n  status       " << to_string(record.status.kind);
+  if (!record.status.reason.empty()) std::cout << " (" << record.status.reason << ")";
+  if (record.status.step >= 0) std::cout << ", step " << record.status.step;
+  if (record.status.vertex >= 0) std::cout << ", vertex " << record.status.vertex;
+  std::cout << "\n  steps        " << record.steps << " of " << record.dt << " s\n  cloth        "
+            << record.vertices << " vertices, " << record.links << " links\n  work         "
+            << record.projections << " projections per step\n  state        " << record.digest
+            << '\n';
+  for (const auto& [name, value] : record.values)
+    if (!std::isnan(value)) {
+      const ValueSpec* spec = find_value(name).second;
+      std::cout << "  " << std::left << std::setw(26) << name << std::setprecision(6) << value
+                << ' ' << (!spec || spec->unit.si == "1" ? "" : spec->unit.si) << '\n';
+    }
 }
 
 }  // namespace taut

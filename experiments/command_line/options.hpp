@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/case.hpp"
+#include "experiments/case/record.hpp"
 #include "experiments/study/isolate.hpp"
+#include "experiments/study/study.hpp"
 
 namespace taut {
 
@@ -33,7 +36,7 @@ CLI::Option* add_settings(CLI::App&, std::vector<std::string>& settings);
 /// --timeout and --memory of a case; they stand for the defaults.
 void add_limits(CLI::App&, Limits&);
 
-/// --preset and --results of what was run.
+/// --preset and --out of what was run.
 void add_stored(CLI::App&, std::string& preset, std::string& results);
 
 /// What a verb writes, as -o: a file or a folder.
@@ -66,7 +69,30 @@ void read_all(const All& all, const Read& read) {
   if (!wrong.empty()) throw InputError(wrong);
 }
 
+/// load_study(), if figures could draw all that it asks for; else throws InputError, too.
+Study load_study_to_plot(const std::string& name_or_path, const std::string& preset);
+
 /// Throws InputError with everything that is wrong with any of these solvers' texts.
 void check_solvers(const std::vector<std::string>& texts);
+
+/// How verbs name one case: SCENE SOLVER [--dt] [--duration] [--set key=value ...].
+class CaseOptions {
+ public:
+  void bind(CLI::App&);
+  CaseSpec spec() const;  ///< as typed
+  /// Throws InputError.
+  Case make() const;
+
+ private:
+  std::string scene_, solver_, dt_, duration_;
+  std::vector<std::string> settings_;
+};
+
+/// Replaces this process by the program that can run the choice (same arguments), if it is another
+/// one; returns if it is this. Throws InputError if the other is not installed.
+void continue_in_right_program(const SolverChoice&);
+
+/// A record for people, on standard output: what ran, how it ended, every value that has a meaning.
+void print_record(const Record&);
 
 }  // namespace taut

@@ -1,12 +1,21 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <functional>
+#include <iostream>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+// What the file of every verb needs.
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
+#include "experiments/command_line/output.hpp"
+#include "experiments/system/json.hpp"
 #include "experiments/system/signals.hpp"
 
 namespace taut {
@@ -34,9 +43,22 @@ struct VerbEntry {
   std::string_view summary;  ///< one line
   std::string_view example;  ///< one or more full command lines, shown below --help
   /// Adds options to the verb's parser and gives what to do once they are parsed. It may throw
-  /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr.
-  std::function<int()> (*bind)(CLI::App&);
+  /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr. nullptr: it has
+  /// verbs and does nothing by itself.
+  std::function<int()> (*bind)(CLI::App&) = nullptr;
 };
+
+/// A verb's `bind`, of void add_options(CLI::App&, Options&) and int run(Options).
+template <auto add_options, auto run, class Options>
+std::function<int()> bind_options(CLI::App& app, void (*)(CLI::App&, Options&)) {
+  const auto options = std::make_shared<Options>();
+  add_options(app, *options);
+  return [options] { return run(*options); };
+}
+template <auto add_options, auto run>
+std::function<int()> bind_verb(CLI::App& app) {
+  return bind_options<add_options, run>(app, add_options);
+}
 
 /// All verbs, sorted by identifier (generated; see cmake/registry.cmake).
 std::span<const VerbEntry* const> verbs();

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "experiments/external/command.hpp"
+#include "experiments/external/connection.hpp"
 
 namespace taut::external {
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/scene.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/external/connection.hpp"
 
@@ -50,5 +51,9 @@ double take_steps(Connection&, double t, double dt, int count);
 /// exchanges, what a busy machine's caches cost. [s] a step.
 bool agrees(double word, double clock, double empty);
 void store_state(Connection&, int vertices, State&);
+
+/// The scene as a program gets it: JSON, everything resolved, SI units, doubles in shortest exact
+/// form. Every key stands in experiments/external/README.md.
+std::string scene_file(const Scene&);
 
 }  // namespace taut::external

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/case/record.hpp"
-#include "experiments/study/extremes/extremes.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/study_bench.hpp"
 

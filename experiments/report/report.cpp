@@ -5,12 +5,10 @@
 #include <stdexcept>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/chart/citations.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
-#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/distinct.hpp"

@@ -10,7 +10,6 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
-#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/study/session.hpp"
 #include "experiments/system/files.hpp"
 

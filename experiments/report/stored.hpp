@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/chart/curves.hpp"
+#include "experiments/report/chart/charts.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/study/campaign.hpp"
 

@@ -1,5 +1,3 @@
-#include "experiments/require/answers.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -7,6 +5,7 @@
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/require/require.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut {

@@ -1,8 +1,7 @@
-#include "experiments/require/draft.hpp"
-
 #include <algorithm>
 
 #include "core/model/input_error.hpp"
+#include "experiments/require/require.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 

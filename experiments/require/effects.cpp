@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "core/model/text.hpp"
-#include "experiments/require/draft.hpp"
+#include "experiments/require/require.hpp"
 
 namespace taut {
 

@@ -31,9 +31,8 @@ std::string slug(std::string text) {
 
 class Search {
  public:
-  Search(const RequireOptions& options, const Store& store, const Session& session,
-         std::filesystem::path folder)
-      : options_(options), store_(store), session_(session), folder_(std::move(folder)) {}
+  Search(const RequireOptions& options, const Store& store, std::filesystem::path folder)
+      : options_(options), store_(store), folder_(std::move(folder)) {}
 
   Requirement run() {
     found_.full = make_case(options_.full);
@@ -55,7 +54,7 @@ class Search {
                                                   double share) {
     std::vector<Case> cases;
     for (const CaseSpec& spec : specs) cases.push_back(maker_.make(spec));
-    const CampaignProgress campaign = run_cases(cases, store_, session_,
+    const CampaignProgress campaign = run_cases(cases, store_,
                                                 {.jobs = options_.jobs,
                                                  .frames = true,
                                                  .deadline = at(share),
@@ -73,8 +72,7 @@ class Search {
         continue;
       }
       Observation observed{one, *record, {}};
-      if (completed(record->status))
-        observed.frames = read_trajectory(store_.folder(one.key) / kFramesFile).frames;
+      if (completed(record->status)) observed.frames = store_.motion(one.key).frames;
       seen.emplace_back(std::move(observed));
     }
     return seen;
@@ -299,8 +297,7 @@ class Search {
     const Store apart(scratch.path());
     apart.prepare();
     const Case again = make_case(found_.smallest->spec);
-    run_cases({again}, apart, Session(apart, "taut require", {}, {}),
-              {.jobs = 1, .deadline = at(kVerifiedBy)});
+    run_cases({again}, apart, {.jobs = 1, .deadline = at(kVerifiedBy)});
     const std::optional<Record> first = store_.find(again), second = apart.find(again);
     if (!second) return found_.not_done.push_back("the verification");
     found_.verified = first && first->digest == second->digest;
@@ -336,7 +333,6 @@ class Search {
 
   const RequireOptions& options_;
   const Store& store_;
-  const Session& session_;
   std::filesystem::path folder_;
   SteadyClock::time_point start_ = SteadyClock::now();
   CaseMaker maker_;
@@ -361,9 +357,9 @@ std::size_t work_of(const std::vector<PassCost>& passes) {
 }
 
 Requirement find_requirement(const RequireOptions& options, const Store& store,
-                             const Session& session, const std::filesystem::path& folder) {
+                             const std::filesystem::path& folder) {
   for (const std::string& asked : options.keep) name_of_answer(asked);  // before anything runs
-  return Search(options, store, session, folder).run();
+  return Search(options, store, folder).run();
 }
 
 }  // namespace taut

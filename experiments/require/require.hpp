@@ -2,16 +2,144 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "experiments/require/answers.hpp"
-#include "experiments/require/draft.hpp"
+#include "core/io/section.hpp"
+#include "experiments/case/case.hpp"
+#include "experiments/case/trajectory.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/study/store.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut {
+
+/// A scene and a solver as texts that can be changed before they become a case.
+class Draft {
+ public:
+  /// Throws InputError as make_case() does.
+  explicit Draft(const CaseSpec&);
+
+  /// Replaces or adds [section] key of the scene; the value as TOML, or as it was read.
+  void set(const std::string& section, const std::string& key, const std::string& toml);
+  void set(const std::string& section, const std::string& key, Value);
+  /// Takes away [section] or its key; what is not there stays away.
+  void remove(const std::string& section);
+  void remove(const std::string& section, const std::string& key);
+  /// The array of tables [[section]]; nullptr: the scene has none. A table that is left empty is
+  /// not written: the numbers of the others stay while several change.
+  std::vector<Value>* tables(const std::string& section);
+  bool has(const std::string& section) const { return scene_.root.find(section); }
+  const Value* find(const std::string& section, const std::string& key) const;
+
+  /// Replaces a parameter of the solver. Precondition: it has one of this name.
+  void set_parameter(const std::string& name, const std::string& value);
+
+  /// The case's spec: as it was given if the scene is unchanged, else the scene as a file of this
+  /// name in `folder`, which is written. With a comment, in lines with #, it is written anyway.
+  /// Throws InputError if it cannot be.
+  CaseSpec write(const std::filesystem::path& folder, const std::string& name,
+                 const std::string& comment = "") const;
+
+ private:
+  Value& section(const std::string& name);
+  CaseSpec spec_;
+  std::filesystem::path file_;  ///< of the scene
+  Document scene_;
+  std::string solver_;  ///< the entry's name
+  std::map<std::string, std::string> changed_;
+  bool scene_changed_ = false;
+};
+
+/// Takes a key out of a table; one that it does not have is none the less gone.
+void erase_key(Value& table, const std::string& key);
+
+/// The value that a text is in TOML. Throws InputError.
+Value toml_value(const std::string& toml);
+
+/// One step towards less: what it does, in words, and to a draft.
+struct Reduction {
+  std::string change;  ///< "gone", "5 -> 2"
+  std::function<void(Draft&)> apply;
+};
+
+/// A part of a model that may not be needed, or a number that may be coarser than it is.
+struct Effect {
+  std::string name;                   ///< "bend links", "substeps"
+  std::vector<Reduction> reductions;  ///< from the weakest to the strongest; one at least
+};
+
+/// What there is to take away or to coarsen in a case: bend and shear links, wind and its law,
+/// damping, friction, each collider, self-collision, contact of faces, continuous detection,
+/// thickness, tethers, levels, substeps, sweeps, precision, resolution, duration. What the case
+/// does not have is not listed.
+std::vector<Effect> effects_of(const Case&);
+
+/// The same simulation with differences that mean nothing: what it moves by under them is noise.
+struct Perturbations {
+  std::vector<CaseSpec> rounding;  ///< one free vertex starts off by 2^-23 of the cloth's extent
+  std::vector<CaseSpec> order;     ///< the links in another order; empty: the solver offers none
+};
+
+/// Scenes that are made for it are written to `folder`. Throws InputError if they cannot be.
+Perturbations perturbations(const Case&, const std::filesystem::path& folder);
+
+/// How far an answer is from one that there is not.
+inline constexpr double kNoAnswer = std::numeric_limits<double>::infinity();
+
+/// The name of the answer that is no metric: where the cloth is at the end, as the largest distance
+/// [m] of a vertex from where it is in the full model.
+inline constexpr const char* kShapeAnswer = "shape";
+
+/// What a smaller model has to keep, and how nearly.
+struct KeptAnswer {
+  std::string name;      ///< "shape" or a metric value
+  double tolerance = 0;  ///< in the unit of the value, >= 0
+
+  bool is_shape() const { return name == kShapeAnswer; }
+};
+Unit unit_of(const KeptAnswer&);
+/// "1.2 mm", "0.3 %": as the unit is shown; "-" for what is not a number.
+std::string text(const KeptAnswer&, double value);
+
+/// A case that was run, with its motion.
+struct Observation {
+  Case one;
+  Record record;
+  std::vector<TrajectoryReader::Frame> frames;  ///< as the store keeps them
+};
+
+/// "METRIC" or "METRIC:TOLERANCE". A tolerance is a number in SI units, or with the unit in which
+/// the value is shown ("2mm"), or in "%": of the cloth's extent for lengths, of the duration for
+/// times, of the full model's value for other quantities; of strains and shares, points. Without
+/// one: the shape 1 % of the extent, other lengths 0.1 %, strains and shares 1 point, times 10 % of
+/// the duration, counts none, all else 10 % of the value. Throws InputError: unknown name, or no
+/// number of at least 0.
+KeptAnswer parse_answer(const std::string&, const Observation& full);
+/// The METRIC alone. Throws InputError: unknown name.
+std::string name_of_answer(const std::string& asked);
+
+/// What is kept unless something is asked for: shape, largest stretch, depth of vertices (and of
+/// faces, if the solver keeps them out), crossings, settling time; as far as the case has them.
+std::vector<std::string> default_answers(const Observation& full);
+
+/// The value of an answer that is a metric; NaN if the case has none.
+double value_of(const KeptAnswer&, const Observation&);
+
+/// How far the answer is from that of the full model [unit of the answer]; infinite if the other
+/// case did not run to its end or has no such value. Shapes of different grids are compared at the
+/// vertices of the coarser one, between those of the finer one bilinearly. A value that the other
+/// case lacks because what it speaks of was taken out of its scene is measured on its motion, and
+/// compared with the full model's, measured alike.
+double distance(const KeptAnswer&, const Observation& full, const Observation& other);
+
+/// Until when [s] two runs of one scene are within `tolerance` [m] of each other; nothing: to the
+/// end.
+std::optional<double> apart_after(const Observation&, const Observation&, double tolerance);
 
 /// What a smaller model does to the kept answers.
 struct ModelTrial {
@@ -73,7 +201,7 @@ struct RequireOptions {
 /// verifies and times the result. Every run is a case of the store, so that an interrupted search
 /// goes on where it was. Scenes that it makes lie in `folder`. Throws InputError if the full model
 /// cannot be run.
-Requirement find_requirement(const RequireOptions&, const Store&, const Session&,
+Requirement find_requirement(const RequireOptions&, const Store&,
                              const std::filesystem::path& folder);
 
 /// Bytes that a step holds, and items that it visits.

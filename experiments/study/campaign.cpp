@@ -26,8 +26,7 @@ namespace {
 
 class Campaign {
  public:
-  Campaign(const Store& store, const Session& session, const CampaignOptions& options)
-      : store_(store), session_(session), options_(options) {}
+  Campaign(const Store& store, const CampaignOptions& options) : store_(store), options_(options) {}
 
   CampaignProgress run(const std::vector<Case>& cases) {
     sort_out(cases);
@@ -65,7 +64,6 @@ class Campaign {
       if (whole && !(options_.only_failed && failed)) {
         ++progress_.reused;
         ++progress_.by_status[stored->status.kind];
-        session_.done(*stored);
       } else {
         progress_.work += estimated_work(one);
         waiting_.push_back(&one);
@@ -93,7 +91,6 @@ class Campaign {
         continue;
       }
       const Store::Commit commit = store_.commit(one->folder(), *record);
-      session_.done(*record);
       ++progress_.ran;
       ++progress_.by_status[record->status.kind];
       if (commit == Store::Commit::conflict) ++progress_.conflicts;
@@ -108,7 +105,6 @@ class Campaign {
   }
 
   const Store& store_;
-  const Session& session_;
   const CampaignOptions& options_;
   std::deque<const Case*> waiting_;
   std::list<IsolatedCase> running_;
@@ -150,8 +146,8 @@ Record run_again(const Case& one, const Store& store, const Limits& limits) {
 }
 
 CampaignProgress run_cases(const std::vector<Case>& cases, const Store& store,
-                           const Session& session, const CampaignOptions& options) {
-  return Campaign(store, session, options).run(cases);
+                           const CampaignOptions& options) {
+  return Campaign(store, options).run(cases);
 }
 
 StudyRecords collect(const Study& study, const Store& store) {

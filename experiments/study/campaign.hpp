@@ -48,8 +48,7 @@ struct CampaignOptions {
 /// and commits each as it ends. SIGINT and SIGTERM end it after the running cases are killed; what
 /// was finished is stored. Throws InputError if results cannot be written: nothing finished is
 /// lost. Unfinished at the deadline: done() < cases.
-CampaignProgress run_cases(const std::vector<Case>&, const Store&, const Session&,
-                           const CampaignOptions&);
+CampaignProgress run_cases(const std::vector<Case>&, const Store&, const CampaignOptions&);
 
 /// The stored record of a case, or the one that a process of its own gives and that is stored now;
 /// nothing if it has not ended by the deadline. Throws InputError if the result differs from one

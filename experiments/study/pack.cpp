@@ -1,5 +1,3 @@
-#include "experiments/study/pack.hpp"
-
 #include <algorithm>
 #include <fstream>
 #include <optional>
@@ -7,6 +5,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/study/store.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -41,12 +40,8 @@ Header header_of(const std::string& line, const fs::path& pack) {
 
 }  // namespace
 
-std::uint64_t PackWriter::append(const std::string& seal, const EntryParts& parts) {
-  Json line = parse_json(seal);
-  for (const auto& [part, text] : parts) line["sizes"][part] = text.size();
+std::uint64_t PackWriter::append(const std::string& entry) {
   const std::uint64_t offset = size_;
-  std::string entry = to_text(line) + '\n';
-  for (const auto& [part, text] : parts) entry += text;
   waiting_ += entry;
   size_ += entry.size();
   if (waiting_.size() >= std::max<std::size_t>(batch_, 1)) flush();
@@ -106,7 +101,7 @@ PackIndex PackIndex::of(const fs::path& root) {
   return index;
 }
 
-StoredEntry::StoredEntry(fs::path pack, std::uint64_t offset) : place_(std::move(pack)) {
+StoredEntry::StoredEntry(fs::path file, std::uint64_t offset) : place_(std::move(file)) {
   std::ifstream in(place_, std::ios::binary);
   in.seekg(static_cast<std::streamoff>(offset));
   if (!std::getline(in, seal_)) throw InputError(place_.string() + ": cannot read");
@@ -117,12 +112,7 @@ StoredEntry::StoredEntry(fs::path pack, std::uint64_t offset) : place_(std::move
   }
 }
 
-std::string StoredEntry::seal() const {
-  return seal_.empty() ? read_text(place_ / "status.json") : seal_;
-}
-
 std::string StoredEntry::part(const std::string& name) const {
-  if (seal_.empty()) return fs::exists(place_ / name) ? read_text(place_ / name) : "";
   const auto at = parts_.find(name);
   if (at == parts_.end()) return {};
   std::string text(at->second.second, '\0');

@@ -61,10 +61,10 @@ Shard Shard::parse(const std::string& text) {
   return shard;
 }
 
-Session::Session(const Store& store, const std::string& command, const std::vector<Case>& cases,
-                 const Shard& shard)
-    : folder_(store.root() / "sessions" / (utc_stamp() + "-" + unique_suffix())) {
-  make_folder(folder_);
+fs::path begin_session(const Store& store, const std::string& command,
+                       const std::vector<Case>& cases, const Shard& shard) {
+  fs::path folder = store.root() / "sessions" / (utc_stamp() + "-" + unique_suffix());
+  make_folder(folder);
   const Json session{{"schema", kRecordSchema},  {"command", command},
                      {"started", utc_stamp()},   {"host", host_name()},
                      {"toolchain", toolchain()}, {"shard", shard.index},
@@ -74,19 +74,14 @@ Session::Session(const Store& store, const std::string& command, const std::vect
     manifest +=
         to_text(ManifestEntry{one.key, one.id, shard_of(one.key, shard.count), shard.count}) + '\n';
   try {
-    write_durably(folder_ / "session.json", to_text(session, 1) + "\n");
-    write_durably(folder_ / "manifest.jsonl", manifest);
+    write_durably(folder / "session.json", to_text(session, 1) + "\n");
+    write_durably(folder / "manifest.jsonl", manifest);
   } catch (const InputError&) {  // of a session that cannot be recorded nothing stays
     std::error_code ignored;
-    fs::remove_all(folder_, ignored);
+    fs::remove_all(folder, ignored);
     throw;
   }
-}
-
-void Session::done(const Record& record) const {
-  append_line(folder_ / "journal.jsonl", to_text(Json{{"key", record.key},
-                                                      {"id", record.id},
-                                                      {"status", to_string(record.status.kind)}}));
+  return folder;
 }
 
 std::string to_text(const ManifestEntry& one) {

@@ -19,20 +19,12 @@ struct Shard {
   static Shard parse(const std::string&);
 };
 
-/// Who ran what and how far it came: a folder of the store that only this process writes.
+/// Who ran what: makes a folder of the store that only this process writes, and gives it. Throws
+/// InputError if it cannot be written.
 ///     session.json     command, time, host, versions, shard
 ///     manifest.jsonl   every case, of all shards: {"key", "id", "shard", "shards"}
-///     journal.jsonl    a line per case that is done: {"key", "id", "status"}
-class Session {
- public:
-  /// Throws InputError if the folder cannot be written.
-  Session(const Store&, const std::string& command, const std::vector<Case>&, const Shard&);
-  void done(const Record&) const;
-  const std::filesystem::path& folder() const { return folder_; }
-
- private:
-  std::filesystem::path folder_;
-};
+std::filesystem::path begin_session(const Store&, const std::string& command,
+                                    const std::vector<Case>& = {}, const Shard& = {});
 
 /// A line of a manifest.
 struct ManifestEntry {

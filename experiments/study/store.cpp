@@ -30,18 +30,21 @@ EntryParts parts_in(const fs::path& folder) {
   return parts;
 }
 
-Json seal_of(const EntryParts& parts, const Record& record) {
+std::string entry_text(const EntryParts& parts, const Record& record) {
   Json seal{{"schema", kRecordSchema},
             {"key", record.key},
             {"status", to_string(record.status.kind)},
             {"result", result_digest(record)}};
   for (const auto& [part, text] : parts) seal["files"][part] = sha256(text);
-  return seal;
+  for (const auto& [part, text] : parts) seal["sizes"][part] = text.size();
+  std::string entry = to_text(seal) + '\n';
+  for (const auto& [part, text] : parts) entry += text;
+  return entry;
 }
 
 /// The record of an entry; throws if a part is not what its seal says.
 Record open_entry(const StoredEntry& entry, const std::string& key) {
-  read_json(entry.seal(), "status.json", [&](const JsonReader& seal) {
+  read_json(entry.seal(), "its seal", [&](const JsonReader& seal) {
     for (const auto& [part, digest] : seal.at("files").members()) {
       if (std::ranges::find(kParts, part) == kParts.end()) digest.fail("is no part of an entry");
       if (sha256(entry.part(part)) != digest.text())
@@ -74,6 +77,18 @@ bool abandoned(const std::string& name) {
   return pid > 0 && kill(pid, 0) != 0 && errno == ESRCH;
 }
 
+/// Looks at one entry: all are alike.
+void refuse_folders(const fs::path& store) {
+  std::error_code none;
+  for (const auto& shelf : fs::directory_iterator(store, none))
+    for (const auto& entry : fs::directory_iterator(shelf.path(), none)) {
+      if (!entry.is_directory()) return;
+      throw InputError(entry.path().string() +
+                       ": an entry of an earlier taut, a folder; name "
+                       "another results folder, or remove this one");
+    }
+}
+
 }  // namespace
 
 fs::path default_results() { return results_folder() / "runs"; }
@@ -82,7 +97,7 @@ Store::Store(fs::path root, Notice notice) : root_(std::move(root)), notice_(std
   if (!notice_) notice_ = [](const std::string& text) { std::cerr << text << '\n'; };
 }
 
-fs::path Store::folder(const std::string& key) const {
+fs::path Store::file(const std::string& key) const {
   return root_ / "store" / key.substr(0, 2) / key;
 }
 
@@ -94,6 +109,7 @@ struct Store::Packs {
 
 Store::Packs& Store::packs() const {
   if (!packs_) {
+    refuse_folders(root_ / "store");
     packs_ = std::make_shared<Packs>();
     packs_->index = PackIndex::of(root_);
     for (const std::string& sentence : packs_->index.damaged) notice_(sentence);
@@ -115,13 +131,13 @@ void Store::flush() const {
 const PackIndex::Place* Store::packed(const std::string& key) const {
   const auto at = packs().index.places.find(key);
   if (at == packs().index.places.end()) return nullptr;
-  return at->second.result || !fs::exists(folder(key)) ? &at->second : nullptr;
+  return at->second.result || !fs::exists(file(key)) ? &at->second : nullptr;
 }
 
 std::optional<StoredEntry> Store::entry(const std::string& key) const {
   if (const PackIndex::Place* place = packed(key))
     return StoredEntry(packs().index.packs[place->pack], place->offset);
-  if (fs::exists(folder(key))) return StoredEntry(folder(key));
+  if (fs::exists(file(key))) return StoredEntry(file(key));
   return {};
 }
 
@@ -150,8 +166,8 @@ bool Store::set_aside(const std::string& key, const std::string& why) const {
   const fs::path place = root_ / "corrupt" / (key + "." + unique_suffix());
   std::error_code error;
   fs::create_directories(place.parent_path(), error);
-  if (!error) fs::rename(folder(key), place, error);
-  notice_(folder(key).string() + ": corrupt entry (" + why + "), " +
+  if (!error) fs::rename(file(key), place, error);
+  notice_(file(key).string() + ": corrupt entry (" + why + "), " +
           (error ? "ignored: " + error.message() : "set aside as " + place.string()));
   return !error;
 }
@@ -166,12 +182,19 @@ EntryParts Store::parts(const std::string& key) const {
   EntryParts parts;
   if (const std::optional<StoredEntry> found = entry(key))
     for (const char* name : kParts)
-      if (std::string text = found->part(name); !text.empty()) parts[name] = std::move(text);
+      if (found->has(name)) parts[name] = found->part(name);
   return parts;
 }
 
 bool Store::has_frames(const std::string& key) const {
-  return fs::exists(folder(key) / kFramesFile);
+  const std::optional<StoredEntry> found = entry(key);
+  return found && found->has(kFramesFile);
+}
+
+Trajectory Store::motion(const std::string& key) const {
+  const Scratch scratch;
+  write_file(scratch.path() / kFramesFile, entry(key).value().part(kFramesFile));
+  return read_trajectory(scratch.path() / kFramesFile);
 }
 
 void Store::prepare() const {
@@ -188,67 +211,46 @@ void Store::prepare() const {
 fs::path Store::stage(const std::string& key) const {
   const fs::path place = packs().scratch ? packs().scratch->path() : root_ / "tmp";
   const fs::path staged = place / (key + "." + unique_suffix());
-  make_folder(staged);
+  std::error_code error;  // not its parents: should the results be moved away, nothing goes on
+  if (!fs::create_directory(staged, error))
+    throw InputError(staged.string() + ": cannot create: " + error.message());
   return staged;
 }
 
 Store::Commit Store::commit(EntryParts parts, const Record& record) const {
-  const Commit done = beside(find(record.key), record, false);
-  if (done == Commit::same) return done;
   parts["case.json"] = to_json(record, 1) + "\n";
-  const std::string seal = to_text(seal_of(parts, record));
-  if (done == Commit::conflict) {
-    const fs::path place = root_ / "conflicts" / (record.key + "." + unique_suffix());
-    make_folder(place);
-    for (const auto& [part, text] : parts) write_durably(place / part, text);
-    write_durably(place / "status.json", seal + "\n");
-    return done;
-  }
-  Packs& into = packs();
-  const auto pack = static_cast<std::uint32_t>(into.index.packs.size() - 1);
-  const std::uint64_t offset = into.writer->append(seal, parts);
-  into.index.places[record.key] = {pack, record.status.is_result(), offset};
-  return done;
-}
-
-Store::Commit Store::commit(const fs::path& staged, const Record& record) const {
-  std::error_code error;
-  if (packs().writer) {
-    const Commit done = commit(parts_in(staged), record);
-    fs::remove_all(staged, error);
-    return done;
-  }
-  for (const auto& left : fs::directory_iterator(staged))  // what else the case left there
-    if (std::ranges::find(kParts, left.path().filename()) == kParts.end())
-      fs::remove_all(left.path(), error);
-  write_durably(staged / "case.json", to_json(record, 1) + "\n");
-  write_durably(staged / "status.json", to_text(seal_of(parts_in(staged), record), 1) + "\n");
-  sync_folder(staged);
-  fs::path target;
+  const std::string entry = entry_text(parts, record);
   // Another process may commit the same case at any moment: then this one looks again.
   for (int attempt = 0; attempt < 100; ++attempt) {
     const std::optional<Record> old = find(record.key);
-    const bool adds_frames = fs::exists(staged / kFramesFile) && !has_frames(record.key);
+    const bool adds_frames = parts.contains(kFramesFile) && !has_frames(record.key);
     const Commit done = beside(old, record, adds_frames);
-    if (done == Commit::same) {
-      fs::remove_all(staged, error);
+    if (done == Commit::same) return done;
+    if (done == Commit::stored && packs().writer) {
+      PackIndex& index = packs().index;
+      const auto pack = static_cast<std::uint32_t>(index.packs.size() - 1);
+      const std::uint64_t offset = packs().writer->append(entry);
+      index.places[record.key] = {pack, record.status.is_result(), offset};
       return done;
     }
-    const bool conflict = done == Commit::conflict;
-    target =
-        conflict ? root_ / "conflicts" / (record.key + "." + unique_suffix()) : folder(record.key);
-    make_folder(target.parent_path());
-    if (old && !conflict) fs::rename(target, staged.string() + ".replaced", error);
-    fs::rename(staged, target, error);
-    std::error_code ignored;
-    fs::remove_all(staged.string() + ".replaced", ignored);
-    if (!error) {
-      sync_folder(target.parent_path());
-      return done;
-    }
-    if (error != std::errc::directory_not_empty && error != std::errc::file_exists) break;
+    const fs::path place = done == Commit::conflict
+                               ? root_ / "conflicts" / (record.key + "." + unique_suffix())
+                               : file(record.key);
+    make_folder(place.parent_path());
+    if (old || done == Commit::conflict)
+      write_durably(place, entry);
+    else if (!create_durably(place, entry, root_ / "tmp"))
+      continue;
+    return done;
   }
-  throw InputError(target.string() + ": cannot create: " + error.message());
+  throw InputError(file(record.key).string() + ": cannot create");
+}
+
+Store::Commit Store::commit(const fs::path& staged, const Record& record) const {
+  const Commit done = commit(parts_in(staged), record);
+  std::error_code ignored;
+  fs::remove_all(staged, ignored);
+  return done;
 }
 
 std::vector<std::string> Store::keys() const {

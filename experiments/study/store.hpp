@@ -1,17 +1,75 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
-#include "experiments/study/pack.hpp"
+#include "experiments/case/trajectory.hpp"
 
 namespace taut {
+
+/// What an entry of a store is made of, by file name ("case.json", "series.csv", "stderr.txt").
+using EntryParts = std::map<std::string, std::string>;
+
+/// Many entries of a store in one file, for cases that are many and small. One process appends to a
+/// file and nobody else, so no lock is needed; of an entry that was cut off nothing is seen.
+class PackWriter {
+ public:
+  /// Nothing is created before the first entry. What was appended is on the disk after every
+  /// `batch` bytes (0: after every entry) and after flush().
+  PackWriter(std::filesystem::path file, std::size_t batch)
+      : file_(std::move(file)), batch_(batch) {}
+  const std::filesystem::path& file() const { return file_; }
+  /// Gives where the entry begins. Throws InputError with the system's reason.
+  std::uint64_t append(const std::string& entry);
+  void flush();
+
+ private:
+  std::filesystem::path file_;
+  std::size_t batch_;
+  std::string waiting_;
+  std::uint64_t size_ = 0;
+};
+
+/// Where the entries of all pack files of a folder are; the files stay closed and unread.
+struct PackIndex {
+  struct Place {
+    std::uint32_t pack = 0;
+    bool result = false;  ///< of its status, not a failure
+    std::uint64_t offset = 0;
+  };
+  std::vector<std::filesystem::path> packs;
+  std::unordered_map<std::string, Place> places;  ///< by key
+  std::vector<std::string> conflicts;             ///< keys of which two packs hold other results
+  std::vector<std::string> damaged;               ///< sentences: which file, from which byte on
+
+  /// Reads the seals of <root>/packs/*.pack. A result goes before a failure, then the first file's.
+  static PackIndex of(const std::filesystem::path& root);
+};
+
+/// An entry that is there: a line of JSON (its seal, with the size in bytes of every part), then
+/// the parts.
+class StoredEntry {
+ public:
+  /// Throws InputError if it is not there whole.
+  explicit StoredEntry(std::filesystem::path file, std::uint64_t offset = 0);
+  const std::string& seal() const { return seal_; }
+  bool has(const std::string& name) const { return parts_.contains(name); }
+  std::string part(const std::string& name) const;  ///< "" if it has none of that name
+
+ private:
+  std::filesystem::path place_;
+  std::string seal_;
+  std::map<std::string, std::pair<std::uint64_t, std::size_t>> parts_;  ///< offset and size
+};
 
 /// A trajectory (experiments/case/trajectory.hpp) of about kFrames + 1 moments, first and last
 /// included.
@@ -21,15 +79,15 @@ inline constexpr int kFrames = 32;
 /// Results by content address. No locks and no shared appends: any number of processes may write,
 /// and one that is killed leaves at most a folder in tmp/, which is removed later.
 ///
-///     <root>/store/7f/7f3a.../  case.json    the record
-///                               series.csv   values over time, if there are any
+///     <root>/store/7f/7f3a...   an entry: its seal, and after it, as far as there are any,
+///                               case.json    the record
+///                               series.csv   values over time
 ///                               frames.traj  the motion at some moments, if it was asked for
-///                               stderr.txt   what the case said, if it said anything
-///                               status.json  digests of the others; written last
-///     <root>/packs/*.pack                     many small entries in one file: pack.hpp
-///     <root>/tmp/<key>.<host>.<pid>.<rand>/   an entry that is being written
-///     <root>/corrupt/<key>.<rand>/            entries that did not match their digests
-///     <root>/conflicts/<key>.<rand>/          another result under a key that has one
+///                               stderr.txt   what the case said
+///     <root>/packs/*.pack       many small entries in one file
+///     <root>/tmp/<key>.<host>.<pid>.<rand>/   what a case is writing
+///     <root>/corrupt/<key>.<rand>             entries that did not match their digests
+///     <root>/conflicts/<key>.<rand>           another result under a key that has one
 ///     <root>/sessions/<utc>-<host>.<pid>.<rand>/   who ran what: session.hpp
 class Store {
  public:
@@ -45,8 +103,12 @@ class Store {
   /// Throws InputError if the disk refuses.
   void flush() const;
 
+  static bool is_at(const std::filesystem::path& root) {
+    return std::filesystem::is_directory(root / "store") ||
+           std::filesystem::is_directory(root / "packs");
+  }
   const std::filesystem::path& root() const { return root_; }
-  std::filesystem::path folder(const std::string& key) const;
+  std::filesystem::path file(const std::string& key) const;
 
   /// The stored record; nothing if there is none. An entry that is damaged is set aside, said so,
   /// and counts as none.
@@ -57,8 +119,9 @@ class Store {
   Series series(const std::string& key) const;
   /// Everything that is kept of a case; empty if there is none.
   EntryParts parts(const std::string& key) const;
-  /// Whether the motion of a stored case is kept, as folder(key) / kFramesFile.
+  /// Whether the motion of a stored case is kept, and that motion.
   bool has_frames(const std::string& key) const;
+  Trajectory motion(const std::string& key) const;
 
   /// Makes sure that results can be written, and removes what killed processes of this host.
   /// Throws InputError with the reason.
@@ -71,11 +134,11 @@ class Store {
     same,      ///< the same result was there
     conflict,  ///< another result was there: a determinism alarm; ours is in conflicts/
   };
-  /// Turns a staged folder into the entry of its record, whole or not at all; it survives the loss
-  /// of power. A result is never replaced; a failure is. Throws InputError if the disk refuses.
-  Commit commit(const std::filesystem::path& staged, const Record&) const;
-  /// The same for an entry that is held in memory; this store packs.
+  /// Makes parts, or a staged folder, which goes, the entry of its record, whole or not at all; it
+  /// survives the loss of power. A result is never replaced; a failure is. Throws InputError if the
+  /// disk refuses.
   Commit commit(EntryParts, const Record&) const;
+  Commit commit(const std::filesystem::path& staged, const Record&) const;
 
   /// Keys of all entries, sorted.
   std::vector<std::string> keys() const;

@@ -103,6 +103,17 @@ void write_durably(const fs::path& path, std::string_view bytes) {
   replace_file(path, bytes, true);
 }
 
+bool create_durably(const fs::path& path, std::string_view bytes, const fs::path& staging) {
+  const fs::path staged = staging / (path.filename().string() + "." + unique_suffix());
+  write_durably(staged, bytes);
+  const bool made = link(staged.c_str(), path.c_str()) == 0, there = !made && errno == EEXIST;
+  // A file system without links: then the last of two that come at once stays.
+  if (!made && !there && std::rename(staged.c_str(), path.c_str()) != 0) fail(path, "create");
+  unlink(staged.c_str());
+  if (!there) sync_folder(path.parent_path());
+  return !there;
+}
+
 void test_writable(const fs::path& path) {
   if (fs::is_directory(path)) throw InputError(path.string() + " is a folder; name a file in it");
   if (path.has_parent_path()) make_folder(path.parent_path());

@@ -17,6 +17,11 @@ void write_file(const std::filesystem::path&, std::string_view bytes);
 /// The same; returns when it is on the disk, its name included.
 void write_durably(const std::filesystem::path&, std::string_view bytes);
 
+/// A new file, as write_durably() would; false: there is one of that name. It is written into
+/// `staging`, a folder of the same file system, first.
+bool create_durably(const std::filesystem::path&, std::string_view bytes,
+                    const std::filesystem::path& staging);
+
 /// Whether a file can be written there: makes its folder and tries, before anything costs time.
 /// Leaves nothing behind. Throws InputError with the reason.
 void test_writable(const std::filesystem::path&);

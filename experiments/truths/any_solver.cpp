@@ -4,7 +4,7 @@
 
 #include "core/model/index.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

@@ -3,11 +3,10 @@
 #include <functional>
 
 #include "core/model/index.hpp"
-#include "core/reference/chain_sweeps.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/fit.hpp"
 #include "core/reference/static_equilibrium.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

@@ -6,7 +6,7 @@
 #include "core/model/index.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/fit.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

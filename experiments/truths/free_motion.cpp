@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

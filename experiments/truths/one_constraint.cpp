@@ -1,7 +1,7 @@
 // Section 1: what one projection of one link does, in closed form.
 #include <cmath>
 
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

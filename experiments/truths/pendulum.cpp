@@ -6,12 +6,11 @@
 
 #include "core/model/angle.hpp"
 #include "core/model/index.hpp"
-#include "core/reference/chain_sweeps.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/dense.hpp"
 #include "core/reference/fit.hpp"
 #include "core/reference/shake.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

@@ -3,7 +3,7 @@
 
 #include "core/reference/fit.hpp"
 #include "core/reference/textbook.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

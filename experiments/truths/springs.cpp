@@ -5,7 +5,7 @@
 #include "core/model/text.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/fit.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

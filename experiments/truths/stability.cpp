@@ -3,10 +3,10 @@
 #include <numbers>
 
 #include "core/model/index.hpp"
-#include "core/reference/chain_sweeps.hpp"
+#include "core/reference/closed_forms.hpp"
 #include "core/reference/dense.hpp"
 #include "core/reference/fit.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

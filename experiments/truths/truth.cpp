@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
+#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 
 namespace taut {
@@ -95,6 +97,147 @@ void Findings::not_applicable(std::string_view subject, std::string_view why) {
   f.subject = subject, f.verdict = TruthVerdict::not_applicable, f.why = why;
   f.measured = f.expected = std::nan("");
   add(std::move(f));
+}
+
+Simulation::Simulation(const Scene& scene, std::string_view solver, int steps)
+    : scene_(scene), state_(scene.start) {
+  const SolverChoice choice = parse_solver(solver);
+  solver_ = choice.entry->make(scene_, choice.params);
+  solver_->load(state_);
+  if (steps > 0) step(steps);
+}
+
+void Simulation::step(int n) {
+  for (int i = 0; i < n; ++i, ++n_) solver_->step(n_ * scene_.dt, scene_.dt);
+  solver_->store(state_);
+}
+
+bool can_run(Findings& findings, std::string_view solver, const Scene& scene) {
+  if (!findings.wants(solver)) return false;
+  std::vector<std::string> reasons;
+  try {
+    const SolverChoice choice = parse_solver(solver);
+    reasons = choice.entry->unsupported(scene, choice.params);
+    if (reasons.empty()) choice.entry->make(scene, choice.params);
+  } catch (const InputError& error) {  // a solver or a precision that this program does not have
+    reasons = {error.what()};
+  }
+  if (!reasons.empty()) findings.not_applicable(solver, reasons.front());
+  return reasons.empty();
+}
+
+std::string jakobsen(int iterations, std::string_view projection, std::string_view more) {
+  const auto open = [&](std::string_view key) { return more.find(key) == std::string_view::npos; };
+  std::string text = "jakobsen:iterations=" + std::to_string(iterations);
+  if (open("substeps=")) text += ",substeps=1";
+  if (open("order=")) text += ",order=mesh";
+  return with(text + ",projection=" + std::string(projection) + ",precision=double", more);
+}
+
+std::string bullet(int iterations) {
+  return "bullet:iterations=" + std::to_string(iterations) + ",precision=double";
+}
+
+std::string xpbd(int substeps, std::string_view more) {
+  return with("xpbd:iterations=1,substeps=" + std::to_string(substeps) + ",precision=double", more);
+}
+
+std::string mass_spring(std::string_view integrator, double stiffness, double drag) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "mass-spring:integrator=" << integrator << ",structural=" << stiffness
+       << ",shear=" << stiffness << ",bend=" << stiffness << ",drag=" << drag
+       << ",substeps=1,precision=double";
+  return text.str();
+}
+
+namespace bare {
+
+Scene scene(std::vector<Vec3> x, std::vector<double> mass, std::vector<Link> links,
+            std::vector<int> pins) {
+  Scene s;
+  s.name = "truth";
+  s.mesh.rest = x;
+  s.mesh.mass = std::move(mass);
+  s.start = {std::move(x), std::vector<Vec3>(s.mesh.rest.size(), Vec3::Zero())};
+  s.links = std::move(links);
+  s.pins = std::move(pins);
+  s.gravity = Vec3::Zero();
+  s.dt = 1.0 / 64;
+  s.steps = 64;
+  return s;
+}
+
+Scene pair(double distance, double rest, double mass1, double mass2) {
+  return scene({Vec3::Zero(), distance * Vec3(2, 1, -2) / 3}, {mass1, mass2}, {{0, 1, rest}});
+}
+
+Scene chain(int n, double length, double mass, const Vec3& direction) {
+  std::vector<Vec3> x;
+  std::vector<Link> links;
+  for (int i = 0; i <= n; ++i) x.push_back(i * length / n * direction);
+  for (int i = 0; i < n; ++i) links.push_back({i, i + 1, length / n});
+  return scene(x, std::vector<double>(x.size(), mass), links, {0});
+}
+
+Scene sheet(int nu, int nv, const LinkChoice& choice, Lumping lumping, double width, double height,
+            double mass) {
+  const Mesh mesh = make_sheet(
+      {.nu = nu, .nv = nv, .width = width, .height = height, .mass = mass, .lumping = lumping});
+  Scene s = scene(mesh.rest, mesh.mass, grid_links(mesh, choice));
+  s.mesh = mesh;
+  return s;
+}
+
+}  // namespace bare
+
+Scene under_gravity(Scene scene) {
+  scene.gravity = {0, -kG, 0};
+  return scene;
+}
+
+std::vector<double> strains(const Scene& scene, const State& state) {
+  std::vector<double> e;
+  for (const Link& l : scene.links)
+    e.push_back((state.x[to_index(l.b)] - state.x[to_index(l.a)]).norm() - l.rest);
+  return e;
+}
+
+double max_strain(const Scene& scene, const State& state) {
+  const std::vector<double> e = strains(scene, state);
+  double worst = 0;
+  for (std::size_t j = 0; j < e.size(); ++j) {
+    const double relative = std::abs(e[j]) / scene.links[j].rest;
+    if (!(relative <= worst)) worst = relative;  // keeps NaN
+  }
+  return worst;
+}
+
+double rms_strain(const Scene& scene, const State& state) {
+  const std::vector<double> e = strains(scene, state);
+  double sum = 0;
+  for (std::size_t j = 0; j < e.size(); ++j) sum += std::pow(e[j] / scene.links[j].rest, 2);
+  return std::sqrt(sum / static_cast<double>(e.size()));
+}
+
+double max_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = (a[i] - b[i]).norm();
+    if (!(d <= worst)) worst = d;  // keeps NaN
+  }
+  return worst;
+}
+
+bool settle(Simulation& sim, double speed, int every, int limit) {
+  int calm = 0;
+  for (int n = 0; n < limit && calm < 10; n += every) {
+    sim.step(every);
+    double fastest = 0;
+    for (const Vec3& v : sim.state().v) fastest = std::max(fastest, v.norm());
+    calm = fastest < speed ? calm + 1 : 0;
+  }
+  return calm == 10;
 }
 
 }  // namespace taut

@@ -1,5 +1,5 @@
 // Section 2: btSoftBody with its Positions solver takes our path, vertex by vertex.
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

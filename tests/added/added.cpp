@@ -10,9 +10,9 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/report/stored.hpp"
-#include "experiments/require/answers.hpp"
+#include "experiments/require/require.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/extremes/extreme_settings.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {
@@ -180,7 +180,7 @@ TEST(Added, WhatTakesLongestIsKnownBeforehand) {
 
 TEST(Added, ItsSubstepsAreThoseOfFrontiers) {
   std::size_t found = 0;
-  for (const ExtremeSetting& one : extreme_settings("made-up:slices=4")) {
+  for (const FrontierSetting& one : frontier_settings("made-up:slices=4")) {
     if (one.name == "sweeps") {
       ++found;
       const Params params = parse_solver(one.question.base.solver).params;

@@ -42,7 +42,7 @@ def main(binaries, out):
     taut("run", "./small.toml", "--out", "results")
     taut("bench", "./small.toml", "--rounds", "2", "--seconds", "0.0005", "--out", "results", "--quiet")
     taut("verify", "--section", "1", "--quiet", "-o", "results/verify.json")
-    page = folder / taut("report", "./small.toml", "--results", "results", "--film", "disc", "--film", "twist")[-1]
+    page = folder / taut("report", "./small.toml", "--out", "results", "--film", "disc", "--film", "twist")[-1]
     text = page.read_text()
     model = json.loads(text.split('<script type="application/json" id="model">', 1)[1].split("</script>", 1)[0])
     scenes = {scene["id"]: scene for scene in model["scenes"]}

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "experiments/case/run_case.hpp"
-#include "experiments/study/frontier.hpp"
+#include "experiments/study/frontier/frontier.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut::divergence_test {

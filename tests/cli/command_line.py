@@ -8,6 +8,8 @@ import sys
 import tempfile
 import unittest
 
+from parts import parts_of
+
 BINARIES = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/default").resolve()
 
 SCENE = """
@@ -52,7 +54,7 @@ class CommandLine(unittest.TestCase):
         return lines[-1]
 
     def records(self, results="results/runs"):
-        return [json.loads(file.read_text()) for file in (self.folder / results / "store").glob("*/*/case.json")]
+        return [json.loads(parts_of(entry)[1]["case.json"]) for entry in self.entries(results)]
 
     def entries(self, results="results/runs"):
         return sorted((self.folder / results / "store").glob("*/*"))

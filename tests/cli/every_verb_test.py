@@ -18,7 +18,7 @@ SWEPT = "set = ['time.duration=0.1']\naxes.'cloth.grid' = [[4, 4], [6, 6]]\n"
 # What each verb is asked here; N becomes a number that no other question has.
 ASKED = {
     "run": ["./study.toml"], "plot": ["./study.toml", "--kind", "convergence"], "report": ["./study.toml", "--no-media"],
-    "export": ["./study.toml"], "new study": ["aN"], "new scene": ["bN"], "case": ["./small.toml", "jakobsen"], "list": ["solvers"],
+    "export": ["./study.toml"], "new": ["study", "aN"], "case": ["./small.toml", "jakobsen"], "list": ["solvers"],
     "plan": ["./small.toml", "bullet"], "reference": ["hang", "-o", "references"],
     "render": ["./small.toml", "--solver", "jakobsen", "--quality", "draft", "--size", "320x240"],
     "require": ["./small.toml", "jakobsen", "--patience", "20"], "frontier": ["./small.toml", "jakobsen", "--tolerance", "0.5"],

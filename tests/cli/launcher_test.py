@@ -208,9 +208,14 @@ class Launcher(unittest.TestCase):
         self.assertIn("build/asan\n", whole.out)
         self.assertIn("default: absent\n  default: test_disk: needs a disk\n", whole.err)
         cmake = self.clone / "CMakeLists.txt"
-        cmake.write_text(cmake.read_text().replace("planted COMMAND true", "planted COMMAND false"))
+        good = cmake.read_text()
+        cmake.write_text(good.replace("planted COMMAND true", "planted COMMAND false"))
         self.call("test")
-        self.call("test", "--all", expect=1)
+        self.assertIn("FAILED", self.call("test", "--all", expect=1).err)
+        cmake.write_text(good.replace("enable_testing()", 'enable_testing()\nif(TAUT_SANITIZE)\nmessage(FATAL_ERROR "not here")\nendif()'))
+        broken = self.call("test", "--all", expect=1)
+        self.assertIn("not here", broken.err)
+        self.assertRegex(broken.out, r"planted \.+ +Passed", "what follows runs all the same")
 
 
 if __name__ == "__main__":

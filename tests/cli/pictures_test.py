@@ -46,14 +46,6 @@ class Pictures(CommandLine):
         done = self.render(*SIDE_BY_SIDE, "--video", "--duration", "0.1", "-o", "film.mp4")
         self.assertRegex(done.err, r"frame (\d+)/\1  [0-9.e-]+ s each")
 
-    def test_obj_sequence(self):
-        self.render(*SIDE_BY_SIDE, "--export", "obj", "-o", "frames")
-        files = self.files()
-        self.assertEqual(len(files), 2 * 17)
-        first = (self.folder / "frames" / files[0]).read_text().splitlines()
-        self.assertEqual(sum(line.startswith("v ") for line in first), 16)
-        self.assertEqual(sum(line.startswith("f ") for line in first), 18)
-
     def test_osmesa_and_egl_draw_the_same_bytes(self):
         self.render(*SIDE_BY_SIDE, *SMALL, "-o", "osmesa.png", TAUT_EGL="libNoEGL.so")
         self.render(*SIDE_BY_SIDE, *SMALL, "-o", "egl.png", TAUT_OSMESA="libNoOSMesa.so")
@@ -65,7 +57,6 @@ class Pictures(CommandLine):
         for text in ["libNoOSMesa.so", "libosmesa6", "libNoEGL.so", "libegl1"]:
             self.assertIn(text, done.err)
         self.assertEqual(self.files(), [])
-        self.render("--solver", "jakobsen", "--export", "obj", "-o", "frames", **nothing)
         study = self.study(solvers=["jakobsen:iterations=2", "bullet:iterations=2"])
         self.taut("run", study)
         done = self.taut("report", study, env={**os.environ, **nothing})

@@ -19,7 +19,7 @@ def main():
         subprocess.run([command_line.BINARIES / "taut", "run", "torture", "--no-report", "--timeout", "10", "--out", folder], check=True,
                        stdout=subprocess.DEVNULL)
         took = time.monotonic() - began
-        records = [json.loads(file.read_text()) for file in pathlib.Path(folder).glob("store/*/*/case.json")]
+        records = [json.loads(command_line.parts_of(file)[1]["case.json"]) for file in pathlib.Path(folder).glob("store/*/*")]
     wrong, counts = [], {}
     for record in records:
         status = record["status"]

@@ -10,7 +10,6 @@
 #include "experiments/external/connection.hpp"
 #include "experiments/external/probe.hpp"
 #include "experiments/external/protocol.hpp"
-#include "experiments/external/scene_file.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::external::answers_test {

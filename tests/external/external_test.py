@@ -129,12 +129,13 @@ class Toys(Programs):
     def test_bad_input_is_refused_before_anything_runs(self):
         for solver, says in [("external:cmd='no-such-program x'", "no program 'no-such-program'"),
                              ("external:cmd='python3 a | b'", "no shell runs it"),
-                             ("external:cmd='python3", "the quote ' is not closed"),
+                             ("external:cmd='touch called", "the quote ' is not closed"),
                              (f"external:cmd='{TOYS['cpp']}',iterations=-1", "iterations=-1 is outside 0 to 1000000"),
                              (f"external:cmd='{TOYS['cpp']}',sweeps=1", "unknown parameter 'sweeps'"),
                              ("mien", "unknown solver 'mien'")]:
             with self.subTest(solver):
                 self.assertIn(says, self.taut("case", "./small.toml", solver, expect=2).err)
+        self.assertFalse((self.folder / "called").exists())
         (self.solvers / "mine.toml").write_text("cmd = 'no-such-program'\nspeed = 3\n")
         self.assertRegex(self.taut("case", "./small.toml", "mine", expect=2).err, r"mine.toml:2:1: unknown key 'speed'")
         self.assertEqual(self.case("external", "./small.toml")["status"]["kind"], "unsupported")

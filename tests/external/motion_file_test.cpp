@@ -12,7 +12,6 @@
 #include "core/io/positions/positions.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
-#include "experiments/external/recorded.hpp"
 
 namespace taut::external::motion_file_test {
 namespace {

@@ -22,6 +22,9 @@ import time
 
 from generate import NASTY, Maker, mutate, toml
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / 'cli'))
+from parts import parts_of  # noqa: E402
+
 CODES = {0, 1, 2, 3, 4, 5, 6, 130}  # experiments/command_line/verb.hpp
 STATUSES = {'ok', 'exploded', 'unsettled', 'extreme', 'unsupported', 'timeout', 'oom', 'crash', 'protocol', 'error'}
 LEGITIMATE = 30  # strain that no scene has without being called extreme: experiments/case/divergence.hpp
@@ -106,8 +109,8 @@ class Attempt:
         said = self.taut('run', *words, '--timeout', 2, '--memory', 500, '-j', 1, '--json')
         if self.codes[-1] == 0:
             strict(said)
-        for file in self.folder.glob('results/runs/store/*/*/case.json'):
-            judge_record(strict(file.read_text()))
+        for file in self.folder.glob('results/runs/store/*/*'):
+            judge_record(strict(parts_of(file)[1]['case.json'].decode()))
 
     def solver(self):
         return self.make.solver(SOLVERS)
@@ -208,7 +211,7 @@ def arguments(attempt):
     verb = attempt.random.choice(sorted(words))
     given = words[verb]
     option = attempt.random.choice(['--dt', '--duration', '--set', '--preset', '--shard', '--only', '--timeout', '--memory', '-j', '--table',
-                                    '--kind', '--y', '--results', '--baselines', '--at', '--size', '--view', '--of', '--from', '--to', ''])
+                                    '--kind', '--y', '--out', '--baselines', '--at', '--size', '--view', '--of', '--from', '--to', ''])
     text = attempt.random.choice(texts)
     if option:
         given = given + [option, text]
@@ -227,12 +230,16 @@ def damage(attempt, pattern):
 
 def record(attempt):
     """The seal is made to fit, so that the damage is not found by its digest."""
-    file = damage(attempt, 'results/runs/store/*/*/*')
-    seal = file.parent / 'status.json'
-    if file != seal and attempt.make.maybe(0.8):
-        entry = json.loads(seal.read_text())
-        entry['files'][file.name] = hashlib.sha256(file.read_bytes()).hexdigest()
-        seal.write_text(json.dumps(entry))
+    if attempt.make.maybe(0.2):
+        damage(attempt, 'results/runs/store/*/*')
+    else:
+        attempt.stored()
+        file = attempt.random.choice(sorted(attempt.folder.glob('results/runs/store/*/*')))
+        seal, parts = parts_of(file)
+        name = attempt.random.choice(sorted(parts))
+        parts[name] = mutate(attempt.random, parts[name], 4)
+        seal['files'][name], seal['sizes'][name] = hashlib.sha256(parts[name]).hexdigest(), len(parts[name])
+        file.write_bytes(json.dumps(seal).encode() + b'\n' + b''.join(parts[name] for name in seal['sizes']))
     attempt.look()
 
 

@@ -1,5 +1,4 @@
 // Documents: kinds and places of values, what an override does, how deep and how long is too much.
-#include "core/io/document.hpp"
 
 #include <gtest/gtest.h>
 

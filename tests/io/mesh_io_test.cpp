@@ -111,6 +111,17 @@ TEST(MeshFromObj, QuadsAreCutAlongTheirShorterDiagonalAndWeighAsMuchAsTheirTrian
   EXPECT_DOUBLE_EQ(mesh.mass[4], 5 * (0.5 / 3) / 2.5);
 }
 
+TEST(MeshFromObj, TheDiagonalThatCutsAQuadIsTheShorterOneWhereverItLiesAndTheFirstOfTwoAlike) {
+  const std::string far =
+      "v 10 7 0\nv 11 7 0\nv 12 9 0\nv 10 8 0\n";  // of 2-4 and 1-3, 2-4 is shorter
+  const std::vector<Triangle> cut{{1, 2, 3}, {1, 3, 0}};
+  for (const char* from : {"f 1 2 3 4\n", "f 2 3 4 1\n"})
+    EXPECT_EQ(make_mesh(parse_obj("x.obj", far + from), 1, Lumping::area).triangles, cut) << from;
+  const std::string square = "v 10 7 0\nv 11 7 0\nv 11 8 0\nv 10 8 0\nf 1 2 3 4\n";
+  EXPECT_EQ(make_mesh(parse_obj("x.obj", square), 1, Lumping::area).triangles,
+            (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+}
+
 TEST(MeshFromObj, EachTriangleGivesAThirdToItsCorners) {
   const Polygons p = parse_obj("x.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv -4 0 0\nf 1 2 3\nf 1 3 4\n");
   EXPECT_DOUBLE_EQ(area(p), 6);

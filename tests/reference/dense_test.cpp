@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/reference/chain_sweeps.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"

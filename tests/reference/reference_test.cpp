@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/reference/chain_sweeps.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/model/index.hpp"
-#include "experiments/render/picture/vertex_values.hpp"
+#include "experiments/render/picture/scene_renderer.hpp"
 #include "tests/render/render_scenes.hpp"
 
 namespace taut::numbers_test {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "experiments/render/image/colour.hpp"
-#include "experiments/render/picture/placing.hpp"
+#include "experiments/render/picture/scene_renderer.hpp"
 #include "tests/render/render_scenes.hpp"
 
 namespace taut::surfaces_test {

@@ -1,13 +1,12 @@
 // Curves and the words for them: what a chart holds fixed, orders, fits and names.
-#include "experiments/report/chart/curves.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "experiments/report/chart/charts.hpp"
-#include "experiments/report/chart/citations.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/report/claims/claim.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::curves_test {

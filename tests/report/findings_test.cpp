@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/claims/compared_solvers.hpp"
+#include "experiments/report/claims/claim.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
@@ -183,7 +183,7 @@ class StoredStudy : public testing::Test {
     study_ = load_study((scratch_.path() / "few.toml").string());
     cases_ = cases_of(study_);
     store_.prepare();
-    run_cases(cases_, store_, Session(store_, "a test", {}, {}), {.jobs = 2});
+    run_cases(cases_, store_, {.jobs = 2});
   }
   const Scratch scratch_;
   const Store store_{scratch_.path() / "results"};
@@ -238,7 +238,7 @@ TEST_F(StoredStudy, IsReadWithItsPlanItsSlopeAndTheMotionsOfTheQuotedCases) {
     }
   }
   EXPECT_EQ(shown, quoted);
-  std::filesystem::remove_all(store_.folder(cases_[3].key));
+  std::filesystem::remove_all(store_.file(cases_[3].key));
   const ReportInput less = stored_results({study_}, store_);
   EXPECT_EQ(less.studies[0].planned, 8u);
   EXPECT_EQ(less.studies[0].records.size(), 7u);

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "experiments/case/record_io.hpp"
-#include "experiments/report/chart/citations.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"

@@ -11,7 +11,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/compared_solvers.hpp"
+#include "experiments/report/claims/claim.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"

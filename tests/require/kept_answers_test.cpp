@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "core/model/input_error.hpp"
-#include "experiments/require/answers.hpp"
 #include "experiments/require/require.hpp"
 
 namespace taut::kept_answers_test {

@@ -7,7 +7,7 @@
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
-#include "experiments/require/draft.hpp"
+#include "experiments/require/require.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::reductions_test {

@@ -1,4 +1,6 @@
 // What can go of a model, how answers are compared, and scenes that are written as files.
+#include "experiments/require/require.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,12 +8,10 @@
 #include <functional>
 #include <limits>
 
-#include "core/io/document.hpp"
 #include "core/io/scene_io.hpp"
+#include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/require/answers.hpp"
-#include "experiments/require/draft.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 

@@ -18,8 +18,7 @@ class Requirements : public testing::Test {
     write_file(scratch_.path() / "s.toml", scene);
     options.full.scene = (scratch_.path() / "s.toml").string(), options.jobs = 2;
     store_.prepare();
-    return find_requirement(options, store_, Session(store_, "a test", {}, {}),
-                            scratch_.path() / "made");
+    return find_requirement(options, store_, scratch_.path() / "made");
   }
   static const EffectTrial& effect(const Requirement& found, const std::string& name) {
     return *std::ranges::find(found.effects, name, &EffectTrial::name);
@@ -27,10 +26,10 @@ class Requirements : public testing::Test {
   /// As the store has it.
   Observation seen(const CaseSpec& spec) const {
     const Case one = make_case(spec);
-    return {one, *store_.find(one), read_trajectory(store_.folder(one.key) / kFramesFile).frames};
+    return {one, *store_.find(one), store_.motion(one.key).frames};
   }
   void forget(const CaseSpec& spec) const {
-    std::filesystem::remove_all(store_.folder(make_case(spec).key));
+    std::filesystem::remove_all(store_.file(make_case(spec).key));
   }
   /// What a scene file's comment says goes, in its order: "wind: gone".
   static std::vector<std::string> said_to_go(const Requirement& found) {

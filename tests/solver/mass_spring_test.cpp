@@ -1,7 +1,7 @@
 // Vasilovici's section 3 and XPBD, held to each other and to what their formulas say.
 #include <gtest/gtest.h>
 
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut::mass_spring_test {
 namespace {

@@ -181,19 +181,20 @@ std::vector<Link> order_of(const RegularLinks& regular, const InterleavedSheet<R
   const SheetSides& grid = regular.grid;
   const SheetSweep<Real>& sweep = sheet.sweep();
   std::vector<Link> links;
-  for (const std::size_t parity : {0U, 1U})
-    visit_rows_of(parity, 0, to_index(grid.rows), grid.rows, [&](int begin, int end) {
-      visit_rows(sweep, begin, end, [&](const SheetDirection<Real>& d, int j) {
-        const Family family =
-            regular.directions[static_cast<std::size_t>(&d - sweep.direction)].family;
-        visit_vectors(sweep, d, [&](int k) {
-          for (int lane = 0; lane < sweep.lanes; ++lane)
-            if (const int i = lane * sweep.vectors + k; i + d.columns < grid.columns)
-              links.push_back({grid.index(i, j + d.left), grid.index(i + d.columns, j + d.right),
-                               static_cast<double>(d.rest), family});
-        });
-      });
-    });
+  for (const int parity : {0, 1})
+    for (int begin = parity * kBlockRows; begin < grid.rows; begin += 2 * kBlockRows)
+      visit_rows(sweep, begin, std::min(begin + kBlockRows, grid.rows),
+                 [&](const SheetDirection<Real>& d, int j) {
+                   const Family family =
+                       regular.directions[static_cast<std::size_t>(&d - sweep.direction)].family;
+                   visit_vectors(sweep, d, [&](int k) {
+                     for (int lane = 0; lane < sweep.lanes; ++lane)
+                       if (const int i = lane * sweep.vectors + k; i + d.columns < grid.columns)
+                         links.push_back({grid.index(i, j + d.left),
+                                          grid.index(i + d.columns, j + d.right),
+                                          static_cast<double>(d.rest), family});
+                   });
+                 });
   return links;
 }
 

@@ -48,27 +48,38 @@ TEST(ThreadPool, RoundsDoNotOverlap) {
   for (std::size_t i = 0; i < value.size(); ++i) ASSERT_EQ(value[i], (i + 2000) % value.size());
 }
 
-TEST(ThreadPool, AStageOfABlockFollowsThoseBeforeItOfItsNeighbours) {
-  static constexpr int stages = 300;  // more than are kept
-  static constexpr std::size_t blocks = 23;
-  for (const int threads : {2, 5}) {
-    ThreadPool pool(threads);
-    std::vector<std::atomic<int>> done(blocks);
-    std::atomic<int> early{0}, late{0};
-    for (int stage = 0; stage < stages; ++stage)
-      pool.queue(blocks, [&done, &early, &late, stage](std::size_t begin, std::size_t end) {
-        for (std::size_t block = begin; block < end; ++block) {
-          for (std::size_t other = block == 0 ? 0 : block - 1; other < std::min(block + 2, blocks);
-               ++other)
-            if (done[other] < stage) ++early;
-          if (dawdle(); done[block]++ != stage) ++late;
+/// Stages of blocks alone and of a block and the one after it, in an order without a pattern: what
+/// each does to a block has to find it as all before it have left it.
+TEST(ThreadPool, AStageOfABlockFollowsThoseBeforeIt) {
+  static constexpr std::size_t kStages = 300;  // more than are kept
+  for (const std::size_t blocks : {23U, 24U, 3U, 1U})
+    for (const int threads : {2, 5}) {
+      ThreadPool pool(threads);
+      std::vector<std::uint32_t> value(blocks, 1), want(blocks, 1);
+      const auto mix = [](std::uint32_t& a, std::uint32_t b) { dawdle(), a = 31 * a + b; };
+      for (std::size_t stage = 0; stage < kStages; ++stage) {
+        const auto n = static_cast<std::uint32_t>(stage);
+        const auto one = [&mix, n](std::vector<std::uint32_t>& v, std::size_t block) {
+          mix(v[block], n);
+        };
+        const auto two = [&mix, n](std::vector<std::uint32_t>& v, std::size_t block) {
+          mix(v[block], n);
+          if (block + 1 < v.size()) mix(v[block + 1], v[block]), mix(v[block], v[block + 1]);
+        };
+        if (stage % 7 % 3 == 0) {
+          pool.queue_pairs(blocks, [&value, two](std::size_t block) { two(value, block); });
+          for (const std::size_t parity : {0U, 1U})
+            for (std::size_t block = parity; block < blocks; block += 2) two(want, block);
+        } else {
+          pool.queue(blocks, [&value, one](std::size_t begin, std::size_t end) {
+            for (std::size_t block = begin; block < end; ++block) one(value, block);
+          });
+          for (std::size_t block = 0; block < blocks; ++block) one(want, block);
         }
-      });
-    pool.finish();
-    EXPECT_EQ(early, 0);
-    EXPECT_EQ(late, 0);
-    for (const auto& n : done) EXPECT_EQ(n, stages);
-  }
+      }
+      pool.finish();
+      EXPECT_EQ(value, want) << blocks << " blocks, " << threads << " threads";
+    }
 }
 
 TEST(ThreadPool, FinishesWhatIsQueuedBeforeOtherWork) {

@@ -22,7 +22,7 @@ experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(system|case|external))/|taut_solver.hpp)
 experiments/study        | (core/(model|io|reference)|experiments/(system|case|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(system|case|study/cluster))/|experiments/study/[a-z_]+.hpp
-experiments/study/extremes | (core/model|experiments/(system|case|study/extremes))/|experiments/study/[a-z_]+.hpp
+experiments/study/frontier | (core/(model|io|reference)|experiments/(system|case|study/frontier))/|experiments/study/[a-z_]+.hpp
 experiments/timing       | (core/(model|reference)|experiments/(system|case|timing))/
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(system|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(system|case|study|truths|baseline))/
@@ -35,13 +35,13 @@ experiments/render/film  | (core/(model|io)|experiments/(system|case|study|rende
 experiments/report       | (core/model|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
 experiments/report/chart | (core/model|experiments/(system|metrics|case|timing|report/chart))/|experiments/report/input
 experiments/report/claims | (core/model|experiments/(system|metrics|case|timing|report/(chart|claims)))/|experiments/report/input
-experiments/report/plot  | (core/model|experiments/(system|study/extremes|timing|report/(chart|plot)))/
+experiments/report/plot  | (core/model|experiments/(system|study/frontier|timing|report/(chart|plot)))/
 experiments/report/model | (core/model|experiments/(system|metrics|case|timing|baseline|truths|report/(chart|claims|model)))/|experiments/report/input
 '
 # what is included | files that may include it
 owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/(.*\.cpp|bullet_solver\.hpp)
-toml\+\+                | ^core/io/document\.cpp
+toml\+\+                | ^core/io/section\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
 openssl/                | ^experiments/(case|report/chart)/.*\.cpp
@@ -121,14 +121,14 @@ core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
 core/solver/contact/planted.cpp|"core/solver/constraints/relaxation.hpp"
 experiments/metrics/planted.cpp|"core/model/solver.hpp"
 experiments/study/planted.cpp|"experiments/timing/study_bench.hpp"
-experiments/study/cluster/planted.cpp|"experiments/study/extremes/extremes.hpp"
-experiments/study/extremes/planted.cpp|"experiments/study/cluster/merge.hpp"
+experiments/study/cluster/planted.cpp|"experiments/study/frontier/parameter_frontier.hpp"
+experiments/study/frontier/planted.cpp|"experiments/study/cluster/cluster.hpp"
 experiments/timing/planted.cpp|"core/solver/simd/kernels.hpp"
 experiments/timing/bench/planted.cpp|"experiments/study/store.hpp"
 experiments/render/picture/planted.cpp|"experiments/render/film/film.hpp"
 experiments/require/planted.cpp|"experiments/report/chart/format.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
-experiments/report/chart/planted.hpp|"experiments/report/claims/compared_solvers.hpp"
+experiments/report/chart/planted.hpp|"experiments/report/claims/claim.hpp"
 experiments/report/claims/planted.cpp|"experiments/report/model/parts.hpp"
 experiments/report/plot/planted.cpp|"experiments/report/claims/claim.hpp"
 experiments/report/model/planted.cpp|"experiments/report/plot/plot.hpp"

@@ -1,6 +1,4 @@
 // Pack files: whole entries or none, whatever was cut off, damaged or written twice.
-#include "experiments/study/pack.hpp"
-
 #include <gtest/gtest.h>
 
 #include <fstream>

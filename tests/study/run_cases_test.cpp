@@ -10,7 +10,7 @@
 #include "core/reference/linear_stability.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/frontier.hpp"
+#include "experiments/study/frontier/frontier.hpp"
 #include "experiments/system/clock.hpp"
 #include "tests/support/scripted.hpp"
 
@@ -38,7 +38,7 @@ class Runs : public testing::Test {
       if (record) ended_.push_back(record->id);
     };
     store_.prepare();
-    return run_cases(cases, store_, Session(store_, "a test", cases, {}), options);
+    return run_cases(cases, store_, options);
   }
   /// What the script will give for a case.
   void give(const Case& one, Kind kind = Kind::ok, double value = 1) const {
@@ -254,8 +254,7 @@ TEST(FrontierOfCases, BracketsWhatTheoryPredictsAndRunsNothingTwice) {
   const Case at = make_case(question.at(predicted->value));
   EXPECT_NEAR(linear_stability(*at.scene, at.choice)->margin, 1, 1e-5);
   for (const bool again : {false, true}) {
-    const CaseFrontier found =
-        find_frontier(question, store, Session(store, "a test", {}, {}), {.jobs = 2});
+    const CaseFrontier found = find_frontier(question, store, {.jobs = 2});
     ASSERT_EQ(found.frontier.kind, Frontier::Kind::bracketed);
     EXPECT_NEAR(found.frontier.stable, predicted->value, 0.09 * predicted->value);
     EXPECT_NEAR(found.frontier.unstable, predicted->value, 0.09 * predicted->value);
@@ -266,8 +265,8 @@ TEST(FrontierOfCases, BracketsWhatTheoryPredictsAndRunsNothingTwice) {
       EXPECT_NEAR(found.records[k].dt, found.frontier.probes[k].value, 1e-8)
           << "ascending, as the probes";
   }
-  const CaseFrontier judged = find_frontier(
-      question, store, Session(store, "a test", {}, {}), {}, [](const Case& one, const Record& r) {
+  const CaseFrontier judged =
+      find_frontier(question, store, {}, [](const Case& one, const Record& r) {
         return one.scene->dt == r.dt && r.dt > 0.03 ? "odd" : "";
       });
   EXPECT_NEAR(judged.frontier.unstable, 0.0315, 0.0031);

@@ -47,6 +47,12 @@ class StoreTest : public testing::Test {
     store_.prepare();
     return store_.commit(store_.stage(record.key), record);
   }
+  /// Adds to the last digit of the entry, a part of its record.
+  void damage(const std::string& key) {
+    std::string text = read_text(store_.file(key));
+    text[text.find_last_of("0123456789")] ^= 1;
+    write_file(store_.file(key), text);
+  }
   fs::path root_ = fs::path(testing::TempDir()) / unique_suffix();
   std::vector<std::string> said_;
   Store store_{root_, [this](const std::string& text) { said_.push_back(text); }};
@@ -128,7 +134,7 @@ TEST_F(StoreTest, AFailureGivesWayToAResult) {
 TEST_F(StoreTest, ADamagedEntryIsSetAsideAndSaidSo) {
   const Record r = some_record();
   put(r);
-  std::ofstream(store_.folder(r.key) / "case.json", std::ios::app) << " ";
+  damage(r.key);
   EXPECT_FALSE(store_.find(r.key));
   ASSERT_EQ(said_.size(), 1u);
   EXPECT_NE(said_[0].find("corrupt entry (case.json does not match its digest)"),
@@ -145,7 +151,7 @@ TEST_F(StoreTest, WhereNoFileCanBeMadeIsSaidBeforeACaseRuns) {
 TEST_F(StoreTest, WhoLosesTheRenameLooksAgain) {
   const Record r = some_record();
   put(r);
-  std::ofstream(store_.folder(r.key) / "case.json", std::ios::app) << " ";
+  damage(r.key);
   // The notice of the damaged entry comes between this commit's look and its rename.
   Store::Commit others = Store::Commit::conflict;
   const Store racing(root_, [&](const std::string&) {
@@ -156,6 +162,12 @@ TEST_F(StoreTest, WhoLosesTheRenameLooksAgain) {
   EXPECT_EQ(others, Store::Commit::stored);
   EXPECT_EQ(to_json(*store_.find(r.key)), to_json(r));
   EXPECT_TRUE(fs::is_empty(root_ / "tmp"));
+}
+
+TEST_F(StoreTest, AnEntryOfAnEarlierTautIsRefused) {
+  fs::create_directories(store_.file(some_record().key));
+  EXPECT_THROW(store_.find(some_record().key), InputError);
+  EXPECT_THROW(put(some_record()), InputError);
 }
 
 TEST_F(StoreTest, ReadingCreatesNothing) {

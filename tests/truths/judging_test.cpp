@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/reference/fit.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut::judging_test {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/reference/textbook.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/reference_store.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut::truths_test {
 namespace {

@@ -58,27 +58,8 @@ class OutputFile {
   std::ofstream out_;
 };
 
-/// Frames of equal size one after the other: what all formats of one file are after their header.
-struct FrameBlock {
-  std::uint64_t first = 0;          ///< byte of the first frame
-  std::uint64_t frames = 0, n = 0;  ///< as the header says
-  std::endian order = std::endian::little;
-  bool single = true;  ///< float32, else float64
-};
-/// Throws InputError if the file does not end where the block does.
-std::unique_ptr<PositionReader> read_block(const std::filesystem::path&, const FrameBlock&,
-                                           PositionsHeader);
-
-/// The first bytes of a file, as many as it has of them.
-std::string first_bytes(const std::filesystem::path&, std::size_t most);
-
-std::unique_ptr<PositionReader> open_npy(const std::filesystem::path&);
-std::unique_ptr<PositionReader> open_pc2(const std::filesystem::path&);
-std::unique_ptr<PositionReader> open_mdd(const std::filesystem::path&);
+/// A file for each frame.
 std::unique_ptr<PositionReader> open_sequence(const std::filesystem::path&);
-std::unique_ptr<PositionWriter> create_npy(const std::filesystem::path&);
-std::unique_ptr<PositionWriter> create_pc2(const std::filesystem::path&);
-std::unique_ptr<PositionWriter> create_mdd(const std::filesystem::path&);
 std::unique_ptr<PositionWriter> create_sequence(const std::filesystem::path&, const Mesh&);
 
 /// The vertices of one file of a sequence, and to what they are rounded.

@@ -124,14 +124,13 @@ class ColouredPass final : public Pass<Real> {
     const SheetSweep<Real>& sheet = links.sweep();
     const auto& kernels = sheet.lanes == kWide ? kernels_.wide_sheet : kernels_.narrow_sheet;
     const auto project = kernels[static_cast<int>(projection_)];
-    for (const std::size_t parity : {0U, 1U})
-      pool_.queue(
-          p.layout->blocks(),
-          [&links, project, parity, x = p.x.data()](std::size_t begin, std::size_t end) {
-            visit_rows_of(parity, begin, end, links.rows(),
-                          [&](int from, int to) { project(links.sweep(), x, from, to); });
-          },
-          p.size() >= ThreadPool::kWorthSharing);
+    pool_.queue_pairs(
+        p.layout->blocks(),
+        [&links, project, x = p.x.data()](std::size_t block) {
+          const auto [begin, end] = rows_of_block(block, links.rows());
+          project(links.sweep(), x, begin, end);
+        },
+        p.size() >= ThreadPool::kWorthSharing);
   }
 
   void sweep(const ColourBatches<Real>& links, Particles<Real>& p) {

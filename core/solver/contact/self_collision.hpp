@@ -106,29 +106,30 @@ class SelfCollidePass final : public Pass<Real> {
       const Vec4T<Real> now = between<packed>(x, pair);
       if (squared_norm(now) < pair.least * pair.least) separate<packed>(x, pair, now);
     });
+    pool_.finish();
   }
 
-  /// Calls f(pair) for all of these, those close at rest first: each list for itself and at the
+  /// Queues f(pair) for all of these, those close at rest first: each list for itself and at the
   /// same time lists that have no particle in common, so that threads change nothing.
   template <class P, class F>
   void for_found(std::vector<P> Found::*pairs, const F& f) {
     const std::size_t parts = grid_.parts();
     for (const auto* found : {&close_found_, &others_found_}) {
-      if (std::ranges::all_of(*found, [&](const Found& list) { return (list.*pairs).empty(); }))
-        continue;
+      const auto empty = [&](const Found& list) { return (list.*pairs).empty(); };
+      if (std::ranges::all_of(*found, empty)) continue;
       const auto visit = [f, pairs, lists = found->data()](std::size_t n) {
         for (const P& pair : lists[n].*pairs) f(pair);
       };
-      const auto queue = [&](std::size_t first_list, std::size_t first, std::size_t step) {
-        pool_.queue(
-            parts,
-            [visit, first_list, first, step](std::size_t begin, std::size_t end) {
-              for (std::size_t n = begin; n < end; ++n)
-                if (n % step == first) visit(first_list + n);
-            },
-            parts > 1);
-      };
-      queue(0, 0, 1), queue(parts, 0, 2), queue(parts, 1, 2);
+      pool_.queue(
+          parts,
+          [visit](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) visit(n);
+          },
+          parts > 1);
+      pool_.queue_pairs(
+          parts, [visit, parts](std::size_t n) { visit(parts + n); }, parts > 1);
+      if (std::all_of(found->begin() + static_cast<std::ptrdiff_t>(2 * parts), found->end(), empty))
+        continue;
       pool_.finish();
       for (std::size_t n = 2 * parts; n < found->size(); ++n) visit(n);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/model/mesh.hpp"
@@ -38,14 +39,11 @@ struct RegularLinks {
 /// columns, below which lanes would overlap; and the faces are those of make_sheet.
 std::optional<RegularLinks> regular_links(const Mesh&, std::span<const Link>);
 
-/// Calls f(first row, end) for those of blocks [begin, end) of rows that are even, or odd: they
-/// share no row, even if each reaches into the row after it or two of them.
-template <class F>
-void visit_rows_of(std::size_t parity, std::size_t begin, std::size_t end, int rows, const F& f) {
-  for (std::size_t block = begin + (begin + parity) % 2; block < end; block += 2) {
-    const int first = static_cast<int>(block) * kBlockRows;
-    if (first < rows) f(first, std::min(first + kBlockRows, rows));
-  }
+/// The first row of a block of rows that own links or quads, and their end: these reach into the
+/// first rows of the block after it.
+inline std::pair<int, int> rows_of_block(std::size_t block, int rows) {
+  const int first = std::min(static_cast<int>(block) * kBlockRows, rows);
+  return {first, std::min(first + kBlockRows, rows)};
 }
 
 /// Where an interleaved sheet (simd/kernels.hpp) keeps each vertex. Vertices past the last column

@@ -1,19 +1,12 @@
-#include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <iostream>
-#include <memory>
 #include <optional>
 
-#include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/timing/recommendation.hpp"
 #include "experiments/timing/search.hpp"
@@ -361,24 +354,22 @@ int run(Options options) {
   return result.same_bits ? kPass : kConflict;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("SCENE", o->scene, "Name or path of a scene")->required();
-  app.add_option("--error", o->error, "Reach this error (0.01 or 1%) at the least cost");
-  app.add_option("--budget", o->budget,
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("SCENE", o.scene, "Name or path of a scene")->required();
+  app.add_option("--error", o.error, "Reach this error (0.01 or 1%) at the least cost");
+  app.add_option("--budget", o.budget,
                  "Reach the least error within this CPU time per frame of 1/60 s [ms]")
       ->check(above_zero());
-  app.add_option("--solver", o->solvers,
+  app.add_option("--solver", o.solvers,
                  "Only this solver; what its text fixes is not searched; repeat it (default: all)");
-  add_settings(app, o->settings);
-  add_judgement(app, o->metric, o->tolerance);
-  app.add_option("--patience", o->patience,
+  add_settings(app, o.settings);
+  add_judgement(app, o.metric, o.tolerance);
+  app.add_option("--patience", o.patience,
                  "Search, time and verify within this time [s] (default: 120)")
       ->check(above_zero());
-  add_samples(app, o->rounds, o->seconds, 2);
-  add_results(app, o->out);
-  add_json(app, o->json, "The answer and all that was tried");
-  return [o] { return run(*o); };
+  add_samples(app, o.rounds, o.seconds, 2);
+  add_results(app, o.out);
+  add_json(app, o.json, "The answer and all that was tried");
 }
 
 }  // namespace
@@ -392,4 +383,4 @@ TAUT_VERB(advise) = {
         "taut advise hang --error 1%\n  taut advise ball --budget 4 --metric "
         "stretch.max\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
         "Exit: 0 found; 4 not reached; 6 the best does not repeat bit for bit",
-    .bind = taut::verb::advise::bind};
+    .bind = taut::bind_verb<taut::verb::advise::add_options, taut::verb::advise::run>};

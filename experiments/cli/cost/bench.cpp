@@ -1,14 +1,8 @@
-#include <algorithm>
 #include <cstdlib>
-#include <iostream>
-#include <memory>
 #include <set>
 #include <thread>
 
-#include "core/model/input_error.hpp"
 #include "experiments/case/question.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
@@ -174,23 +168,21 @@ int run(const Options& options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("WHAT", o->what, "Studies; or scenes, with --solver");
-  app.add_option("--solver", o->solvers, "A solver to time on the scene; repeat it for each");
-  add_settings(app, o->settings);
-  add_preset(app, o->preset);
-  add_judgement(app, o->metric, o->tolerance);
-  app.add_option("--at", o->levels,
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("WHAT", o.what, "Studies; or scenes, with --solver");
+  app.add_option("--solver", o.solvers, "A solver to time on the scene; repeat it for each");
+  add_settings(app, o.settings);
+  add_preset(app, o.preset);
+  add_judgement(app, o.metric, o.tolerance);
+  app.add_option("--at", o.levels,
                  "Errors to ask for (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
       ->delimiter(',')
       ->check(above_zero());
-  add_samples(app, o->rounds, o->seconds);
-  add_results(app, o->out);
-  app.add_flag("--json", o->json, "Everything measured, every sample, as JSON");
-  app.add_flag("--worker", o->worker, "Serve samples of one case over stdin and stdout (internal)")
+  add_samples(app, o.rounds, o.seconds);
+  add_results(app, o.out);
+  app.add_flag("--json", o.json, "Everything measured, every sample, as JSON");
+  app.add_flag("--worker", o.worker, "Serve samples of one case over stdin and stdout (internal)")
       ->group("");
-  return [o] { return run(*o); };
 }
 
 }  // namespace
@@ -204,4 +196,4 @@ TAUT_VERB(bench) = {
         "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
         "jakobsen:iterations=1,substeps=16 --solver "
         "bullet:iterations=1,substeps=16\n  taut bench kernels\n  taut bench contact",
-    .bind = taut::verb::bench::bind};
+    .bind = taut::bind_verb<taut::verb::bench::add_options, taut::verb::bench::run>};

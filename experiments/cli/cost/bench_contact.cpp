@@ -1,13 +1,6 @@
-#include <iostream>
-#include <memory>
-
 #include "core/reference/fit.hpp"
-#include "experiments/command_line/columns.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot/plot.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/timing/bench/contact.hpp"
 
 namespace taut::verb::contact {
@@ -18,7 +11,7 @@ struct Options {
   std::vector<int> sizes{128};
   int rounds = 11;
   double seconds = 0.01;
-  std::string plot;
+  std::string output;
   bool json = false;
 };
 
@@ -113,31 +106,30 @@ Json json_of(const std::vector<Rows>& sizes) {
   return all;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("--sizes", o->sizes, "Vertices along a side (default: 128)")
+int run(const Options& o) {
+  std::vector<Rows> sizes;
+  for (const int side : o.sizes) {
+    sizes.push_back(bench_contact({.side = side,
+                                   .rounds = o.rounds,
+                                   .seconds = o.seconds,
+                                   .progress = Countdown("timing round")}));
+    if (!o.json) print(sizes.back(), side);
+  }
+  if (o.json)
+    print_json(json_of(sizes));
+  else if (sizes.size() > 2)
+    print_exponents(sizes);
+  if (!o.output.empty()) plot(sizes, o.output);
+  return kPass;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("--sizes", o.sizes, "Vertices along a side (default: 128)")
       ->delimiter(',')
       ->check(CLI::Range(8, 1024));
-  add_samples(app, o->rounds, o->seconds);
-  app.add_option("--plot", o->plot,
-                 "Folder for a figure of a step over particles: off, octree and grid");
-  add_json(app, o->json, "Every row with its samples");
-  return [o] {
-    std::vector<Rows> sizes;
-    for (const int side : o->sizes) {
-      sizes.push_back(bench_contact({.side = side,
-                                     .rounds = o->rounds,
-                                     .seconds = o->seconds,
-                                     .progress = Countdown("timing round")}));
-      if (!o->json) print(sizes.back(), side);
-    }
-    if (o->json)
-      print_json(json_of(sizes));
-    else if (sizes.size() > 2)
-      print_exponents(sizes);
-    if (!o->plot.empty()) plot(sizes, o->plot);
-    return kPass;
-  };
+  add_samples(app, o.rounds, o.seconds);
+  add_output(app, o.output, "Folder for a figure of a step over particles: off, octree and grid");
+  add_json(app, o.json, "Every row with its samples");
 }
 
 }  // namespace
@@ -145,7 +137,6 @@ std::function<int()> bind(CLI::App& app) {
 
 TAUT_VERB(bench_contact) = {
     .name = "bench contact",
-    .group = VerbGroup::cost,
     .summary = "Measures contact and self-collision against structural sweeps of the same cloth",
-    .example = "taut bench contact\n  taut bench contact --sizes 16,32,64,128,317 --plot figures",
-    .bind = taut::verb::contact::bind};
+    .example = "taut bench contact\n  taut bench contact --sizes 16,32,64,128,317 -o figures",
+    .bind = taut::bind_verb<taut::verb::contact::add_options, taut::verb::contact::run>};

@@ -2,13 +2,12 @@
 #include <iostream>
 #include <memory>
 
-#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/bench/effects.hpp"
+#include "experiments/timing/bench/kernels.hpp"
 
 namespace taut::verb::effects {
 
@@ -74,16 +73,19 @@ void print_two_cores(const std::vector<EffectRow>& rows, const Options& options,
   std::cout << "; wall time; two threads on one sheet, and two unrelated sheets at once, as fast "
                "as so many single threads, 95 %; both cores were free in the rounds in which "
                "unrelated sheets reached "
-            << TwoCores::kFree << '\n';
+            << TwoCores::kFree << "; a word takes " << number_text(1e9 * seconds_per_handover())
+            << " ns from one core to the other\n";
   std::vector<Row> table{{"scene", "effects", "vertices", "two threads", "unrelated sheets",
                           "two / unrelated", "two, cores free", "free rounds"}};
   for (const EffectRow& row : rows) {
+    Row& line = table.emplace_back(Row{row.scene, row.effects, std::to_string(row.vertices)});
     const TwoCores& cores = row.two_cores;
-    table.push_back(
-        {row.scene, row.effects, std::to_string(row.vertices), interval_text(cores.threads()),
-         interval_text(cores.unrelated()), interval_text(cores.share()),
-         interval_text(cores.threads_while_free()),
-         std::to_string(cores.free_rounds()) + " of " + std::to_string(cores.rounds())});
+    if (row.refused.empty())
+      line.insert(line.end(),
+                  {interval_text(cores.threads()), interval_text(cores.unrelated()),
+                   interval_text(cores.share()), interval_text(cores.threads_while_free()),
+                   std::to_string(cores.free_rounds()) + " of " + std::to_string(cores.rounds())});
+    line.resize(table[0].size(), "-");
   }
   print_columns(table, 2);
   print_refused(rows);
@@ -124,7 +126,7 @@ std::function<int()> bind(CLI::App& app) {
   app.add_flag(
          "--two-threads", o->two_threads,
          "Instead what two threads are worth beside two unrelated sheets, in wall time; fewer "
-         "than 8192 vertices take one")
+         "than 8192 vertices take one thread and are refused")
       ->excludes(copies);
   add_json(app, o->json, "Every row with its samples");
   return [o] {

@@ -1,13 +1,5 @@
-#include <algorithm>
-#include <iostream>
-#include <memory>
-
 #include "core/solver/simd/kernels.hpp"
-#include "experiments/command_line/columns.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/timing/bench/kernels.hpp"
 
 namespace taut::verb::kernels {
@@ -84,29 +76,29 @@ Json json_of(const KernelBench& bench) {
           {"unrelated_sheets", bench.two_cores.unrelated()}};
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("--sizes", o->sizes, "Vertices along a side (default: 32,128,512)")
+int run(const Options& o) {
+  Json all = Json::array();
+  for (const int side : o.sizes) {
+    const KernelBench bench = bench_kernels({.side = side,
+                                             .rounds = o.rounds,
+                                             .seconds = o.seconds,
+                                             .bullet = side <= o.largest_bullet,
+                                             .progress = Countdown("timing round")});
+    o.json ? all.push_back(json_of(bench)) : print(bench);
+  }
+  if (o.json) print_json(all);
+  return kPass;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("--sizes", o.sizes, "Vertices along a side (default: 32,128,512)")
       ->delimiter(',')
       ->check(CLI::Range(2, 4096));
-  add_samples(app, o->rounds, o->seconds);
-  app.add_option("--largest-bullet", o->largest_bullet,
+  add_samples(app, o.rounds, o.seconds);
+  app.add_option("--largest-bullet", o.largest_bullet,
                  "Largest side for Bullet, whose steps take seconds beyond (default: 256)")
       ->check(CLI::Range(0, 4096));
-  add_json(app, o->json, "Every row with its samples");
-  return [o] {
-    Json all = Json::array();
-    for (const int side : o->sizes) {
-      const KernelBench bench = bench_kernels({.side = side,
-                                               .rounds = o->rounds,
-                                               .seconds = o->seconds,
-                                               .bullet = side <= o->largest_bullet,
-                                               .progress = Countdown("timing round")});
-      o->json ? all.push_back(json_of(bench)) : print(bench);
-    }
-    if (o->json) print_json(all);
-    return kPass;
-  };
+  add_json(app, o.json, "Every row with its samples");
 }
 
 }  // namespace
@@ -114,7 +106,6 @@ std::function<int()> bind(CLI::App& app) {
 
 TAUT_VERB(bench_kernels) = {
     .name = "bench kernels",
-    .group = VerbGroup::cost,
     .summary = "Measures one link projection: textbook, colour batches, interleaved sheet, Bullet",
     .example = "taut bench kernels --sizes 32,1024\n  taut-f32 bench kernels   (Bullet in float)",
-    .bind = taut::verb::kernels::bind};
+    .bind = taut::bind_verb<taut::verb::kernels::add_options, taut::verb::kernels::run>};

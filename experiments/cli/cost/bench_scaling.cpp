@@ -1,13 +1,6 @@
-#include <iostream>
-#include <memory>
-
-#include "experiments/command_line/columns.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/clock.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/timing/scaling.hpp"
 
 namespace taut::verb::scaling {
@@ -123,19 +116,17 @@ int run(const Options& options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("STUDY", o->study, "A study that varies the cloth's grid (default: scaling)");
-  add_preset(app, o->preset);
-  app.add_option("--limit", o->limit,
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("STUDY", o.study, "A study that varies the cloth's grid (default: scaling)");
+  add_preset(app, o.preset);
+  app.add_option("--limit", o.limit,
                  "Skip a case that would take longer than this, physics and timing [s] "
                  "(default: 20)")
       ->check(above_zero());
-  app.add_option("--samples", o->samples, "Samples of each case (default: 6)")
+  app.add_option("--samples", o.samples, "Samples of each case (default: 6)")
       ->check(CLI::Range(1, 1000));
-  add_results(app, o->out);
-  app.add_flag("--json", o->json, "Everything measured, every sample, as JSON");
-  return [o] { return run(*o); };
+  add_results(app, o.out);
+  app.add_flag("--json", o.json, "Everything measured, every sample, as JSON");
 }
 
 }  // namespace
@@ -143,10 +134,9 @@ std::function<int()> bind(CLI::App& app) {
 
 TAUT_VERB(scaling) = {
     .name = "bench scaling",
-    .group = VerbGroup::cost,
     .summary = "Measures cost and memory over the cloth's size, with exponents",
     .example =
         "taut bench scaling\n  taut bench scaling --preset quick --limit 5\n  taut plot scaling "
         "--preset "
         "quick",
-    .bind = taut::verb::scaling::bind};
+    .bind = taut::bind_verb<taut::verb::scaling::add_options, taut::verb::scaling::run>};

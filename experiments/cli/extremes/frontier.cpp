@@ -1,27 +1,18 @@
-#include "experiments/study/frontier.hpp"
+#include "experiments/study/frontier/frontier.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <iostream>
 #include <iterator>
-#include <memory>
 
-#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/command_line/case_options.hpp"
-#include "experiments/command_line/columns.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/plot/plot.hpp"
-#include "experiments/study/extremes/extremes.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/system/text.hpp"
 #include "experiments/timing/statistics.hpp"
 
@@ -233,19 +224,18 @@ int run_all(const Options& options) {
   if (solvers.size() == 2 && solvers[0] == solvers[1])
     throw InputError("--all: " + solvers[0] + " twice");
   store.prepare();
-  const Session session(store, "taut frontier --all", {}, {});
+  begin_session(store, "taut frontier --all");
   std::vector<ParameterFrontier> found;
   for (const std::string& solver : solvers) {
     const Countdown countdown("parameter of " + solver);
-    const Extremes extremes =
-        find_extremes(solver, store, session, {.jobs = options.jobs, .frames = true},
-                      [&](std::size_t done, std::size_t all) { countdown(done, all); });
-    if (extremes.interrupted) return kInterrupted;
+    const auto frontiers =
+        find_frontiers(solver, store, {.jobs = options.jobs, .frames = true},
+                       [&](std::size_t done, std::size_t all) { countdown(done, all); });
+    if (!frontiers) return kInterrupted;
     const std::filesystem::path folder = std::filesystem::path(options.out) / kFrontiersFolder;
     make_folder(folder);
-    write_file(folder / (report::slug(solver) + ".json"),
-               to_json(extremes.frontiers, program_digest()));
-    found.insert(found.end(), extremes.frontiers.begin(), extremes.frontiers.end());
+    write_file(folder / (report::slug(solver) + ".json"), to_json(*frontiers, program_digest()));
+    found.insert(found.end(), frontiers->begin(), frontiers->end());
   }
   if (options.json)
     std::cout << to_json(found, program_digest());
@@ -273,10 +263,10 @@ int run(const Options& options) {
   const Case first = make_case(question.at(question.range.from));
   const Store store(options.out);
   store.prepare();
-  const Session session(store, "taut frontier " + first.id, {}, {});
+  begin_session(store, "taut frontier " + first.id);
   Progress progress;
   const CaseFrontier result = find_frontier(
-      question, store, session,
+      question, store,
       {.jobs = options.jobs, .progress = [&](const CampaignProgress& t, const Record* record) {
          if (record) progress.show(t, record);
        }});
@@ -292,34 +282,32 @@ int run(const Options& options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
-  options->which.bind(app);
+void add_options(CLI::App& app, Options& options) {
+  options.which.bind(app);
   for (const char* name : {"SCENE", "SOLVER"}) app.get_option(name)->required(false);
   auto* all =
       app.add_option(
-             "--all", options->all,
+             "--all", options.all,
              "One or two solvers: every parameter of theirs and of a small standard scene, with "
              "what goes wrong first, as a table and a picture; a minute or so")
           ->expected(1, 2)
           ->excludes("SCENE")
           ->excludes("SOLVER");
-  add_baselines(app, options->baselines);
-  app.add_flag("--check", options->check,
+  add_baselines(app, options.baselines);
+  app.add_flag("--check", options.check,
                "Exit 1 if a frontier of --all is another one than in the baseline")
       ->needs(all);
-  app.add_flag("--update", options->update, "Keep what --all finds as the baseline")->needs(all);
-  app.add_option("--of", options->of,
+  app.add_flag("--update", options.update, "Keep what --all finds as the baseline")->needs(all);
+  app.add_option("--of", options.of,
                  "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
                  "(default: dt)");
-  app.add_option("--from", options->from, "Where to start (dt: 1e-3 s)");
-  app.add_option("--to", options->to, "Where to stop (dt: 0.5 s)");
-  app.add_option("--tolerance", options->tolerance, "Relative width of the bracket (default: 0.01)")
+  app.add_option("--from", options.from, "Where to start (dt: 1e-3 s)");
+  app.add_option("--to", options.to, "Where to stop (dt: 0.5 s)");
+  app.add_option("--tolerance", options.tolerance, "Relative width of the bracket (default: 0.01)")
       ->check(CLI::Range(1e-9, 0.5));
-  add_jobs(app, options->jobs);
-  add_results(app, options->out);
-  app.add_flag("--json", options->json, "Print JSON");
-  return [options] { return run(*options); };
+  add_jobs(app, options.jobs);
+  add_results(app, options.out);
+  app.add_flag("--json", options.json, "Print JSON");
 }
 
 }  // namespace
@@ -335,4 +323,4 @@ TAUT_VERB(frontier) = {
         "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000\n"
         "  taut frontier --all jakobsen bullet\n"
         "Exit: 0 found; 1 a frontier of --all moved; 4 nothing was answered or compared",
-    .bind = taut::verb::frontier::bind};
+    .bind = taut::bind_verb<taut::verb::frontier::add_options, taut::verb::frontier::run>};

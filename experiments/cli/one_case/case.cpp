@@ -1,14 +1,10 @@
 #include <cmath>
-#include <iostream>
-#include <memory>
 #include <new>
 #include <optional>
 
 #include "core/io/positions/positions.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
-#include "experiments/command_line/case_options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/isolate.hpp"
 #include "experiments/system/clock.hpp"
@@ -107,21 +103,19 @@ int run(const Options& options) try {
   return kOutOfMemory;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
-  options->which.bind(app);
-  app.add_flag("--json", options->json, "Print the record as JSON");
-  app.add_option("--final-state", options->final_state,
+void add_options(CLI::App& app, Options& options) {
+  options.which.bind(app);
+  app.add_flag("--json", options.json, "Print the record as JSON");
+  app.add_option("--final-state", options.final_state,
                  "Write vertex,x,y,z,vx,vy,vz of the last stable state, full precision (CSV)");
-  app.add_option("--trajectory", options->trajectory,
+  app.add_option("--trajectory", options.trajectory,
                  "Write every step's positions: taut's .traj, .npy, .pc2, .mdd, or a file a step, "
                  ".obj or .ply");
-  app.add_option("--series", options->series, "Write values over time (CSV)");
-  app.add_flag("--verbose", options->verbose,
+  app.add_option("--series", options.series, "Write values over time (CSV)");
+  app.add_flag("--verbose", options.verbose,
                "Say on stderr how far it is and what the solver made of its settings");
-  app.add_option("--into", options->into, "Used by taut run")->group("");
-  app.add_option("--frames", options->frames, "Used with --into")->group("");
-  return [options] { return run(*options); };
+  app.add_option("--into", options.into, "Used by taut run")->group("");
+  app.add_option("--frames", options.frames, "Used with --into")->group("");
 }
 
 }  // namespace
@@ -132,4 +126,4 @@ TAUT_VERB(case) = {
     .group = VerbGroup::one_case,
     .summary = "Runs one case in this process; a numerical failure is a result (exit 0)",
     .example = "taut case hang jakobsen:iterations=1,substeps=15 --dt 1/120 --final-state hang.csv",
-    .bind = taut::verb::one_case::bind};
+    .bind = taut::bind_verb<taut::verb::one_case::add_options, taut::verb::one_case::run>};

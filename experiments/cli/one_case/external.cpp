@@ -1,18 +1,9 @@
 #include "experiments/external/external.hpp"
 
-#include <algorithm>
-#include <filesystem>
-#include <iostream>
-#include <memory>
-
 #include "core/io/scene_io.hpp"
-#include "core/model/input_error.hpp"
-#include "experiments/command_line/colour.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/probe.hpp"
-#include "experiments/external/scene_file.hpp"
+#include "experiments/external/protocol.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
@@ -55,32 +46,30 @@ int probe(const Options& options) {
   return failed == 0 ? kPass : kRegression;
 }
 
-std::function<int()> bind_probe(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("COMMAND", o->command,
+void add_options_probe(CLI::App& app, Options& o) {
+  app.add_option("COMMAND", o.command,
                  "The command, the name of a registered solver, or external:cmd='...'")
       ->required();
-  add_json(app, o->json, "Every check with its sentence");
-  return [o] { return probe(*o); };
+  add_json(app, o.json, "Every check with its sentence");
 }
 
-std::function<int()> bind_scene(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("SCENE", o->scene, "Name or path of a scene")->required();
-  add_output(app, o->output, "File to write")->required();
-  add_settings(app, o->settings);
-  return [o] {
-    write_file(o->output, external::scene_file(load_scene(find_scene(o->scene), o->settings)));
-    return kPass;
-  };
+void add_options_scene(CLI::App& app, Options& o) {
+  app.add_option("SCENE", o.scene, "Name or path of a scene")->required();
+  add_output(app, o.output, "File to write")->required();
+  add_settings(app, o.settings);
+}
+
+int write_scene(const Options& o) {
+  write_file(o.output, external::scene_file(load_scene(find_scene(o.scene), o.settings)));
+  return kPass;
 }
 
 /// Downloads Jolt and registers it; if that fails, nothing is registered. Nothing of it is part of
 /// taut or of its set-up.
-int install(const std::string& name, bool json) {
+int install(const Options& o) {
   namespace fs = std::filesystem;
   constexpr const char* kPackage = "jolt-physics@1.1.0";
-  if (name != "jolt") throw InputError("unknown program '" + name + "': there is jolt");
+  if (o.command != "jolt") throw InputError("unknown program '" + o.command + "': there is jolt");
   for (const char* needed : {"node", "npm"})
     if (!on_path(needed))
       throw InputError(std::string(needed) + " is not here (apt install nodejs npm): no jolt");
@@ -108,20 +97,12 @@ int install(const std::string& name, bool json) {
   write_file(registered / "jolt.toml",
              "cmd = \"node jolt/jolt.js\"\nfiles = [\"jolt/taut_solver.js\", "
              "\"jolt/node_modules/jolt-physics/dist/jolt-physics.wasm-compat.js\"]\n");
-  return probe({.command = "jolt", .json = json});
+  return probe(o);
 }
 
-std::function<int()> bind_install(CLI::App& app) {
-  const auto name = std::make_shared<std::string>();
-  const auto json = std::make_shared<bool>(false);
-  app.add_option("PROGRAM", *name, "jolt")->required();
-  add_json(app, *json, "Every check of its probe");
-  return [name, json] { return install(*name, *json); };
-}
-
-std::function<int()> bind(CLI::App& app) {
-  app.require_subcommand(1);
-  return [] { return kUsage; };
+void add_options_install(CLI::App& app, Options& o) {
+  app.add_option("PROGRAM", o.command, "jolt")->required();
+  add_json(app, o.json, "Every check of its probe");
 }
 
 }  // namespace
@@ -133,26 +114,25 @@ TAUT_VERB(external) = {
     .summary = "Solvers from outside: programs that speak taut-solver/1",
     .example =
         "taut external probe 'python3 mine.py'\n  taut case hang \"external:cmd='python3 "
-        "mine.py',iterations=8\"",
-    .bind = taut::verb::external_program::bind};
+        "mine.py',iterations=8\""};
 
 TAUT_VERB(external_probe) = {
     .name = "external probe",
-    .group = VerbGroup::one_case,
     .summary = "Says in sentences whether a program may be scored, and what is wrong with it",
     .example = "taut external probe 'python3 mine.py'\nExit: 0 it may be scored; 1 it may not",
-    .bind = taut::verb::external_program::bind_probe};
+    .bind = taut::bind_verb<taut::verb::external_program::add_options_probe,
+                            taut::verb::external_program::probe>};
 
 TAUT_VERB(external_install) = {
     .name = "external install",
-    .group = VerbGroup::one_case,
     .summary = "Downloads another engine, says what, registers it as a solver and probes it: jolt",
     .example = "taut external install jolt\n  taut case hang jolt:substeps=15",
-    .bind = taut::verb::external_program::bind_install};
+    .bind = taut::bind_verb<taut::verb::external_program::add_options_install,
+                            taut::verb::external_program::install>};
 
 TAUT_VERB(external_scene) = {
     .name = "external scene",
-    .group = VerbGroup::one_case,
     .summary = "Writes a scene as programs get it: everything resolved, as JSON",
     .example = "taut external scene hang -o hang.json",
-    .bind = taut::verb::external_program::bind_scene};
+    .bind = taut::bind_verb<taut::verb::external_program::add_options_scene,
+                            taut::verb::external_program::write_scene>};

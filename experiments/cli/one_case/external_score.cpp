@@ -1,16 +1,11 @@
 #include <cmath>
-#include <iostream>
-#include <memory>
 
 #include "core/io/scene_io.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/command_line/case_options.hpp"
-#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/external/recorded.hpp"
+#include "experiments/external/motion_file.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
@@ -62,28 +57,26 @@ int run(const Options& o) {
   return o.picture.empty() ? kPass : draw(o, one.spec);
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("SCENE", o->scene, "Name of a shipped scene, or a path")->required();
-  app.add_option("POSITIONS", o->motion.file,
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("SCENE", o.scene, "Name of a shipped scene, or a path")->required();
+  app.add_option("POSITIONS", o.motion.file,
                  "A .npy, .pc2, .mdd or .traj; or one .obj or .ply of a sequence")
       ->required();
-  app.add_option("--fps", o->motion.fps, "Frames in a second (default: what the file says)")
+  app.add_option("--fps", o.motion.fps, "Frames in a second (default: what the file says)")
       ->check(above_zero());
-  app.add_option("--scale", o->motion.scale, "What the file's unit is [m] (default: what fits)")
+  app.add_option("--scale", o.motion.scale, "What the file's unit is [m] (default: what fits)")
       ->check(above_zero());
-  app.add_option("--up", o->motion.up, "The axis that points up (default: what fits)")
+  app.add_option("--up", o.motion.up, "The axis that points up (default: what fits)")
       ->check(CLI::IsMember({"auto", "y", "z"}));
-  app.add_option("--rest", o->motion.rest,
+  app.add_option("--rest", o.motion.rest,
                  "A file with the cloth at rest in the file's order, if it does not begin as the "
                  "scene does");
-  add_settings(app, o->settings);
-  app.add_option("--series", o->series, "Write values over time (CSV)");
-  app.add_option("--picture", o->picture, "Draw the end (.png), beside every --solver");
-  app.add_option("--solver", o->solvers, "A solver to draw beside; repeat it for each")
+  add_settings(app, o.settings);
+  app.add_option("--series", o.series, "Write values over time (CSV)");
+  app.add_option("--picture", o.picture, "Draw the end (.png), beside every --solver");
+  app.add_option("--solver", o.solvers, "A solver to draw beside; repeat it for each")
       ->allow_extra_args(false);
-  add_json(app, o->json, "The record");
-  return [o] { return run(*o); };
+  add_json(app, o.json, "The record");
 }
 
 }  // namespace
@@ -91,9 +84,8 @@ std::function<int()> bind(CLI::App& app) {
 
 TAUT_VERB(external_score) = {
     .name = "external score",
-    .group = VerbGroup::one_case,
     .summary = "All metrics of positions that another program computed, from its file",
     .example =
         "taut external score hang blender.pc2 --fps 24 --series blender.csv\n  taut external "
         "score hang houdini.mdd --solver jakobsen --picture hang.png",
-    .bind = taut::verb::score::bind};
+    .bind = taut::bind_verb<taut::verb::score::add_options, taut::verb::score::run>};

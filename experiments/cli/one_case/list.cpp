@@ -1,6 +1,3 @@
-#include <iostream>
-#include <memory>
-
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
@@ -8,12 +5,16 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut::verb::list {
 
 namespace {
+
+struct Options {
+  std::string what;
+  bool json = false;
+};
 
 std::string allowed(const ParamSpec& spec) {
   if (spec.kind == ParamSpec::Kind::choice) return std::string(spec.choices);
@@ -120,11 +121,12 @@ void print_text(std::string_view kind, const Json& all) {
   }
 }
 
-int run(const std::string& what, bool as_json) {
+int run(const Options& options) {
+  const std::string& what = options.what;
   Json all;
   for (const auto& [kind, list] : kKinds)
     if (what.empty() || what == kind) all[kind] = list();
-  if (as_json) {
+  if (options.json) {
     print_json(what.empty() ? all : all[what], 2);
     return kPass;
   }
@@ -135,13 +137,10 @@ int run(const std::string& what, bool as_json) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto what = std::make_shared<std::string>();
-  const auto as_json = std::make_shared<bool>(false);
-  app.add_option("WHAT", *what, "scenes | solvers | metrics | studies | assertions (default: all)")
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("WHAT", o.what, "scenes | solvers | metrics | studies | assertions (default: all)")
       ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies", "assertions"}));
-  app.add_flag("--json", *as_json, "Print JSON");
-  return [what, as_json] { return run(*what, *as_json); };
+  add_json(app, o.json, "The same");
 }
 
 }  // namespace
@@ -152,4 +151,4 @@ TAUT_VERB(list) = {
     .group = VerbGroup::one_case,
     .summary = "Names scenes, solvers with their parameters, metrics, studies and assertions",
     .example = "taut list solvers",
-    .bind = taut::verb::list::bind};
+    .bind = taut::bind_verb<taut::verb::list::add_options, taut::verb::list::run>};

@@ -1,15 +1,14 @@
-#include <iostream>
-#include <memory>
-
 #include "experiments/case/record_io.hpp"
-#include "experiments/command_line/case_options.hpp"
-#include "experiments/command_line/columns.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/system/json.hpp"
 
 namespace taut::verb::planning {
 
 namespace {
+
+struct Options {
+  CaseOptions which;
+  bool json = false;
+};
 
 void print_text(const Case& one, const std::vector<PassCost>& step_cost) {
   std::vector<Row> rows{{"pass", "items", "repeats", "bytes", "projections"}};
@@ -25,7 +24,8 @@ void print_text(const Case& one, const std::vector<PassCost>& step_cost) {
   print_columns(rows, 1);
 }
 
-int run(const Case& one, bool json) {
+int run(const Options& options) {
+  const Case one = options.which.make();
   continue_in_right_program(one.choice);
   if (const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
       !reasons.empty()) {
@@ -35,19 +35,16 @@ int run(const Case& one, bool json) {
   }
   const std::unique_ptr<Solver> solver = one.choice.entry->make(*one.scene, one.choice.params);
   solver->load(one.scene->start);
-  if (json)
+  if (options.json)
     print_json(Json{{"id", one.id}, {"key", one.key}, {"passes", solver->step_cost()}}, 2);
   else
     print_text(one, solver->step_cost());
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto which = std::make_shared<CaseOptions>();
-  const auto json = std::make_shared<bool>(false);
-  which->bind(app);
-  app.add_flag("--json", *json, "Print JSON");
-  return [which, json] { return run(which->make(), *json); };
+void add_options(CLI::App& app, Options& o) {
+  o.which.bind(app);
+  add_json(app, o.json, "The passes");
 }
 
 }  // namespace
@@ -58,4 +55,4 @@ TAUT_VERB(plan) = {
     .group = VerbGroup::one_case,
     .summary = "Shows the passes of one step, what they visit and what they hold in memory",
     .example = "taut plan ball jakobsen:iterations=1,substeps=15",
-    .bind = taut::verb::planning::bind};
+    .bind = taut::bind_verb<taut::verb::planning::add_options, taut::verb::planning::run>};

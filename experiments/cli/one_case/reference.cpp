@@ -1,19 +1,9 @@
-#include <algorithm>
-#include <filesystem>
-#include <iostream>
-#include <memory>
-#include <string>
-
 #include "core/io/scene_io.hpp"
-#include "core/model/input_error.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
 #include "experiments/case/reference_store.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/json.hpp"
 
 namespace taut::verb::references {
 
@@ -95,14 +85,12 @@ int run(const Options& options) {
   return written > 0 || options.all ? kPass : kNothing;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scenes, "Names of shipped scenes, or scene files");
-  app.add_flag("--all", options->all, "Every shipped scene");
-  add_output(app, options->output,
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("SCENE", options.scenes, "Names of shipped scenes, or scene files");
+  app.add_flag("--all", options.all, "Every shipped scene");
+  add_output(app, options.output,
              "Where references are kept (default: beside those that came with the program)");
-  add_json(app, options->json, "What became of each");
-  return [options] { return run(*options); };
+  add_json(app, options.json, "What became of each");
 }
 
 }  // namespace
@@ -113,4 +101,4 @@ TAUT_VERB(reference) = {
     .group = VerbGroup::one_case,
     .summary = "Rebuilds converged references of scenes, or says why there is none",
     .example = "taut reference drape\n  taut reference --all",
-    .bind = taut::verb::references::bind};
+    .bind = taut::bind_verb<taut::verb::references::add_options, taut::verb::references::run>};

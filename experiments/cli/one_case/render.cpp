@@ -1,13 +1,7 @@
-#include <iostream>
-
-#include "core/io/positions/positions.hpp"
 #include "core/io/scene_io.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/render/film/recorded_runs.hpp"
+#include "experiments/render/film/film.hpp"
 #include "experiments/render/image/video.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/system/files.hpp"
@@ -23,7 +17,7 @@ namespace fs = std::filesystem;
 struct Options {
   RunRequest what;
   std::vector<std::string> at;
-  std::string duration, dt, view = "three-quarter", colour = "strain", exported, output;
+  std::string duration, dt, view = "three-quarter", colour = "strain", output;
   std::string size, quality;
   double range = 0;
   bool sheet = false, video = false, dark = false, json = false;
@@ -113,34 +107,16 @@ Files draw_video(const Options& options, const RunSet& set, const fs::path& out)
   return {poster.string()};
 }
 
-Files export_frames(const RunSet& set, const fs::path& folder) {
-  const std::size_t stride = std::max(1, static_cast<int>(1 / (30 * set.scene.dt) + 0.5));
-  make_folder(folder);
-  for (std::size_t k = 0; k < set.runs.size(); ++k) {
-    const std::string prefix = set.scene.name + "_" + std::to_string(k + 1) + "_" +
-                               solver_name(set.runs[k].trajectory.header.solver);
-    const auto writer = create_positions(folder / (prefix + ".obj"), set.scene.mesh);
-    const auto& frames = set.runs[k].trajectory.frames;
-    const Countdown countdown("file");
-    for (std::size_t at = 0; at < frames.size(); at += stride) {
-      writer->append(frames[at].t, frames[at].state.x);
-      countdown(at / stride + 1, (frames.size() + stride - 1) / stride);
-    }
-  }
-  return {folder.string()};
-}
-
 fs::path output_of(const Options& options, const std::string& scene) {
   if (!options.output.empty()) return options.output;
-  if (!options.exported.empty()) return scene + "-obj";
   return scene + (options.video ? ".mp4" : options.sheet ? "-sheet.png" : ".png");
 }
 
 /// What is wrong with the name of the output is said before anything is simulated.
 void check_output(const Options& options) {
-  if (options.video + options.sheet + !options.exported.empty() > 1)
-    throw InputError("only one of --video (or -o NAME.mp4), --sheet and --export");
-  if (options.output.empty() || !options.exported.empty()) return;
+  if (options.video && options.sheet)
+    throw InputError("only one of --video (or -o NAME.mp4) and --sheet");
+  if (options.output.empty()) return;
   if (fs::is_directory(options.output))
     throw InputError("-o " + options.output + " is a folder; name the file");
   const std::string suffix = options.video ? ".mp4" : ".png";
@@ -163,14 +139,13 @@ int run(Options options) {
   for (const std::string& at : options.at) times.push_back(parse_number(at));
   std::ranges::sort(times);
   if (!times.empty() && times.front() < 0) throw InputError("--at: times are not negative");
-  const bool moving = options.video || !options.exported.empty();
   if (!times.empty()) {
     const Scene scene = load_scene(find_scene(options.what.scene), options.what.overrides);
     if (times.back() > scene.duration() + scene.dt)
       throw InputError("--at " + number_text(times.back()) + " is after the end at " +
                        number_text(scene.duration()) + " s: see --duration");
     const double seen = times.back() + 1e-4;  // nothing later will be seen
-    if (!moving && options.duration.empty() && seen < scene.duration())
+    if (!options.video && options.duration.empty() && seen < scene.duration())
       options.what.overrides.push_back("time.duration=" + std::to_string(seen));
   }
   parse_view(options.view), parse_colour_by(options.colour);
@@ -178,49 +153,42 @@ int run(Options options) {
   const RunSet set =
       record_runs(options.what, [](const std::string& text) { progress() << text << '\n'; });
   const fs::path out = output_of(options, set.scene.name);
-  const auto done = [&](const Files& files) {
-    print_files(files, options.json);
-    return kPass;
-  };
-  if (!options.exported.empty()) return done(export_frames(set, out));
-  if (options.video) return done(draw_video(options, set, out));
   const double end = set.scene.duration();
   if (times.empty() && options.sheet)
     times = {0, end / 8, end / 4, end / 2, end};
   else if (times.empty())
     times = {end};
-  return done(options.sheet ? draw_sheet(options, set, times, out)
-                            : draw_stills(options, set, times, out));
+  print_files(options.video   ? draw_video(options, set, out)
+              : options.sheet ? draw_sheet(options, set, times, out)
+                              : draw_stills(options, set, times, out),
+              options.json);
+  return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("SCENE", o->what.scene, "Name of a shipped scene, or a path")->required();
-  app.add_option("--solver", o->what.solvers, "NAME or NAME:key=value,...; one to four of them")
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("SCENE", o.what.scene, "Name of a shipped scene, or a path")->required();
+  app.add_option("--solver", o.what.solvers, "NAME or NAME:key=value,...; one to four of them")
       ->allow_extra_args(false);
-  app.add_option("--trajectory", o->what.files,
+  app.add_option("--trajectory", o.what.files,
                  "A motion of this scene kept by `taut case --trajectory`, in a panel of its own")
       ->allow_extra_args(false);
-  app.add_option("--at", o->at, "Moments to draw [s]; default: the end")->allow_extra_args(false);
-  app.add_flag("--sheet", o->sheet, "One picture, a row for each moment");
-  app.add_flag("--video", o->video, "H.264 video in real time (so does -o NAME.mp4)");
-  app.add_option("--view", o->view,
+  app.add_option("--at", o.at, "Moments to draw [s]; default: the end")->allow_extra_args(false);
+  app.add_flag("--sheet", o.sheet, "One picture, a row for each moment");
+  app.add_flag("--video", o.video, "H.264 video in real time (so does -o NAME.mp4)");
+  app.add_option("--view", o.view,
                  "three-quarter, front, back, left, right, top, or AZIMUTH,ELEVATION in degrees");
-  app.add_option("--colour", o->colour, "strain, penetration or speed");
-  app.add_option("--range", o->range, "End of the colour bar, in its unit (%, mm, m/s)")
+  app.add_option("--colour", o.colour, "strain, penetration or speed");
+  app.add_option("--range", o.range, "End of the colour bar, in its unit (%, mm, m/s)")
       ->check(above_zero());
-  app.add_option("--export", o->exported, "obj: a Wavefront file per frame into the folder -o")
-      ->check(CLI::IsMember({"obj"}));
-  app.add_option("--duration", o->duration, "Simulated time [s]");
-  app.add_option("--dt", o->dt, "Time step [s], a number or a fraction such as 1/120");
-  add_settings(app, o->what.overrides);
-  app.add_option("--size", o->size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
-  app.add_option("--quality", o->quality, "draft, video or still")
+  app.add_option("--duration", o.duration, "Simulated time [s]");
+  app.add_option("--dt", o.dt, "Time step [s], a number or a fraction such as 1/120");
+  add_settings(app, o.what.overrides);
+  app.add_option("--size", o.size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
+  app.add_option("--quality", o.quality, "draft, video or still")
       ->check(CLI::IsMember({"draft", "video", "still"}));
-  app.add_flag("--dark", o->dark, "The dark background of the report");
-  add_output(app, o->output, "File (.png, .mp4) or, for --export, folder");
-  add_json(app, o->json, "The names of the files");
-  return [o] { return run(*o); };
+  app.add_flag("--dark", o.dark, "The dark background of the report");
+  add_output(app, o.output, "File (.png or .mp4)");
+  add_json(app, o.json, "The names of the files");
 }
 
 }  // namespace
@@ -234,4 +202,4 @@ TAUT_VERB(render) = {
         "taut render ball --solver jakobsen --solver bullet:substeps=5 --at 0.6\n"
         "  taut render flag --solver jakobsen --solver bullet:substeps=5 --video --duration 4\n"
         "  taut render ball --trajectory run.traj --solver bullet:substeps=5 --sheet",
-    .bind = taut::verb::render::bind};
+    .bind = taut::bind_verb<taut::verb::render::add_options, taut::verb::render::run>};

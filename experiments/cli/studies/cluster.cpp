@@ -1,25 +1,13 @@
-#include <algorithm>
-#include <filesystem>
-#include <iostream>
-#include <memory>
+#include "experiments/study/cluster/cluster.hpp"
 
 #include "core/io/text_file.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/cluster/attempt.hpp"
-#include "experiments/study/cluster/job_script.hpp"
-#include "experiments/study/cluster/manifest.hpp"
-#include "experiments/study/cluster/merge.hpp"
-#include "experiments/study/cluster/status.hpp"
 #include "experiments/study/session.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
 
 namespace taut::verb::cluster {
@@ -28,11 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace taut::cluster;
-
-std::function<int()> bind(CLI::App& app) {
-  app.require_subcommand(1);
-  return [] { return kUsage; };  // one of its verbs is what runs
-}
 
 // submit
 
@@ -124,29 +107,27 @@ int submit(const Submit& o) {
   return kPass;
 }
 
-std::function<int()> bind_submit(CLI::App& app) {
-  const auto o = std::make_shared<Submit>();
-  app.add_option("STUDY", o->study, "Name or path of a study")->required();
-  app.add_option("--on", o->on, "Who starts the shards: slurm or parallel")
+void add_options_submit(CLI::App& app, Submit& o) {
+  app.add_option("STUDY", o.study, "Name or path of a study")->required();
+  app.add_option("--on", o.on, "Who starts the shards: slurm or parallel")
       ->required()
       ->check(known("scheduler", {"slurm", "parallel"}));
-  auto* shards = app.add_option("--shards", o->shards, "Parts of about equal work")
+  auto* shards = app.add_option("--shards", o.shards, "Parts of about equal work")
                      ->check(CLI::Range(1, kMostShards));
-  app.add_option("--hours", o->hours, "As few shards as end within that time (default: 1)")
+  app.add_option("--hours", o.hours, "As few shards as end within that time (default: 1)")
       ->check(above_zero())
       ->excludes(shards);
-  add_preset(app, o->preset);
-  app.add_option("--folder", o->folder,
+  add_preset(app, o.preset);
+  app.add_option("--folder", o.folder,
                  "A new folder that all nodes see (default: " +
                      (results_folder() / "cluster/STUDY").string() + ")");
-  app.add_option("--sshlogin", o->logins, "A node for GNU parallel, as [N/][user@]host; repeat it")
+  app.add_option("--sshlogin", o.logins, "A node for GNU parallel, as [N/][user@]host; repeat it")
       ->delimiter(',');
-  app.add_option("--node-file", o->node_file, "A file with a node on each line")
+  app.add_option("--node-file", o.node_file, "A file with a node on each line")
       ->check(CLI::ExistingFile);
-  add_limits(app, o->limits);
-  app.add_flag("--dry-run", o->dry_run, "Write the folder and start nothing");
-  add_json(app, o->json, "Folder and sizes");
-  return [o] { return submit(*o); };
+  add_limits(app, o.limits);
+  app.add_flag("--dry-run", o.dry_run, "Write the folder and start nothing");
+  add_json(app, o.json, "Folder and sizes");
 }
 
 // run
@@ -161,12 +142,13 @@ int run(const Run& o) {
   const std::vector<Case> cases = taut::cluster::cases_of(manifest, o.shard, o.folder);
   Store store(shard_folder(o.folder, o.shard));
   store.prepare();
-  const Session session(store, "taut cluster run --shard " + std::to_string(o.shard), cases, {});
-  Attempt attempt(store.root(), session.folder());
-  store.pack_into(session.folder().filename().string());
+  const fs::path session =
+      begin_session(store, "taut cluster run --shard " + std::to_string(o.shard), cases);
+  Attempt attempt(store.root(), session);
+  store.pack_into(session.filename().string());
   Progress progress;
   const CampaignProgress campaign =
-      run_cases(cases, store, session,
+      run_cases(cases, store,
                 {.jobs = o.jobs,
                  .limits = manifest.limits,
                  .only_failed = o.only == "failed",
@@ -179,14 +161,12 @@ int run(const Run& o) {
   return exit_code(campaign, store);
 }
 
-std::function<int()> bind_run(CLI::App& app) {
-  const auto o = std::make_shared<Run>();
-  app.add_option("DIR", o->folder, "The folder of `taut cluster submit`")->required();
-  app.add_option("--shard", o->shard, "Which part, from 1 on")->required();
-  app.add_option("--only", o->only, "failed: run stored failures again, nothing else")
+void add_options_run(CLI::App& app, Run& o) {
+  app.add_option("DIR", o.folder, "The folder of `taut cluster submit`")->required();
+  app.add_option("--shard", o.shard, "Which part, from 1 on")->required();
+  app.add_option("--only", o.only, "failed: run stored failures again, nothing else")
       ->check(CLI::IsMember({"failed"}));
-  app.add_option("-j,--jobs", o->jobs, "Cases at a time (default: 1)")->check(CLI::Range(1, 1024));
-  return [o] { return run(*o); };
+  app.add_option("-j,--jobs", o.jobs, "Cases at a time (default: 1)")->check(CLI::Range(1, 1024));
 }
 
 // status
@@ -258,21 +238,23 @@ void print(const FolderStatus& all, const fs::path& folder) {
     std::cout << "start again: " << commands_of(all.to_start(), folder) << '\n';
 }
 
-int status(const std::string& folder, bool json) {
-  const FolderStatus all = status_of(read_manifest(folder), folder);
-  if (json)
-    print_json(to_json(all, folder));
+struct StatusOptions {
+  std::string folder;
+  bool json = false;
+};
+
+int status(const StatusOptions& o) {
+  const FolderStatus all = status_of(read_manifest(o.folder), o.folder);
+  if (o.json)
+    print_json(to_json(all, o.folder));
   else
-    print(all, folder);
+    print(all, o.folder);
   return all.complete() ? kPass : kIncomplete;
 }
 
-std::function<int()> bind_status(CLI::App& app) {
-  const auto folder = std::make_shared<std::string>();
-  const auto json = std::make_shared<bool>(false);
-  app.add_option("DIR", *folder, "The folder of `taut cluster submit`")->required();
-  add_json(app, *json, "Every shard and every failed case");
-  return [folder, json] { return status(*folder, *json); };
+void add_options_status(CLI::App& app, StatusOptions& o) {
+  app.add_option("DIR", o.folder, "The folder of `taut cluster submit`")->required();
+  add_json(app, o.json, "Every shard and every failed case");
 }
 
 // merge
@@ -316,16 +298,14 @@ int merge(const MergeOptions& o) {
   return missing.empty() ? kPass : kIncomplete;
 }
 
-std::function<int()> bind_merge(CLI::App& app) {
-  const auto o = std::make_shared<MergeOptions>();
-  app.add_option("DIR", o->folders,
+void add_options_merge(CLI::App& app, MergeOptions& o) {
+  app.add_option("DIR", o.folders,
                  "Folders of `taut cluster submit`, or results folders of `taut run --shard`")
       ->required();
-  add_results(app, o->out);
-  app.add_flag("--allow-missing", o->allow_missing,
+  add_results(app, o.out);
+  app.add_flag("--allow-missing", o.allow_missing,
                "Merge although planned cases are missing; reports say so");
-  add_json(app, o->json, "What is there, what is missing, foreign or in conflict");
-  return [o] { return merge(*o); };
+  add_json(app, o.json, "What is there, what is missing, foreign or in conflict");
 }
 
 }  // namespace
@@ -337,37 +317,32 @@ TAUT_VERB(cluster) = {.name = "cluster",
                       .example =
                           "taut cluster submit iterations --on slurm --shards 8\n"
                           "  taut cluster status results/cluster/iterations\n"
-                          "  taut cluster merge results/cluster/iterations",
-                      .bind = taut::verb::cluster::bind};
+                          "  taut cluster merge results/cluster/iterations"};
 
 TAUT_VERB(cluster_submit) = {
     .name = "cluster submit",
-    .group = VerbGroup::studies,
     .summary = "Writes a folder with all that the nodes need, and starts its shards",
     .example =
         "taut cluster submit iterations --on slurm --hours 2\n  taut cluster submit "
         "my/study.toml --on parallel --sshlogin a,b --shards 8 --dry-run",
-    .bind = taut::verb::cluster::bind_submit};
+    .bind = taut::bind_verb<taut::verb::cluster::add_options_submit, taut::verb::cluster::submit>};
 
 TAUT_VERB(cluster_run) = {
     .name = "cluster run",
-    .group = VerbGroup::studies,
     .summary = "Runs one shard, or goes on with it: what the job scripts call",
     .example = "taut cluster run results/cluster/iterations --shard 3",
-    .bind = taut::verb::cluster::bind_run};
+    .bind = taut::bind_verb<taut::verb::cluster::add_options_run, taut::verb::cluster::run>};
 
 TAUT_VERB(cluster_status) = {
     .name = "cluster status",
-    .group = VerbGroup::studies,
     .summary = "Done, running, failed and lost shards, and the command that starts them again",
     .example = "taut cluster status results/cluster/iterations",
-    .bind = taut::verb::cluster::bind_status};
+    .bind = taut::bind_verb<taut::verb::cluster::add_options_status, taut::verb::cluster::status>};
 
 TAUT_VERB(cluster_merge) = {
     .name = "cluster merge",
-    .group = VerbGroup::studies,
     .summary = "Unites results, if none is missing, foreign or in conflict; else says which",
     .example =
         "taut cluster merge results/cluster/iterations\n"
         "  taut cluster merge results/shard1 results/shard2 --out results/runs",
-    .bind = taut::verb::cluster::bind_merge};
+    .bind = taut::bind_verb<taut::verb::cluster::add_options_merge, taut::verb::cluster::merge>};

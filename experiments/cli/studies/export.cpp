@@ -1,21 +1,14 @@
-#include <algorithm>
-#include <iostream>
 #include <map>
-#include <memory>
 #include <set>
 
 #include "core/io/text_file.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/timing/study_bench.hpp"
 
 namespace taut::verb::exporting {
@@ -171,22 +164,21 @@ int run(const Options& options) {
   return missing > 0 ? kIncomplete : kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
-  app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
-  add_stored(app, options->preset, options->results);
-  add_output(app, options->output, "File (default: standard output)");
-  add_json(app, options->json, "The same rows");
-  return [options] { return run(*options); };
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("STUDY", options.study, "Name or path of a study that was run")->required();
+  add_stored(app, options.preset, options.results);
+  add_output(app, options.output, "File (default: standard output)");
+  add_json(app, options.json, "The same rows");
 }
 
 }  // namespace
 }  // namespace taut::verb::exporting
 
-TAUT_VERB(export) = {.name = "export",
-                     .group = VerbGroup::studies,
-                     .summary = "Writes a study as a tidy CSV: a row a case, SI units, costs",
-                     .example = R"(taut export iterations --preset quick -o x.csv
+TAUT_VERB(export) = {
+    .name = "export",
+    .group = VerbGroup::studies,
+    .summary = "Writes a study as a tidy CSV: a row a case, SI units, costs",
+    .example = R"(taut export iterations --preset quick -o x.csv
 Python:
   import pandas
   cases = pandas.read_csv("x.csv").query("status == 'ok'")
@@ -196,4 +188,4 @@ R:
   ok <- subset(cases, status == "ok")
   print(aggregate(ok["stretch.rms"], ok[c("scene", "solver", "iterations")], mean))
 Exit: 0 every case is there; 3 some were not run (their status says so))",
-                     .bind = taut::verb::exporting::bind};
+    .bind = taut::bind_verb<taut::verb::exporting::add_options, taut::verb::exporting::run>};

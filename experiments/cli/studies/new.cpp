@@ -1,12 +1,5 @@
-#include <algorithm>
 #include <cctype>
-#include <filesystem>
-#include <iostream>
-#include <memory>
 
-#include "core/model/input_error.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -14,6 +7,11 @@
 namespace taut::verb::creating {
 
 namespace {
+
+struct Options {
+  std::string kind, name;
+  bool json = false;
+};
 
 /// "mine" or "sub/mine.toml" -> the file; letters, digits, '-', '_' and '.' in its name.
 std::filesystem::path file_of(const std::string& name) {
@@ -28,41 +26,34 @@ std::filesystem::path file_of(const std::string& name) {
   return file;
 }
 
-/// `kind`: "study" or "scene"; its template has @ where the name goes.
-int write(const std::string& name, const std::string& kind, const std::string& next, bool json) {
-  const std::filesystem::path file = file_of(name);
-  std::string text = read_text(data_folder() / "templates" / (kind + ".toml"));
+/// The template of the kind has @ where the name goes.
+int run(const Options& o) {
+  const std::filesystem::path file = file_of(o.name);
+  std::string text = read_text(data_folder() / "templates" / (o.kind + ".toml"));
   for (auto at = text.find('@'); at != std::string::npos; at = text.find('@'))
     text.replace(at, 1, file.stem().string());
   write_durably(file, text);
-  print_files({file.string()}, json);
-  progress() << "next: taut " << next << ' '
+  print_files({file.string()}, o.json);
+  progress() << "next: taut " << (o.kind == "study" ? "run " : "case ")
              << (file.has_parent_path() ? file : "." / file).string()
-             << (next == "case" ? " jakobsen" : "") << '\n';
+             << (o.kind == "scene" ? " jakobsen" : "") << '\n';
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  app.require_subcommand(1);
-  const auto name = std::make_shared<std::string>();
-  CLI::App* study = app.add_subcommand("study", "A commented study of one scene and two solvers");
-  CLI::App* scene = app.add_subcommand("scene", "A commented scene of a sheet and a ball");
-  const auto json = std::make_shared<bool>(false);
-  for (CLI::App* sub : {study, scene}) {
-    sub->add_option("NAME", *name, "NAME or path; the file is NAME.toml")->required();
-    add_json(*sub, *json, "The name of the file");
-  }
-  return [name, study, json] {
-    return study->parsed() ? write(*name, "study", "run", *json)
-                           : write(*name, "scene", "case", *json);
-  };
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("KIND", o.kind, "study: of one scene and two solvers; scene: a sheet and a ball")
+      ->required()
+      ->check(CLI::IsMember({"study", "scene"}));
+  app.add_option("NAME", o.name, "NAME or path; the file is NAME.toml")->required();
+  add_json(app, o.json, "The name of the file");
 }
 
 }  // namespace
 }  // namespace taut::verb::creating
 
-TAUT_VERB(new) = {.name = "new",
-                  .group = VerbGroup::studies,
-                  .summary = "Writes a commented study or scene that runs, to begin with",
-                  .example = "taut new study mine\n  taut new scene my/cloth",
-                  .bind = taut::verb::creating::bind};
+TAUT_VERB(new) = {
+    .name = "new",
+    .group = VerbGroup::studies,
+    .summary = "Writes a commented study or scene that runs, to begin with",
+    .example = "taut new study mine\n  taut new scene my/cloth",
+    .bind = taut::bind_verb<taut::verb::creating::add_options, taut::verb::creating::run>};

@@ -1,18 +1,9 @@
 #include "experiments/report/plot/plot.hpp"
 
 #include <cmath>
-#include <filesystem>
-#include <iostream>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "core/io/text_file.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
@@ -66,33 +57,6 @@ std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
   return specs;
 }
 
-/// Throws InputError with every kind and value that there is not; of a study's own with its place.
-void check(const std::vector<PlotSpec>& specs, const Options& options, const Study& study,
-           const report::Records& records) {
-  const bool own = options.kind.empty() && options.x.empty() && options.y.empty();
-  std::vector<Diagnostic> wrong;
-  for (std::size_t i = 0; i < specs.size(); ++i) {
-    const auto collect = [&](const char* key, const auto& look) {
-      try {
-        look();
-      } catch (const InputError& error) {
-        Diagnostic d = error.diagnostics().front();
-        if (own) {
-          const SourceLocation& place = study.plots[i].places.at(key);
-          d.file = study.file.string(), d.line = place.line, d.column = place.column;
-        } else {
-          d.message = std::string("--") + key + ": " + d.message;
-        }
-        wrong.push_back(d);
-      }
-    };
-    collect("kind", [&] { report::find_plot_kind(specs[i].kind); });
-    for (const auto& [key, name] : {std::pair("x", specs[i].x), std::pair("y", specs[i].y)})
-      if (!name.empty()) collect(key, [&] { report::check_value_name(name, records); });
-  }
-  if (!wrong.empty()) throw InputError(wrong);
-}
-
 /// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
 /// and on standard error.
 std::string hold_other(const PlotSpec& spec, report::Records& records, const std::string& scene) {
@@ -138,8 +102,7 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
 }
 
 int run(const Options& options) {
-  if (!options.kind.empty()) report::find_plot_kind(options.kind);
-  const Study study = load_study(options.study, options.preset);
+  const Study study = load_study_to_plot(options.study, options.preset);
   const Store store(options.results);
   const report::ReportInput input = report::stored_results({study}, store);
   const report::StudyResult& result = input.studies.front();
@@ -152,7 +115,12 @@ int run(const Options& options) {
                                    (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                              : std::filesystem::path(options.output);
   const std::vector<PlotSpec> specs = wanted(options, study);
-  check(specs, options, study, result.records);
+  for (const auto& [key, name] : {std::pair("--x: ", options.x), std::pair("--y: ", options.y)})
+    if (!name.empty()) try {
+        report::check_value_name(name, result.records);
+      } catch (const InputError& error) {
+        throw InputError(key + error.diagnostics().front().message);
+      }
   make_folder(out);  // what cannot be written is said once, not for every scene
   std::vector<std::string> files;
   try {
@@ -179,22 +147,20 @@ int run(const Options& options) {
   return files.empty() ? kNothing : kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+void add_options(CLI::App& app, Options& options) {
   std::vector<std::string> names;
   for (const report::PlotKind& kind : report::plot_kinds()) names.emplace_back(kind.name);
-  app.add_option("STUDY", options->study, "Name or path of a study that was run")->required();
-  add_stored(app, options->preset, options->results);
-  app.add_option("--kind", options->kind,
+  app.add_option("STUDY", options.study, "Name or path of a study that was run")->required();
+  add_stored(app, options.preset, options.results);
+  app.add_option("--kind", options.kind,
                  "One of: " + join(names, ", ") + " (default: what the study asks for)")
       ->check(known("kind of plot", names));
-  app.add_option("--x", options->x, "Value on x: dt, iterations, projections or a metric's value");
-  app.add_option("--y", options->y, "Value on y, such as stretch.rms");
-  app.add_option("--title", options->title, "Title above the figure");
-  add_output(app, options->output,
+  app.add_option("--x", options.x, "Value on x: dt, iterations, projections or a metric's value");
+  app.add_option("--y", options.y, "Value on y, such as stretch.rms");
+  app.add_option("--title", options.title, "Title above the figure");
+  add_output(app, options.output,
              "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
-  add_json(app, options->json, "The names of the files");
-  return [options] { return run(*options); };
+  add_json(app, options.json, "The names of the files");
 }
 
 }  // namespace
@@ -208,4 +174,4 @@ TAUT_VERB(plot) = {.name = "plot",
                        "stability -o figures\n  taut plot trade --kind profile\n  taut plot "
                        "iterations --x projections "
                        "--y stretch.max",
-                   .bind = taut::verb::plot::bind};
+                   .bind = taut::bind_verb<taut::verb::plot::add_options, taut::verb::plot::run>};

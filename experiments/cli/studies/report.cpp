@@ -1,18 +1,11 @@
 #include "experiments/report/report.hpp"
 
-#include <algorithm>
-#include <filesystem>
-#include <iostream>
-#include <memory>
 #include <set>
 
 #include "core/io/scene_io.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/film/film.hpp"
 #include "experiments/report/findings.hpp"
@@ -33,23 +26,12 @@ struct Options {
   bool no_media = false, json = false;
 };
 
-bool is_results_folder(const std::string& name) {
-  const std::filesystem::path folder(name);
-  return std::filesystem::is_directory(folder / "store") ||
-         std::filesystem::is_directory(folder / "packs");
-}
-
 std::string command_line(const Options& options) {
-  std::string run = "./taut run";
-  if (options.studies.empty())
-    return run + (options.preset.empty() ? "" : " --preset " + options.preset);
-  for (const std::string& study : options.studies) run += " " + shell_word(study);
-  if (!options.preset.empty()) run += " --preset " + options.preset;
-  std::string report = "./taut report";
-  for (const std::string& study : options.studies) report += " " + shell_word(study);
-  if (!options.preset.empty()) report += " --preset " + options.preset;
-  for (const std::string& scene : options.films) report += " --film " + shell_word(scene);
-  return run + " && " + report;
+  std::string what, films;
+  for (const std::string& study : options.studies) what += " " + shell_word(study);
+  if (!options.preset.empty()) what += " --preset " + options.preset;
+  for (const std::string& scene : options.films) films += " --film " + shell_word(scene);
+  return "./taut run" + what + (options.studies.empty() ? "" : " && ./taut report" + what + films);
 }
 
 /// Every solver with what it cannot do on the shipped scenes at its default settings.
@@ -74,11 +56,28 @@ std::string readable(const std::string& stamp) {
          stamp.substr(9, 2) + ":" + stamp.substr(11, 2) + " UTC";
 }
 
+/// The model, or the page into its file.
+int put_out(const report::ReportInput& input, const Options& options) {
+  if (options.json) {
+    std::cout << report::make_model(input, 1) << '\n';
+    return kPass;
+  }
+  write_file(options.output, report::make_report(input));
+  std::cout << options.output << '\n';
+  return kPass;
+}
+
+std::vector<Study> load_all(const std::vector<std::string>& names, const std::string& preset) {
+  std::vector<Study> studies;
+  for (const std::string& name : names) studies.push_back(load_study(name, preset));
+  return studies;
+}
+
 /// `taut report A B [STUDY...]`: what differs, and what B has.
 int compare_folders(const Options& options) {
-  if (options.studies.size() < 2 || !is_results_folder(options.studies[1]))
+  if (options.studies.size() < 2 || !Store::is_at(options.studies[1]))
     throw InputError("report " + options.studies[0] +
-                     ": one results folder; --results shows it, a second one is compared with it");
+                     ": one results folder; --out shows it, a second one is compared with it");
   if (!options.json) test_writable(options.output);
   const Store a(options.studies[0]), b(options.studies[1]);
   std::vector<std::string> names(options.studies.begin() + 2, options.studies.end());
@@ -88,9 +87,7 @@ int compare_folders(const Options& options) {
     names = job.studies;
     if (preset.empty()) preset = job.preset;
   }
-  std::vector<Study> studies;
-  for (const std::string& name : names) studies.push_back(load_study(name, preset));
-  report::ReportInput input = report::stored_anywhere(studies, b);
+  report::ReportInput input = report::stored_anywhere(load_all(names, preset), b);
   input.differences = report::stored_differences(a, b);
   if (input.differences->pairs.empty())
     throw InputError("no case is in both " + options.studies[0] + " and " + options.studies[1]);
@@ -102,18 +99,11 @@ int compare_folders(const Options& options) {
   input.provenance = {{"program", program_digest().substr(0, 10)},
                       {"made", readable(utc_stamp())},
                       {"toolchain", std::string(toolchain())}};
-  if (options.json) {
-    std::cout << report::make_model(input, 1) << '\n';
-    return kPass;
-  }
-  write_file(options.output, report::make_report(input));
-  std::cout << options.output << '\n';
-  return kPass;
+  return put_out(input, options);
 }
 
 int run(Options options) {
-  if (!options.studies.empty() && is_results_folder(options.studies[0]))
-    return compare_folders(options);
+  if (!options.studies.empty() && Store::is_at(options.studies[0])) return compare_folders(options);
   const std::string command = command_line(options);
   std::vector<std::string> maps = options.studies;
   if (options.studies.empty()) {
@@ -124,16 +114,12 @@ int run(Options options) {
     if (options.preset.empty()) options.preset = job.preset;
   }
   if (!options.json) test_writable(options.output);
-  std::vector<Study> studies;
-  for (const std::string& name : options.studies)
-    studies.push_back(load_study(name, options.preset));
+  const std::vector<Study> studies = load_all(options.studies, options.preset);
   const Store store(options.results);
   report::ReportInput input = report::stored_results(studies, store);
   if (!std::filesystem::exists(options.results))
     throw InputError("no results folder " + options.results + "; taut run makes it");
-  std::vector<Study> map_studies;
-  for (const std::string& name : maps) map_studies.push_back(load_study(name, options.preset));
-  report::add_stored_maps(input, map_studies, store);
+  report::add_stored_maps(input, load_all(maps, options.preset), store);
   input.command = command;
   input.solvers = introductions();
   const std::string program = program_digest();
@@ -156,11 +142,7 @@ int run(Options options) {
   add("check.json", input.regressions, report::stored_regressions);
   add("require", input.required, report::stored_requirements);
   add("frontiers", input.frontiers, report::stored_frontiers);
-  if (options.json) {
-    std::cout << report::make_model(input, 1) << '\n';
-    return kPass;
-  }
-  if (!options.no_media) {
+  if (!options.json && !options.no_media) {
     std::set<std::string> scenes(options.films.begin(), options.films.end());
     for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);
     std::size_t filmed = 0;
@@ -170,26 +152,22 @@ int run(Options options) {
       countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());
     });
   }
-  write_file(options.output, report::make_report(input));
-  std::cout << options.output << '\n';
-  return kPass;
+  return put_out(input, options);
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
-  app.add_option("STUDY", options->studies,
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("STUDY", options.studies,
                  "Names or paths of studies; none: the main job, preset quick. After two results "
                  "folders A and B: what differs");
-  add_stored(app, options->preset, options->results);
-  app.add_option("--film", options->films,
+  add_stored(app, options.preset, options.results);
+  app.add_option("--film", options.films,
                  "Also films this scene (name or path), which no study ran; none and no STUDY: all "
                  "shipped scenes")
       ->allow_extra_args(false);
-  app.add_flag("--no-media", options->no_media, "Without pictures and videos");
-  add_json(app, options->json,
+  app.add_flag("--no-media", options.no_media, "Without pictures and videos");
+  add_json(app, options.json,
            "The model of the page (experiments/report/model/MODEL.md), without pictures");
-  add_output(app, options->output, "The page (default: report.html)");
-  return [options] { return run(*options); };
+  add_output(app, options.output, "The page (default: report.html)");
 }
 
 }  // namespace
@@ -202,4 +180,4 @@ TAUT_VERB(report) = {
     .example =
         "taut report\n  taut report iterations --preset quick -o hang.html\n  taut "
         "report iterations --json | jq .claims\n  taut report results/before results/after",
-    .bind = taut::verb::reporting::bind};
+    .bind = taut::bind_verb<taut::verb::reporting::add_options, taut::verb::reporting::run>};

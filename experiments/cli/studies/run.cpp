@@ -1,20 +1,12 @@
-#include <algorithm>
-#include <iostream>
 #include <iterator>
 #include <map>
-#include <memory>
 
-#include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/command_line/columns.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/main_job.hpp"
 #include "experiments/system/distinct.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/timing/statistics.hpp"
 
@@ -39,37 +31,10 @@ std::string command_line(const Options& options) {
   return text;
 }
 
-/// What no figure could draw, said before anything runs.
-void judge_plots(const Study& study) {
-  std::vector<Diagnostic> wrong;
-  std::vector<std::string> known = report::quantity_names();
-  known.emplace_back("setting");
-  for (const StudyAxis& axis : study.axes) known.push_back(axis.name);
-  const auto report = [&](std::size_t i, const char* key, const std::string& text) {
-    const SourceLocation& place = study.plots[i].places.at(key);
-    wrong.push_back({study.file, place.line, place.column, text});
-  };
-  for (std::size_t i = 0; i < study.plots.size(); ++i) {
-    try {
-      report::find_plot_kind(study.plots[i].kind);
-    } catch (const InputError& error) {
-      report(i, "kind", error.diagnostics().front().text());
-    }
-    for (const char* axis : {"x", "y", "along"})
-      if (const auto at = study.plots[i].options.find(axis);
-          at != study.plots[i].options.end() && std::ranges::count(known, at->second) == 0)
-        report(i, axis,
-               "unknown value '" + at->second + "' for " + axis + suggestion(at->second, known) +
-                   " (`taut list metrics`)");
-  }
-  if (!wrong.empty()) throw InputError(wrong);
-}
-
 std::vector<Study> load_studies(const Options& options) {
   std::vector<Study> studies;
   read_all(options.studies, [&](const std::string& name) {
-    studies.push_back(load_study(name, options.preset));
-    judge_plots(studies.back());
+    studies.push_back(load_study_to_plot(name, options.preset));
   });
   return studies;
 }
@@ -96,7 +61,7 @@ int finish_main_job(const MainJob& job, const Options& options) {
   progress() << "comparing with the committed baselines\n";
   if (invoke("check", {"--record", "-j", jobs, "--out", options.out}) == kInterrupted)
     throw Interrupted();
-  std::vector<std::string> arguments{"--results", options.out};  // none named: the main job's
+  std::vector<std::string> arguments{"--out", options.out};  // none named: the main job's
   if (options.preset != job.preset) arguments.insert(arguments.end(), {"--preset", options.preset});
   return invoke("report", arguments, options.json ? Output::discarded : Output::shown);
 }
@@ -182,7 +147,7 @@ void print_next(const Options& options, bool bare) {
   const std::string first = shell_word(options.studies.front());
   const std::string more = options.preset.empty() ? "" : " --preset " + options.preset;
   const std::string in =
-      options.out == default_results() ? "" : " --results " + shell_word(options.out);
+      options.out == default_results() ? "" : " --out " + shell_word(options.out);
   progress() << "next: "
              << (bare && !options.no_report ? "open report.html"
                                             : "taut report" + which + more + in)
@@ -232,25 +197,23 @@ int run(Options options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
-  app.add_option("STUDY", options->studies,
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("STUDY", options.studies,
                  "Names or paths of studies; none: the main job, preset quick, with its report");
-  add_preset(app, options->preset);
-  add_jobs(app, options->jobs);
-  app.add_option("--shard", options->shard,
+  add_preset(app, options.preset);
+  add_jobs(app, options.jobs);
+  app.add_option("--shard", options.shard,
                  "Only part i of n of the cases, as i/n (default: a Slurm array's, else all)");
-  app.add_option("--only", options->only, "failed: run stored failures again, nothing else")
+  app.add_option("--only", options.only, "failed: run stored failures again, nothing else")
       ->check(CLI::IsMember({"failed"}));
-  add_results(app, options->out);
-  add_limits(app, options->limits);
-  app.add_option("--table", options->values,
+  add_results(app, options.out);
+  add_limits(app, options.limits);
+  app.add_option("--table", options.values,
                  "Then print this value of a metric, settings by scenes; repeat it for each")
       ->allow_extra_args(false)
       ->check(metric_value());
-  app.add_flag("--no-report", options->no_report, "Run the main job without its report");
-  add_json(app, options->json, "How the cases ended, or the tables,");
-  return [options] { return run(*options); };
+  app.add_flag("--no-report", options.no_report, "Run the main job without its report");
+  add_json(app, options.json, "How the cases ended, or the tables,");
 }
 
 }  // namespace
@@ -263,4 +226,4 @@ TAUT_VERB(run) = {.name = "run",
                       "taut run\n  taut run iterations --preset quick -j 2\n"
                       "  taut run default-setting --table stretch.rms --table energy.drift\n"
                       "  taut run my/study.toml --shard 1/4 --out results/shard1",
-                  .bind = taut::verb::run::bind};
+                  .bind = taut::bind_verb<taut::verb::run::add_options, taut::verb::run::run>};

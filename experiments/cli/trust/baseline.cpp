@@ -1,14 +1,7 @@
-#include <iostream>
-#include <memory>
-
-#include "core/model/input_error.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/baseline_study.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
 
 namespace taut::verb::baseline {
 
@@ -81,19 +74,15 @@ int update(Options options) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
-  app.require_subcommand(1);
-  CLI::App* updating = app.add_subcommand("update", "Takes what is different as the new baseline");
-  updating->add_option("--why", options->why, "The reason, kept beside the baseline")->required();
-  CLI::App* differing =
-      app.add_subcommand("diff", "Shows what an update would change (exit 1: something)");
-  for (CLI::App* sub : {updating, differing}) {
-    sub->add_option("STUDY", options->study, "Name or path")->required();
-    options->bind(*sub);
-    add_json(*sub, options->json, "What differs");
-  }
-  return [options, updating] { return updating->parsed() ? update(*options) : diff(*options); };
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("STUDY", options.study, "Name or path")->required();
+  options.bind(app);
+  add_json(app, options.json, "What differs");
+}
+
+void add_update_options(CLI::App& app, Options& options) {
+  app.add_option("--why", options.why, "The reason, kept beside the baseline")->required();
+  add_options(app, options);
 }
 
 }  // namespace
@@ -104,5 +93,17 @@ TAUT_VERB(baseline) = {.name = "baseline",
                        .summary = "Updates a committed baseline, or shows how it differs",
                        .example =
                            "taut baseline update regression --why \"contacts are continuous\"\n"
-                           "  taut baseline diff regression",
-                       .bind = taut::verb::baseline::bind};
+                           "  taut baseline diff regression"};
+
+TAUT_VERB(baseline_update) = {
+    .name = "baseline update",
+    .summary = "Takes what is different as the new baseline",
+    .example = "taut baseline update regression --why \"contacts are continuous\"",
+    .bind =
+        taut::bind_verb<taut::verb::baseline::add_update_options, taut::verb::baseline::update>};
+
+TAUT_VERB(baseline_diff) = {
+    .name = "baseline diff",
+    .summary = "Shows what an update would change (exit 1: something)",
+    .example = "taut baseline diff regression",
+    .bind = taut::bind_verb<taut::verb::baseline::add_options, taut::verb::baseline::diff>};

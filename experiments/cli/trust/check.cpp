@@ -1,20 +1,10 @@
-#include <algorithm>
-#include <iostream>
-#include <memory>
-
-#include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/baseline_study.hpp"
-#include "experiments/command_line/colour.hpp"
-#include "experiments/command_line/columns.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/study/extremes/extremes.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
 
 namespace taut::verb::check {
 
@@ -187,29 +177,28 @@ int check(Options options) {
   return code;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
-  app.add_option("STUDY", options->studies, "Names or paths; none: all that have a baseline");
-  options->bind(app);
-  app.add_option("--junit", options->junit, "Also write a JUnit file for continuous integration");
-  add_json(app, options->json, "What moved, by scene and value, and every finding,");
-  app.add_flag("--record", options->record, "Also keep the findings for the report");
-  app.add_flag("--strict-env", options->strict,
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("STUDY", options.studies, "Names or paths; none: all that have a baseline");
+  options.bind(app);
+  app.add_option("--junit", options.junit, "Also write a JUnit file for continuous integration");
+  add_json(app, options.json, "What moved, by scene and value, and every finding,");
+  app.add_flag("--record", options.record, "Also keep the findings for the report");
+  app.add_flag("--strict-env", options.strict,
                "Fail with 5 if the baseline was made with another toolchain");
-  return [options] { return check(*options); };
 }
 
 }  // namespace
 }  // namespace taut::verb::check
 
-TAUT_VERB(check) = {.name = "check",
-                    .group = VerbGroup::trust,
-                    .summary =
-                        "Compares studies with their committed baselines; runs what is "
-                        "missing",
-                    .example =
-                        "taut check\n  taut check regression --junit check.xml\n"
-                        "Exit: 0 nothing moved; 1 a value or status moved; 3 cases were not "
-                        "run;\n      4 nothing compared, or the baseline does not match the "
-                        "study;\n      5 another toolchain under --strict-env",
-                    .bind = taut::verb::check::bind};
+TAUT_VERB(check) = {
+    .name = "check",
+    .group = VerbGroup::trust,
+    .summary =
+        "Compares studies with their committed baselines; runs what is "
+        "missing",
+    .example =
+        "taut check\n  taut check regression --junit check.xml\n"
+        "Exit: 0 nothing moved; 1 a value or status moved; 3 cases were not "
+        "run;\n      4 nothing compared, or the baseline does not match the "
+        "study;\n      5 another toolchain under --strict-env",
+    .bind = taut::bind_verb<taut::verb::check::add_options, taut::verb::check::check>};

@@ -1,22 +1,17 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cfloat>
 #include <cstdlib>
 #include <fstream>
 #include <iomanip>
-#include <iostream>
-#include <memory>
 #include <thread>
 
 #include "experiments/case/fingerprint.hpp"
-#include "experiments/command_line/colour.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/timing/timing.hpp"
 
@@ -25,6 +20,10 @@ namespace taut::verb::doctor {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct Options {
+  bool json = false;
+};
 
 struct Check {
   std::string name, value;
@@ -100,7 +99,7 @@ std::vector<Check> examine() {
   return all;
 }
 
-int run(bool as_json) {
+int run(const Options& options) {
   const std::vector<Check> checks = examine();
   bool trusted = true;
   for (const Check& f : checks)
@@ -108,7 +107,7 @@ int run(bool as_json) {
       trusted = trusted && f.good;
   const char* verdict = trusted ? "timing can be trusted here"
                                 : "timing is for display only here: the machine is not quiet";
-  if (as_json) {
+  if (options.json) {
     const Json all = json_array(checks, [](const Check& f) -> Json {
       return {{"name", f.name}, {"value", f.value}, {"good", f.good}};
     });
@@ -122,17 +121,14 @@ int run(bool as_json) {
   return kPass;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto json = std::make_shared<bool>(false);
-  app.add_flag("--json", *json, "Print JSON");
-  return [json] { return run(*json); };
-}
+void add_options(CLI::App& app, Options& options) { add_json(app, options.json, "The findings"); }
 
 }  // namespace
 }  // namespace taut::verb::doctor
 
-TAUT_VERB(doctor) = {.name = "doctor",
-                     .group = VerbGroup::trust,
-                     .summary = "Versions, precision, cores, load: what can be trusted here?",
-                     .example = "taut doctor",
-                     .bind = taut::verb::doctor::bind};
+TAUT_VERB(doctor) = {
+    .name = "doctor",
+    .group = VerbGroup::trust,
+    .summary = "Versions, precision, cores, load: what can be trusted here?",
+    .example = "taut doctor",
+    .bind = taut::bind_verb<taut::verb::doctor::add_options, taut::verb::doctor::run>};

@@ -1,27 +1,17 @@
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <exception>
-#include <filesystem>
-#include <iostream>
-#include <memory>
 #include <mutex>
 #include <ranges>
-#include <string>
 #include <thread>
 
-#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/baseline/assertions_baseline.hpp"
+#include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/command_line/colour.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/progress.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/system/text.hpp"
 #include "experiments/truths/truth.hpp"
 #include "experiments/truths/vasilovici/assertions.hpp"
@@ -33,7 +23,7 @@ namespace {
 struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
-  bool json = false, verbose = false, assertions = false, update = false;
+  bool json = false, verbose = false, assertions = false, update = false, list = false;
   std::string output, baselines;
 
   /// Whether every truth that an assertion rests on is checked, for every solver.
@@ -239,6 +229,12 @@ int compare_with_baseline(const std::vector<JudgedAssertion>& assertions, const 
 }
 
 int run(const Options& options) {
+  if (options.list) {
+    for (const TruthEntry* truth : choose({}))
+      std::cout << truth->section << '.' << truth->row << '\t' << truth->name << '\t'
+                << truth->statement << '\n';
+    return kPass;
+  }
   if (options.update && !(options.assertions && options.of_all_assertions()))
     throw InputError(
         "--update keeps the verdicts of all assertions: taut verify --assertions --update");
@@ -257,37 +253,27 @@ int run(const Options& options) {
   return code == kPass ? assertions : code;
 }
 
-int list() {
-  for (const TruthEntry* truth : choose({}))
-    std::cout << truth->section << '.' << truth->row << '\t' << truth->name << '\t'
-              << truth->statement << '\n';
-  return kPass;
-}
-
-std::function<int()> bind(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
-  const auto only_list = std::make_shared<bool>(false);
+void add_options(CLI::App& app, Options& options) {
   std::vector<std::string> names;
   for (const TruthEntry* truth : truths()) names.emplace_back(truth->name);
-  app.add_option("TRUTH", options->names, "Truths to check by name; all if none is given")
+  app.add_option("TRUTH", options.names, "Truths to check by name; all if none is given")
       ->check(known("truth", std::move(names)));
-  app.add_option("--solver", options->solvers,
+  app.add_option("--solver", options.solvers,
                  "Only what binds these solvers (\"reference\": the references)");
-  app.add_option("--section", options->section, "Only one section of the truths")
+  app.add_option("--section", options.section, "Only one section of the truths")
       ->check(CLI::Range(1, 10));
-  app.add_option("-j,--jobs", options->jobs,
-                 "Threads (default: " + std::to_string(options->jobs) + ")")
+  app.add_option("-j,--jobs", options.jobs,
+                 "Threads (default: " + std::to_string(options.jobs) + ")")
       ->check(CLI::Range(1, 64));
-  add_output(app, options->output, "Also write the findings as JSON to this file");
-  app.add_flag("--json", options->json, "Findings as JSON instead of a table");
-  app.add_flag("--assertions", options->assertions,
+  add_output(app, options.output, "Also write the findings as JSON to this file");
+  app.add_flag("--json", options.json, "Findings as JSON instead of a table");
+  app.add_flag("--assertions", options.assertions,
                "Only what holds the assertions of Vasilovici's report, and their verdicts");
-  add_baselines(app, options->baselines);
-  app.add_flag("--update", options->update,
+  add_baselines(app, options.baselines);
+  app.add_flag("--update", options.update,
                "With --assertions: keep their verdicts as the baseline");
-  app.add_flag("--verbose", options->verbose, "Every number, with sources and times");
-  app.add_flag("--list", *only_list, "Only name the truths");
-  return [options, only_list] { return *only_list ? list() : run(*options); };
+  app.add_flag("--verbose", options.verbose, "Every number, with sources and times");
+  app.add_flag("--list", options.list, "Only name the truths");
 }
 
 }  // namespace
@@ -303,4 +289,4 @@ TAUT_VERB(verify) = {
         "  taut verify --assertions\n"
         "Exit: 0 no truth is broken, no verdict of an assertion changed; 1 one is or "
         "did; 4 nothing was held to anything",
-    .bind = taut::verb::verify::bind};
+    .bind = taut::bind_verb<taut::verb::verify::add_options, taut::verb::verify::run>};

@@ -4,8 +4,260 @@
 #include <cmath>
 
 #include "core/model/index.hpp"
+#include "core/model/input_error.hpp"
 
 namespace taut {
+
+namespace {
+
+bool is_sound(const State& state, const Vec3& centre, double reach) {
+  return std::ranges::all_of(
+      state.x, [&](const Vec3& p) { return p.allFinite() && (p - centre).norm() <= reach; });
+}
+
+/// Fills in what a trajectory without velocities leaves out: backward differences, as Verlet has
+/// them; the scene's own at the start.
+void add_velocities(const Scene& scene, std::vector<TrajectoryReader::Frame>& frames) {
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    State& now = frames[k].state;
+    if (!now.v.empty()) continue;
+    now.v = scene.start.v;
+    const double dt = k > 0 ? frames[k].t - frames[k - 1].t : 0;
+    if (dt <= 0) continue;
+    for (std::size_t i = 0; i < now.x.size(); ++i)
+      now.v[i] = (now.x[i] - frames[k - 1].state.x[i]) / dt;
+  }
+}
+
+double strain(const Link& link, const State& state) {
+  return ((state.x[to_index(link.b)] - state.x[to_index(link.a)]).norm() - link.rest) / link.rest;
+}
+
+std::vector<double> vertex_strains(const Scene& scene, const State& state) {
+  std::vector<double> sum(state.x.size(), 0.0), count(state.x.size(), 0.0);
+  for (const Link& link : scene.links) {
+    if (link.family == Family::bend) continue;
+    const double e = strain(link, state);
+    for (const int end : {link.a, link.b}) sum[to_index(end)] += e, count[to_index(end)] += 1;
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(count[i], 1.0);
+  return sum;
+}
+
+std::vector<double> vertex_depths(const Scene& scene, const State& state, double t) {
+  std::vector<double> depth(state.x.size(), 0.0);
+  for (const Collider& collider : scene.colliders) {
+    const Shape shape = shape_at(collider, t);
+    for (std::size_t i = 0; i < depth.size(); ++i)
+      depth[i] = std::max(depth[i], -surface(shape, state.x[i]).distance);
+  }
+  return depth;
+}
+
+/// None of a plane, which has no end.
+std::vector<Vec3> collider_points(const Collider& collider, double t) {
+  const Shape shape = shape_at(collider, t);
+  std::vector<Vec3> points;
+  for (const double x : {-1.0, 0.0, 1.0})
+    for (const double y : {-1.0, 0.0, 1.0})
+      for (const double z : {-1.0, 0.0, 1.0}) {
+        const Vec3 corner(x, y, z);
+        if (const auto* ball = std::get_if<Ball>(&shape); ball && corner.norm() > 0)
+          points.push_back(ball->center + ball->radius * corner.normalized());
+        if (const auto* box = std::get_if<Box>(&shape))
+          points.push_back(box->center + box->rotation * box->half_extents.cwiseProduct(corner));
+      }
+  return points;
+}
+
+Eigen::AlignedBox3d box_around(const std::vector<Vec3>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : points) box.extend(x);
+  return box;
+}
+
+Eigen::AlignedBox3d widened(const Eigen::AlignedBox3d& box, double margin) {
+  return {box.min() - Vec3::Constant(margin), box.max() + Vec3::Constant(margin)};
+}
+
+const Collider* level_floor(const Scene& scene, const Vec3& up) {
+  for (const Collider& collider : scene.colliders)
+    if (const auto* plane = std::get_if<Plane>(&collider.shape);
+        plane && collider.motion.at_rest() && plane->normal.dot(up) > 0.9999)
+      return &collider;
+  return nullptr;
+}
+
+/// Cloth at the times, relative to its centroid if the camera follows.
+std::vector<Vec3> cloth_points(const std::vector<RecordedRun>& runs,
+                               const std::vector<double>& times, bool follows) {
+  std::vector<Vec3> points;
+  for (const double t : times) {
+    const Vec3 moved = follows ? centroid(runs, t) : Vec3::Zero();
+    for (const RecordedRun& run : runs)
+      for (const Vec3& x : run.at(t).state.x) points.emplace_back(x - moved);
+  }
+  return points;
+}
+
+/// What the camera has to see: a collider that moves counts while it is at the cloth, not all the
+/// way there and back.
+std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<RecordedRun>& runs,
+                                     const std::vector<Vec3>& cloth,
+                                     const std::vector<double>& times) {
+  std::vector<Vec3> points;
+  for (const double t : times) {
+    const auto at_cloth = widened(box_around(cloth_points(runs, {t}, false)), 0.1 * extent(scene));
+    for (const Collider& collider : scene.colliders) {
+      const std::vector<Vec3> solid = collider_points(collider, t);
+      if (collider.motion.at_rest() || at_cloth.intersects(box_around(solid)))
+        points.insert(points.end(), solid.begin(), solid.end());
+    }
+  }
+  Eigen::AlignedBox3d near = box_around(scene.start.x).extend(box_around(points));
+  // What is held swings within the cloth's own size; what lands spreads a little; down an endless
+  // slope it slides.
+  const bool slope = std::ranges::any_of(scene.colliders, [&](const Collider& collider) {
+    const auto* plane = std::get_if<Plane>(&collider.shape);
+    return plane && plane->normal.dot(up_direction(scene)) < 0.9999;
+  });
+  const double share = slope ? 3 : scene.pins.empty() ? 0.3 : 0.6;
+  near = widened(near, share * extent(scene));
+  for (const Vec3& x : cloth)
+    if (near.contains(x)) points.push_back(x);
+  return points.empty() ? scene.start.x : points;
+}
+
+/// The view, or its mirror image if the cloth shows more of itself there: farther spread across the
+/// line of sight. A flag is not seen along its wind.
+View telling_view(const View& view, const std::vector<Vec3>& cloth, const Vec3& up) {
+  if (!view.either_side) return view;
+  const auto spread = [&](const View& candidate) {
+    const Vec3 right = fit_camera(cloth, up, candidate, 1, FitRegion{}).right.cast<double>();
+    double sum = 0, squares = 0;
+    for (const Vec3& x : cloth) sum += x.dot(right), squares += x.dot(right) * x.dot(right);
+    const auto count = static_cast<double>(cloth.size());
+    return squares / count - (sum / count) * (sum / count);
+  };
+  View mirrored = view;
+  mirrored.azimuth = -view.azimuth;
+  return spread(mirrored) > 1.1 * spread(view) ? mirrored : view;
+}
+
+}  // namespace
+
+const TrajectoryReader::Frame& RecordedRun::at(double t) const {
+  const auto& frames = trajectory.frames;
+  const auto after = std::ranges::lower_bound(frames, t, {}, &TrajectoryReader::Frame::t);
+  if (after == frames.begin()) return *after;
+  if (after == frames.end()) return frames.back();
+  return t - std::prev(after)->t <= after->t - t ? *std::prev(after) : *after;
+}
+
+RecordedRun recorded_run(const Scene& scene, Trajectory trajectory, double reach) {
+  RecordedRun run;
+  auto& frames = trajectory.frames;
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& p : scene.start.x) centre += p / scene.mesh.size();
+  const double limit =
+      reach * extent(scene) + scene.gravity.norm() * scene.duration() * scene.duration();
+  const auto bad = std::ranges::find_if_not(
+      frames, [&](const auto& frame) { return is_sound(frame.state, centre, limit); });
+  const bool exploded = bad != frames.end();
+  frames.erase(bad, frames.end());
+  if (frames.empty())
+    throw InputError("the trajectory of '" + trajectory.header.solver +
+                     "' has no stable frame: there is nothing to draw");
+  add_velocities(scene, frames);
+  const double slack = 1.5 * std::max(trajectory.header.frame_dt, scene.dt);
+  if (exploded || frames.back().t < scene.duration() - slack)
+    run.stop = RecordedRun::Stop{frames.back().t, exploded ? "exploded" : "ended"};
+  run.trajectory = std::move(trajectory);
+  return run;
+}
+
+std::vector<double> vertex_values(const Scene& scene, ColourBy colour_by, const State& state,
+                                  double t) {
+  if (colour_by == ColourBy::strain) return vertex_strains(scene, state);
+  if (colour_by == ColourBy::penetration) return vertex_depths(scene, state, t);
+  std::vector<double> speed(state.x.size(), 0.0);
+  for (std::size_t i = 0; i < state.v.size(); ++i) speed[i] = state.v[i].norm();
+  return speed;
+}
+
+LiveFigures live_figures(const Scene& scene, const State& state, double t) {
+  LiveFigures figures;
+  const auto pinned = [&](int i) {
+    return std::binary_search(scene.pins.begin(), scene.pins.end(), i);
+  };
+  double sum = 0, squares = 0, count = 0;
+  for (const Link& link : scene.links) {
+    if (link.family == Family::bend || (pinned(link.a) && pinned(link.b))) continue;
+    const double e = strain(link, state);
+    figures.max_strain = std::max(figures.max_strain, std::abs(e));
+    sum += e, squares += e * e, count += 1;
+  }
+  if (count > 0) figures.mean_strain = sum / count, figures.rms_strain = std::sqrt(squares / count);
+  for (const double depth : vertex_depths(scene, state, t))
+    figures.max_depth = std::max(figures.max_depth, depth);
+  for (const Vec3& v : state.v) figures.max_speed = std::max(figures.max_speed, v.norm());
+  return figures;
+}
+
+Vec3 centroid(const std::vector<RecordedRun>& runs, double t) {
+  Vec3 sum = Vec3::Zero();
+  double count = 0;
+  for (const RecordedRun& run : runs)
+    for (const Vec3& p : run.at(t).state.x) sum += p, count += 1;
+  return sum / count;
+}
+
+GroundLight Placing::floor_below(const Vec3& point) const {
+  GroundLight level;
+  level.up = up.cast<float>();
+  level.v = level.up.unitOrthogonal();
+  level.u = level.v.cross(level.up);
+  level.origin = (point + up * (ground - up.dot(point))).cast<float>();
+  level.half_side = static_cast<float>(2.6 * radius);
+  return level;
+}
+
+GroundLight Placing::wall(const Vec3& point) const {
+  GroundLight wall;
+  wall.up = up.cast<float>();
+  wall.u = camera.right;
+  wall.v = wall.up;
+  const double height = up.dot(point);
+  const Vec3 behind = point - 1.4 * radius * camera.back.cast<double>();
+  const double snapped = std::round(height / cell) * cell;
+  wall.origin = (behind + up * (snapped - up.dot(behind))).cast<float>();
+  wall.half_side = static_cast<float>(2.2 * radius);
+  return wall;
+}
+
+Placing place(const Scene& scene, const std::vector<RecordedRun>& runs,
+              const std::vector<double>& times, const View& view, const FitRegion& frame,
+              double aspect, double inset) {
+  Placing p;
+  p.up = up_direction(scene);
+  p.follows = scene.pins.empty() && scene.colliders.empty();
+  p.inset = inset;
+  const std::vector<Vec3> cloth = cloth_points(runs, times, p.follows);
+  const std::vector<Vec3> points =
+      p.follows ? cloth : points_of_interest(scene, runs, cloth, times);
+  p.centre = box_around(points).center();
+  p.radius = 0;
+  double lowest = 1e300;
+  for (const Vec3& x : points) {
+    p.radius = std::max(p.radius, (x - p.centre).norm());
+    lowest = std::min(lowest, x.dot(p.up));
+  }
+  p.camera = fit_camera(points, p.up, telling_view(view, cloth, p.up), aspect, frame);
+  p.floor = level_floor(scene, p.up);
+  p.ground = p.floor ? std::get<Plane>(p.floor->shape).offset - inset : lowest - 0.08 * p.radius;
+  p.cell = round_up(0.3 * p.radius, 1e-6);
+  return p;
+}
 
 SceneRenderer::SceneRenderer(const Scene& scene, const std::vector<RecordedRun>& runs,
                              const SceneRendererOptions& options)

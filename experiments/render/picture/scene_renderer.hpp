@@ -1,13 +1,83 @@
 #pragma once
 
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "core/model/scene.hpp"
+#include "experiments/case/trajectory.hpp"
+#include "experiments/render/image/colour.hpp"
+#include "experiments/render/opengl/light.hpp"
 #include "experiments/render/opengl/renderer.hpp"
-#include "experiments/render/picture/placing.hpp"
-#include "experiments/render/picture/recorded_run.hpp"
-#include "experiments/render/picture/vertex_values.hpp"
 
 namespace taut {
+
+/// One solver's run of a scene as the renderer shows it: stable frames only, and why they end
+/// early.
+struct RecordedRun {
+  struct Stop {
+    double t = 0;     ///< s, of the last stable frame
+    std::string why;  ///< "exploded"
+  };
+  std::string title;     ///< "Jakobsen"
+  std::string settings;  ///< "1 × 16, order=mesh": substeps × sweeps first
+  Rgb8 colour;           ///< the solver's throughout a report
+  Trajectory trajectory;
+  std::optional<Stop> stop;
+
+  /// The frame nearest to t: the last one if the run ended before. Precondition: frames exist.
+  const TrajectoryReader::Frame& at(double t) const;
+};
+
+/// Drops everything from the first frame that is not finite or lies more than `reach` extents of
+/// the scene from where the cloth started, and says so in `stop`; so it does when the file ends
+/// before the scene does. Throws InputError if no stable frame is left.
+RecordedRun recorded_run(const Scene&, Trajectory, double reach = 50);
+
+/// The quantity at each vertex [n], SI. Strain is the mean of the structural and shear links at the
+/// vertex (bend links shorten when cloth folds, which is no strain); speed needs State::v.
+std::vector<double> vertex_values(const Scene&, ColourBy, const State&, double t);
+
+/// What a caption says about one moment. Strains are those of the metric `stretch`: structural and
+/// shear links, links between two pins left out.
+struct LiveFigures {
+  double max_strain = 0;   ///< largest |strain|
+  double mean_strain = 0;  ///< signed
+  double rms_strain = 0;
+  double max_depth = 0;  ///< m, deepest vertex below a collider
+  double max_speed = 0;  ///< m/s
+};
+LiveFigures live_figures(const Scene&, const State&, double t);
+
+/// Where camera, ground and the region of interest stand: the same for all runs and all moments of
+/// a picture or video.
+struct Placing {
+  Vec3 up = Vec3::UnitY();
+  Camera camera;                    ///< relative to the cloth's centroid if it follows
+  bool follows = false;             ///< the camera moves with cloth that nothing holds
+  Vec3 centre = Vec3::Zero();       ///< m, of what is seen, relative likewise
+  double radius = 1;                ///< m, of what is seen
+  double ground = 0;                ///< m, height along up
+  double cell = 0.25;               ///< m between ground lines
+  double inset = 0;                 ///< m, of colliders
+  const Collider* floor = nullptr;  ///< a level plane at rest: it is the ground
+
+  /// The ground below a point.
+  GroundLight floor_below(const Vec3& point) const;
+  /// Behind cloth that the camera follows: lines that stay where they are in the world, so that the
+  /// motion is seen.
+  GroundLight wall(const Vec3& point) const;
+};
+
+/// Mean position of all runs' vertices at time t [m].
+Vec3 centroid(const std::vector<RecordedRun>&, double t);
+
+/// Frames what happens at `times` in a picture of this width / height. Cloth that is held or has
+/// something to land on is expected to stay near; what slips off or stretches away leaves the
+/// picture rather than shrinking all the rest. `inset` [m] is that of colliders.
+Placing place(const Scene&, const std::vector<RecordedRun>&, const std::vector<double>& times,
+              const View&, const FitRegion&, double aspect, double inset);
 
 /// Presets of cost and beauty.
 struct RenderQuality {

@@ -3,16 +3,87 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
-#include "experiments/report/chart/citations.hpp"
+#include "experiments/case/question.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/compared_solvers.hpp"
+#include "experiments/report/input.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/study_bench.hpp"
 
 namespace taut::report {
+
+/// One solver with the settings under which it is compared: of several choices the one with most
+/// cases, so that its name means one thing in every sentence.
+struct ComparedSolver {
+  std::string name;
+  std::string label;  ///< "Bullet", or "Bullet float" if other choices were run too
+  std::vector<const Record*> cases;
+  Work work = {};  ///< at which single values are quoted: the same for all, or its own
+};
+
+/// The cases of which single values are quoted: the same question for all, each at its work.
+struct QuotedScene {
+  Question question;
+  std::string title;  ///< the scene's name, with the settings that not all of its cases share
+  std::vector<const Record*> cases;  ///< of each solver compared; nullptr: was not run like this
+};
+
+/// Who is compared, and at which work single values are quoted. Points into the input.
+struct ComparedSolvers {
+  std::vector<ComparedSolver> all;  ///< in order of appearance
+  std::vector<QuotedScene> scenes;  ///< every scene that a study ran
+  std::vector<std::string> studies;
+
+  const QuotedScene* quoted(const std::string& scene_or_title) const;
+  /// Every case of every solver and choice, each once.
+  std::map<std::string, std::vector<const Record*>> by_solver;
+  /// "1 × 16 (substeps × sweeps)", or that it is unequal and what it is of each.
+  std::string work_text() const;
+};
+ComparedSolvers compared_solvers_of(const ReportInput&);
+
+// What one page can carry and one person look at; beyond it the model says how much it leaves out.
+// Sentences, fronts and counts are of all cases nevertheless.
+inline constexpr std::size_t kMostCases = 4000;   ///< listed; more if more are named
+inline constexpr std::size_t kMostPoints = 1000;  ///< of a chart
+inline constexpr std::size_t kMostCurves = 40;    ///< of a chart of more points than that
+inline constexpr std::size_t kMostValues = 300;   ///< of the basis of a claim
+inline constexpr std::size_t kMostCells = 10000;  ///< of all maps
+
+/// At most `most` places in a list of n, spread evenly, first and last among them.
+std::vector<std::size_t> places_of(std::size_t n, std::size_t most);
+
+/// What parts of the model refer to: cases by key, quantities by name.
+class Citations {
+ public:
+  /// Every record of the input, each once; a key as short as it may be.
+  explicit Citations(const ReportInput&);
+  /// The short key, and from now on the case is named; "" if it is no case of the input.
+  std::string key(const std::string& key);
+  std::string key(const Record& r) { return key(r.key); }
+  const Quantity& use(const std::string& name);
+
+  const std::vector<const Record*>& cases() const { return cases_; }
+  /// Those that are named, and as many others, spread evenly, as make kMostCases.
+  std::vector<const Record*> listed() const;
+  const std::map<std::string, Quantity>& quantities() const { return quantities_; }
+  std::set<std::string> studies_of(const Record& r) const;
+
+ private:
+  struct Known {
+    std::vector<const std::string*> studies;
+    bool named = false;
+  };
+  std::size_t length_ = 12;
+  std::vector<const Record*> cases_;
+  std::unordered_map<std::string_view, Known> known_;  ///< by key
+  std::map<std::string, Quantity> quantities_;
+};
 
 /// Values of one quantity that a claim rests on. Points to the cases that it looked at. Looking at
 /// a case is the only way to get its value here, and every case that was looked at is counted by

@@ -5,8 +5,7 @@
 #include <string>
 
 #include "experiments/report/chart/charts.hpp"
-#include "experiments/report/chart/citations.hpp"
-#include "experiments/report/claims/compared_solvers.hpp"
+#include "experiments/report/claims/claim.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {

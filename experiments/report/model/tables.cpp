@@ -60,27 +60,6 @@ Json frontier_table(const std::vector<ParameterFrontier>& frontiers) {
   return table;
 }
 
-}  // namespace
-
-Json json_of_limits(const ReportInput& input, Json& tables) {
-  Json limits;
-  if (!input.required.empty()) {
-    Json table = json_table(
-        "required", "The smallest model that keeps a scene's answers",
-        "taut require takes away or coarsens one effect at a time and then all that can go; an "
-        "answer may move by its tolerance, or by what a rounding error at the start moves it. Of "
-        "a chaotic scene only statistics are kept.",
-        {"scene", "solver", "chaotic", "kept answers", "can go", "required", "CPU time left"});
-    table["rows"] = input.required;
-    add_by_id(limits, "tables", std::move(table), tables);
-  }
-  if (!input.frontiers.empty())
-    add_by_id(limits, "tables", frontier_table(input.frontiers), tables);
-  return limits;
-}
-
-namespace {
-
 constexpr std::size_t kMostRows = 200;  ///< of the table; the data has all
 
 /// A value of a case that B has otherwise.
@@ -134,6 +113,23 @@ Json row_of(const Changed& changed, Citations& refs) {
 }
 
 }  // namespace
+
+Json json_of_limits(const ReportInput& input, Json& tables) {
+  Json limits;
+  if (!input.required.empty()) {
+    Json table = json_table(
+        "required", "The smallest model that keeps a scene's answers",
+        "taut require takes away or coarsens one effect at a time and then all that can go; an "
+        "answer may move by its tolerance, or by what a rounding error at the start moves it. Of "
+        "a chaotic scene only statistics are kept.",
+        {"scene", "solver", "chaotic", "kept answers", "can go", "required", "CPU time left"});
+    table["rows"] = input.required;
+    add_by_id(limits, "tables", std::move(table), tables);
+  }
+  if (!input.frontiers.empty())
+    add_by_id(limits, "tables", frontier_table(input.frontiers), tables);
+  return limits;
+}
 
 Json json_of(const Differences& differences, Citations& refs, Json& tables) {
   const std::vector<Changed> changed = all_changed(differences);

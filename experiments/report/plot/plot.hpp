@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "experiments/report/chart/charts.hpp"
-#include "experiments/study/extremes/extremes.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 
 namespace taut::report {
 

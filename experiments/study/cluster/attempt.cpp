@@ -1,5 +1,3 @@
-#include "experiments/study/cluster/attempt.hpp"
-
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
@@ -7,6 +5,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"

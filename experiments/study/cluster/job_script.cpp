@@ -1,11 +1,10 @@
-#include "experiments/study/cluster/job_script.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 #include "experiments/system/process.hpp"
 
 namespace taut::cluster {

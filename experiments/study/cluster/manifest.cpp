@@ -1,18 +1,17 @@
-#include "experiments/study/cluster/manifest.hpp"
-
 #include <algorithm>
 #include <map>
 #include <queue>
 #include <set>
 #include <sstream>
 
-#include "core/io/document.hpp"
+#include "core/io/section.hpp"
 #include "core/io/text_file.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"

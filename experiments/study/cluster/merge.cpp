@@ -1,5 +1,3 @@
-#include "experiments/study/cluster/merge.hpp"
-
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -10,7 +8,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/study/cluster/manifest.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::cluster {
@@ -64,7 +62,7 @@ Merge::Merge(const std::vector<fs::path>& folders) {
         source.cases.push_back({one.key, one.id, one.shard, manifest.shards});
       for (int i = 1; i <= manifest.shards; ++i)
         source.stores.emplace_back(shard_folder(folder, i));
-    } else if (fs::is_directory(folder / "store") || fs::is_directory(folder / "packs")) {
+    } else if (Store::is_at(folder)) {
       source.cases = read_manifests(folder);
       source.stores.emplace_back(folder);
     } else {

@@ -1,8 +1,6 @@
-#include "experiments/study/cluster/status.hpp"
-
 #include <algorithm>
 
-#include "experiments/study/cluster/attempt.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 #include "experiments/study/store.hpp"
 
 namespace taut::cluster {

@@ -103,6 +103,11 @@ class TimedScene {
       row_.refused = reasons.front();
       return;
     }
+    if (options.two_threads && row_.vertices < ThreadPool::kWorthSharing) {
+      row_.refused = "fewer than " + std::to_string(ThreadPool::kWorthSharing) +
+                     " vertices take one thread (see --sizes)";
+      return;
+    }
     whole_ = choice.entry->make(scene, choice.params);
     if (options.two_threads) {
       const SolverChoice two = parse_solver(with(options.solver, "threads=2"));

@@ -2,6 +2,8 @@
 // twelve independent chains of alternating multiplications and additions; projections of particles
 // that stay in registers; and particles that are moved for projections that are left out.
 #include <algorithm>
+#include <atomic>
+#include <thread>
 
 #include "core/solver/layout/colour_batches.hpp"
 #include "experiments/system/clock.hpp"
@@ -99,6 +101,27 @@ double traffic(const Scene& scene) {
 }
 
 }  // namespace
+
+double seconds_per_handover() {
+  constexpr int kAttempts = 50, kTrips = 100;
+  std::atomic<int> turn{0};
+  const auto wait_for = [&turn](int n) {
+    for (int tries = 0; turn.load(std::memory_order_acquire) != n; ++tries)
+      if (tries > 10000) std::this_thread::yield();
+  };
+  const auto pass_on = [&turn](int n) { turn.store(n + 1, std::memory_order_release); };
+  std::thread other([&] {
+    for (int n = 1; n < 2 * kAttempts * kTrips; n += 2) wait_for(n), pass_on(n);
+  });
+  double best = 1;
+  for (int attempt = 0, n = 0; attempt < kAttempts; ++attempt) {
+    const double begin = seconds_of(CLOCK_MONOTONIC);
+    for (int trip = 0; trip < kTrips; ++trip, n += 2) pass_on(n), wait_for(n + 2);
+    best = std::min(best, (seconds_of(CLOCK_MONOTONIC) - begin) / (2 * kTrips));
+  }
+  other.join();
+  return best;
+}
 
 double seconds_per_flop(bool single) { return single ? flop<float>() : flop<double>(); }
 

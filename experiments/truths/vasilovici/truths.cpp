@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/case/case.hpp"
-#include "experiments/truths/simulation.hpp"
+#include "experiments/truths/truth.hpp"
 
 namespace taut {
 

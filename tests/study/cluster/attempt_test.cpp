@@ -1,12 +1,11 @@
 // Who goes on of two starts of one shard: judged by what each says while the other looks.
-#include "experiments/study/cluster/attempt.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 #include "experiments/system/clock.hpp"
 #include "tests/study/cluster/speaking.hpp"
 

@@ -14,6 +14,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
 from command_line import BINARIES, CommandLine, main  # noqa: E402
 
 QUICK = {**os.environ, "TAUT_CLUSTER_PATIENCE": "3"}
+AWAKE = {**QUICK, "TAUT_TEST_AWAKE": "1"}  # where no solver has to be slow
 
 
 class Cluster(CommandLine):
@@ -25,7 +26,7 @@ class Cluster(CommandLine):
                          program=program, **more)
 
     def shard(self, number, *options, folder="c", expect=0, program="taut"):
-        return self.taut("cluster", "run", folder, "--shard", number, *options, expect=expect, program=program, env=QUICK)
+        return self.taut("cluster", "run", folder, "--shard", number, *options, expect=expect, program=program, env=AWAKE)
 
     def status(self, folder="c", expect=0, **more):
         return json.loads(self.taut("cluster", "status", folder, "--json", expect=expect, env=QUICK, **more).out)
@@ -39,7 +40,7 @@ class Cluster(CommandLine):
         return head, cases
 
     def whole(self, program="taut"):
-        return self.store_digest(self.taut("run", "./study.toml", "--out", "whole", program=program)).split()[1]
+        return self.store_digest(self.taut("run", "./study.toml", "--out", "whole", program=program, env=AWAKE)).split()[1]
 
 
 class Submit(Cluster):
@@ -167,11 +168,11 @@ class Shards(Cluster):
         self.shard(1)
         merged = self.merge("c", "--out", "m", "--allow-missing", expect=3)
         self.assertTrue(merged["merged"])
-        model = json.loads(self.taut("report", "./study.toml", "--results", "m", "--json").out)
+        model = json.loads(self.taut("report", "./study.toml", "--out", "m", "--json").out)
         self.assertIn(f"merged although {len(merged['missing'])} planned cases were missing", json.dumps(model["left_out"]))
         self.shard(2)
         self.merge("c", "--out", "m")
-        model = json.loads(self.taut("report", "./study.toml", "--results", "m", "--json").out)
+        model = json.loads(self.taut("report", "./study.toml", "--out", "m", "--json").out)
         self.assertNotIn("left_out", model)
 
     def test_a_shard_that_does_not_exist(self):
@@ -279,7 +280,7 @@ class Bench(Cluster):
 class Starts(Cluster):
     """Two starts of one shard, starts that die, disks that are full."""
 
-    def slow(self, cases=12, on="parallel"):
+    def slow(self, cases=8, on="parallel"):
         study = self.study(solvers=["faulty:mode=slow"], rest='set = ["time.duration=2.5"]\n'
                            f"axes.variant = {list(range(cases))}\n")
         self.submit("--shards", 1, study=study, program="taut-faulty", on=on)
@@ -312,7 +313,7 @@ class Starts(Cluster):
         status = self.status(expect=3, program="taut-faulty")
         self.assertEqual(status["shards"][0]["state"], "running")
         self.assertGreater(status["seconds"], 0, "it runs, so the end can be foreseen")
-        self.assertLess(status["seconds"], 120, "of some twenty")
+        self.assertLess(status["seconds"], 120, "of some seven")
         first.communicate(timeout=60)
         self.assertEqual(first.returncode, 0)
         self.assertEqual(self.merge("c", "--out", "m")["store"], self.single())

@@ -9,9 +9,7 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/cluster/manifest.hpp"
-#include "experiments/study/cluster/merge.hpp"
-#include "experiments/study/cluster/status.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 #include "tests/study/cluster/speaking.hpp"
 #include "tests/support/synthetic_records.hpp"
 

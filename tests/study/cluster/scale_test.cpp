@@ -12,8 +12,7 @@
 #include "experiments/report/report.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/cluster/manifest.hpp"
-#include "experiments/study/cluster/merge.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::cluster::scale_test {
@@ -47,7 +46,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// The study, in a file: `taut report ROOT/many.toml --results ROOT/merged` reads what is left
+/// The study, in a file: `taut report ROOT/many.toml --out ROOT/merged` reads what is left
 /// here.
 Study many(int cases, const fs::path& root) {
   const std::string seeds = std::to_string(cases / 100);

@@ -4,6 +4,7 @@
 Slurm (slurmctld, two slurmd, munged) runs on the loopback address as whoever calls this, in a folder of its own.
 Debian: slurmctld, slurmd, slurm-client, munge, parallel; without them the tests are skipped (77) and say so."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -19,6 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
 from command_line import BINARIES, CommandLine  # noqa: E402
 
 SLURM = ("slurmctld", "slurmd", "sbatch", "munged")
+LONGEST = 130  # s, of a test: whatever a scheduler waits for, nothing waits longer for it
 os.environ["PATH"] += ":/usr/sbin:/sbin"
 
 CONFIGURATION = """
@@ -63,22 +65,29 @@ def free_ports(count):
     return ports
 
 
+def too_long(*_):
+    raise TimeoutError(f"not done within {LONGEST} s")
+
+
 class Schedulers(CommandLine):
     def setUp(self):
         super().setUp()
+        signal.signal(signal.SIGALRM, too_long)
+        signal.alarm(LONGEST)
+        self.addCleanup(signal.alarm, 0)
         os.environ["TAUT"] = str(BINARIES / "taut")
         os.environ["TAUT_CLUSTER_PATIENCE"] = "5"
         self.study(scenes=["./small.toml"], solvers=["jakobsen:order=mesh,substeps=1", "bullet"],
                    rest='set = ["cloth.grid=[12, 12]", "time.duration=3"]\n'
                         "axes.iterations = { from = 1, to = 100, steps = 100 }\n")
 
-    def wait_for(self, what, seconds=120, every=0.2):
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            if value := what():
-                return value
-            time.sleep(every)
-        self.fail("waited in vain: " + self.said())
+    def wait_for(self, what):
+        try:
+            while not (value := what()):
+                time.sleep(0.2)
+        except TimeoutError:
+            self.fail("waited in vain: " + self.said())
+        return value
 
     def said(self):
         logs = [*self.folder.glob("*.log"), *self.folder.glob("c/log/*"), *self.folder.glob("*.out")]
@@ -153,7 +162,10 @@ class Slurm(Schedulers):
             self.daemons[name or words[0]] = subprocess.Popen(words, stdout=out, stderr=out, start_new_session=True)
 
     def end(self):
-        subprocess.run(["scancel", "--signal=KILL", "--user", str(os.geteuid())], capture_output=True)
+        signal.alarm(10)
+        with contextlib.suppress(TimeoutError):
+            self.ask("scancel", "--signal=KILL", "--user", str(os.geteuid()))
+        signal.alarm(0)
         for pid in self.tasks():
             os.kill(pid, signal.SIGKILL)
         for process in reversed(self.daemons.values()):
@@ -203,13 +215,13 @@ class Slurm(Schedulers):
         os.kill(self.tasks("n2")[0], signal.SIGKILL)
         self.power_off("n1")
         self.assertIn("nothing was merged", self.taut("cluster", "merge", "c", "--out", "m", expect=3).out)
-        self.wait_for(lambda: not self.ask("squeue", "-h").strip(), seconds=240)
+        self.wait_for(lambda: not self.ask("squeue", "-h").strip())
         self.assertIn("requeue", (self.folder / "slurmctld.log").read_text().lower())
         status = self.status()
         self.assertEqual(len(status["start"]), 1, f"the killed task's shard, nothing else {status}\n{self.said()}")
         self.assertIn(status["shards"][status["start"][0] - 1]["state"], ("lost", "stopped"))
         subprocess.run(["bash", "-c", status["command"]], cwd=self.folder, check=True, capture_output=True)
-        self.wait_for(lambda: not self.ask("squeue", "-h").strip(), seconds=120)
+        self.wait_for(lambda: not self.ask("squeue", "-h").strip())
         self.assertEqual(self.status()["start"], [])
         self.merged_equals_a_single_run()
 
@@ -217,7 +229,7 @@ class Slurm(Schedulers):
         self.taut("cluster", "submit", "./study.toml", "--on", "slurm", "--shards", 1, "--folder", "c")
         self.wait_for(lambda: self.packs() and self.tasks())
         self.ask("scancel", "--batch", "--signal=USR1", "1_1")  # as --signal=B:USR1@60 does
-        self.wait_for(lambda: not self.ask("squeue", "-h").strip(), seconds=240)
+        self.wait_for(lambda: not self.ask("squeue", "-h").strip())
         self.assertEqual(len(self.packs()), 2, "it was queued again and went on: " + self.said())
         self.merged_equals_a_single_run()
 
@@ -229,6 +241,14 @@ class Parallel(Schedulers):
         if not version or "GNU" not in version.stdout:
             self.skipTest("not installed: GNU parallel")
 
+    def end(self, job):
+        job.kill()
+        for pid in self.tasks():
+            os.kill(pid, signal.SIGKILL)
+        signal.alarm(10)
+        with contextlib.suppress(TimeoutError):
+            job.communicate()
+
     def test_a_task_dies_and_the_rest_is_resumed(self):
         ssh = self.folder / "ssh"  # a login without a daemon: what it is told, it does here
         ssh.write_text('#!/bin/bash\nwhile [[ $1 == -* ]]; do shift; done\nhost=$1; shift; [[ $1 != -- ]] || shift\necho "$host" >>' +
@@ -237,10 +257,10 @@ class Parallel(Schedulers):
         environment = {**os.environ, "PARALLEL_SSH": str(ssh), "JOBS": "1"}
         job = self.start("cluster", "submit", "./study.toml", "--on", "parallel", "--shards", 8, "--folder", "c",
                          "--sshlogin", "1/near,1/far", env=environment)
-        self.addCleanup(job.communicate)
+        self.addCleanup(self.end, job)
         victim = self.wait_for(lambda: len(self.packs()) >= 2 and self.tasks())[0]
         os.kill(victim, signal.SIGKILL)
-        out, err = job.communicate(timeout=240)
+        out, err = job.communicate()
         self.assertNotEqual(job.returncode, 0, "a shard that died is a failed job")
         self.assertEqual(set((self.folder / "hosts.log").read_text().split()), {"near", "far"})
         self.assertEqual(len(self.status()["start"]), 1, f"{out}\n{err}")

@@ -4,8 +4,7 @@
 #include <map>
 
 #include "core/model/input_error.hpp"
-#include "experiments/study/cluster/job_script.hpp"
-#include "experiments/study/cluster/manifest.hpp"
+#include "experiments/study/cluster/cluster.hpp"
 
 namespace taut::cluster::share_out_test {
 namespace {

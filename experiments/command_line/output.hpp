@@ -1,0 +1,66 @@
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/study/campaign.hpp"
+
+namespace taut {
+
+enum class Colour { red = 31, green = 32, yellow = 33 };
+
+/// The text in a colour if stdout is a terminal and $NO_COLOR is not set; else as it is.
+std::string coloured(std::string_view text, Colour);
+
+using Row = std::vector<std::string>;
+
+/// Rows on stdout in columns, two blanks before each: the first `names` columns and the last are
+/// flush left, the others flush right. All rows are as long as the first. Widths count characters
+/// of UTF-8.
+void print_columns(const std::vector<Row>&, std::size_t names);
+
+/// Shows a campaign on stderr: one line that is rewritten, with the time left, on a terminal; a
+/// line per case otherwise.
+class Progress {
+ public:
+  Progress();
+  void show(const CampaignProgress&, const Record*);
+  void finish(const CampaignProgress&);  ///< the last line: how the cases ended
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+  bool terminal_;
+};
+
+/// Runs what the store lacks in a session that `command` names, with progress on stderr.
+CampaignProgress run_missing(const std::vector<Case>&, const Store&, const std::string& command,
+                             CampaignOptions);
+
+/// The exit code of a campaign; says where the results are that differ from those stored.
+int exit_code(const CampaignProgress&, const Store&);
+
+/// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere. The end
+/// says what one took: "frame 80/80  0.15 s each".
+class Countdown {
+ public:
+  explicit Countdown(std::string what);
+  void operator()(std::size_t done, std::size_t total) const;
+
+ private:
+  std::string what_;
+  bool terminal_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Whether progress is shown; --quiet switches it off.
+void show_progress(bool);
+/// Where news of progress go: stderr, or nowhere.
+std::ostream& progress();
+
+/// "ok 88, exploded 4".
+std::string counts(const CampaignProgress&);
+
+}  // namespace taut

@@ -1,0 +1,38 @@
+// A search for frontiers that is ended early says so and keeps nothing.
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "experiments/study/frontier/parameter_frontier.hpp"
+#include "experiments/study/session.hpp"
+#include "experiments/system/clock.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/signals.hpp"
+
+namespace taut::interrupted_test {
+namespace {
+
+/// 0: nothing was found and it says that it was interrupted; else what is wrong.
+int search(CampaignOptions options, bool signal) {
+  const Scratch scratch;
+  const Store store(scratch.path() / "results");
+  store.prepare();
+  static const GracefulStop stop;  // the signal may be served later than the search takes
+  if (signal) raise(SIGTERM);
+  const auto found =
+      find_frontiers("xpbd:substeps=2", store, options, [](std::size_t, std::size_t) {});
+  return found ? 1 : !store.keys().empty() ? 2 : 0;
+}
+
+TEST(FrontiersDeathTest, AreInterruptedByASignal) {
+  EXPECT_EXIT(_exit(search({}, true)), testing::ExitedWithCode(0), "");
+}
+
+TEST(Frontiers, AreInterruptedIfTheirTimeIsUp) {
+  CampaignOptions options;
+  options.deadline = SteadyClock::now();
+  EXPECT_EQ(search(options, false), 0);
+}
+
+}  // namespace
+}  // namespace taut::interrupted_test

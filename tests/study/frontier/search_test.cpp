@@ -1,0 +1,324 @@
+// Where a setting stops being stable: the search on made-up outcomes, then springs and sweeps
+// beside their closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/model/input_error.hpp"
+#include "core/reference/linear_stability.hpp"
+#include "experiments/study/frontier/frontier.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut::frontier_test {
+namespace {
+
+using Kind = Status::Kind;
+
+Trial outcome(std::function<Kind(double)> of, int* count = nullptr) {
+  return [of, count](const std::vector<double>& values) {
+    std::vector<Outcome> outcomes;
+    for (const double value : values) {
+      outcomes.push_back({{of(value), "", -1, -1}});
+      if (count) ++*count;
+    }
+    return outcomes;
+  };
+}
+
+TEST(Frontier, BracketsTheEndOfStability) {
+  int tried = 0;
+  const Frontier found = find_frontier(
+      {.from = 1e-3, .to = 1, .tolerance = 1e-4},
+      outcome([](double dt) { return dt < 0.0371 ? Kind::ok : Kind::exploded; }, &tried));
+  EXPECT_EQ(found.kind, Frontier::Kind::bracketed);
+  EXPECT_LT(found.stable, 0.0371);
+  EXPECT_GE(found.unstable, 0.0371);
+  EXPECT_LE(found.unstable - found.stable, 1e-4 * found.unstable);
+  EXPECT_TRUE(found.stable_above.empty());
+  EXPECT_GE(found.above, 4u);
+  EXPECT_LT(tried, 32);
+  EXPECT_EQ(found.probes.size(), static_cast<std::size_t>(tried));
+}
+
+TEST(Frontier, SaysWhenARangeHasNone) {
+  const SearchRange range{.from = 0, .to = 2};
+  EXPECT_EQ(find_frontier(range, outcome([](double) { return Kind::ok; })).kind,
+            Frontier::Kind::all_stable);
+  const Frontier none = find_frontier(range, outcome([](double) { return Kind::unsettled; }));
+  EXPECT_EQ(none.kind, Frontier::Kind::none_stable);
+  EXPECT_EQ(none.unstable, 0);
+  EXPECT_EQ(find_frontier(range, outcome([](double) { return Kind::unsupported; })).kind,
+            Frontier::Kind::not_answered);
+  EXPECT_EQ(find_frontier(range, outcome([](double) { return Kind::timeout; })).kind,
+            Frontier::Kind::not_answered);
+  const Frontier cut =
+      find_frontier(range, [](const std::vector<double>&) { return std::vector<Outcome>{}; });
+  EXPECT_EQ(cut.kind, Frontier::Kind::not_answered) << "interrupted";
+}
+
+TEST(Frontier, StabilityAboveTheBracketIsReported) {
+  const Frontier found = find_frontier(
+      {.from = 1, .to = 100, .tolerance = 0.01},
+      outcome([](double x) { return x < 7 || (x > 50 && x < 70) ? Kind::ok : Kind::exploded; }));
+  EXPECT_NEAR(found.stable, 7, 0.1);
+  ASSERT_FALSE(found.stable_above.empty());
+  for (const double island : found.stable_above) EXPECT_TRUE(island > 50 && island < 70) << island;
+}
+
+TEST(Frontier, WholeNumbersEndWithNeighbours) {
+  const Frontier found =
+      find_frontier({.from = 1, .to = 1000, .whole = true, .tolerance = 1e-6},
+                    outcome([](double n) { return n <= 137 ? Kind::ok : Kind::crash; }));
+  EXPECT_EQ(found.stable, 137);
+  EXPECT_EQ(found.unstable, 138);
+}
+
+TEST(Frontier, WantOfTimeIsNoInstability) {
+  const Frontier found =
+      find_frontier({.from = 1e-4, .to = 1, .tolerance = 0.01}, outcome([](double dt) {
+                      return dt < 1e-3 ? Kind::timeout : dt < 0.2 ? Kind::ok : Kind::exploded;
+                    }));
+  EXPECT_EQ(found.kind, Frontier::Kind::bracketed);
+  EXPECT_NEAR(found.stable, 0.2, 0.004);
+}
+
+TEST(Frontier, ASymptomEndsWhatIsGoodThoughTheRunDoesNot) {
+  const Frontier found =
+      find_frontier({.from = 1, .to = 100}, [](const std::vector<double>& values) {
+        std::vector<Outcome> outcomes;
+        for (const double x : values)
+          outcomes.push_back({{x < 60 ? Kind::ok : Kind::unsupported, "", -1, -1},
+                              x < 20   ? ""
+                              : x < 60 ? "tunnels"
+                                       : "refuses"});
+        return outcomes;
+      });
+  EXPECT_EQ(found.kind, Frontier::Kind::bracketed);
+  EXPECT_NEAR(found.stable, 20, 0.2);
+  EXPECT_EQ(found.at(found.unstable)->symptom, "tunnels");
+}
+
+TEST(Frontier, AParameterIsSetWhereItStands) {
+  const auto set = [](std::string solver) {
+    set_parameter(solver, "omega", "2");
+    return solver;
+  };
+  EXPECT_EQ(set("jakobsen"), "jakobsen:omega=2");
+  EXPECT_EQ(set("jakobsen:omega=1.5"), "jakobsen:omega=2");
+  EXPECT_EQ(set("jakobsen:iterations=2,omega=1,substeps=3"),
+            "jakobsen:iterations=2,omega=2,substeps=3");
+  EXPECT_EQ(set("external:cmd='a,omega=1'"), "external:cmd='a,omega=1',omega=2");
+}
+
+TEST(Frontier, QuestionsBecomeCases) {
+  const CaseSpec base{"chain", {}, "jakobsen:iterations=2"};
+  EXPECT_EQ((FrontierQuestion{base, "dt", {}}.at(0.01).overrides.back()), "time.dt=\"0.01\"");
+  EXPECT_EQ((FrontierQuestion{base, "omega", {}}.at(1.5).solver),
+            "jakobsen:iterations=2,omega=1.5");
+  EXPECT_EQ((FrontierQuestion{base, "wind.strength", {}}.at(3).overrides.back()),
+            "wind.strength=3");
+  EXPECT_EQ((FrontierQuestion{base, "cloth.size.0|cloth.size.1", {}}.at(3).overrides),
+            (std::vector<std::string>{"cloth.size.0=3", "cloth.size.1=3"}));
+  EXPECT_EQ((FrontierQuestion{base, "iterations", {}, Direction::down_in_whole_numbers}
+                 .at(1 / 7.2)
+                 .solver),
+            "jakobsen:iterations=7");
+  EXPECT_EQ(
+      (FrontierQuestion{base, "wind.strength", {}, Direction::down}.at(1 / 8.0).overrides.back()),
+      "wind.strength=8");
+  EXPECT_EQ(range_of(base, "omega", 0.5, {}).from, 0.5);
+  EXPECT_EQ(range_of(base, "omega", {}, {}).to, 2);
+  EXPECT_TRUE(range_of(base, "substeps", 1, 9).whole);
+  EXPECT_THROW(range_of(base, "omeega", {}, {}), InputError);
+  EXPECT_THROW(range_of(base, "projection", {}, {}), InputError);
+  EXPECT_THROW(range_of(base, "wind.strength", {}, {}), InputError) << "no range of its own";
+  EXPECT_THROW(range_of(base, "dt", 0.5, 0.1), InputError);
+}
+
+// Nine values, ends included, evenly spread: by ratio if they begin above zero. Then halves of the
+// bracket until it is narrower than a hundredth of its upper end.
+TEST(Frontier, IsSoughtInEvenSteps) {
+  const auto tried = [](const SearchRange& range, double border) {
+    std::vector<double> all;
+    find_frontier(range, [&](const std::vector<double>& values) {
+      std::vector<Outcome> outcomes;
+      for (const double value : values) {
+        all.push_back(value);
+        outcomes.push_back({{value < border ? Kind::ok : Kind::exploded, "", -1, -1}});
+      }
+      return outcomes;
+    });
+    return all;
+  };
+  using Values = std::vector<double>;
+  EXPECT_EQ(tried({.from = 1, .to = 256}, 999), (Values{1, 2, 4, 8, 16, 32, 64, 128, 256}));
+  EXPECT_EQ(tried({.from = 0, .to = 2}, 9), (Values{0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2}));
+  EXPECT_EQ(tried({.from = 0, .to = 3, .whole = true}, 9), (Values{0, 1, 2, 3}))
+      << "none is tried twice";
+  EXPECT_EQ(tried({.from = 0, .to = 8, .tolerance = 0.25, .coarse = 3}, 2.1),
+            (Values{0, 4, 8, 2, 3, 2.5, 2.6, 2.7, 2.8, 2.9}))
+      << "2 is a fifth below 2.5; then four values from there to the next that was tried";
+}
+
+// Values without an answer are passed over, and a bracket ends at one.
+TEST(Frontier, KnowsWhatIsAnAnswer) {
+  const auto probed = [](Kind kind, const std::string& reason, const std::string& symptom = "") {
+    return Probed{{{kind, reason, -1, -1}, symptom}, 1};
+  };
+  EXPECT_TRUE(probed(Kind::ok, "").stable());
+  EXPECT_TRUE(probed(Kind::extreme, "stretch").stable());
+  EXPECT_FALSE(probed(Kind::extreme, "else").stable());
+  EXPECT_FALSE(probed(Kind::ok, "", "tunnels").stable());
+  for (const Kind kind : {Kind::exploded, Kind::unsettled, Kind::crash}) {
+    EXPECT_FALSE(probed(kind, "").stable());
+    EXPECT_TRUE(probed(kind, "").known());
+  }
+  for (const Kind kind : {Kind::timeout, Kind::oom, Kind::protocol, Kind::error})
+    EXPECT_FALSE(probed(kind, "").known());
+  const Frontier gap =
+      find_frontier({.from = 0, .to = 8, .tolerance = 1e-3, .coarse = 3}, outcome([](double x) {
+                      return x == 6 ? Kind::timeout : x < 7 ? Kind::ok : Kind::exploded;
+                    }));
+  EXPECT_EQ(gap.stable, 4);
+  EXPECT_EQ(gap.unstable, 8);
+  EXPECT_EQ(gap.kind, Frontier::Kind::bracketed);
+  std::string kinds;
+  for (const auto kind : {Frontier::Kind::bracketed, Frontier::Kind::all_stable,
+                          Frontier::Kind::none_stable, Frontier::Kind::not_answered})
+    kinds += std::string(to_string(kind)) + ", ";
+  EXPECT_EQ(kinds, "bracketed, all stable, none stable, not answered, ");
+}
+
+TEST(Frontier, ARangeIsTheParametersOwnOrHasToBeGiven) {
+  const CaseSpec base{"chain", {}, "jakobsen"};
+  const auto range = [&](const std::string& of, std::optional<double> from = {},
+                         std::optional<double> to = {}) -> std::string {
+    try {
+      const SearchRange is = range_of(base, of, from, to);
+      return std::to_string(is.from) + " to " + std::to_string(is.to) + (is.whole ? " whole" : "");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(range("dt"), "0.001000 to 0.500000");
+  EXPECT_EQ(range("dt", 0.1), "0.100000 to 0.500000");
+  EXPECT_EQ(range("levels"), "1.000000 to 20.000000 whole");
+  EXPECT_EQ(range("omega|iterations"), "0.000000 to 2.000000") << "of the first";
+  EXPECT_EQ(range("wind.strength", 1, 2e9), "1.000000 to 2000000000.000000");
+  EXPECT_EQ(range("iterations"), "'iterations' has no range of its own: give --from and --to");
+  EXPECT_EQ(range("wind.strength", 1),
+            "'wind.strength' has no range of its own: give --from and "
+            "--to");
+  EXPECT_EQ(range("dt", 0.5, 0.5), "--from 0.5 must be below --to 0.5");
+  EXPECT_EQ(range("order"), "'order' is one of mesh|coloured|reversed|random|jolt, not a number");
+  EXPECT_EQ(range("omeg"),
+            "jakobsen has no parameter 'omeg'; did you mean 'omega'? (a scene key "
+            "has a dot, as \"wind.strength\")");
+  std::vector<std::string> overrides{"a.b=1", "a.bc=2", "x.y=3"};
+  set_override(overrides, "a.b=4");
+  EXPECT_EQ(overrides, (std::vector<std::string>{"a.bc=2", "x.y=3", "a.b=4"}));
+}
+
+// Springs are stable below 2/w, over-relaxation below 4/3 on one link (see below).
+TEST(Frontier, TheoryEndsWhereTheRangeDoes) {
+  const auto predicted = [](double from, double to) {
+    return *predicted_frontier({{"chain",
+                                 {"cloth.grid=[1, 2]", "forces.gravity=[0, 0, 0]"},
+                                 "jakobsen:order=mesh,iterations=1,substeps=1"},
+                                "omega",
+                                {.from = from, .to = to}});
+  };
+  const Prediction inside = predicted(1, 2), below = predicted(0.5, 1.3), above = predicted(1.4, 2);
+  EXPECT_EQ(inside.kind, Frontier::Kind::bracketed);
+  EXPECT_NEAR(inside.value, 4. / 3, 2e-6);
+  EXPECT_NEAR(inside.growth, 1, 1e-4) << "just above";
+  EXPECT_EQ(below.kind, Frontier::Kind::all_stable);
+  EXPECT_EQ(below.value, 1.3);
+  EXPECT_LT(below.growth, 1);
+  EXPECT_EQ(above.kind, Frontier::Kind::none_stable);
+  EXPECT_EQ(above.value, 1.4);
+  EXPECT_NEAR(above.growth, 1 + std::sqrt(2), 1e-6) << "of the end of the range";
+  EXPECT_EQ(above.law, inside.law);
+}
+
+Scene hung_chain(int links) {
+  Scene scene = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
+  scene.gravity.setZero();
+  return scene;
+}
+
+double margin(Scene scene, const std::string& solver, double dt) {
+  scene.dt = dt;
+  return linear_stability(scene, parse_solver(solver))->margin;
+}
+
+TEST(LinearStability, OneMassOnASpring) {
+  const Scene scene = hung_chain(1);
+  const double m = scene.mesh.mass[1], k = 40, w = std::sqrt(k / m), zeta = 0.5;
+  const std::string spring = "mass-spring:substeps=1,structural=40";
+  EXPECT_NEAR(margin(scene, spring, 2 / w), 1, 1e-9);
+  EXPECT_NEAR(margin(scene, "mass-spring:substeps=4,structural=40", 8 / w), 1, 1e-9);
+  const std::string drag = ",drag=" + std::to_string(2 * zeta * w * m);
+  EXPECT_NEAR(margin(scene, spring + drag, 2 / w * (std::sqrt(1 + zeta * zeta) - zeta)), 1, 1e-5);
+  EXPECT_NEAR(margin(scene, spring + drag + ",drag-at=central", 2 / w), 1, 1e-5);
+  EXPECT_GT(margin(scene, spring + ",integrator=explicit-euler", 1e-3), 1);
+}
+
+TEST(LinearStability, AChainOfSpringsHasItsClosedForm) {
+  const int n = 16;
+  const Scene scene = hung_chain(n);
+  const double fastest = 2 * std::sqrt(50 / scene.mesh.mass[1]) *
+                         std::sin((2 * n - 1) * std::acos(-1.0) / (2 * (2 * n + 1)));
+  EXPECT_NEAR(margin(scene, "mass-spring:substeps=1", 2 / fastest), 1, 1e-9);
+}
+
+TEST(LinearStability, SweepsOfRelaxation) {
+  EXPECT_NEAR(margin(hung_chain(1), listing("iterations=1,omega=1.33"), 0.01),
+              0.33 + std::sqrt(0.33 * 0.33 + 0.33), 1e-9);
+  EXPECT_TRUE(linear_stability(hung_chain(1), parse_solver(listing("iterations=1,omega=1.3333")))
+                  ->stable());
+  EXPECT_FALSE(linear_stability(hung_chain(1), parse_solver(listing("iterations=1,omega=1.3334")))
+                   ->stable());
+  const double odd = margin(hung_chain(32), listing("iterations=1,method=jacobi"), 0.01);
+  EXPECT_NEAR(odd, 2.402, 0.02);
+  EXPECT_LT(odd, 1 + std::sqrt(2));
+  EXPECT_LE(margin(hung_chain(32), listing("iterations=2,method=jacobi"), 0.01), 1 + 1e-6);
+  // |z| = rho^(k/2), rho = cos^2(pi/2N)
+  EXPECT_NEAR(margin(hung_chain(16), listing("iterations=4"), 0.01),
+              std::pow(std::cos(std::acos(-1.0) / 32), 4), 1e-6);
+  EXPECT_FALSE(linear_stability(hanging_sheet(20, 20), parse_solver(listing()))) << "too many";
+}
+
+/// Longest stable step of the scene by running it.
+Frontier measured(const Scene& scene, const std::string& solver, double from, double to) {
+  return find_frontier(
+      {.from = from, .to = to, .tolerance = 2e-3, .coarse = 5},
+      [&](const std::vector<double>& values) {
+        std::vector<Outcome> outcomes;
+        for (const double dt : values) {
+          Scene tried = scene;
+          tried.dt = dt;
+          tried.steps = 3000;
+          outcomes.push_back(
+              {run_case(tried, parse_solver(solver), {.measure = false}).record.status});
+        }
+        return outcomes;
+      });
+}
+
+TEST(LinearStability, ASheetOfSpringsBlowsUpWhereItSays) {
+  Scene sheet = crumpled(hanging_sheet(5, 6), 1e-6);
+  sheet.gravity.setZero();
+  for (const char* more :
+       {"", ",drag=0.01", ",drag=0.01,drag-at=central", ",integrator=symplectic-euler"}) {
+    const std::string solver = "mass-spring:substeps=1,precision=double" + std::string(more);
+    const Frontier found = measured(sheet, solver, 2e-3, 8e-2);
+    ASSERT_EQ(found.kind, Frontier::Kind::bracketed) << more;
+    EXPECT_TRUE(found.stable_above.empty()) << more;
+    EXPECT_LT(margin(sheet, solver, found.stable), 1.003) << more;
+    EXPECT_GT(margin(sheet, solver, found.unstable), 0.999) << more;
+  }
+}
+
+}  // namespace
+}  // namespace taut::frontier_test
