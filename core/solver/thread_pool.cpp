@@ -15,7 +15,7 @@ constexpr int kPausesPerCheck = 32;
 constexpr int kMostPauses = 1000;
 /// 40 to 140 us of all stages together, more than a thread waits for one that is on a core: what
 /// moves to another core has to move back.
-constexpr int kPatience = 2000;
+constexpr int kPausesBeforeHelping = 2000;
 
 void pause() {
 #if defined(__x86_64__)
@@ -85,7 +85,8 @@ void ThreadPool::advance(Member& me, std::size_t part, std::uint32_t stages) {
 }
 
 void ThreadPool::work_off(std::size_t member) {
-  Member me{part_count_ * member / threads(), part_count_ * (member + 1) / threads(), kPatience};
+  Member me{part_count_ * member / threads(), part_count_ * (member + 1) / threads(),
+            kPausesBeforeHelping};
   const auto count = static_cast<std::uint32_t>(stages_.size());
   for (std::uint32_t stage = 1; stage <= count; ++stage) {
     // Stages that nobody waits for: all of them while a part is in the cache.

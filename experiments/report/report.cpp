@@ -128,10 +128,10 @@ class Builder {
   Json solvers() const {
     Json all;
     std::vector<std::string> names;
-    for (const ComparedSolver& solver : compared_.all) add_new(names, solver.name);
-    for (const Record* r : refs_.cases()) add_new(names, r->solver);
+    for (const ComparedSolver& solver : compared_.all) push_unique(names, solver.name);
+    for (const Record* r : refs_.cases()) push_unique(names, r->solver);
     for (const SceneMedia& media : input_.media)
-      for (const auto& [solver, why] : media.refused) add_new(names, solver);
+      for (const auto& [solver, why] : media.refused) push_unique(names, solver);
     for (const std::string& solver : names) {
       const SolverStyle style = solver_style(solver);
       Json one{{"id", solver},

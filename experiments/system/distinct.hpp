@@ -20,8 +20,8 @@ auto distinct(const Range& range, const Key& key = {}) {
 
 /// The values under a name, made empty if there are none: names stay in order of appearance.
 template <class Value>
-std::vector<Value>& under(std::vector<std::pair<std::string, std::vector<Value>>>& groups,
-                          const std::string& name) {
+std::vector<Value>& group_of(std::vector<std::pair<std::string, std::vector<Value>>>& groups,
+                             const std::string& name) {
   auto at = std::ranges::find(groups, name, &std::pair<std::string, std::vector<Value>>::first);
   if (at == groups.end()) at = groups.insert(at, {name, {}});
   return at->second;
@@ -29,7 +29,7 @@ std::vector<Value>& under(std::vector<std::pair<std::string, std::vector<Value>>
 
 /// Appends what the list does not have yet: each once, in their order of appearance.
 template <class T, class Value>
-void add_new(std::vector<T>& list, const Value& value) {
+void push_unique(std::vector<T>& list, const Value& value) {
   if (std::ranges::find(list, value) == list.end()) list.emplace_back(value);
 }
 

@@ -59,7 +59,7 @@ double plan_bytes(const Record& record) {
 std::vector<ScalingLine> measure_scaling(const std::vector<Case>& cases, double limit,
                                          const Measure& run) {
   std::vector<std::pair<std::string, std::vector<const Case*>>> groups;
-  for (const Case& one : cases) under(groups, one.choice.brief()).push_back(&one);
+  for (const Case& one : cases) group_of(groups, one.choice.brief()).push_back(&one);
   std::vector<ScalingLine> lines;
   for (auto& [setting, members] : groups) {
     std::ranges::stable_sort(members, {}, [](const Case* c) { return c->scene->mesh.size(); });

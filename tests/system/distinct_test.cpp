@@ -19,7 +19,7 @@ TEST(Groups, AreMadeWhenTheyAreFirstAskedFor) {
   std::vector<std::pair<std::string, std::vector<int>>> groups;
   for (const auto& [name, value] :
        {std::pair("z", 1), std::pair("a", 2), std::pair("z", 3), std::pair("b", 4)})
-    under(groups, name).push_back(value);
+    group_of(groups, name).push_back(value);
   EXPECT_EQ(groups, (decltype(groups){{"z", {1, 3}}, {"a", {2}}, {"b", {4}}}));
 }
 

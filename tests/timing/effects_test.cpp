@@ -125,12 +125,12 @@ TEST(BenchEffects, LookingInVainCostsLessThanContact) {
                                    .rounds = 5,
                                    .seconds = 0.002});
   ASSERT_EQ(rows.size(), 3u);
-  EXPECT_TRUE(rows[0].looking.empty());
-  ASSERT_EQ(rows[1].looking.size(), rows[1].whole.size());
-  EXPECT_LT(interleaved_ratio(rows[1].looking, rows[1].whole).mid, 0.9);
+  EXPECT_TRUE(rows[0].touching_nothing.empty());
+  ASSERT_EQ(rows[1].touching_nothing.size(), rows[1].whole.size());
+  EXPECT_LT(interleaved_ratio(rows[1].touching_nothing, rows[1].whole).mid, 0.9);
   EXPECT_TRUE(rows[1].traffic.empty());
   ASSERT_EQ(rows[2].traffic.size(), rows[2].whole.size());
-  EXPECT_LT(interleaved_ratio(rows[2].traffic, rows[2].bare).mid, 1);
+  EXPECT_LT(interleaved_ratio(rows[2].traffic, rows[2].links_alone).mid, 1);
   EXPECT_GT(interleaved_ratio(rows[2].traffic, rows[0].whole).mid, 0.5);
 }
 

@@ -87,7 +87,7 @@ std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
   std::vector<std::pair<std::string, std::vector<Record>>> groups;
   for (const Record& record : records) {
     if (record.status.kind == Status::Kind::unsupported) continue;
-    under(groups, title_among(question_of(record), asked)).push_back(record);
+    group_of(groups, title_among(question_of(record), asked)).push_back(record);
   }
   return groups;
 }

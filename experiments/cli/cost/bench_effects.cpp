@@ -51,10 +51,11 @@ void print(const std::vector<EffectRow>& rows, const Options& options, int side)
     Row& line = table.emplace_back(Row{row.scene, row.effects, std::to_string(row.vertices)});
     if (row.refused.empty()) {
       const Interval times = row.times(unit);
-      line.insert(line.end(),
-                  {number_text(row.cost().mid), interval_text(times),
-                   number_text(times.mid * unit.dt / row.dt), interval_text(row.times_bare()),
-                   row.looking.empty() ? "-" : interval_text(row.looking_times(unit))});
+      line.insert(
+          line.end(),
+          {number_text(row.cost().mid), interval_text(times),
+           number_text(times.mid * unit.dt / row.dt), interval_text(row.times_links_alone()),
+           row.touching_nothing.empty() ? "-" : interval_text(row.touching_nothing_times(unit))});
       if (options.copies > 0) line.push_back(interval_text(row.times_one(), half));
     }
     line.resize(table[0].size(), "-");
@@ -101,8 +102,8 @@ Json json_of(const std::vector<EffectRow>& rows, int side) {
                    {"dt", row.dt},
                    {"refused", row.refused},
                    {"ns", row.whole},
-                   {"links_alone_ns", row.bare},
-                   {"touching_nothing_ns", row.looking},
+                   {"links_alone_ns", row.links_alone},
+                   {"touching_nothing_ns", row.touching_nothing},
                    {"link_traffic_ns", row.traffic},
                    {"copies_ns", row.copies},
                    {"two_threads", row.two_cores.thread_samples()},

@@ -45,7 +45,7 @@ std::vector<report::SolverInfo> introductions() {
     for (std::size_t i = 0; i < all.size(); ++i)
       for (const std::string& reason :
            solvers()[i]->unsupported(scene, parse_solver(all[i].name).params))
-        under(all[i].unsupported, reason).push_back(name);
+        group_of(all[i].unsupported, reason).push_back(name);
   }
   return all;
 }

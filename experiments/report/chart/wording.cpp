@@ -257,7 +257,7 @@ std::vector<std::string> accuracy_parameters(const std::string& solver) {
   std::vector<std::string> all{parameter_of(solver, kSubsteps), parameter_of(solver, kSweeps)};
   const SolverEntry* entry = find_entry(solver);
   for (const std::string& name : parts_of(entry ? entry->accuracy.labelled : ""))
-    add_new(all, name);
+    push_unique(all, name);
   return all;
 }
 

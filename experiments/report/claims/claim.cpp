@@ -142,10 +142,10 @@ ComparedSolvers compared_solvers_of(const ReportInput& input) {
     return question;
   };
   for (const StudyResult& study : input.studies) {
-    add_new(compared.studies, study.name);
+    push_unique(compared.studies, study.name);
     for (const Record& r : study.records) {
       if (!keys.insert(r.key.empty() ? r.id : r.key).second) continue;
-      add_new(solvers, r.solver), add_new(scenes, r.scene);
+      push_unique(solvers, r.solver), push_unique(scenes, r.scene);
       asked.insert(untimed(question_of(r)));
       compared.by_solver[r.solver].push_back(&r);
     }

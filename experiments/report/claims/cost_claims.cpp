@@ -325,7 +325,7 @@ std::vector<Claim> cost_claims(const ReportInput& input) {
   std::vector<Timed> scenes;
   for (const SceneBench& scene : input.bench->scenes) {
     scenes.push_back({scene});
-    for (const std::string& solver : solvers_of(scene)) add_new(names, solver);
+    for (const std::string& solver : solvers_of(scene)) push_unique(names, solver);
   }
   if (names.empty()) return claims;  // nothing was timed
   const std::string first = names.front();

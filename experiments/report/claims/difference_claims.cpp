@@ -105,7 +105,7 @@ std::vector<Claim> difference_claims(const ReportInput& input) {
     if (const auto claim = claim_values(differences, std::string(value->name)))
       claims.push_back(*claim);
   std::vector<std::string> solvers;
-  for (const auto& [a, b] : differences.timed) add_new(solvers, a.record.solver);
+  for (const auto& [a, b] : differences.timed) push_unique(solvers, a.record.solver);
   for (const std::string& solver : solvers) claims.push_back(claim_cost(differences, solver));
   return claims;
 }

@@ -199,7 +199,7 @@ void claim_depth(const ComparedSolvers& compared, std::vector<Claim>& claims) {
         // A case that failed lacks all three: it is said once.
         const bool only_here = here.lacking.find("has no value") != std::string::npos;
         const std::string what = (only_here ? quantity(metric).title + " on " : "") + here.lacking;
-        add_new(lacking, what);
+        push_unique(lacking, what);
         continue;
       }
       if (counted.insert(here.scene).second) names.push_back(here.scene);

@@ -250,7 +250,7 @@ Json json_of_resolved_settings(const QuotedScene& quoted, const ComparedSolvers&
     panel["columns"].push_back({{"solver", r->solver},
                                 {"case", refs.key(*r)},
                                 {"text", compared.all[i].label + " " + work_of(*r).text()}});
-    for (const auto& [name, value] : r->resolved_settings) add_new(names, name);
+    for (const auto& [name, value] : r->resolved_settings) push_unique(names, name);
   }
   if (cases.empty()) return {};
   const auto row = [&](const std::string& name, const auto& cell) {

@@ -41,7 +41,7 @@ std::string end_text(const ParameterFrontier& one) {
 Json frontier_table(const std::vector<ParameterFrontier>& frontiers) {
   std::vector<std::string> columns{"parameter"}, parameters;
   for (const ParameterFrontier& f : frontiers)
-    add_new(columns, f.solver), add_new(parameters, f.parameter);
+    push_unique(columns, f.solver), push_unique(parameters, f.parameter);
   Json table = json_table(
       "frontiers", "How far every parameter goes on a small swinging sheet",
       "The hardest setting up to which nothing was wrong, and what goes wrong first beyond it, "

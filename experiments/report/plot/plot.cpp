@@ -400,7 +400,7 @@ std::filesystem::path plot_frontiers(const std::vector<ParameterFrontier>& all,
                                      const std::filesystem::path& folder, const std::string& stem) {
   std::vector<std::string> parameters, solvers;
   for (const ParameterFrontier& one : all)
-    add_new(parameters, one.parameter), add_new(solvers, one.solver);
+    push_unique(parameters, one.parameter), push_unique(solvers, one.solver);
   const double height = 0.8 / static_cast<double>(std::max<std::size_t>(solvers.size(), 1));
   std::string csv = "solver,parameter,y,half,headroom,theory,end\n", ticks;
   double most = 10;

@@ -94,9 +94,9 @@ class TimedScene {
             .dt = scene.dt,
             .refused = {},
             .whole = {},
-            .bare = {},
+            .links_alone = {},
             .copies = {},
-            .looking = {},
+            .touching_nothing = {},
             .traffic = {},
             .two_cores = {}};
     if (const auto reasons = choice.entry->unsupported(scene, choice.params); !reasons.empty()) {
@@ -136,8 +136,8 @@ class TimedScene {
       return;
     }
     row_.whole.push_back(time(*whole_));
-    row_.bare.push_back(time(*bare_));
-    if (looking_) row_.looking.push_back(time(*looking_));
+    row_.links_alone.push_back(time(*links_alone_));
+    if (touching_nothing_) row_.touching_nothing.push_back(time(*touching_nothing_));
     if (any_mesh_) row_.traffic.push_back(traffic());
     if (copies_) row_.copies.push_back(time(*copies_));
   }
@@ -147,9 +147,9 @@ class TimedScene {
  private:
   /// What the whole is compared with.
   void make_others(const Scene& scene, const SolverChoice& choice, int copies) {
-    bare_ = choice.entry->make(without_effects(scene), choice.params);
+    links_alone_ = choice.entry->make(without_effects(scene), choice.params);
     if (!scene.colliders.empty())
-      looking_ = choice.entry->make(touching_nothing(scene), choice.params);
+      touching_nothing_ = choice.entry->make(touching_nothing(scene), choice.params);
     if (!scene.mesh.grid) any_mesh_ = scene;
     if (copies > 0) copies_ = std::make_unique<Copies>(scene, choice, copies);
   }
@@ -175,7 +175,7 @@ class TimedScene {
 
   EffectRow row_;
   bool wall_;
-  std::unique_ptr<Solver> whole_, bare_, looking_, copies_, two_threads_, another_;
+  std::unique_ptr<Solver> whole_, links_alone_, touching_nothing_, copies_, two_threads_, another_;
   std::optional<Scene> any_mesh_;
   std::optional<CheckpointedRun> run_;
   int steps_ = 1;

@@ -17,10 +17,10 @@ struct EffectRow {
   std::string refused;  ///< why it was not timed; empty: it was
   /// Nanoseconds a vertex and step, two of each round: all effects; without wind, colliders and
   /// self-collision, from the same states.
-  std::vector<double> whole, bare;
+  std::vector<double> whole, links_alone;
   std::vector<double> copies;  ///< likewise: all copies of it on two threads, one step of each
   /// Likewise: with its colliders so far away that nothing touches them. Empty: it has none.
-  std::vector<double> looking;
+  std::vector<double> touching_nothing;
   /// Likewise, of the links alone: loading and storing their ends as colour batches do, in float,
   /// with an addition in the place of the projection, at its fastest. Empty: a sheet.
   std::vector<double> traffic;
@@ -29,11 +29,11 @@ struct EffectRow {
   Interval cost() const { return bootstrap_median(whole); }
   /// The copies over one sheet alone.
   Interval times_one() const { return interleaved_ratio(copies, whole); }
-  Interval times_bare() const { return interleaved_ratio(whole, bare); }
+  Interval times_links_alone() const { return interleaved_ratio(whole, links_alone); }
   /// A step of a vertex over one of `other`, which was timed in the same rounds.
   Interval times(const EffectRow& other) const { return interleaved_ratio(whole, other.whole); }
-  Interval looking_times(const EffectRow& other) const {
-    return interleaved_ratio(looking, other.whole);
+  Interval touching_nothing_times(const EffectRow& other) const {
+    return interleaved_ratio(touching_nothing, other.whole);
   }
   Interval traffic_times(const EffectRow& other) const {
     return interleaved_ratio(traffic, other.whole);
