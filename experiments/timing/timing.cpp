@@ -125,7 +125,8 @@ TimingWorker::TimingWorker(const CaseSpec& spec)
 
 std::string TimingWorker::ask(const std::string& request) {
   std::string answer;
-  const double seconds = deadline_ ? std::clamp(seconds_until(*deadline_), 0.0, 1e6) : -1;
+  const double seconds = deadline_ ? std::min(seconds_until(*deadline_), 1e6) : -1;
+  if (deadline_ && seconds <= 0) throw TimeIsUp();
   if (process_.write(request + "\n") && process_.read_line(answer, seconds)) {
     if (answer.starts_with(kRefusal)) throw std::runtime_error(answer.substr(kRefusal.size()));
     return answer;

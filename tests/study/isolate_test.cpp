@@ -135,7 +135,7 @@ TEST_F(Isolated, WallTimeIsFiveTimesTheCpuTimeThatItMayTake) {
   EXPECT_GE(seconds_since(start), 0.3);
   EXPECT_LT(seconds_since(start), 2.5);
   scripted_.write("exec sleep 1000\n");
-  IsolatedCase polled(one_, folder_, {.seconds = 0.02});
+  IsolatedCase polled(one_, folder_, {.seconds = 0.06});
   EXPECT_FALSE(polled.poll());
   std::optional<Record> record;
   while (!record) record = polled.poll();
