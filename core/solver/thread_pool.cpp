@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace taut {
 
@@ -75,11 +76,16 @@ void ThreadPool::advance(Member& me, std::size_t part, std::uint32_t stages) {
       wait();
       continue;
     }
-    if (part > 0 && next > 0 && stages_[next - 1].crosses) advance(me, part - 1, next);
-    if (part + 1 < part_count_ && stages_[next].crosses) advance(me, part + 1, next);
+    if (part > 0 && next > 0 && stages_[next - 1].reaches_next_part) advance(me, part - 1, next);
+    if (part + 1 < part_count_ && stages_[next].reaches_next_part) advance(me, part + 1, next);
     if (!p.begun.compare_exchange_strong(next, next + 1, std::memory_order_relaxed)) continue;
     if (next + 1 < stages_.size()) __builtin_prefetch(&stages_[next + 1]);
-    stages_[next](begin_of(part), begin_of(part + 1));
+    try {
+      if (!failed_.load(std::memory_order_relaxed))
+        stages_[next](begin_of(part), begin_of(part + 1));
+    } catch (...) {
+      if (!failed_.exchange(true, std::memory_order_relaxed)) failure_ = std::current_exception();
+    }
     p.done.store(next + 1, std::memory_order_release);
   }
 }
@@ -90,7 +96,8 @@ void ThreadPool::work_off(std::size_t member) {
   const auto count = static_cast<std::uint32_t>(stages_.size());
   for (std::uint32_t stage = 1; stage <= count; ++stage) {
     // Stages that nobody waits for: all of them while a part is in the cache.
-    if (stage < count && !stages_[stage - 1].crosses && !stages_[stage].crosses) continue;
+    if (stage < count && !stages_[stage - 1].reaches_next_part && !stages_[stage].reaches_next_part)
+      continue;
     for (std::size_t k = 0; k < me.end - me.begin; ++k)  // both ends first: others wait for them
       advance(me, k % 2 == 0 ? me.begin + k / 2 : me.end - 1 - k / 2, stage);
   }
@@ -99,9 +106,9 @@ void ThreadPool::work_off(std::size_t member) {
 }
 
 void ThreadPool::dispatch() {
-  const bool pairs = std::ranges::any_of(stages_, &Stage::crosses);
-  grain_ = pairs ? 2 : 1;
-  part_count_ = std::min((count_ + grain_ - 1) / grain_, parts_.size());
+  const bool pairs = std::ranges::any_of(stages_, &Stage::reaches_next_part);
+  blocks_per_unit_ = pairs ? 2 : 1;
+  part_count_ = std::min(units(), parts_.size());
   for (Part& part : parts_) {
     part.done.store(0, std::memory_order_relaxed);
     part.begun.store(0, std::memory_order_relaxed);
@@ -113,6 +120,8 @@ void ThreadPool::dispatch() {
   gate_.fetch_and(~1U, std::memory_order_relaxed);
   for (Wait wait; gate_.load(std::memory_order_acquire) != 0;) wait();
   stages_.clear();
+  if (failed_.exchange(false, std::memory_order_relaxed))
+    std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void ThreadPool::serve(std::size_t member) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <new>
 #include <thread>
@@ -26,12 +28,13 @@ class ThreadPool {
 
   std::size_t threads() const { return threads_.size() + 1; }  ///< the caller included
 
-  /// A pass over fewer particles is done before another thread has come: with 64 x 64, two threads
-  /// are slower than one, with 96 x 96 they are faster (results/benchmarks/threads.md).
+  /// A pass over fewer particles is done before another thread has come. About where a second one
+  /// began to pay: 64 x 64 no, 96 x 96 yes; not measured again.
   static constexpr std::size_t kWorthSharing = 8192;
 
   /// Calls work(begin, end) on parts of [0, count) at the same time, unless not `shared`; returns
-  /// when all are done.
+  /// when all are done. What work throws, here and below, the caller gets when it waits for the
+  /// work; what nobody had begun by then is left undone.
   template <class Work>
   void run(std::size_t count, const Work& work, bool shared = true) {
     finish();
@@ -78,7 +81,8 @@ class ThreadPool {
       stage(0)(0, blocks), stage(1)(0, blocks);
       return;
     }
-    add_stage(blocks, false, stage(0));  // parts begin with an even block
+    if (stages_.size() + 2 > kMostStages) finish();  // both at once: see blocks_per_unit_
+    add_stage(blocks, false, stage(0));
     add_stage(blocks, true, stage(1));
   }
 
@@ -91,8 +95,9 @@ class ThreadPool {
   class Stage {
    public:
     template <class Work>
-    Stage(bool crosses_parts, const Work& work)
-        : crosses(crosses_parts), call_([](const std::byte* w, std::size_t begin, std::size_t end) {
+    Stage(bool reaches, const Work& work)
+        : reaches_next_part(reaches),
+          call_([](const std::byte* w, std::size_t begin, std::size_t end) {
             (*std::launder(reinterpret_cast<const Work*>(w)))(begin, end);
           }) {
       static_assert(sizeof(Work) <= sizeof work_ && std::is_trivially_copyable_v<Work>);
@@ -100,7 +105,7 @@ class ThreadPool {
     }
     void operator()(std::size_t begin, std::size_t end) const { call_(work_, begin, end); }
 
-    bool crosses;  ///< works on the first block of the next part, too
+    bool reaches_next_part;  ///< works on its first block, too
 
    private:
     void (*call_)(const std::byte*, std::size_t, std::size_t);
@@ -125,27 +130,31 @@ class ThreadPool {
   };
 
   template <class Work>
-  void add_stage(std::size_t blocks, bool crosses, const Work& work) {
+  void add_stage(std::size_t blocks, bool reaches_next_part, const Work& work) {
     if (blocks != count_ || stages_.size() == kMostStages) finish();
     count_ = blocks;
-    stages_.emplace_back(crosses, work);
+    stages_.emplace_back(reaches_next_part, work);
   }
   std::size_t begin_of(std::size_t part) const {
-    return std::min(count_, (count_ + grain_ - 1) / grain_ * part / part_count_ * grain_);
+    return std::min(count_, units() * part / part_count_ * blocks_per_unit_);
   }
+  std::size_t units() const { return (count_ + blocks_per_unit_ - 1) / blocks_per_unit_; }
   void dispatch();
   void serve(std::size_t member);
   void work_off(std::size_t member);
   void advance(Member&, std::size_t part, std::uint32_t stages);
 
   std::vector<Stage> stages_;
-  std::size_t count_ = 0;    ///< what their parts are parts of
-  std::size_t grain_ = 1;    ///< parts begin at multiples of it
+  std::size_t count_ = 0;  ///< what their parts are parts of
+  /// A part has whole units: two blocks if there are pairs, so that it begins with an even one.
+  std::size_t blocks_per_unit_ = 1;
   std::vector<Part> parts_;  ///< room for those of all threads
   std::size_t part_count_ = 0;
   std::atomic<std::uint32_t> round_{0};  ///< how often work has been dispatched
   /// Whether there is work, 1, and twice the number of threads, besides the caller, that see it.
   alignas(64) std::atomic<std::uint32_t> gate_{0};
+  std::atomic<bool> failed_{false};  ///< work has thrown
+  std::exception_ptr failure_;       ///< the first
   std::atomic<bool> stop_{false};
   std::vector<std::thread> threads_;
 };

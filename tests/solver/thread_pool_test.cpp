@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <new>
 #include <numeric>
 #include <vector>
 
@@ -80,6 +81,53 @@ TEST(ThreadPool, AStageOfABlockFollowsThoseBeforeIt) {
       pool.finish();
       EXPECT_EQ(value, want) << blocks << " blocks, " << threads << " threads";
     }
+}
+
+/// One less than are kept: the two stages of a pair do not fit both.
+TEST(ThreadPool, PairsStayTogetherAfterManyStages) {
+  constexpr std::uint32_t kBlocks = 23, kBefore = 127;
+  ThreadPool pool(2);
+  std::vector<std::uint32_t> value(kBlocks, 0), want(kBlocks, kBefore);
+  for (std::uint32_t n = 0; n < kBefore; ++n)
+    pool.queue(kBlocks, [&value](std::size_t begin, std::size_t end) {
+      for (std::size_t block = begin; block < end; ++block) dawdle(), ++value[block];
+    });
+  const auto mix = [](std::vector<std::uint32_t>& v, std::size_t block) {
+    if (block + 1 < v.size()) v[block + 1] = 31 * v[block + 1] + v[block];
+  };
+  pool.queue_pairs(kBlocks, [&value, mix](std::size_t block) { mix(value, block); });
+  for (const std::size_t parity : {0U, 1U})
+    for (std::size_t block = parity; block < kBlocks; block += 2) mix(want, block);
+  pool.finish();
+  EXPECT_EQ(value, want);
+}
+
+TEST(ThreadPool, WhatWorkThrowsComesToTheCaller) {
+  const auto caller = std::this_thread::get_id();
+  for (const bool by_caller : {true, false}) {
+    SCOPED_TRACE(by_caller);
+    ThreadPool pool(3);
+    for (int round = 0; round < 100; ++round) {
+      std::atomic<bool> thrown{false};
+      std::atomic<int> after{0};
+      pool.queue(64, [&](std::size_t, std::size_t) {
+        if ((std::this_thread::get_id() == caller) == by_caller) {
+          thrown = true;
+          throw std::bad_alloc();
+        }
+        while (!thrown) std::this_thread::yield();
+      });
+      pool.queue(
+          64, [&](std::size_t begin, std::size_t end) { after += static_cast<int>(end - begin); });
+      EXPECT_THROW(pool.finish(), std::bad_alloc);
+      EXPECT_LT(after, 64) << "not where the stage before it has failed";
+      std::vector<int> visits(50, 0);
+      pool.run(visits.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) ++visits[i];
+      });
+      ASSERT_EQ(visits, std::vector<int>(50, 1)) << "it works as before";
+    }
+  }
 }
 
 TEST(ThreadPool, FinishesWhatIsQueuedBeforeOtherWork) {
