@@ -85,14 +85,14 @@ TEST(BenchKernels, ThePeakRateFollowsFromTheWidthOfAVector) {
   EXPECT_LT(small, 1e-6);
 }
 
-// A cloth that has lain down for 0.75 s touches the floor with every vertex, and what is dearer
-// costs more: ABBA over two rounds.
-TEST(BenchKernels, AWordTakesTimeFromCoreToCore) {
+TEST(BenchKernels, AWordTakesTimeFromThreadToThread) {
   const double seconds = seconds_per_handover();
   EXPECT_GT(seconds, 5e-9);  // more than from a cache of the same core
   EXPECT_LT(seconds, 1e-2);
 }
 
+// A cloth that has lain down for 0.75 s touches the floor with every vertex, and what is dearer
+// costs more: ABBA over two rounds.
 TEST(BenchContact, StartsFromAClothThatLiesOnWhatItFellOn) {
   const auto rows = bench_contact({.side = 17, .rounds = 2, .seconds = 1e-4});
   ASSERT_EQ(rows.size(), 3u * 6 + 2 * 5);

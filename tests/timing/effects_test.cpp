@@ -106,8 +106,6 @@ TEST(BenchEffects, TwoThreadsAreTimedBesideTwoUnrelatedSheets) {
     EXPECT_EQ(row.refused, "");
     EXPECT_EQ(row.two_cores.rounds(), 4u);
     EXPECT_TRUE(row.whole.empty());
-    EXPECT_GT(row.two_cores.threads().low, 0);  // on a busy machine it may be anything
-    EXPECT_GT(row.two_cores.unrelated().low, 0);
   }
   const std::vector<int> steps = counted.steps();  // one thread, two threads, another sheet
   ASSERT_EQ(steps.size(), 2u * 3);

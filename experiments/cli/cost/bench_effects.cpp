@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <iostream>
-#include <memory>
 
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -75,7 +74,7 @@ void print_two_cores(const std::vector<EffectRow>& rows, const Options& options,
                "as so many single threads, 95 %; both cores were free in the rounds in which "
                "unrelated sheets reached "
             << TwoCores::kFree << "; a word takes " << number_text(1e9 * seconds_per_handover())
-            << " ns from one core to the other\n";
+            << " ns from one thread to the other, at its fastest\n";
   std::vector<Row> table{{"scene", "effects", "vertices", "two threads", "unrelated sheets",
                           "two / unrelated", "two, cores free", "free rounds"}};
   for (const EffectRow& row : rows) {
@@ -111,47 +110,47 @@ Json json_of(const std::vector<EffectRow>& rows, int side) {
   return all;
 }
 
-std::function<int()> bind(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
-  app.add_option("SCENE", o->scenes, "Scenes beside hang (default: all that are shipped)");
-  app.add_option("--solver", o->solver, "The solver (default: jakobsen:iterations=1,substeps=15)");
-  app.add_option("--sizes", o->sizes,
+int run(const Options& o) {
+  std::vector<std::string> scenes = o.scenes.empty() ? shipped("scenes") : o.scenes;
+  std::erase(scenes, kUnit);
+  scenes.insert(scenes.begin(), kUnit);
+  Json all = Json::array();
+  for (const int side : o.sizes) {
+    const auto rows = bench_effects({.scenes = scenes,
+                                     .solver = o.solver,
+                                     .side = side,
+                                     .copies = o.copies,
+                                     .two_threads = o.two_threads,
+                                     .rounds = o.rounds,
+                                     .seconds = o.seconds,
+                                     .progress = Countdown("timing round")});
+    if (o.json)
+      for (Json& row : json_of(rows, side)) all.push_back(std::move(row));
+    else
+      (o.two_threads ? print_two_cores : print)(rows, o, side);
+  }
+  if (o.json) print_json(all);
+  return kPass;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("SCENE", o.scenes, "Scenes beside hang (default: all that are shipped)");
+  app.add_option("--solver", o.solver, "The solver (default: jakobsen:iterations=1,substeps=15)");
+  app.add_option("--sizes", o.sizes,
                  "Sheets of so many vertices along each side; 0: as they are (default: 0)")
       ->delimiter(',')
       ->check(CLI::Range(0, 1024));
-  add_samples(app, o->rounds, o->seconds);
+  add_samples(app, o.rounds, o.seconds);
   CLI::Option* const copies =
-      app.add_option("--copies", o->copies,
+      app.add_option("--copies", o.copies,
                      "Also so many sheets of each scene at once on two threads; in wall time")
           ->check(CLI::Range(1, 4096));
   app.add_flag(
-         "--two-threads", o->two_threads,
+         "--two-threads", o.two_threads,
          "Instead what two threads are worth beside two unrelated sheets, in wall time; fewer "
          "than 8192 vertices take one thread and are refused")
       ->excludes(copies);
-  add_json(app, o->json, "Every row with its samples");
-  return [o] {
-    std::vector<std::string> scenes = o->scenes.empty() ? shipped("scenes") : o->scenes;
-    std::erase(scenes, kUnit);
-    scenes.insert(scenes.begin(), kUnit);
-    Json all = Json::array();
-    for (const int side : o->sizes) {
-      const auto rows = bench_effects({.scenes = scenes,
-                                       .solver = o->solver,
-                                       .side = side,
-                                       .copies = o->copies,
-                                       .two_threads = o->two_threads,
-                                       .rounds = o->rounds,
-                                       .seconds = o->seconds,
-                                       .progress = Countdown("timing round")});
-      if (o->json)
-        for (Json& row : json_of(rows, side)) all.push_back(std::move(row));
-      else
-        (o->two_threads ? print_two_cores : print)(rows, *o, side);
-    }
-    if (o->json) print_json(all);
-    return kPass;
-  };
+  add_json(app, o.json, "Every row with its samples");
 }
 
 }  // namespace
@@ -165,4 +164,4 @@ TAUT_VERB(bench_effects) = {
         "taut bench effects\n  taut bench effects ball box --sizes 64,128\n  "
         "taut bench effects flag plane crumple --sizes 128 --two-threads --rounds 30\n  "
         "taut bench effects hang --copies 16",
-    .bind = taut::verb::effects::bind};
+    .bind = taut::bind_verb<taut::verb::effects::add_options, taut::verb::effects::run>};

@@ -59,8 +59,8 @@ double seconds_per_flop(bool single);
 /// Seconds of one square-root-free projection of particles that are in registers already: its
 /// arithmetic with the division, without loads and stores.
 double seconds_per_projection(bool single);
-/// Seconds from one thread's store of a word to its sight by a thread on another core, at its
-/// fastest: virtual cores may lie near each other or not.
+/// Seconds from one thread's store of a word to its sight by another, at its fastest: threads are
+/// not pinned, and virtual cores may lie near each other or not.
 double seconds_per_handover();
 /// Seconds to load and to store both ends of a link as the sweep over the scene's colour batches
 /// does, in its order, with an addition in the place of the projection.
