@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/io/document.hpp"
 #include "core/io/scene_readers.hpp"
-#include "core/io/section.hpp"
 #include "core/model/angle.hpp"
 #include "core/model/crossings.hpp"
 #include "core/model/text.hpp"

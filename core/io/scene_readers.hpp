@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 #include "core/model/scene.hpp"
 
 // What scene_io.cpp and cloth_io.cpp read a scene with.

@@ -3,7 +3,7 @@
 #include <map>
 #include <sstream>
 
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"

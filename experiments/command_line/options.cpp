@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iomanip>
-#include <iostream>
 #include <thread>
 
 #include "core/model/solver.hpp"
@@ -15,7 +13,6 @@
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/json.hpp"
 
 namespace taut {
 
@@ -103,13 +100,6 @@ void add_baselines(CLI::App& app, std::string& folder) {
   app.add_option("--baselines", folder, "Folder of the baselines (default: " + folder + ")");
 }
 
-void print_files(const std::vector<std::string>& files, bool json) {
-  if (json)
-    print_json(Json{{"files", files}});
-  else
-    for (const std::string& file : files) std::cout << file << '\n';
-}
-
 CLI::Option* add_json(CLI::App& app, bool& json, const std::string& what) {
   return app.add_flag("--json", json, what + " as JSON");
 }
@@ -174,23 +164,6 @@ void continue_in_right_program(const SolverChoice& choice) {
   const std::string program = sibling_program(needed);
   execv(program.c_str(), argv.data());
   throw InputError(choice.brief() + " needs the program " + program + ", which cannot be run");
-}
-
-void print_record(const Record& record) {
-  std::cout << record.id << "\n  status       " << to_string(record.status.kind);
-  if (!record.status.reason.empty()) std::cout << " (" << record.status.reason << ")";
-  if (record.status.step >= 0) std::cout << ", step " << record.status.step;
-  if (record.status.vertex >= 0) std::cout << ", vertex " << record.status.vertex;
-  std::cout << "\n  steps        " << record.steps << " of " << record.dt << " s\n  cloth        "
-            << record.vertices << " vertices, " << record.links << " links\n  work         "
-            << record.projections << " projections per step\n  state        " << record.digest
-            << '\n';
-  for (const auto& [name, value] : record.values)
-    if (!std::isnan(value)) {
-      const ValueSpec* spec = find_value(name).second;
-      std::cout << "  " << std::left << std::setw(26) << name << std::setprecision(6) << value
-                << ' ' << (!spec || spec->unit.si == "1" ? "" : spec->unit.si) << '\n';
-    }
 }
 
 }  // namespace taut

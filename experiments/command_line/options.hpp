@@ -6,7 +6,6 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/case.hpp"
-#include "experiments/case/record.hpp"
 #include "experiments/study/isolate.hpp"
 #include "experiments/study/study.hpp"
 
@@ -51,9 +50,6 @@ void add_judgement(CLI::App&, std::string& metric, double& tolerance);
 /// The folder of the baselines, as --baselines.
 void add_baselines(CLI::App&, std::string& folder);
 
-/// The files that a verb wrote: a line each, or {"files": [...]}.
-void print_files(const std::vector<std::string>& files, bool json);
-
 /// --json, which says `what` is printed instead.
 CLI::Option* add_json(CLI::App&, bool& json, const std::string& what);
 
@@ -91,8 +87,5 @@ class CaseOptions {
 /// Replaces this process by the program that can run the choice (same arguments), if it is another
 /// one; returns if it is this. Throws InputError if the other is not installed.
 void continue_in_right_program(const SolverChoice&);
-
-/// A record for people, on standard output: what ran, how it ended, every value that has a meaning.
-void print_record(const Record&);
 
 }  // namespace taut

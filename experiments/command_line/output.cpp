@@ -3,12 +3,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <iomanip>
 #include <iostream>
 
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/system/clock.hpp"
+#include "experiments/system/json.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut {
@@ -53,6 +57,30 @@ std::string counts(const CampaignProgress& campaign) {
   return join(campaign.by_status, ", ", [](const auto& status) {
     return std::string(to_string(status.first)) + " " + std::to_string(status.second);
   });
+}
+
+void print_files(const std::vector<std::string>& files, bool json) {
+  if (json)
+    print_json(Json{{"files", files}});
+  else
+    for (const std::string& file : files) std::cout << file << '\n';
+}
+
+void print_record(const Record& record) {
+  std::cout << record.id << "\n  status       " << to_string(record.status.kind);
+  if (!record.status.reason.empty()) std::cout << " (" << record.status.reason << ")";
+  if (record.status.step >= 0) std::cout << ", step " << record.status.step;
+  if (record.status.vertex >= 0) std::cout << ", vertex " << record.status.vertex;
+  std::cout << "\n  steps        " << record.steps << " of " << record.dt << " s\n  cloth        "
+            << record.vertices << " vertices, " << record.links << " links\n  work         "
+            << record.projections << " projections per step\n  state        " << record.digest
+            << '\n';
+  for (const auto& [name, value] : record.values)
+    if (!std::isnan(value)) {
+      const ValueSpec* spec = find_value(name).second;
+      std::cout << "  " << std::left << std::setw(26) << name << std::setprecision(6) << value
+                << ' ' << (!spec || spec->unit.si == "1" ? "" : spec->unit.si) << '\n';
+    }
 }
 
 Progress::Progress() : start_(std::chrono::steady_clock::now()), terminal_(isatty(2) == 1) {}

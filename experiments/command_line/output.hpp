@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/case/record.hpp"
 #include "experiments/study/campaign.hpp"
 
 namespace taut {
@@ -21,6 +22,12 @@ using Row = std::vector<std::string>;
 /// flush left, the others flush right. All rows are as long as the first. Widths count characters
 /// of UTF-8.
 void print_columns(const std::vector<Row>&, std::size_t names);
+
+/// The files that a verb wrote: a line each, or {"files": [...]}.
+void print_files(const std::vector<std::string>& files, bool json);
+
+/// A record for people, on standard output: what ran, how it ended, every value that has a meaning.
+void print_record(const Record&);
 
 /// Shows a campaign on stderr: one line that is rewritten, with the time left, on a terminal; a
 /// line per case otherwise.

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
@@ -220,16 +220,18 @@ std::vector<std::string> Program::unsupported(const Scene& scene, const Params& 
 }
 
 void Program::require_probed(const Params& params) {
-  const auto [at, fresh] = probed_.try_emplace(params.canonical());
-  if (fresh) {
+  auto at = probed_.find(params.canonical());
+  if (at == probed_.end()) {
     bool any = false;
+    std::optional<SolverFailure> failure;
     for (const Check& check : quick_probe(command_, own_params(*hello_, params))) {
       any = any || check.verdict == Check::Verdict::passed;
-      if (check.verdict == Check::Verdict::failed && !at->second)
-        at->second.emplace(check.status, "not scored, " + check.name + ": " + check.said);
+      if (check.verdict == Check::Verdict::failed && !failure)
+        failure.emplace(check.status, "not scored, " + check.name + ": " + check.said);
     }
-    if (!any && !at->second)
-      at->second.emplace("error", "not scored: it refuses every sheet of the probe");
+    if (!any && !failure)
+      failure.emplace("error", "not scored: it refuses every sheet of the probe");
+    at = probed_.emplace(params.canonical(), std::move(failure)).first;
   }
   if (at->second) throw SolverFailure(*at->second);
 }

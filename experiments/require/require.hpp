@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/metrics/metric.hpp"

@@ -1,6 +1,6 @@
 #include "experiments/study/main_job.hpp"
 
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {

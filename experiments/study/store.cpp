@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <iostream>
 
 #include "core/model/input_error.hpp"
@@ -27,6 +29,13 @@ EntryParts parts_in(const fs::path& folder) {
   EntryParts parts;
   for (const char* part : kParts)
     if (fs::exists(folder / part)) parts[part] = read_text(folder / part);
+  return parts;
+}
+
+EntryParts parts_of(const StoredEntry& entry) {
+  EntryParts parts;
+  for (const char* name : kParts)
+    if (entry.has(name)) parts[name] = entry.part(name);
   return parts;
 }
 
@@ -179,11 +188,8 @@ Series Store::series(const std::string& key) const {
 }
 
 EntryParts Store::parts(const std::string& key) const {
-  EntryParts parts;
-  if (const std::optional<StoredEntry> found = entry(key))
-    for (const char* name : kParts)
-      if (found->has(name)) parts[name] = found->part(name);
-  return parts;
+  const std::optional<StoredEntry> found = entry(key);
+  return found ? parts_of(*found) : EntryParts{};
 }
 
 bool Store::has_frames(const std::string& key) const {
@@ -237,13 +243,27 @@ Store::Commit Store::commit(EntryParts parts, const Record& record) const {
                                ? root_ / "conflicts" / (record.key + "." + unique_suffix())
                                : file(record.key);
     make_folder(place.parent_path());
-    if (old || done == Commit::conflict)
-      write_durably(place, entry);
-    else if (!create_durably(place, entry, root_ / "tmp"))
-      continue;
-    return done;
+    if (done == Commit::conflict) make_folder(root_ / "tmp");        // all may be in pack files
+    if (done == Commit::stored && old && old->status.is_result()) {  // the same one, with frames
+      replace_durably(place, entry, root_ / "tmp");
+      return done;
+    }
+    if (create_durably(place, entry, root_ / "tmp")) return done;
+    if (old) take_failure_away(record.key);
   }
   throw InputError(file(record.key).string() + ": cannot create");
+}
+
+void Store::take_failure_away(const std::string& key) const {
+  const fs::path taken = root_ / "tmp" / (key + "." + unique_suffix());
+  if (std::rename(file(key).c_str(), taken.c_str()) != 0) {
+    if (errno == ENOENT) return;
+    throw InputError(file(key).string() + ": cannot replace: " + std::strerror(errno));
+  }
+  const StoredEntry entry(taken);
+  if (const Record record = open_entry(entry, key); record.status.is_result())
+    commit(parts_of(entry), record);  // of a process that took the failure away before
+  fs::remove(taken);
 }
 
 Store::Commit Store::commit(const fs::path& staged, const Record& record) const {

@@ -77,7 +77,7 @@ inline constexpr const char* kFramesFile = "frames.traj";
 inline constexpr int kFrames = 32;
 
 /// Results by content address. No locks and no shared appends: any number of processes may write,
-/// and one that is killed leaves at most a folder in tmp/, which is removed later.
+/// and one that is killed leaves at most a folder or a file in tmp/, which is removed later.
 ///
 ///     <root>/store/7f/7f3a...   an entry: its seal, and after it, as far as there are any,
 ///                               case.json    the record
@@ -123,7 +123,7 @@ class Store {
   bool has_frames(const std::string& key) const;
   Trajectory motion(const std::string& key) const;
 
-  /// Makes sure that results can be written, and removes what killed processes of this host.
+  /// Makes sure that results can be written, and removes what killed processes of this host left.
   /// Throws InputError with the reason.
   void prepare() const;
   /// An empty folder in tmp/ for a case to write into.
@@ -135,8 +135,9 @@ class Store {
     conflict,  ///< another result was there: a determinism alarm; ours is in conflicts/
   };
   /// Makes parts, or a staged folder, which goes, the entry of its record, whole or not at all; it
-  /// survives the loss of power. A result is never replaced; a failure is. Throws InputError if the
-  /// disk refuses.
+  /// survives the loss of power. A result is never replaced; a failure is. (On a file system
+  /// without links and without renames that refuse to replace, the last of two results that come at
+  /// once stays.) Throws InputError if the disk refuses.
   Commit commit(EntryParts, const Record&) const;
   Commit commit(const std::filesystem::path& staged, const Record&) const;
 
@@ -151,11 +152,14 @@ class Store {
  private:
   struct Packs;
   Packs& packs() const;  ///< read when they are first asked for
-  /// Where the entry is in a pack file; nullptr: it is in its folder, or there is none.
+  /// Where the entry is in a pack file; nullptr: it is a file of its own, or there is none.
   const PackIndex::Place* packed(const std::string& key) const;
   std::optional<StoredEntry> entry(const std::string& key) const;
   /// Takes the damaged entry away; false if it cannot be.
   bool set_aside(const std::string& key, const std::string& why) const;
+  /// So that a result is created and replaces nothing; one that another process put there since
+  /// goes back.
+  void take_failure_away(const std::string& key) const;
   std::filesystem::path root_;
   Notice notice_;
   mutable std::shared_ptr<Packs> packs_;

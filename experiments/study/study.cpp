@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 #include "core/model/text.hpp"
 #include "experiments/system/data.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 #include "experiments/case/case.hpp"
 
 namespace taut {

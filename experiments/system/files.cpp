@@ -79,6 +79,21 @@ void replace_file(const fs::path& path, std::string_view bytes, bool durable) {
   if (durable) sync_folder(target.has_parent_path() ? target.parent_path() : ".");
 }
 
+/// Writes a file into `staging` and has `place` give it its name; false: there is one of that name.
+template <class Place>
+bool place_durably(const fs::path& path, std::string_view bytes, const fs::path& staging,
+                   const Place& place) {
+  const fs::path staged = staging / (path.filename().string() + "." + unique_suffix());
+  write_durably(staged, bytes);
+  const bool placed = place(staged.c_str(), path.c_str());
+  const int why = errno;
+  unlink(staged.c_str());
+  errno = why;
+  if (!placed && why != EEXIST) fail(path, "create");
+  if (placed) sync_folder(path.parent_path());
+  return placed;
+}
+
 fs::path new_scratch_folder() {
   std::error_code error;
   fs::path folder = fs::temp_directory_path(error);
@@ -104,14 +119,16 @@ void write_durably(const fs::path& path, std::string_view bytes) {
 }
 
 bool create_durably(const fs::path& path, std::string_view bytes, const fs::path& staging) {
-  const fs::path staged = staging / (path.filename().string() + "." + unique_suffix());
-  write_durably(staged, bytes);
-  const bool made = link(staged.c_str(), path.c_str()) == 0, there = !made && errno == EEXIST;
-  // A file system without links: then the last of two that come at once stays.
-  if (!made && !there && std::rename(staged.c_str(), path.c_str()) != 0) fail(path, "create");
-  unlink(staged.c_str());
-  if (!there) sync_folder(path.parent_path());
-  return !there;
+  return place_durably(path, bytes, staging, [](const char* from, const char* to) {
+    return link(from, to) == 0 ||
+           (errno != EEXIST && renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) ||
+           (errno != EEXIST && std::rename(from, to) == 0);
+  });
+}
+
+void replace_durably(const fs::path& path, std::string_view bytes, const fs::path& staging) {
+  place_durably(path, bytes, staging,
+                [](const char* from, const char* to) { return std::rename(from, to) == 0; });
 }
 
 void test_writable(const fs::path& path) {

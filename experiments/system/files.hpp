@@ -18,9 +18,14 @@ void write_file(const std::filesystem::path&, std::string_view bytes);
 void write_durably(const std::filesystem::path&, std::string_view bytes);
 
 /// A new file, as write_durably() would; false: there is one of that name. It is written into
-/// `staging`, a folder of the same file system, first.
+/// `staging`, a folder of the same file system, first. Where that has neither links nor renames
+/// that refuse to replace, the last of two that come at once stays.
 bool create_durably(const std::filesystem::path&, std::string_view bytes,
                     const std::filesystem::path& staging);
+
+/// The same, in place of the file of that name if there is one. Throws as write_durably.
+void replace_durably(const std::filesystem::path&, std::string_view bytes,
+                     const std::filesystem::path& staging);
 
 /// Whether a file can be written there: makes its folder and tries, before anything costs time.
 /// Leaves nothing behind. Throws InputError with the reason.

@@ -1,8 +1,9 @@
 // Verdicts of assertions: from the findings of truths, and against those that were kept.
+#include "experiments/baseline/assertions_baseline.hpp"
+
 #include <gtest/gtest.h>
 
 #include "core/model/input_error.hpp"
-#include "experiments/baseline/baseline.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::assertions_baseline_test {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/model/input_error.hpp"
+#include "experiments/baseline/assertions_baseline.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/files.hpp"

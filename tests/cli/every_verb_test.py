@@ -29,6 +29,7 @@ ASKED = {
     "cluster status": ["c0"], "cluster merge": ["c0"], "external probe": [TOY], "external score": ["./small.toml", "end.pc2", "--fps", "64"],
     "external scene": ["./small.toml", "-o", "scene.json"], "external install": None,  # downloads
 }
+ALSO_ASKED = [("new", ["scene", "bN"])]
 WITHOUT_RESULTS = {"cluster run", "external scene"}  # they fill a folder or write a file, and print nothing
 
 
@@ -80,8 +81,8 @@ class EveryVerb(CommandLine):
         self.assertEqual(sorted(verbs), sorted(ASKED), "every verb is asked here")
         undocumented = {verb for verb in ASKED if verb not in documented and verb.split()[0] not in documented}
         self.assertEqual(undocumented - WITHOUT_RESULTS, {"report"}, "its model has a document of its own")
-        for number, (verb, words) in enumerate(ASKED.items(), 1):
-            with self.subTest(verb):
+        for number, (verb, words) in enumerate([*ASKED.items(), *ALSO_ASKED], 1):
+            with self.subTest(verb, words=words):
                 self.assertIn("--quiet", verbs[verb])
                 self.assertEqual("--json" in verbs[verb], verb not in WITHOUT_RESULTS)
                 if words is None:

@@ -1,16 +1,20 @@
 // Answers of a program that speaks taut-solver/1, and commands that call one: what is read, what is
 // refused.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/external/connection.hpp"
+#include "experiments/external/external.hpp"
 #include "experiments/external/probe.hpp"
 #include "experiments/external/protocol.hpp"
 #include "experiments/system/files.hpp"
+#include "tests/support/cloths.hpp"
 
 namespace taut::external::answers_test {
 namespace {
@@ -304,6 +308,40 @@ TEST(Probe, DrawsEveryLineWhereItSaysItDoes) {
   EXPECT_EQ(failed({{"gravity", 1.7e-3}}), "");
   EXPECT_EQ(failed({{"gravity", 1.9e-3}}), "time step, ");
   EXPECT_EQ(failed({{"gravity", 3.6e-3}}), "free fall, time step, ");
+}
+
+/// No new file can be opened while this lives.
+class NoMoreFiles {
+ public:
+  NoMoreFiles() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{3, before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoMoreFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoMoreFiles(const NoMoreFiles&) = delete;
+  NoMoreFiles& operator=(const NoMoreFiles&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(Probe, IsMadeAgainIfItCouldNotBeMade) {
+  const Scratch scratch;
+  std::string program = kSlightlyWrong;
+  program.replace(program.find("self.off(\"gravity\")"), 19, "1");
+  write_file(scratch.path() / "wrong.py", program);
+  enable();
+  const SolverChoice choice =
+      parse_solver("external:cmd='python3 " + (scratch.path() / "wrong.py").string() + " " +
+                   TAUT_SOURCE_DIR + "/experiments/external/sdk'");
+  const Scene scene = hanging_sheet(4, 4);
+  {
+    const NoMoreFiles limit;
+    EXPECT_THROW(choice.entry->make(scene, choice.params), InputError);
+  }
+  EXPECT_THROW(choice.entry->make(scene, choice.params), SolverFailure);
+  set_solver_source({});
 }
 
 /// Answers every line with what it has used so far; starts a process if it is asked to.

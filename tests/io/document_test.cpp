@@ -1,5 +1,7 @@
 // Documents: kinds and places of values, what an override does, how deep and how long is too much.
 
+#include "core/io/document.hpp"
+
 #include <gtest/gtest.h>
 
 #include <string>
@@ -7,7 +9,6 @@
 #include <vector>
 
 #include "core/io/scene_io.hpp"
-#include "core/io/section.hpp"
 #include "core/model/index.hpp"
 
 namespace taut::document_test {

@@ -7,9 +7,9 @@
 #include <iterator>
 #include <random>
 
+#include "core/io/document.hpp"
 #include "core/io/mesh_io.hpp"
 #include "core/io/scene_io.hpp"
-#include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
 
 namespace taut::scene_fuzz_test {

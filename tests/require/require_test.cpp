@@ -8,8 +8,8 @@
 #include <functional>
 #include <limits>
 
+#include "core/io/document.hpp"
 #include "core/io/scene_io.hpp"
-#include "core/io/section.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/data.hpp"

@@ -41,7 +41,7 @@ experiments/report/model | (core/model|experiments/(system|metrics|case|timing|b
 # what is included | files that may include it
 owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/(.*\.cpp|bullet_solver\.hpp)
-toml\+\+                | ^core/io/section\.cpp
+toml\+\+                | ^core/io/document\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
 openssl/                | ^experiments/(case|report/chart)/.*\.cpp

@@ -2,10 +2,16 @@
 #include "experiments/study/store.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <barrier>
 #include <cmath>
-#include <fstream>
+#include <csignal>
 #include <limits>
+#include <thread>
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
@@ -162,6 +168,63 @@ TEST_F(StoreTest, WhoLosesTheRenameLooksAgain) {
   EXPECT_EQ(others, Store::Commit::stored);
   EXPECT_EQ(to_json(*store_.find(r.key)), to_json(r));
   EXPECT_TRUE(fs::is_empty(root_ / "tmp"));
+}
+
+TEST_F(StoreTest, WhoIsKilledWhileWritingLeavesSomethingInTmpAlone) {
+  Record failure = some_record(), other = some_record(), framed = some_record(), conflict;
+  failure.key[0] = 'b', failure.status = {Status::Kind::timeout, "wall time", 5, -1};
+  other.key = failure.key;
+  conflict = framed;
+  conflict.values["a"] = 7;
+  put(failure), put(framed);
+  const std::vector<std::pair<EntryParts, Record>> all{
+      {{}, other}, {{{kFramesFile, "a motion"}}, framed}, {{}, conflict}};
+  for (const auto& [parts, record] : all) {
+    const pid_t child = fork();
+    if (child == 0) {  // ends by a signal within the write, which is larger than a file may be
+      const rlimit no_core{0, 0}, ten{10, 10};
+      setrlimit(RLIMIT_CORE, &no_core);
+      setrlimit(RLIMIT_FSIZE, &ten);
+      std::signal(SIGXFSZ, SIG_DFL);
+      store_.commit(parts, record);
+      _exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status));
+    EXPECT_FALSE(fs::is_empty(root_ / "tmp"));
+    EXPECT_EQ(store_.keys().size(), 2u);
+    EXPECT_TRUE(store_.conflicts().empty());
+    store_.prepare();
+    EXPECT_TRUE(fs::is_empty(root_ / "tmp")) << "the next one cleans up";
+  }
+  EXPECT_TRUE(said_.empty());
+}
+
+TEST_F(StoreTest, OfResultsThatComeAtOnceOneStaysAndTheOthersAreConflicts) {
+  constexpr int kRounds = 20, kWriters = 3;
+  store_.prepare();
+  for (int round = 0; round < kRounds; ++round) {
+    Record failure = some_record();
+    failure.key = std::string(60, 'a') + std::to_string(1000 + round);
+    failure.status = {Status::Kind::timeout, "wall time", 5, -1};
+    put(failure);
+    std::barrier begin(kWriters);
+    std::vector<std::thread> writers;
+    for (int i = 0; i < kWriters; ++i)
+      writers.emplace_back([&, i] {
+        Record record = some_record();
+        record.key = failure.key;
+        record.values["a"] = i;
+        const Store own(root_);
+        begin.arrive_and_wait();
+        own.commit(EntryParts{}, record);
+      });
+    for (std::thread& writer : writers) writer.join();
+    ASSERT_TRUE(store_.find(failure.key)->status.is_result());
+    ASSERT_EQ(std::ranges::count(store_.conflicts(), failure.key), kWriters - 1);
+    ASSERT_TRUE(fs::is_empty(root_ / "tmp"));
+  }
 }
 
 TEST_F(StoreTest, AnEntryOfAnEarlierTautIsRefused) {

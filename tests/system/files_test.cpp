@@ -74,6 +74,26 @@ TEST(WrittenFiles, ReplaceTheOldOneAndLeaveNothingBeside) {
   EXPECT_EQ(names_in(scratch.path()), std::set<std::string>{"folder"});
 }
 
+TEST(WrittenFiles, WhatCannotGetItsNameLeavesNothing) {
+  const Scratch scratch;
+  for (const std::string text : {"one", "two"}) {
+    EXPECT_EQ(create_durably(scratch.path() / "a", text, scratch.path()), text == "one");
+    EXPECT_EQ(read_text(scratch.path() / "a"), "one");
+  }
+  replace_durably(scratch.path() / "a", "two", scratch.path());
+  EXPECT_EQ(read_text(scratch.path() / "a"), "two");
+  const fs::path nowhere = scratch.path() / "none/a";
+  for (const bool creates : {true, false})
+    EXPECT_EQ(refused([&] {
+                if (creates)
+                  create_durably(nowhere, "x", scratch.path());
+                else
+                  replace_durably(nowhere, "x", scratch.path());
+              }),
+              nowhere.string() + ": cannot create: No such file or directory");
+  EXPECT_EQ(names_in(scratch.path()), std::set<std::string>{"a"});
+}
+
 TEST(WrittenFiles, ALinkStaysOneAndAPipeIsWrittenTo) {
   const Scratch scratch;
   write_file(scratch.path() / "target", "old");

@@ -1,7 +1,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/render/film/film.hpp"
+#include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/render/image/video.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/system/files.hpp"

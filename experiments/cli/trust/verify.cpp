@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "core/model/solver.hpp"
-#include "experiments/baseline/baseline.hpp"
+#include "experiments/baseline/assertions_baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/clock.hpp"

@@ -1,17 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <set>
 
 #include "core/model/text.hpp"
-#include "experiments/baseline/baseline.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/model/parts.hpp"
-#include "experiments/system/distinct.hpp"
 
 namespace taut::report {
 
@@ -90,17 +86,6 @@ Json json_of(const MaterialRow& row) {
                               {"text", shown(kErrorShare, m.rms)},
                               {"image", "data:image/png;base64," + base64(m.png)}});
   return one;
-}
-
-/// "1, 2, 4" or "1 to 256 (9 values)".
-std::string range_of(const std::set<double>& values, const Quantity& q) {
-  if (values.empty()) return "–";
-  const auto one = [&](double v) { return tick_of(q, v); };
-  const std::string unit = q.unit.shown.empty() ? "" : "\u00A0" + std::string(q.unit.shown);
-  if (values.size() > 3)
-    return one(*values.begin()) + " to " + one(*values.rbegin()) + unit + " (" +
-           std::to_string(values.size()) + " values)";
-  return join(values, ", ", one) + unit;
 }
 
 }  // namespace
@@ -236,104 +221,6 @@ Json json_of(const SceneMedia& media, const ReportInput& input, Citations& refs,
       films.front()["material"] = {{"aspect", media.aspect}, {"rows", std::move(rows)}};
   }
   return films;
-}
-
-Json json_of_resolved_settings(const QuotedScene& quoted, const ComparedSolvers& compared,
-                               Citations& refs) {
-  Json panel{{"caption", "Settings each solver used for this scene"}};
-  std::vector<const Record*> cases;
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
-    const Record* r = quoted.cases[i];
-    if (!r) continue;
-    cases.push_back(r);
-    panel["columns"].push_back({{"solver", r->solver},
-                                {"case", refs.key(*r)},
-                                {"text", compared.all[i].label + " " + work_of(*r).text()}});
-    for (const auto& [name, value] : r->resolved_settings) push_unique(names, name);
-  }
-  if (cases.empty()) return {};
-  const auto row = [&](const std::string& name, const auto& cell) {
-    std::vector<std::string> values;
-    for (const Record* r : cases) values.push_back(typeset(cell(*r)));
-    // A dash says that the solver has no such setting, not that it differs; what follows the same
-    // beginning is a remark.
-    const std::string& first = values.front();
-    const bool same = std::ranges::all_of(values, [&](const std::string& v) {
-      return v == "–" || first == "–" || v.starts_with(first) || first.starts_with(v);
-    });
-    panel["rows"].push_back({{"name", name}, {"values", values}, {"differs", !same}});
-  };
-  for (const std::string& name : names)
-    row(name, [&](const Record& r) {
-      const auto at =
-          std::ranges::find(r.resolved_settings, name, [](const auto& e) { return e.first; });
-      return at == r.resolved_settings.end() ? std::string("–") : at->second;
-    });
-  row("passes of a step, in order", [](const Record& r) {
-    return join(r.step_cost, ", ", [](const PassCost& pass) {
-      return pass.pass + (pass.repeats > 1 ? " × " + std::to_string(pass.repeats) : "");
-    });
-  });
-  row("work: constraint projections per step",
-      [](const Record& r) { return std::to_string(r.projections); });
-  return panel;
-}
-
-Json json_of_case(const Record& r, const BenchedCase* timed, Citations& refs) {
-  CaseSpec spec = r.spec;
-  if (spec.scene.find('/') != std::string::npos)
-    spec.scene = std::filesystem::absolute(spec.scene).lexically_normal().string();
-  Json one{{"key", refs.key(r)},
-           {"id", r.id},
-           {"scene", r.scene},
-           {"solver", r.solver},
-           {"settings", r.spec.solver},
-           {"parameters", r.params},
-           {"brief", brief_settings(r.spec.solver)},
-           {"studies", refs.studies_of(r)},
-           {"dt", r.dt},
-           {"steps", r.steps},
-           {"vertices", r.vertices},
-           {"links", r.links},
-           {"projections", r.projections},
-           {"status", to_string(r.status.kind)}};
-  add_if(one, "reason", r.status.reason);
-  if (r.status.step >= 0) one["step"] = r.status.step;
-  if (r.status.vertex >= 0) one["vertex"] = r.status.vertex;
-  one["values"] = Json::object();
-  for (const auto& [name, value] : r.values)
-    if (std::isfinite(value)) one["values"][name] = value, refs.use(name);
-  if (timed && timed->stable()) {
-    const Interval second = timed->cost();
-    const Interval step{second.low * r.dt, second.mid * r.dt, second.high * r.dt};
-    const std::size_t n = timed->timing.samples.size();
-    one["cost"] = {{"cpu.per_second", json_interval(second, n)},
-                   {"cpu.per_step", json_interval(step, n)}};
-  }
-  add_if(one, "overrides", r.spec.overrides);
-  one["command"] = reproduce(spec);
-  return one;
-}
-
-Json facts_of(const ReportInput& input, const std::string& scene) {
-  std::map<std::string, std::set<double>> seen;
-  std::size_t cases = 0;
-  for (const StudyResult& study : input.studies)
-    for (const Record& r : study.records) {
-      if (r.scene != scene) continue;
-      ++cases;
-      for (const char* name : {"vertices", "links", "dt", kSubsteps, kSweeps})
-        if (const double value = value_of(r, name); std::isfinite(value)) seen[name].insert(value);
-      seen["t"].insert(std::round(r.steps * r.dt * 100) / 100);
-    }
-  Json facts;
-  for (const auto& [name, values] : seen) {
-    const Quantity q = quantity(name);
-    facts.push_back({{"name", q.title}, {"value", range_of(values, q)}});
-  }
-  facts.push_back({{"name", "cases"}, {"value", std::to_string(cases)}});
-  return facts;
 }
 
 }  // namespace taut::report

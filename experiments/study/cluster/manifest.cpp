@@ -4,7 +4,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 #include "core/io/text_file.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"

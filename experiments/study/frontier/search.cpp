@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <iterator>
 
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"

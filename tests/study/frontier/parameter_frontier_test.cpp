@@ -10,11 +10,10 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
-#include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/statistics.hpp"
 
-namespace taut::frontier_test {
+namespace taut::parameter_frontier_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -242,4 +241,4 @@ TEST(Frontiers, AreReadBackOfTheProgramThatFoundThemAndDamageIsNamed) {
 }
 
 }  // namespace
-}  // namespace taut::frontier_test
+}  // namespace taut::parameter_frontier_test

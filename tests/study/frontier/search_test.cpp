@@ -9,7 +9,7 @@
 #include "experiments/study/frontier/frontier.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut::frontier_test {
+namespace taut::frontier_search_test {
 namespace {
 
 using Kind = Status::Kind;
@@ -321,4 +321,4 @@ TEST(LinearStability, ASheetOfSpringsBlowsUpWhereItSays) {
 }
 
 }  // namespace
-}  // namespace taut::frontier_test
+}  // namespace taut::frontier_search_test

@@ -1,4 +1,4 @@
-#include "core/io/section.hpp"
+#include "core/io/document.hpp"
 
 #include <toml++/toml.h>
 

@@ -1,0 +1,87 @@
+#include "experiments/render/film/recorded_runs.hpp"
+
+#include <list>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/wording.hpp"
+#include "experiments/study/isolate.hpp"
+#include "experiments/study/store.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "#0B6BCB"
+Rgb8 colour_of(std::string_view hex) {
+  return rgb(static_cast<std::uint32_t>(std::stoul(std::string(hex.substr(1)), nullptr, 16)));
+}
+
+/// A motion with the title, settings and colour of the solver that made it.
+RecordedRun shown_run(const Scene& scene, Trajectory motion, const std::string& solver) {
+  RecordedRun run = recorded_run(scene, std::move(motion));
+  const std::string name = solver_name(solver);
+  run.title = report::solver_title(name);
+  run.settings = report::brief_settings(solver);
+  run.colour = colour_of(report::solver_style(name).colour.light);
+  return run;
+}
+
+RecordedRun finished_run(IsolatedCase& process) {
+  const Case& one = process.of();
+  const Status status = process.wait().status;
+  if (status.kind == Status::Kind::unsupported)
+    throw InputError(one.choice.brief() + " cannot run " + one.scene->name + ": " + status.reason);
+  const fs::path motion = process.folder() / kFramesFile;
+  if (!fs::exists(motion))
+    throw InputError(one.choice.brief() + " left no trajectory of " + one.scene->name + ": " +
+                     std::string(to_string(status.kind)) + ", " + status.reason);
+  RecordedRun run = shown_run(*one.scene, read_trajectory(motion), one.choice.canonical());
+  if (run.stop && status.kind != Status::Kind::ok) run.stop->why = to_string(status.kind);
+  return run;
+}
+
+/// What a file holds, under the name of the solver that it says made it.
+RecordedRun stored_run(const Scene& scene, const std::string& file) {
+  Trajectory trajectory = read_trajectory(file);
+  const TrajectoryHeader& header = trajectory.header;
+  if (header.vertices != scene.mesh.size())
+    throw InputError(
+        {{file, 0, 0,
+          "a trajectory of '" + header.scene + "' with " + std::to_string(header.vertices) +
+              " vertices; " + scene.name + " has " + std::to_string(scene.mesh.size())}});
+  const std::string solver = header.solver;
+  return shown_run(scene, std::move(trajectory), solver);
+}
+
+}  // namespace
+
+RunSet record_runs(const RunRequest& request, const std::function<void(const std::string&)>& say) {
+  RunSet set{load_scene(find_scene(request.scene), request.overrides), {}};
+  const Scratch scratch;
+  CaseMaker maker;
+  std::list<IsolatedCase> processes;
+  for (const std::string& solver : request.solvers) {
+    const Case one = maker.make({request.scene, request.overrides, solver});
+    say("running " + one.choice.brief() + " on " + set.scene.name);
+    const fs::path folder = scratch.path() / std::to_string(processes.size());
+    make_folder(folder);
+    processes.emplace_back(one, folder, Limits{.seconds = 600, .bytes = 0}, set.scene.steps + 1);
+  }
+  for (IsolatedCase& process : processes) {
+    set.runs.push_back(finished_run(process));
+    const fs::path series = process.folder() / "series.csv";
+    set.series.push_back(fs::exists(series) ? series_from_csv(read_text(series)) : Series{});
+  }
+  for (const std::string& file : request.files) set.runs.push_back(stored_run(set.scene, file));
+  return set;
+}
+
+}  // namespace taut

@@ -1,0 +1,160 @@
+#include "experiments/report/claims/compared_solvers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "experiments/case/record_io.hpp"
+#include "experiments/system/distinct.hpp"
+
+namespace taut::report {
+
+namespace {
+
+std::map<std::string, std::string> choice_of(const Record& r) {
+  auto params = r.params;
+  params.erase(parameter_of(r.solver, kSweeps)), params.erase(parameter_of(r.solver, kSubsteps));
+  return params;
+}
+
+ComparedSolver choose(const std::string& solver, const std::vector<const Record*>& cases) {
+  std::vector<std::vector<const Record*>> groups;
+  std::map<std::map<std::string, std::string>, std::size_t> index;
+  std::map<std::pair<std::string, std::string>, std::size_t> having;  // groups with that setting
+  for (const Record* r : cases) {
+    const auto choice = choice_of(*r);
+    const auto [at, fresh] = index.try_emplace(choice, groups.size());
+    if (fresh) groups.emplace_back();
+    if (fresh)
+      for (const auto& setting : choice) ++having[setting];
+    groups[at->second].push_back(r);
+  }
+  const auto most = std::ranges::max_element(groups, {}, [](const auto& g) { return g.size(); });
+  ComparedSolver chosen{solver, solver_title(solver), *most};
+  for (const auto& setting : choice_of(*most->front()))
+    if (having.at(setting) < groups.size()) chosen.label += " " + setting.second;
+  return chosen;
+}
+
+/// How far from 1 × 16, which every comparison in the literature is near to.
+double distance(const Work& work) {
+  return std::abs(std::log(std::max(1, work.sweeps) / 16.0)) + std::log(std::max(1, work.substeps));
+}
+
+/// What a solver ran most often among the works that `admits`; of equals the one nearest to 1 × 16.
+template <class Admits>
+Work commonest_work(const ComparedSolver& solver, Admits admits) {
+  std::map<Work, int> counts;
+  for (const Record* r : solver.cases)
+    if (const Work work = work_of(*r); admits(work)) ++counts[work];
+  const auto best = std::ranges::max_element(counts, {}, [](const auto& entry) {
+    return std::pair(entry.second, -distance(entry.first));
+  });
+  return best == counts.end() ? Work{} : best->first;
+}
+
+/// Gives each solver compared the work at which it is quoted: the one that all who have sweeps ran,
+/// nearest to 1 × 16; else each its own, of the same sweeps if there are any.
+void choose_work(std::vector<ComparedSolver>& compared) {
+  std::map<Work, int> counts;
+  std::map<int, int> sweep_counts;
+  int having = 0;
+  for (const ComparedSolver& solver : compared) {
+    std::set<Work> works;
+    std::set<int> sweeps;
+    for (const Record* r : solver.cases)
+      if (const Work work = work_of(*r); work.sweeps > 0)
+        works.insert(work), sweeps.insert(work.sweeps);
+    having += !works.empty();
+    for (const Work& work : works) ++counts[work];
+    for (const int n : sweeps) ++sweep_counts[n];
+  }
+  std::erase_if(counts, [&](const auto& entry) { return entry.second < having; });
+  std::erase_if(sweep_counts, [&](const auto& entry) { return entry.second < having; });
+  const auto nearest =
+      std::ranges::min_element(counts, {}, [](const auto& entry) { return distance(entry.first); });
+  const auto same_sweeps = std::ranges::min_element(sweep_counts, {}, [](const auto& entry) {
+    return distance({1, entry.first});
+  });
+  for (ComparedSolver& solver : compared)
+    solver.work = commonest_work(solver, [&](const Work& work) {
+      if (work.sweeps <= 0) return true;
+      if (!counts.empty()) return work == nearest->first;
+      return sweep_counts.empty() || work.sweeps == same_sweeps->first;
+    });
+}
+
+/// The question that most compared answered at their work; of equals the time step nearest to 1/64
+/// s.
+QuotedScene quote(const std::string& scene, const std::vector<ComparedSolver>& compared) {
+  std::vector<QuotedScene> asked;
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    for (const Record* r : compared[i].cases) {
+      if (r->scene != scene || work_of(*r) != compared[i].work) continue;
+      const Question question = question_of(*r);
+      auto at = std::ranges::find(asked, question, &QuotedScene::question);
+      if (at == asked.end())
+        at = asked.insert(at, {question, scene, std::vector<const Record*>(compared.size())});
+      if (!at->cases[i]) at->cases[i] = r;
+    }
+  const auto rank = [](const QuotedScene& q) {
+    return std::pair(std::ranges::count(q.cases, nullptr), std::abs(std::log(q.question.dt * 64)));
+  };
+  const auto best = std::ranges::min_element(asked, {}, rank);
+  if (best == asked.end())
+    return {{scene, {}, 0}, scene, std::vector<const Record*>(compared.size())};
+  return *best;
+}
+
+}  // namespace
+
+const QuotedScene* ComparedSolvers::quoted(const std::string& scene_or_title) const {
+  const auto at = std::ranges::find_if(scenes, [&](const QuotedScene& q) {
+    return q.title == scene_or_title || q.question.scene == scene_or_title;
+  });
+  return at == scenes.end() ? nullptr : &*at;
+}
+
+std::string ComparedSolvers::work_text() const {
+  std::string own;
+  std::set<Work> works;
+  for (const ComparedSolver& solver : all) {
+    works.insert(solver.work);
+    own += (own.empty() ? "" : ", ") + solver.label + " " + solver.work.text();
+  }
+  const bool both = std::ranges::any_of(
+      works, [](const Work& work) { return work.sweeps > 0 && work.substeps > 0; });
+  const std::string order = "substeps × sweeps";
+  if (works.size() == 1) return works.begin()->text() + (both ? " (" + order + ")" : "");
+  return "unequal work (" + own + (both ? "; " + order : "") + ")";
+}
+
+ComparedSolvers compared_solvers_of(const ReportInput& input) {
+  ComparedSolvers compared;
+  std::vector<std::string> solvers, scenes;
+  std::set<std::string_view> keys;
+  std::set<Question> asked;
+  const auto untimed = [](Question question) {  // how long it lasts is no part of a scene's title
+    std::erase_if(question.overrides, [](const auto& s) { return s.starts_with("time."); });
+    return question;
+  };
+  for (const StudyResult& study : input.studies) {
+    push_unique(compared.studies, study.name);
+    for (const Record& r : study.records) {
+      if (!keys.insert(r.key.empty() ? r.id : r.key).second) continue;
+      push_unique(solvers, r.solver), push_unique(scenes, r.scene);
+      asked.insert(untimed(question_of(r)));
+      compared.by_solver[r.solver].push_back(&r);
+    }
+  }
+  for (const std::string& solver : solvers)
+    compared.all.push_back(choose(solver, compared.by_solver[solver]));
+  choose_work(compared.all);
+  for (const std::string& scene : scenes) {
+    QuotedScene& quoted = compared.scenes.emplace_back(quote(scene, compared.all));
+    quoted.title = title_among(untimed(quoted.question), asked);
+  }
+  return compared;
+}
+
+}  // namespace taut::report
