@@ -86,16 +86,13 @@ bool abandoned(const std::string& name) {
   return pid > 0 && kill(pid, 0) != 0 && errno == ESRCH;
 }
 
-/// Looks at one entry: all are alike.
-void refuse_folders(const fs::path& store) {
+/// Whether entries are folders, as those of an earlier taut. Looks at one: all are alike.
+bool holds_folders(const fs::path& store) {
   std::error_code none;
   for (const auto& shelf : fs::directory_iterator(store, none))
-    for (const auto& entry : fs::directory_iterator(shelf.path(), none)) {
-      if (!entry.is_directory()) return;
-      throw InputError(entry.path().string() +
-                       ": an entry of an earlier taut, a folder; name "
-                       "another results folder, or remove this one");
-    }
+    for (const auto& entry : fs::directory_iterator(shelf.path(), none))
+      return entry.is_directory();
+  return false;
 }
 
 }  // namespace
@@ -118,7 +115,9 @@ struct Store::Packs {
 
 Store::Packs& Store::packs() const {
   if (!packs_) {
-    refuse_folders(root_ / "store");
+    if (holds_folders(root_ / "store"))
+      throw InputError((root_ / "store").string() +
+                       ": entries of an earlier taut, folders; name another results folder");
     packs_ = std::make_shared<Packs>();
     packs_->index = PackIndex::of(root_);
     for (const std::string& sentence : packs_->index.damaged) notice_(sentence);
@@ -204,6 +203,13 @@ Trajectory Store::motion(const std::string& key) const {
 }
 
 void Store::prepare() const {
+  if (const fs::path store = root_ / "store", aside = root_ / "store.earlier";
+      holds_folders(store)) {
+    std::error_code error;  // it is there already, or another process was faster
+    fs::rename(store, aside, error);
+    if (!error)
+      notice_(store.string() + ": entries of an earlier taut, set aside in " + aside.string());
+  }
   make_folder(root_ / "store");
   make_folder(root_ / "tmp");
   const fs::path probe = root_ / "tmp" / ("probe." + unique_suffix());

@@ -124,6 +124,7 @@ class Store {
   Trajectory motion(const std::string& key) const;
 
   /// Makes sure that results can be written, and removes what killed processes of this host left.
+  /// Entries of an earlier taut, folders, are set aside in `store.earlier`; who reads is refused.
   /// Throws InputError with the reason.
   void prepare() const;
   /// An empty folder in tmp/ for a case to write into.

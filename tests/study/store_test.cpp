@@ -227,10 +227,18 @@ TEST_F(StoreTest, OfResultsThatComeAtOnceOneStaysAndTheOthersAreConflicts) {
   }
 }
 
-TEST_F(StoreTest, AnEntryOfAnEarlierTautIsRefused) {
-  fs::create_directories(store_.file(some_record().key));
-  EXPECT_THROW(store_.find(some_record().key), InputError);
-  EXPECT_THROW(put(some_record()), InputError);
+TEST_F(StoreTest, EntriesOfAnEarlierTautAreRefusedToReadersAndSetAsideByWriters) {
+  const std::string key = some_record().key;
+  fs::create_directories(store_.file(key));
+  write_file(store_.file(key) / "case.json", "{}");
+  EXPECT_THROW(store_.keys(), InputError);
+  EXPECT_EQ(put(some_record()), Store::Commit::stored);
+  EXPECT_EQ(store_.keys(), std::vector{key});
+  EXPECT_EQ(read_text(root_ / "store.earlier" / key.substr(0, 2) / key / "case.json"), "{}");
+  ASSERT_EQ(said_.size(), 1u);
+  EXPECT_NE(said_[0].find("set aside"), std::string::npos) << said_[0];
+  store_.prepare();
+  EXPECT_EQ(said_.size(), 1u) << "once";
 }
 
 TEST_F(StoreTest, ReadingCreatesNothing) {
