@@ -147,11 +147,10 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
         const auto has = [&](Real share) { return share == sweep_.direction[d].equal_share; };
         return std::all_of(s, s + real, has) && std::all_of(s + lanes, s + lanes + real, has);
       };
-      int begin = 0;
-      while (begin < sweep_.vectors && !equal(begin)) ++begin;
-      int end = begin;
-      while (end + sweep_.direction[d].columns < sweep_.vectors && equal(end)) ++end;
-      rows_.push_back({shares.data(), begin, end});
+      int k = 0;
+      const int inner = sweep_.vectors - sweep_.direction[d].columns;
+      while (k < inner && equal(k)) ++k;
+      rows_.push_back({shares.data(), k == inner});
     }
   const SheetRow<Real>* row = rows_.data();
   for (std::size_t d = 0; d < links.directions.size(); row += sweep_.direction[d++].rows)

@@ -37,9 +37,9 @@ struct SheetRows {
 /// Links of one direction that start in one row.
 template <class Real>
 struct SheetRow {
-  const Real* shares;          ///< [K][2][lanes] of the left and of the right end; 0: no link
-  int equal_begin, equal_end;  ///< vectors whose links all have SheetDirection::equal_share, but
-                               ///< for those between padding, which may have any
+  const Real* shares;  ///< [K][2][lanes] of the left and of the right end; 0: no link
+  bool all_equal;      ///< all links have SheetDirection::equal_share, but for those at the end of
+                       ///< the strips and those between padding, which may have any
 };
 
 /// Links (i, j) - (i + columns, j + ..) of one direction; `left` is the end in the lesser column.

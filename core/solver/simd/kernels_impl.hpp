@@ -67,66 +67,100 @@ template <class T, int lanes, Projection kind, class Real, class Shares>
   }
 }
 
-/// Calls f(i) for [begin, end) so that i and i + lag are far apart: first those with i / lag even,
-/// then the others; lag 0: in order. The sweeps over rows and over vectors both run like this.
-template <class F>
-[[gnu::always_inline]] inline void in_two_passes(int begin, int end, int lag, const F& f) {
-  if (lag == 0) {
+/// Calls f(i) for those of [begin, end) that are of this pass of two: i and i + lag are in
+/// different ones. Lag 0: for all.
+template <int lag, class F>
+[[gnu::always_inline]] inline void in_pass(int pass, int begin, int end, const F& f) {
+  if constexpr (lag == 0)
     for (int i = begin; i < end; ++i) f(i);
-    return;
-  }
-  for (int pass = 0; pass < 2; ++pass)
-    for (int start = (begin / (2 * lag)) * 2 * lag + pass * lag; start < end; start += 2 * lag)
-      for (int i = start; i < start + lag; ++i)
-        if (i >= begin && i < end) f(i);
+  else if constexpr (lag == 1)
+    for (int i = begin + ((begin ^ pass) & 1); i < end; i += 2) f(i);
+  else
+    for (int i = begin; i < end; ++i)
+      if (i / lag % 2 == pass) f(i);
 }
 
-/// Calls f(direction, row) for all links that rows [begin, end) own, in the order of the sweep.
-template <class Real, class F>
-[[gnu::always_inline]] inline void visit_rows(const SheetSweep<Real>& sweep, int begin, int end,
-                                              const F& f) {
-  for (int d = 0; d < sweep.directions; ++d) {
-    const SheetDirection<Real>& direction = sweep.direction[d];
-    const int lag = direction.left > direction.right ? direction.left : direction.right;
-    in_two_passes(begin, end < direction.rows ? end : direction.rows, lag,
-                  [&](int j) { f(direction, j); });
+/// Calls f(j, at_end, vectors) for the links of rows [begin, end) of a direction in the order of
+/// the sweep, where vectors(g) calls g(k) for some of the vectors of row j. Rows of a pass have no
+/// particle in common, vectors of a row may: those at the end of the lanes' strips (at_end, a
+/// constant) come after the others of their pass, but of all rows, so that few projections wait for
+/// the one before.
+template <int columns, int rows, class F>
+[[gnu::always_inline]] inline void visit_direction(int all_vectors, int begin, int end,
+                                                   const F& f) {
+  static_assert(columns > 0 || rows > 0);
+  constexpr int lag = rows == 0 ? columns : 0;  // of vectors
+  const int inner = all_vectors - columns;
+  for (int pass = 0; pass < 2; ++pass) {
+    const auto visit = [&](auto at_end, int first, int last) __attribute__((always_inline)) {
+      const auto vectors = [&](const auto& g) __attribute__((always_inline)) {
+        in_pass<lag>(pass, first, last, g);
+      };
+      const auto row = [&](int j) __attribute__((always_inline)) { f(j, at_end, vectors); };
+      in_pass<rows>(pass, begin, end, row);
+    };
+    visit(std::false_type{}, 0, inner);
+    if constexpr (columns > 0) visit(std::true_type{}, inner, all_vectors);
   }
 }
 
-/// Calls f(k) for the vectors of a row in the order of the sweep.
+/// Calls f(columns, rows, direction) for each: how far its links reach, as constants.
 template <class Real, class F>
-[[gnu::always_inline]] inline void visit_vectors(const SheetSweep<Real>& sweep,
-                                                 const SheetDirection<Real>& direction,
-                                                 const F& f) {
-  in_two_passes(0, sweep.vectors, direction.left == direction.right ? direction.columns : 0, f);
+[[gnu::always_inline]] inline void visit_directions(const SheetSweep<Real>& sweep, const F& f) {
+  constexpr std::integral_constant<int, 0> none;
+  constexpr std::integral_constant<int, 1> one;
+  constexpr std::integral_constant<int, 2> two;
+  for (int n = 0; n < sweep.directions; ++n) {
+    const SheetDirection<Real>& d = sweep.direction[n];
+    if (d.left == 0 && d.right == 0)
+      d.columns == 1 ? f(one, none, d) : f(two, none, d);
+    else if (d.columns == 0)
+      d.right == 1 ? f(none, one, d) : f(none, two, d);
+    else
+      f(one, one, d);
+  }
+}
+
+/// Rows [begin, end) of the links of one direction. By itself, so that what it needs stays in
+/// registers.
+template <class T, int lanes, Projection kind, int columns, int rows, class Real>
+[[gnu::noinline]] void sweep_direction(const SheetDirection<Real> d, Real* const x, int vectors,
+                                       std::size_t stride, int begin, int end) {
+  constexpr int vector = 3 * lanes;
+  const T rest(d.rest), equal_share(d.equal_share);
+  visit_direction<columns, rows>(
+      vectors, begin, end < d.rows ? end : d.rows,
+      [&](int j, auto at_end, const auto& some) __attribute__((always_inline)) {
+        Real* const left = x + static_cast<std::size_t>(j + d.left) * stride;
+        Real* const right = x + static_cast<std::size_t>(j + d.right) * stride + columns * vector;
+        const Real* const shares = d.row[j].shares;
+        const auto own = [&](int k) __attribute__((always_inline)) {
+          return [from = shares + 2 * lanes * k](int l) __attribute__((always_inline)) {
+            return load<T>(from + l);
+          };
+        };
+        const auto equal = [&](int) __attribute__((always_inline)) { return equal_share; };
+        if constexpr (at_end)
+          some([&](int k) __attribute__((always_inline)) {
+            project_shifted<T, lanes, kind>(left + k * vector, right + (k - vectors) * vector, rest,
+                                            own(k));
+          });
+        else if (d.row[j].all_equal)
+          some([&](int k) __attribute__((always_inline)) {
+            project_vectors<T, lanes, kind>(left + k * vector, right + k * vector, rest, equal);
+          });
+        else
+          some([&](int k) __attribute__((always_inline)) {
+            project_vectors<T, lanes, kind>(left + k * vector, right + k * vector, rest, own(k));
+          });
+      });
 }
 
 /// Rows [begin, end) of a Gauss-Seidel sweep over a regular sheet.
 template <class T, int lanes, Projection kind, class Real>
 void sweep_sheet(const SheetSweep<Real>& sweep, Real* x, int begin, int end) {
-  constexpr int vector = 3 * lanes;
-  visit_rows(sweep, begin, end, [&](const SheetDirection<Real>& d, int j) {
-    Real* const left = x + static_cast<std::size_t>(j + d.left) * sweep.stride;
-    Real* const right = x + static_cast<std::size_t>(j + d.right) * sweep.stride;
-    const SheetRow<Real> row = d.row[j];
-    const int vectors = sweep.vectors, columns = d.columns;
-    const T rest(d.rest), equal_share(d.equal_share);
-    visit_vectors(
-        sweep, d, [&](int k) __attribute__((always_inline)) {
-          Real* const a = left + k * vector;
-          const Real* const shares = row.shares + 2 * lanes * k;
-          const auto own = [&](int l) __attribute__((always_inline)) {
-            return load<T>(shares + l);
-          };
-          if (k >= row.equal_begin && k < row.equal_end)
-            project_vectors<T, lanes, kind>(
-                a, right + (k + columns) * vector,
-                rest, [&](int) __attribute__((always_inline)) { return equal_share; });
-          else if (k + columns < vectors)
-            project_vectors<T, lanes, kind>(a, right + (k + columns) * vector, rest, own);
-          else
-            project_shifted<T, lanes, kind>(a, right + (k + columns - vectors) * vector, rest, own);
-        });
+  visit_directions(sweep, [&](auto columns, auto rows, const SheetDirection<Real>& d) {
+    sweep_direction<T, lanes, kind, columns, rows>(d, x, sweep.vectors, sweep.stride, begin, end);
   });
 }
 
