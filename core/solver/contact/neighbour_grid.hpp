@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "core/solver/layout/particles.hpp"
@@ -25,9 +26,10 @@ namespace taut {
 /// do are far apart and are compared in vain. Linear in the number of particles and pairs.
 ///
 /// Pairs come in lists, so that threads can work them off: the particles, in the order of their
-/// cells, are cut into parts, and of part n list n has the pairs inside it, list parts() + n those
-/// with the part after it, and list 2 parts() + n the few others, from one end of the grid to the
-/// other. Lists and their order depend on nothing but the positions.
+/// cells, are cut into parts of about as many comparisons, and of part n list n has the pairs
+/// inside it, list parts() + n those with the part after it, and list 2 parts() + n the few others,
+/// from one end of the grid to the other or across a part of few particles. Lists and their order
+/// depend on nothing but the positions.
 template <class Real>
 class NeighbourGrid {
  public:
@@ -44,6 +46,7 @@ class NeighbourGrid {
     const bool shared = particles >= ThreadPool::kWorthSharing;
     parts_.resize(shared ? kParts : 1);
     for (Part& part : parts_) part.blocks.resize(particles + 10);
+    if (shared) comparisons_.resize((particles + kSample - 1) / kSample);
     counts_.resize(shared ? pool.threads() : 1);
     for (Count& count : counts_) {
       if (&count != counts_.data()) count.ends.resize(bucket_count_);
@@ -55,7 +58,8 @@ class NeighbourGrid {
   std::size_t parts() const { return parts_.size(); }
   std::size_t bytes() const {
     std::size_t sum = (3 * particles_.size() + starts_.size()) * sizeof starts_[0] +
-                      9 * now_[0].size() * sizeof(Real) + rest_.size() * sizeof rest_[0];
+                      9 * now_[0].size() * sizeof(Real) + rest_.size() * sizeof rest_[0] +
+                      comparisons_.size() * sizeof comparisons_[0];
     for (const Part& part : parts_)
       sum += part.blocks.size() * sizeof(SearchBlock) + part.found.size() * sizeof(CandidatePair);
     for (const Count& count : counts_)
@@ -89,6 +93,7 @@ class NeighbourGrid {
  private:
   /// What it takes to search for the neighbours of some of the particles.
   struct Part {
+    std::size_t begin = 0;  ///< particle, in the order of the cells
     std::vector<SearchBlock> blocks;
     std::vector<CandidatePair> found;
     std::size_t count = 0;  ///< of these
@@ -103,7 +108,9 @@ class NeighbourGrid {
   using Coordinates = std::array<std::vector<Real>, 3>;
 
   static constexpr Real kCells = 1000000;
-  static constexpr std::size_t kParts = 8;  ///< more than threads, as some have more pairs
+  static constexpr std::size_t kParts = 8;
+  /// One particle in so many has its comparisons counted.
+  static constexpr std::size_t kSample = 16;
 
   /// previous: null if none has moved.
   template <class Visit>
@@ -123,15 +130,44 @@ class NeighbourGrid {
                                  .ignored = ignored_,
                                  .moving = previous != nullptr};
     point_to(now_, search.now), point_to(moved_, search.moved), point_to(at_rest_, search.rest);
-    for_each_part([&](std::size_t n, std::size_t begin, std::size_t end) {
-      find_part(search, n, begin, end);
-      const std::size_t next_end = begin_of(std::min(n + 2, parts()));
-      for (std::size_t f = 0; f < parts_[n].count; ++f) {
-        const auto [a, b] = parts_[n].found[f];
-        const std::size_t kind = b >= begin && b < end ? 0 : b >= end && b < next_end ? 1 : 2;
-        visit(kind * parts() + n, particles_[a], particles_[b]);
+    cut_into_parts();
+    pool_.run(parts(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t n = first; n < last; ++n) {
+        const std::size_t begin = parts_[n].begin, end = begin_of(n + 1), next = begin_of(n + 2);
+        find_part(search, n, begin, end);
+        for (std::size_t f = 0; f < parts_[n].count; ++f) {
+          const auto [a, b] = parts_[n].found[f];
+          const std::size_t kind = b >= begin && b < end ? 0 : b >= end && b < next ? 1 : 2;
+          visit(kind * parts() + n, particles_[a], particles_[b]);
+        }
       }
     });
+  }
+
+  std::size_t begin_of(std::size_t part) const {
+    return part < parts() ? parts_[part].begin : size();
+  }
+
+  /// With how many particles, about, the k-th in the order of the cells will be compared.
+  std::uint32_t comparisons_of(std::size_t k) const {
+    std::uint32_t all = 1;
+    for (const std::uint32_t step : {0U, row_, layer_ - row_, layer_, layer_ + row_}) {
+      const std::uint32_t bucket = (sorted_buckets_[k] + step - 1) & (bucket_count_ - 1);
+      all += starts_[std::min(bucket + 3, bucket_count_)] - starts_[bucket];
+    }
+    return all;
+  }
+
+  /// So that all parts have about as many comparisons: a crumpled cloth has most of them in few of
+  /// its cells.
+  void cut_into_parts() {
+    const auto all = std::accumulate(comparisons_.begin(), comparisons_.end(), std::uint64_t{0});
+    std::uint64_t sum = 0;
+    std::size_t sample = 0;
+    for (std::size_t n = 0; n < parts(); ++n) {
+      while (sum * parts() < all * n) sum += comparisons_[sample++];
+      parts_[n].begin = std::min(sample * kSample, size());
+    }
   }
 
   /// The pairs of the n-th part of the particles with those after them.
@@ -148,11 +184,9 @@ class NeighbourGrid {
     }
   }
 
-  std::size_t begin_of(std::size_t part) const { return size() * part / parts(); }
-
-  /// Calls f(n, begin, end) for every part, n, of the particles.
+  /// Calls f(n, begin, end) for as many shares of the particles as there are parts.
   template <class F>
-  void for_each_part(const F& f) {
+  void for_each_share(const F& f) {
     pool_.run_parts(parts_.size(), particles_.size(), f);
   }
 
@@ -164,7 +198,7 @@ class NeighbourGrid {
   /// extent of x best. At most a million cells along an axis, so that their numbers are exact.
   template <class At>
   void fit_grid(const Points<Real>& x, Real reach, const At& at) {
-    for_each_part([&](std::size_t n, std::size_t begin, std::size_t end) {
+    for_each_share([&](std::size_t n, std::size_t begin, std::size_t end) {
       Vec4T<Real> least = at(x, begin), most = least;
       for (std::size_t i = begin; i < end; ++i)
         least = lesser(least, at(x, i)), most = greater(most, at(x, i));
@@ -229,7 +263,7 @@ class NeighbourGrid {
       for (std::size_t i = end; i-- > begin;)
         particles_[--to[buckets_[i]]] = static_cast<std::uint32_t>(i);
     });
-    for_each_part([&](std::size_t, std::size_t begin, std::size_t end) {
+    for_each_share([&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const std::size_t i = particles_[k];
         sorted_buckets_[k] = buckets_[i];
@@ -237,6 +271,8 @@ class NeighbourGrid {
         set(now_, k, p);
         if (previous) set(moved_, k, p - at(*previous, i));
         if (!rest_.empty()) set(at_rest_, k, rest_[i]);
+        if (!comparisons_.empty() && k % kSample == 0)
+          comparisons_[k / kSample] = comparisons_of(k);
       }
     });
   }
@@ -252,7 +288,8 @@ class NeighbourGrid {
   std::uint32_t row_ = 8, layer_ = 64;
   Vec4T<Real> origin_{};
   Real per_metre_ = 1;
-  std::vector<std::uint32_t> starts_;  ///< [bucket_count + 1]
+  std::vector<std::uint32_t> starts_;       ///< [bucket_count + 1]
+  std::vector<std::uint32_t> comparisons_;  ///< of every kSample-th particle; empty: one part
   FindPairs<Real> find_pairs_;
   std::vector<Part> parts_;
   std::vector<Count> counts_;  ///< one for each thread

@@ -273,12 +273,19 @@ TEST(NeighbourGrid, ListsAreTheSameFromEveryInstructionSetAndAnyThreads) {
   }
 }
 
-// In a cube, in a plane, and on a line so long that it wraps around the grid.
-TEST(NeighbourGrid, ListsOfPartsThatAreNoNeighboursShareNoParticle) {
+// In a cube, in a plane, on a line so long that it wraps around the grid, and with a tenth of all
+// in a few cells.
+TEST(NeighbourGrid, ListsOfPartsThatAreNoNeighboursShareNoParticleAndNoneHasMostPairs) {
   ThreadPool one_thread(1);
-  for (const Vec3& size : {Vec3(1, 1, 1), Vec3(1e-3, 1, 1), Vec3(1e-3, 1e-3, 1e5)}) {
+  struct Cloud {
+    Vec3 size;
+    double dense;  ///< side of the cube of a tenth of all over that of the others
+  };
+  for (const auto& [size, dense] :
+       {Cloud{{1, 1, 1}, 1}, {{1e-3, 1, 1}, 1}, {{1e-3, 1e-3, 1e5}, 1}, {{1, 1, 1}, 0.1}}) {
     std::vector<Vec3> cloud = anywhere(kShared, 1, 7);
     for (Vec3& p : cloud) p = p.cwiseProduct(size);
+    for (std::size_t i = 0; i < kShared; i += 10) cloud[i] *= dense;
     NeighbourGrid<double> grid(kShared, one_thread);
     const Points<double> x = points<double>(cloud);
     const bool wraps = size.z() > 1;
@@ -305,6 +312,10 @@ TEST(NeighbourGrid, ListsOfPartsThatAreNoNeighboursShareNoParticle) {
     std::size_t others = 0;
     for (std::size_t n = 2 * parts; n < lists.size(); ++n) others += lists[n].size();
     EXPECT_TRUE(!wraps || others > 0) << "from the last part to the first";
+    EXPECT_TRUE(dense == 1 || others > 0) << "across a part of few particles";
+    for (std::size_t n = 0; n < parts; ++n)
+      EXPECT_LT(lists[n].size() + lists[parts + n].size() + lists[2 * parts + n].size(), all / 4)
+          << n;
   }
 }
 
