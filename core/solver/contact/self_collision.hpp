@@ -128,9 +128,7 @@ class SelfCollidePass final : public Pass<Real> {
           parts > 1);
       pool_.queue_pairs(
           parts, [visit, parts](std::size_t n) { visit(parts + n); }, parts > 1);
-      if (std::all_of(found->begin() + static_cast<std::ptrdiff_t>(2 * parts), found->end(), empty))
-        continue;
-      pool_.finish();
+      pool_.finish();  // other lists are of other parts
       for (std::size_t n = 2 * parts; n < found->size(); ++n) visit(n);
     }
   }
