@@ -145,8 +145,7 @@ const PackIndex::Place* Store::packed(const std::string& key) const {
 std::optional<StoredEntry> Store::entry(const std::string& key) const {
   if (const PackIndex::Place* place = packed(key))
     return StoredEntry(packs().index.packs[place->pack], place->offset);
-  if (fs::exists(file(key))) return StoredEntry(file(key));
-  return {};
+  return StoredEntry::in(file(key));
 }
 
 std::optional<Record> Store::find(const std::string& key) const {
@@ -175,6 +174,14 @@ bool Store::set_aside(const std::string& key, const std::string& why) const {
   std::error_code error;
   fs::create_directories(place.parent_path(), error);
   if (!error) fs::rename(file(key), place, error);
+  if (error == std::errc::no_such_file_or_directory) return true;  // another process took it away
+  if (!error) try {  // or put another one there meanwhile
+      const StoredEntry entry(place);
+      commit(parts_of(entry), open_entry(entry, key));
+      fs::remove(place);
+      return true;
+    } catch (const std::exception&) {  // it is damaged indeed
+    }
   notice_(file(key).string() + ": corrupt entry (" + why + "), " +
           (error ? "ignored: " + error.message() : "set aside as " + place.string()));
   return !error;

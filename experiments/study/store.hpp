@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
@@ -61,12 +62,17 @@ class StoredEntry {
  public:
   /// Throws InputError if it is not there whole.
   explicit StoredEntry(std::filesystem::path file, std::uint64_t offset = 0);
+  /// None if there is no such file. It stays open: another process may replace it at any moment.
+  static std::optional<StoredEntry> in(const std::filesystem::path& file);
   const std::string& seal() const { return seal_; }
   bool has(const std::string& name) const { return parts_.contains(name); }
   std::string part(const std::string& name) const;  ///< "" if it has none of that name
 
  private:
+  StoredEntry(std::filesystem::path file, std::ifstream in, std::uint64_t offset);
+
   std::filesystem::path place_;
+  mutable std::ifstream in_;
   std::string seal_;
   std::map<std::string, std::pair<std::uint64_t, std::size_t>> parts_;  ///< offset and size
 };

@@ -101,10 +101,19 @@ PackIndex PackIndex::of(const fs::path& root) {
   return index;
 }
 
-StoredEntry::StoredEntry(fs::path file, std::uint64_t offset) : place_(std::move(file)) {
-  std::ifstream in(place_, std::ios::binary);
-  in.seekg(static_cast<std::streamoff>(offset));
-  if (!std::getline(in, seal_)) throw InputError(place_.string() + ": cannot read");
+StoredEntry::StoredEntry(fs::path file, std::uint64_t offset)
+    : StoredEntry(file, std::ifstream(file, std::ios::binary), offset) {}
+
+std::optional<StoredEntry> StoredEntry::in(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in && !fs::exists(file)) return {};
+  return StoredEntry(file, std::move(in), 0);
+}
+
+StoredEntry::StoredEntry(fs::path file, std::ifstream in, std::uint64_t offset)
+    : place_(std::move(file)), in_(std::move(in)) {
+  in_.seekg(static_cast<std::streamoff>(offset));
+  if (!std::getline(in_, seal_)) throw InputError(place_.string() + ": cannot read");
   std::uint64_t at = offset + seal_.size() + 1;
   for (const auto& [part, size] : header_of(seal_, place_).sizes) {
     parts_[part] = {at, size};
@@ -116,9 +125,9 @@ std::string StoredEntry::part(const std::string& name) const {
   const auto at = parts_.find(name);
   if (at == parts_.end()) return {};
   std::string text(at->second.second, '\0');
-  std::ifstream in(place_, std::ios::binary);
-  in.seekg(static_cast<std::streamoff>(at->second.first));
-  if (!in.read(text.data(), static_cast<std::streamsize>(text.size())))
+  in_.clear();
+  in_.seekg(static_cast<std::streamoff>(at->second.first));
+  if (!in_.read(text.data(), static_cast<std::streamsize>(text.size())))
     throw InputError(place_.string() + ": " + name + " is cut off");
   return text;
 }

@@ -202,7 +202,7 @@ TEST_F(StoreTest, WhoIsKilledWhileWritingLeavesSomethingInTmpAlone) {
 }
 
 TEST_F(StoreTest, OfResultsThatComeAtOnceOneStaysAndTheOthersAreConflicts) {
-  constexpr int kRounds = 20, kWriters = 3;
+  constexpr int kRounds = 40, kWriters = 3;
   store_.prepare();
   for (int round = 0; round < kRounds; ++round) {
     Record failure = some_record();
