@@ -5,12 +5,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <fstream>
 #include <iterator>
 #include <mutex>
 #include <set>
+#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -47,6 +49,18 @@ std::vector<pid_t> children() {
     for (pid_t child; list >> child;) all.push_back(child);
   }
   return all;
+}
+
+/// A process that ends, or one of the kernel: it has no environment. Source: proc(5), "stat".
+bool is_no_program(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string line, state, skipped;
+  std::getline(file, line);
+  std::istringstream fields(line.substr(std::min(line.size(), line.rfind(')') + 1)));
+  constexpr unsigned long kExiting = 0x4, kKernelThread = 0x200000;
+  unsigned long flags = kExiting;
+  fields >> state >> skipped >> skipped >> skipped >> skipped >> skipped >> flags;
+  return state == "Z" || (flags & (kExiting | kKernelThread)) != 0;
 }
 
 /// Precondition: the caller holds the belongings.
@@ -102,9 +116,14 @@ void install_handler() {
 }  // namespace
 
 bool has_mark(pid_t process, const std::string& mark) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/environ", std::ios::binary);
-  const std::string variables{std::istreambuf_iterator<char>(file), {}};
-  return variables.starts_with(mark) || variables.find('\0' + mark) != variables.npos;
+  for (int attempt = 0; attempt < 200; ++attempt) {
+    std::ifstream file("/proc/" + std::to_string(process) + "/environ", std::ios::binary);
+    const std::string variables{std::istreambuf_iterator<char>(file), {}};
+    if (variables.starts_with(mark) || variables.find('\0' + mark) != variables.npos) return true;
+    if (!file.is_open() || !variables.empty() || is_no_program(process)) return false;
+    usleep(100);  // in the middle of an execve() nothing is there to be read
+  }
+  return false;
 }
 
 const std::string& descent() {

@@ -284,6 +284,12 @@ TEST(Processes, HaveThisOnesEnvironmentOneMarkAndNoBlockedSignal) {
   EXPECT_FALSE(sigismember(&blocked, SIGTERM)) << "of this one neither";
 }
 
+TEST(Processes, HaveTheirMarkEvenInTheMiddleOfAnExec) {
+  const std::string again = R"(exec sh -c "$0" "$0")";
+  const Process process({"sh", "-c", again, again});
+  for (int i = 0; i < 3000; ++i) ASSERT_TRUE(has_mark(process.pid(), descent())) << i;
+}
+
 TEST(Processes, AMarkIsHowAVariableBegins) {
   Process process({"env", "-i", "AB=1", "CD=2", "sleep", "1000"});
   const auto has = [&](const char* mark) { return has_mark(process.pid(), mark); };
