@@ -211,7 +211,7 @@ class Launcher(unittest.TestCase):
         good = cmake.read_text()
         cmake.write_text(good.replace("planted COMMAND true", "planted COMMAND false"))
         self.call("test")
-        self.assertIn("FAILED", self.call("test", "--all", expect=1).err)
+        self.assertRegex(self.call("test", "--all", expect=1).err, r"FAILED:\n  default: .* planted \.+\*\*\*Failed .*\n$")
         cmake.write_text(good.replace("enable_testing()", 'enable_testing()\nif(TAUT_SANITIZE)\nmessage(FATAL_ERROR "not here")\nendif()'))
         broken = self.call("test", "--all", expect=1)
         self.assertIn("not here", broken.err)
