@@ -10,7 +10,7 @@ import subprocess
 
 from command_line import BINARIES, CommandLine, main
 
-TOY = f"python3 {pathlib.Path(__file__).resolve().parents[2]}/experiments/external/sdk/toy.py"
+TOY = f'python3 "{pathlib.Path(__file__).resolve().parents[2]}/experiments/external/sdk/toy.py"'
 FEW = ["--rounds", "2", "--seconds", "0.0001"]
 ADVICE = ["advise", "./small.toml", "--error", "1%", "--solver", "jakobsen", *FEW]
 SWEPT = "set = ['time.duration=0.1']\naxes.'cloth.grid' = [[4, 4], [6, 6]]\n"

@@ -406,7 +406,9 @@ class Store(CommandLine):
             self.skipTest("the sanitizer wants to be the first that is preloaded")
         study = self.study(solvers=["faulty:mode=slow"], rest='set = ["time.duration=2.5"]\naxes.variant = [0, 1]\n')  # seconds: looked at often
         whole = self.store_digest(self.taut("run", study, "--out", "whole", program="taut-faulty"))
-        jumping = {**os.environ, "LD_PRELOAD": str(BINARIES / "libjumping_clock.so")}
+        clock = self.folder / "clock.so"  # a path in LD_PRELOAD ends at a space
+        clock.symlink_to(BINARIES / "libjumping_clock.so")
+        jumping = {**os.environ, "LD_PRELOAD": str(clock)}
         years = {subprocess.run(["date", "+%Y"], env=jumping, capture_output=True, check=True).stdout for _ in range(2)}
         years.add(time.strftime("%Y\n").encode())
         self.assertGreater(len(years), 1, "the clock has to jump")

@@ -286,7 +286,7 @@ TEST(Probe, DrawsEveryLineWhereItSaysItDoes) {
   write_file(scratch.path() / "slightly.py", kSlightlyWrong);
   const std::string sdk = std::string(TAUT_SOURCE_DIR) + "/experiments/external/sdk";
   const Command command = split_command(
-      "python3 " + (scratch.path() / "slightly.py").string() + " " + sdk, scratch.path());
+      "python3 " + (scratch.path() / "slightly.py").string() + " '" + sdk + "'", scratch.path());
   const auto failed = [&](const Json& off) {
     std::string all;
     for (const Check& check : quick_probe(command, off)) {
@@ -333,8 +333,8 @@ TEST(Probe, IsMadeAgainIfItCouldNotBeMade) {
   write_file(scratch.path() / "wrong.py", program);
   enable();
   const SolverChoice choice =
-      parse_solver("external:cmd='python3 " + (scratch.path() / "wrong.py").string() + " " +
-                   TAUT_SOURCE_DIR + "/experiments/external/sdk'");
+      parse_solver("external:cmd='python3 " + (scratch.path() / "wrong.py").string() + " \"" +
+                   TAUT_SOURCE_DIR + "/experiments/external/sdk\"'");
   const Scene scene = hanging_sheet(4, 4);
   {
     const NoMoreFiles limit;

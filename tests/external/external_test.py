@@ -8,6 +8,7 @@ import csv
 import json
 import os
 import pathlib
+import shlex
 import shutil
 import subprocess
 import sys
@@ -23,11 +24,11 @@ os.environ["TAUT_SDK"] = str(SDK)
 os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
 USERS_SOLVERS = os.environ.get("TAUT_SOLVERS")
 LISTING = "jakobsen:substeps=1,order=mesh,projection=exact,precision=double,iterations="
-TOYS = {"python": f"python3 {SDK}/toy.py", "cpp": str(BINARIES / "tests" / "taut_toy_solver"), "node": f"node {SDK}/toy.js"}
+TOYS = {"python": f'python3 "{SDK}/toy.py"', "cpp": f'"{BINARIES}/tests/taut_toy_solver"', "node": f'node "{SDK}/toy.js"'}
 
 
 def hostile(mode, timeout=3):
-    return f"external:cmd='python3 {HERE}/hostile.py {mode}',timeout={timeout}"
+    return f"""external:cmd='python3 "{HERE}/hostile.py" {mode}',timeout={timeout}"""
 
 
 def alive(word):
@@ -66,8 +67,8 @@ class Programs(CommandLine):
 class Toys(Programs):
     def check(self, toy):
         command = TOYS[toy]
-        if not shutil.which(command.split()[0]):
-            self.skipTest(f"{command.split()[0]} is not here: its SDK is not tested")
+        if not shutil.which(shlex.split(command)[0]):
+            self.skipTest(f"{shlex.split(command)[0]} is not here: its SDK is not tested")
         probe = self.taut("external", "probe", command)
         self.assertIn("It may be scored.", probe.out)
         self.assertEqual(probe.out.count("passed"), 9, probe.out)
@@ -174,8 +175,8 @@ class Everywhere(Programs):
         """In Perl, without an SDK; it has sweeps and no substeps: its steps are one."""
         if not shutil.which("perl"):
             self.skipTest("perl is not here")
-        perl = f"external:cmd='perl {HERE}/relax.pl'"
-        self.assertIn("It may be scored.", self.taut("external", "probe", f"perl {HERE}/relax.pl").out)
+        perl = f"""external:cmd='perl "{HERE}/relax.pl"'"""
+        self.assertIn("It may be scored.", self.taut("external", "probe", f'perl "{HERE}/relax.pl"').out)
         study = self.study(solvers=[perl, "bullet"], rest='[axes]\niterations = [1, 2]\n[[plot]]\nkind = "convergence"\n')
         self.taut("run", study)
         self.assertEqual([r["status"]["kind"] for r in self.records()], ["ok"] * 4)
@@ -245,7 +246,7 @@ class Everywhere(Programs):
         verify = self.taut("verify", "--solver", toy)
         self.assertIn("any-solver", verify.out)
         self.assertIn("4 passed", verify.err)
-        wrong = self.taut("verify", "--solver", f"external:cmd='python3 {HERE}/wrong.py pins'", expect=1)
+        wrong = self.taut("verify", "--solver", f"""external:cmd='python3 "{HERE}/wrong.py" pins'""", expect=1)
         self.assertIn("broken", wrong.out)
         study = self.study(solvers=[toy, "jakobsen:substeps=1,order=mesh"], rest="[axes]\niterations = [1, 4]\n")
         self.taut("baseline", "update", study, "--baselines", "kept", "--why", "new")
@@ -334,14 +335,14 @@ class Hostile(Programs):
         records = self.records()
         self.assertEqual([r["status"]["kind"] for r in records if r["solver"] == "jakobsen"], ["ok"])
         for mode, (kind, reason) in expected.items():
-            record, = [r for r in records if f"hostile.py {mode}" in r["params"].get("cmd", "")]
+            record, = [r for r in records if r["params"].get("cmd", "").endswith(f"hostile.py\" {mode}")]
             with self.subTest(mode):
                 status = record["status"]
                 self.assertEqual(status["kind"], kind, status)
                 self.assertIn(reason, status["reason"])
                 if kind not in ("ok", "exploded"):
                     self.assertEqual(status["step"], -1 if mode.startswith("hello") else 4)
-        self.assertEqual([r["log"] for r in records if "hostile.py exit" in r["params"].get("cmd", "")], ["enough of this\n"])
+        self.assertEqual([r["log"] for r in records if 'hostile.py" exit' in r["params"].get("cmd", "")], ["enough of this\n"])
         for left in ("hostile.py", "1000", "1001", "1002"):
             self.assertEqual([p for p in alive(left) if b"sleep" in p[1] or b"hostile" in b"".join(p[1])], [])
 
@@ -393,12 +394,12 @@ class Probe(Programs):
                     "outlives": "end of input: does not end within 5 s"}
         for mode, says in expected.items():
             with self.subTest(mode):
-                probe = self.taut("external", "probe", f"python3 {HERE}/wrong.py {mode}", expect=1)
+                probe = self.taut("external", "probe", f'python3 "{HERE}/wrong.py" {mode}', expect=1)
                 self.assertRegex(probe.out, "FAILED  (" + says + ")")
                 self.assertIn("it is not scored", probe.out)
 
     def test_nobody_is_scored_before_it_passes(self):
-        status = self.case(f"external:cmd='python3 {HERE}/wrong.py down'", "./small.toml")["status"]
+        status = self.case(f"""external:cmd='python3 "{HERE}/wrong.py" down'""", "./small.toml")["status"]
         self.assertEqual(status["kind"], "error")
         self.assertRegex(status["reason"], "not scored, free fall: .*it falls along")
 

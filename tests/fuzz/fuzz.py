@@ -269,7 +269,7 @@ def program(attempt):
     """A solver from outside of which one answer is damaged."""
     attempt.write('small.toml', SMALL)
     hostile = SOURCES / 'tests/external/hostile.py'
-    text = f"external:cmd='python3 {hostile} random {attempt.random.randrange(10**9)}',timeout=1"
+    text = f'''external:cmd='python3 "{hostile}" random {attempt.random.randrange(10**9)}',timeout=1'''
     attempt.write('study.toml', f'question = "?"\nscenes = ["./small.toml"]\nsolvers = {toml([text, "jakobsen"])}\n')
     attempt.run('./study.toml')
     attempt.taut('external', 'probe', text, '--json')
