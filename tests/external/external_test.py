@@ -31,12 +31,18 @@ def hostile(mode, timeout=3):
     return f"""external:cmd='python3 "{HERE}/hostile.py" {mode}',timeout={timeout}"""
 
 
+MARK = f"TAUT_EXTERNAL_TEST={os.getpid()}"
+os.environ.update([MARK.split("=")])
+
+
 def alive(word):
-    """Processes whose command line has the word."""
+    """Processes that this test started, or what it started, and whose command line has the word: other tests run beside it."""
     found = []
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
             words = (folder / "cmdline").read_bytes().split(b"\0")
+            if MARK.encode() not in (folder / "environ").read_bytes().split(b"\0"):
+                continue
         except OSError:
             continue
         if any(word.encode() == w or w.endswith(word.encode()) for w in words):
@@ -370,6 +376,8 @@ class Hostile(Programs):
             if len(alive("hostile.py")) == 1:
                 break
             time.sleep(0.05)
+        else:
+            self.fail("it never began")
         time.sleep(1)
         case.kill()
         case.communicate()
