@@ -48,11 +48,18 @@ void wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t old)
 }  // namespace
 
 ThreadPool::ThreadPool(int threads) : parts_(static_cast<std::size_t>(threads) * kParts) {
-  for (int member = 1; member < threads; ++member)
-    threads_.emplace_back([this, member] { serve(static_cast<std::size_t>(member)); });
+  try {
+    for (int member = 1; member < threads; ++member)
+      threads_.emplace_back([this, member] { serve(static_cast<std::size_t>(member)); });
+  } catch (...) {  // no memory for another stack, or too many threads
+    stop();
+    throw;
+  }
 }
 
-ThreadPool::~ThreadPool() {
+ThreadPool::~ThreadPool() { stop(); }
+
+void ThreadPool::stop() {
   stop_ = true;
   ++round_;
   round_.notify_all();

@@ -21,7 +21,8 @@ namespace taut {
 /// is not waited for: on a busy machine the caller does the work alone.
 class ThreadPool {
  public:
-  explicit ThreadPool(int threads);  ///< >= 1, the caller included; 1 starts none
+  /// threads >= 1, the caller included; 1 starts none. Throws std::system_error if not all start.
+  explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
@@ -135,6 +136,7 @@ class ThreadPool {
     count_ = blocks;
     stages_.emplace_back(reaches_next_part, work);
   }
+  void stop();
   std::size_t begin_of(std::size_t part) const {
     return std::min(count_, units() * part / part_count_ * blocks_per_unit_);
   }

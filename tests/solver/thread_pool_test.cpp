@@ -1,11 +1,14 @@
 #include "core/solver/thread_pool.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <atomic>
+#include <fstream>
 #include <new>
 #include <numeric>
+#include <system_error>
 #include <vector>
 
 namespace taut::thread_pool_test {
@@ -128,6 +131,17 @@ TEST(ThreadPool, WhatWorkThrowsComesToTheCaller) {
       ASSERT_EQ(visits, std::vector<int>(50, 1)) << "it works as before";
     }
   }
+}
+
+TEST(ThreadPool, WithoutMemoryForItsThreadsThrowsAndEndsThoseThatBegan) {
+  rlimit before{};
+  getrlimit(RLIMIT_AS, &before);
+  rlim_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlimit little{pages * 4096 + (rlim_t{200} << 20), before.rlim_max};  // stacks: 8 MiB each
+  setrlimit(RLIMIT_AS, &little);
+  EXPECT_THROW(ThreadPool(200), std::system_error);
+  setrlimit(RLIMIT_AS, &before);
 }
 
 TEST(ThreadPool, FinishesWhatIsQueuedBeforeOtherWork) {
