@@ -4,6 +4,7 @@
 #include <csignal>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
@@ -231,6 +232,8 @@ int command_line(int argc, char** argv) {
     std::cerr << failure.status << ": " << failure.what() << '\n' << failure.log;
   } catch (const std::filesystem::filesystem_error& error) {
     std::cerr << error.path1().string() << ": " << error.code().message() << '\n';
+  } catch (const std::system_error& error) {  // as of a thread that cannot be started
+    std::cerr << error.what() << '\n';
   }
   return kUsage;
 }

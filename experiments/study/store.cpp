@@ -173,15 +173,24 @@ bool Store::set_aside(const std::string& key, const std::string& why) const {
   const fs::path place = root_ / "corrupt" / (key + "." + unique_suffix());
   std::error_code error;
   fs::create_directories(place.parent_path(), error);
-  if (!error) fs::rename(file(key), place, error);
-  if (error == std::errc::no_such_file_or_directory) return true;  // another process took it away
-  if (!error) try {  // or put another one there meanwhile
+  if (!error) {
+    fs::rename(file(key), place, error);
+    if (error == std::errc::no_such_file_or_directory) return true;  // another process took it
+  }
+  std::optional<Record> sound;  // that another process put there meanwhile
+  EntryParts parts;
+  if (!error) try {
       const StoredEntry entry(place);
-      commit(parts_of(entry), open_entry(entry, key));
-      fs::remove(place);
-      return true;
+      parts = parts_of(entry);
+      sound = open_entry(entry, key);
     } catch (const std::exception&) {  // it is damaged indeed
     }
+  if (sound) {
+    commit(std::move(parts), *sound);
+    flush();
+    fs::remove(place);
+    return true;
+  }
   notice_(file(key).string() + ": corrupt entry (" + why + "), " +
           (error ? "ignored: " + error.message() : "set aside as " + place.string()));
   return !error;
@@ -275,7 +284,7 @@ void Store::take_failure_away(const std::string& key) const {
   }
   const StoredEntry entry(taken);
   if (const Record record = open_entry(entry, key); record.status.is_result())
-    commit(parts_of(entry), record);  // of a process that took the failure away before
+    commit(parts_of(entry), record), flush();  // of a process that took the failure away before
   fs::remove(taken);
 }
 

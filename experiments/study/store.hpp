@@ -162,7 +162,8 @@ class Store {
   /// Where the entry is in a pack file; nullptr: it is a file of its own, or there is none.
   const PackIndex::Place* packed(const std::string& key) const;
   std::optional<StoredEntry> entry(const std::string& key) const;
-  /// Takes the damaged entry away; false if it cannot be.
+  /// Takes the damaged entry away; one that another process put there meanwhile comes back. False
+  /// if nothing can be done.
   bool set_aside(const std::string& key, const std::string& why) const;
   /// So that a result is created and replaces nothing; one that another process put there since
   /// goes back.

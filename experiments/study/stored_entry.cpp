@@ -106,7 +106,10 @@ StoredEntry::StoredEntry(fs::path file, std::uint64_t offset)
 
 std::optional<StoredEntry> StoredEntry::in(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in && !fs::exists(file)) return {};
+  if (!in.is_open()) {
+    if (!fs::exists(file)) return {};
+    in.clear(), in.open(file, std::ios::binary);  // it has come meanwhile, or cannot be read
+  }
   return StoredEntry(file, std::move(in), 0);
 }
 

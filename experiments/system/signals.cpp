@@ -116,7 +116,7 @@ void install_handler() {
 }  // namespace
 
 bool has_mark(pid_t process, const std::string& mark) {
-  for (int attempt = 0; attempt < 200; ++attempt) {
+  for (int attempt = 0; attempt < 1000; ++attempt) {
     std::ifstream file("/proc/" + std::to_string(process) + "/environ", std::ios::binary);
     const std::string variables{std::istreambuf_iterator<char>(file), {}};
     if (variables.starts_with(mark) || variables.find('\0' + mark) != variables.npos) return true;

@@ -209,11 +209,13 @@ class Launcher(unittest.TestCase):
         self.assertIn("default: absent\n  default: test_disk: needs a disk\n", whole.err)
         cmake = self.clone / "CMakeLists.txt"
         good = cmake.read_text()
-        cmake.write_text(good.replace("planted COMMAND true", "planted COMMAND false"))
+        cmake.write_text(good.replace("planted COMMAND true", "planted COMMAND sh -c \"seq 100; false\""))
         self.call("test")
-        self.assertRegex(self.call("test", "--all", expect=1).err, r"FAILED:\n  default: .* planted \.+\*\*\*Failed .*\n$")
+        self.assertRegex(self.call("test", "--all", expect=1).err, r"FAILED:\n  default: .* planted \.+\*\*\*Failed .*\n"
+                         r"(  default: \d+\n){14}  default: 56\n(  default: \d+\n){43}  default: 100\n$")
         cmake.write_text(good.replace("enable_testing()", 'enable_testing()\nif(TAUT_SANITIZE)\nmessage(FATAL_ERROR "not here")\nendif()'))
         broken = self.call("test", "--all", expect=1)
+        self.assertTrue(broken.err.endswith("FAILED:\n  asan: the build\n"), broken.err)
         self.assertIn("not here", broken.err)
         self.assertRegex(broken.out, r"planted \.+ +Passed", "what follows runs all the same")
 

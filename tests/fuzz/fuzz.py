@@ -320,9 +320,11 @@ def main():
     shutil.rmtree(scratch)
     for each, seen in codes.items():
         print(f'{each:14} ' + ', '.join(f'exit {code}: {count}' for code, count in sorted(seen.items())))
-    vacuous = [each for each, seen in codes.items() if i > 20 and len(seen) < 2]
-    if vacuous:
-        print('all alike, so nothing was tried: ' + ', '.join(vacuous))
+    # Of some kinds one attempt in twenty ends otherwise than the rest: of 180 all are alike in 1 of 10,000 runs, of 40 in one of eight.
+    alike = [each for each, seen in codes.items() if i > 20 and len(seen) < 2]
+    vacuous = alike and i >= 180
+    if alike:
+        print('all alike' + (', so nothing was tried: ' if vacuous else ', perhaps by chance: ') + ', '.join(alike))
     return 1 if findings or vacuous else 0
 
 
