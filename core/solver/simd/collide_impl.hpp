@@ -137,6 +137,15 @@ class NearParticles {
   std::size_t vectors_ = 0, count_ = 0;
 };
 
+/// A cloth lies on a plane with nearly all of its lanes, and there is little to compute: putting
+/// near ones side by side would not pay.
+template <template <class> class SurfaceOf>
+inline constexpr bool kTouchesSomeLanes = true;
+template <>
+inline constexpr bool kTouchesSomeLanes<PlaneSurface> = false;
+template <>
+inline constexpr bool kTouchesSomeLanes<LevelPlaneSurface> = false;
+
 template <class Narrow, class Wide, class P, bool continuous, class Real,
           template <class> class SurfaceOf>
 void collide(const Contact<Real, SurfaceOf>& contact_in, const ParticleSpan<Real>& span_in,
@@ -147,9 +156,7 @@ void collide(const Contact<Real, SurfaceOf>& contact_in, const ParticleSpan<Real
       span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
         using T = decltype(t);
         constexpr int lanes = of_layout;
-        // A cloth lies on a plane with nearly all of its lanes, and there is little to compute.
-        constexpr bool some_lanes =
-            kPermutes<T> && !std::is_same_v<SurfaceOf<Real>, PlaneSurface<Real>>;
+        constexpr bool some_lanes = kPermutes<T> && kTouchesSomeLanes<SurfaceOf>;
         [[maybe_unused]] std::conditional_t<some_lanes, NearParticles<T, lanes, Real>, int> found;
         const auto one = [&](std::size_t at, const auto& present) __attribute__((always_inline)) {
           Vec3T<T> x = load_vec3<T, lanes>(span.x + at);
@@ -166,6 +173,19 @@ void collide(const Contact<Real, SurfaceOf>& contact_in, const ParticleSpan<Real
         visit_particles<T, lanes>(span, begin, end, one);
         if constexpr (some_lanes) found.template project<continuous>(contact, span.x);
       });
+}
+
+/// The same numbers, with what a surface along the world's axes does not need left out of the loop.
+template <class Narrow, class Wide, class P, bool continuous, class Real,
+          template <class> class SurfaceOf, template <class> class AlignedOf>
+void collide_aligned_or_not(const Contact<Real, SurfaceOf>& contact, const ParticleSpan<Real>& span,
+                            std::size_t begin, std::size_t end) {
+  if (contact.surface.is_aligned())
+    collide<Narrow, Wide, P, continuous, Real, AlignedOf>(
+        {contact.surface.aligned(), contact.motion, contact.thickness, contact.friction}, span,
+        begin, end);
+  else
+    collide<Narrow, Wide, P, continuous, Real, SurfaceOf>(contact, span, begin, end);
 }
 
 }  // namespace taut

@@ -76,16 +76,15 @@ struct Contact {
  private:
   /// Coulomb: the tangential correction is at most mu times the normal one, and no more than the
   /// slip itself.
-  template <class T, class Mask>
-  [[gnu::always_inline]] auto push(Vec3T<T>& x, const Vec3T<T>& from, const Tangent<T>& tangent,
-                                   const Mask& where) const {
-    const Vec3T<T>& normal = tangent.normal;
+  template <class T, class Normal, class Mask>
+  [[gnu::always_inline]] auto push(Vec3T<T>& x, const Vec3T<T>& from,
+                                   const Tangent<T, Normal>& tangent, const Mask& where) const {
+    const Normal& normal = tangent.normal;
     const T depth = tangent.offset + T(thickness) - dot(normal, x);
     const auto deep = where && depth > T(0);
-    Vec3T<T> out = x + depth * normal;
+    Vec3T<T> out = add_along(x, depth, normal);
     if (friction != 0) {
-      Vec3T<T> slip = out - from;
-      slip = slip - dot(normal, slip) * normal;
+      const Vec3T<T> slip = across(out - from, normal);
       const T length = norm(slip), most = T(friction) * depth;
       const auto sticks = length <= most;
       out = out - select(sticks, T(1), most / select(sticks, T(1), length)) * slip;

@@ -431,11 +431,15 @@ constexpr Kernels<Real> make_kernels() {
       .wide_sheet = {sweep_sheet<Wide, kWide, exact, Real>,
                      sweep_sheet<Wide, kWide, sqrt_free, Real>},
       .batches = {batches<P, exact, Real>, batches<P, sqrt_free, Real>},
-      .collide = {.plane = collide<Narrow, Wide, P, false, Real, PlaneSurface>,
-                  .ball = collide<Narrow, Wide, P, false, Real, BallSurface>,
-                  .ball_continuous = collide<Narrow, Wide, P, true, Real, BallSurface>,
-                  .box = collide<Narrow, Wide, P, false, Real, BoxSurface>,
-                  .box_continuous = collide<Narrow, Wide, P, true, Real, BoxSurface>},
+      .collide =
+          {.plane = collide_aligned_or_not<Narrow, Wide, P, false, Real, PlaneSurface,
+                                           LevelPlaneSurface>,
+           .ball = collide<Narrow, Wide, P, false, Real, BallSurface>,
+           .ball_continuous = collide<Narrow, Wide, P, true, Real, BallSurface>,
+           .box =
+               collide_aligned_or_not<Narrow, Wide, P, false, Real, BoxSurface, AlignedBoxSurface>,
+           .box_continuous =
+               collide_aligned_or_not<Narrow, Wide, P, true, Real, BoxSurface, AlignedBoxSurface>},
       .narrow_wind = wind_on_sheet<Narrow, kNarrow, Real>,
       .wide_wind = wind_on_sheet<Wide, kWide, Real>,
       .wind_on_faces = wind_on_faces<P, Real>,

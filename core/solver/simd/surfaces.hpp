@@ -11,9 +11,9 @@ struct Ball;
 struct Box;
 
 /// The place of a surface to which a point belongs: the half-space normal . x >= offset.
-template <class T>
+template <class T, class Normal = Vec3T<T>>
 struct Tangent {
-  Vec3T<T> normal;
+  Normal normal;
   T offset;  ///< m
 };
 template <class Mask, class T>
@@ -40,6 +40,45 @@ struct Entry {
 //   entry(from, to)   tangent where a straight path first meets the solid; the one nearest to
 //                     `from` if it starts inside
 
+/// The normal (0, 1, 0), known when compiling: what multiplies by its zeros is left out.
+struct Up {};
+template <class T>
+[[gnu::always_inline]] inline T dot(Up, const Vec3T<T>& a) {
+  return a.y;
+}
+template <class T>
+[[gnu::always_inline]] inline Vec3T<T> add_along(const Vec3T<T>& a, T by, Up) {
+  return {a.x, a.y + by, a.z};
+}
+template <class T>
+[[gnu::always_inline]] inline Vec3T<T> add_along(const Vec3T<T>& a, T by, const Vec3T<T>& normal) {
+  return a + by * normal;
+}
+/// The part of `a` that lies in the surface.
+template <class T>
+[[gnu::always_inline]] inline Vec3T<T> across(const Vec3T<T>& a, Up) {
+  return {a.x, T(0), a.z};
+}
+template <class T>
+[[gnu::always_inline]] inline Vec3T<T> across(const Vec3T<T>& a, const Vec3T<T>& normal) {
+  return a - dot(normal, a) * normal;
+}
+
+/// A half-space above a floor: the normal is (0, 1, 0).
+template <class Real>
+struct LevelPlaneSurface {
+  Real offset;  ///< m
+
+  template <class T>
+  [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
+    return x.y >= T(offset) + thickness;
+  }
+  template <class T>
+  [[gnu::always_inline]] Tangent<T, Up> nearest(const Vec3T<T>&) const {
+    return {{}, T(offset)};
+  }
+};
+
 /// A half-space has no other side to pass to: nearest() says all.
 template <class Real>
 struct PlaneSurface {
@@ -47,6 +86,8 @@ struct PlaneSurface {
   Vec3T<Real> normal;
   Real offset;  ///< m
 
+  bool is_aligned() const { return normal.x == 0 && normal.y == 1 && normal.z == 0; }
+  LevelPlaneSurface<Real> aligned() const { return {offset}; }
   template <class T>
   [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
     return dot(spread_out<T>(normal), x) >= T(offset) + thickness;
@@ -112,12 +153,21 @@ struct BallSurface {
   }
 };
 
-template <class Real>
-struct BoxSurface {
+template <class Real, bool along_axes>
+struct AnyBoxSurface {
   using Shape = Box;
   Vec3T<Real> center, half;
   Vec3T<Real> axes[3];  ///< the box's own, in the world
   Real far;             ///< m, from the centre to a corner
+
+  bool is_aligned() const {
+    for (int n = 0; n < 3; ++n)
+      if (axes[n].x != (n == 0) || axes[n].y != (n == 1) || axes[n].z != (n == 2)) return false;
+    return true;
+  }
+  AnyBoxSurface<Real, true> aligned() const {
+    return {center, half, {axes[0], axes[1], axes[2]}, far};
+  }
 
   template <class T>
   [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
@@ -179,6 +229,7 @@ struct BoxSurface {
  private:
   template <class T>
   [[gnu::always_inline]] Vec3T<T> turned(const Vec3T<T>& v) const {
+    if constexpr (along_axes) return v;
     return {dot(spread_out<T>(axes[0]), v), dot(spread_out<T>(axes[1]), v),
             dot(spread_out<T>(axes[2]), v)};
   }
@@ -188,6 +239,7 @@ struct BoxSurface {
   }
   template <class T>
   [[gnu::always_inline]] Vec3T<T> world(const Vec3T<T>& v) const {
+    if constexpr (along_axes) return v;
     const auto sum = [&v](Real a, Real b, Real c) __attribute__((always_inline)) {
       return dot(Vec3T<T>{T(a), T(b), T(c)}, v);
     };
@@ -231,5 +283,11 @@ struct BoxSurface {
     return {normal, dot(normal, spread_out<T>(center) + world(corner))};
   }
 };
+
+template <class Real>
+using BoxSurface = AnyBoxSurface<Real, false>;
+/// One whose axes are the world's.
+template <class Real>
+using AlignedBoxSurface = AnyBoxSurface<Real, true>;
 
 }  // namespace taut

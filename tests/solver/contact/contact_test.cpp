@@ -389,6 +389,55 @@ TEST(Contact, ClosedFormsAgreeWithTheModelAndWithMarching) {
   expect_first_hit<BoxSurface>(box);
 }
 
+/// What surfaces along the world's axes leave out changes no number.
+template <bool continuous, template <class> class SurfaceOf, template <class> class AlignedOf>
+void expect_same_numbers(const auto& shape, const Motion& motion, float friction) {
+  const SurfaceOf<float> surface = rounded<float>(surface_of(shape));
+  ASSERT_TRUE(surface.is_aligned());
+  const RigidMotion<float> moves = rounded<float>(rigid_motion(motion, 0, 0.02));
+  const Contact<float, SurfaceOf> any{surface, moves, 0.01F, friction};
+  const Contact<float, AlignedOf> aligned{surface.aligned(), moves, 0.01F, friction};
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> number(-1, 1);
+  int touched = 0, slid = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const Vec3T<float> before{number(random), number(random), number(random)};
+    const float way = continuous ? 1 : 0.05F;
+    const Vec3T<float> x =
+        before + way * Vec3T<float>{number(random), number(random), number(random)};
+    const bool near = any.template near<continuous>(x, before);
+    EXPECT_EQ(near, aligned.template near<continuous>(x, before));
+    Vec3T<float> a = x, b = x;
+    if constexpr (continuous)
+      EXPECT_EQ(any.project_continuous(a, before, near),
+                aligned.project_continuous(b, before, near));
+    else
+      EXPECT_EQ(any.project(a, before, near), aligned.project(b, before, near));
+    EXPECT_EQ(point(a), point(b));
+    touched += point(a) != point(x);
+    slid += (point(a) - point(before)).norm() > 0.02F;
+  }
+  EXPECT_GT(touched, 100);
+  EXPECT_GT(slid, 100);
+}
+
+TEST(Contact, SurfacesAlongTheAxesGiveTheSameNumbers) {
+  const Motion still, moves{.velocity = Vec3(0.3, -0.2, 0.1)};
+  for (const Motion& motion : {still, moves})
+    for (const float friction : {0.0F, 0.4F}) {
+      const Box box{{0.1, 0.1, -0.1}, {0.3, 0.2, 0.5}};
+      expect_same_numbers<false, PlaneSurface, LevelPlaneSurface>(Plane{Vec3::UnitY(), 0.2}, motion,
+                                                                  friction);
+      expect_same_numbers<false, BoxSurface, AlignedBoxSurface>(box, motion, friction);
+      expect_same_numbers<true, BoxSurface, AlignedBoxSurface>(box, motion, friction);
+    }
+  Box turned{{0, 0, 0}, {1, 1, 1}};
+  turned.rotation = Eigen::AngleAxisd(1e-3, Vec3::UnitX());
+  EXPECT_FALSE(surface_of(turned).is_aligned());
+  EXPECT_FALSE(surface_of(Plane{-Vec3::UnitY(), 0}).is_aligned());
+  EXPECT_FALSE(surface_of(Plane{Vec3(1e-3, 1, 0).normalized(), 0}).is_aligned());
+}
+
 // The deepest point b of a level face moves by c = s n less the friction, at most mu s against its
 // slip d: its corners by w_i b_i c / sum of w_j b_j^2.
 TEST(FaceContact, RubsAgainstTheSlipOfItsDeepestPoint) {
