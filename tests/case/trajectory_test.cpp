@@ -129,7 +129,7 @@ TEST_F(TrajectoryTest, TheDocumentedPythonReadsIt) {
   const fs::path file = path_.string() + ".py";
   std::ofstream(file) << script;
   std::string output(256, '\0');
-  FILE* python = popen(("python3 " + file.string()).c_str(), "r");
+  FILE* python = popen(("python3 '" + file.string() + "'").c_str(), "r");
   ASSERT_NE(python, nullptr);
   output.resize(std::fread(output.data(), 1, output.size(), python));
   EXPECT_EQ(pclose(python), 0);

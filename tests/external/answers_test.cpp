@@ -286,7 +286,7 @@ TEST(Probe, DrawsEveryLineWhereItSaysItDoes) {
   write_file(scratch.path() / "slightly.py", kSlightlyWrong);
   const std::string sdk = std::string(TAUT_SOURCE_DIR) + "/experiments/external/sdk";
   const Command command = split_command(
-      "python3 " + (scratch.path() / "slightly.py").string() + " '" + sdk + "'", scratch.path());
+      "python3 '" + (scratch.path() / "slightly.py").string() + "' '" + sdk + "'", scratch.path());
   const auto failed = [&](const Json& off) {
     std::string all;
     for (const Check& check : quick_probe(command, off)) {
@@ -333,7 +333,7 @@ TEST(Probe, IsMadeAgainIfItCouldNotBeMade) {
   write_file(scratch.path() / "wrong.py", program);
   enable();
   const SolverChoice choice =
-      parse_solver("external:cmd='python3 " + (scratch.path() / "wrong.py").string() + " \"" +
+      parse_solver("external:cmd='python3 \"" + (scratch.path() / "wrong.py").string() + "\" \"" +
                    TAUT_SOURCE_DIR + "/experiments/external/sdk\"'");
   const Scene scene = hanging_sheet(4, 4);
   {
@@ -362,7 +362,7 @@ TEST(Connections, MeasureWhatTheProgramUsesAndWhetherItHasHelp) {
   const Scratch scratch;
   write_file(scratch.path() / "tells.py", kTells);
   Connection connection(
-      split_command("python3 " + (scratch.path() / "tells.py").string(), scratch.path()));
+      split_command("python3 '" + (scratch.path() / "tells.py").string() + "'", scratch.path()));
   const Json told = connection.ask_line("hello");
   const double kilobytes = told["kilobytes"], cpu = told["cpu"];
   EXPECT_GT(kilobytes, 40'000);

@@ -79,10 +79,11 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
       next = chosen.size();
     }
   };
-  std::vector<std::thread> threads;
-  for (int j = 1; j < options.jobs; ++j) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+  {
+    std::vector<std::jthread> threads;
+    for (int j = 1; j < options.jobs; ++j) threads.emplace_back(work);
+    work();
+  }
   if (failed) std::rethrow_exception(failed);
   return outcomes;
 }

@@ -209,10 +209,11 @@ void film_scenes(report::ReportInput& input, const std::vector<std::string>& oth
       say(news);
     }
   };
-  std::vector<std::thread> threads;
-  for (int j = 1; j < kScenesAtATime; ++j) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+  {
+    std::vector<std::jthread> threads;
+    for (int j = 1; j < kScenesAtATime; ++j) threads.emplace_back(work);
+    work();
+  }
   for (auto& result : results) {
     if (!result) continue;
     input.media.push_back(std::move(result->media));
