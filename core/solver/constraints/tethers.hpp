@@ -44,7 +44,10 @@ class TetherPass final : public Pass<Real> {
     std::size_t k = 0;
     for (const Tether& t : tethers_) {
       k = t.vertex == vertex ? k + 1 : 0, vertex = t.vertex;
-      if (k == pins_.size()) pins_.emplace_back(p.layout), lengths_.emplace_back(p.layout);
+      if (k == pins_.size()) {
+        pins_.emplace_back(p.layout), lengths_.emplace_back(p.layout);
+        lengths_[k].fill(static_cast<Real>(kNoTether));
+      }
       const auto length = static_cast<Real>(std::max(t.length, kTinyLength));
       pins_[k].set(to_index(t.vertex), p.x[to_index(t.pin)]);
       lengths_[k].set(to_index(t.vertex), {length, 0, 0});

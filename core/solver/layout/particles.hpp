@@ -129,6 +129,9 @@ class Points {
             __attribute__((always_inline)) { return load_vec4<true>(points.data() + 4 * i, 1); });
   }
 
+  /// Every coordinate, padding too.
+  void fill(Real value) { std::ranges::fill(values_, value); }
+
   Real* data() { return values_.data(); }
   const Real* data() const { return values_.data(); }
   std::size_t bytes() const { return values_.size() * sizeof(Real); }

@@ -154,11 +154,13 @@ struct CollideKernels {
 };
 
 /// One tether of each particle, in the particles' layout: its pin and, where their x are, its
-/// length [m]; 0: none.
+/// length [m]; kNoTether: none.
 template <class Real>
 struct TetherTable {
   const Real *pin, *length;
 };
+/// Longer than any [m]; a float holds its square.
+inline constexpr double kNoTether = 1e18;
 
 /// Between which bounds the motions of all particles lie [m].
 template <class Real>

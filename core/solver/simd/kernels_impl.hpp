@@ -295,9 +295,10 @@ void tethers(const ParticleSpan<Real>& span_in, std::span<const TetherTable<Real
           for (const TetherTable<Real>& table : some) {
             Vec3T<T> pin = load_vec3<T, lanes>(table.pin + at), end = x;
             const T length = load_vec3<T, lanes>(table.length + at).x;
-            const auto tight = length > T(0) && squared_norm(x - pin) > length * length;
+            const Vec3T<T> way = end - pin;  // summed as project_distance sums: computed once
+            const auto tight = way.x * way.x + way.y * way.y + way.z * way.z > length * length;
             if (!any(tight)) continue;
-            project_distance<kind>(pin, end, select(tight, length, T(1)), T(0), T(1));
+            project_distance<kind>(pin, end, length, T(0), T(1));
             x = select(tight, end, x);
             moved = true;
           }
