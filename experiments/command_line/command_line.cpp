@@ -231,7 +231,7 @@ int command_line(int argc, char** argv) {
   } catch (const SolverFailure& failure) {
     std::cerr << failure.status << ": " << failure.what() << '\n' << failure.log;
   } catch (const std::filesystem::filesystem_error& error) {
-    std::cerr << error.path1().string() << ": " << error.code().message() << '\n';
+    std::cerr << printable(error.path1().string()) << ": " << error.code().message() << '\n';
   } catch (const std::system_error& error) {  // as of a thread that cannot be started
     std::cerr << error.what() << '\n';
   }

@@ -103,6 +103,10 @@ class HostileText(CommandLine):
             self.assertIn("?[31m", refused.err)
         self.taut("case", "./small.toml", "\x1b[31m", expect=2)
         self.taut("case", "./small.toml", "jakobsen:\x1b[31m=\x9b", expect=2)
+        missing = "\x1b[31mno folder"
+        self.assertIn("'?[31mno folder'", self.taut("check", self.study(scenes=["./small.toml"]), "--baselines", missing, expect=4).out)
+        (self.folder / missing).mkdir()
+        self.assertIn("?[31mno folder", self.taut("check", "./study.toml", "--baselines", missing, expect=4).out)
         long = self.taut("case", "./small.toml", "jakobsen:" + "x" * 100_000, expect=2)
         self.assertLess(len(long.err), 5000)
 

@@ -1,5 +1,6 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/render/image/video.hpp"
@@ -101,7 +102,7 @@ Files draw_video(const Options& options, const RunSet& set, const fs::path& out)
     countdown(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(frames));
   const std::string why = video.finish();
   if (why.empty()) return {out.string()};
-  std::cerr << out.string() << ": " << why << "; a picture of its end instead\n";
+  std::cerr << printable(out.string()) << ": " << why << "; a picture of its end instead\n";
   fs::path poster = out;
   write_png(poster.replace_extension(".png"), compose(renderer, layout, set.scene.duration()));
   return {poster.string()};

@@ -1,3 +1,4 @@
+#include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/baseline_study.hpp"
@@ -136,10 +137,10 @@ int check_study(const std::string& name, const Options& options, std::string& xm
     std::ostream& out = options.json ? std::cerr : std::cout;
     out << study.name << ": nothing to compare with: ";
     if (std::filesystem::is_directory(folder))
-      out << "no baseline in " << study.folder.string() << "; taut baseline update " << study.name
-          << " --why \"...\" makes one\n";
+      out << "no baseline in " << printable(study.folder.string()) << "; taut baseline update "
+          << study.name << " --why \"...\" makes one\n";
     else
-      out << "no folder '" << folder << "' here; --baselines names another\n";
+      out << "no folder '" << printable(folder) << "' here; --baselines names another\n";
     return kNothing;
   }
   const bool same = same_toolchain(study, options.strict);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/baseline/assertions_baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -217,7 +218,7 @@ int compare_with_baseline(const std::vector<JudgedAssertion>& assertions, const 
     return kPass;
   }
   if (!std::filesystem::exists(file)) {
-    std::cerr << "assertions: no baseline " << file.string() << '\n';
+    std::cerr << "assertions: no baseline " << printable(file.string()) << '\n';
     return options.assertions ? kNothing : kPass;
   }
   const std::vector<std::string> changes = compare_assertions(read_assertions(file), assertions);
