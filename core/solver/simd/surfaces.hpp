@@ -193,9 +193,10 @@ struct AnyBoxSurface {
   template <class T>
   [[gnu::always_inline]] Tangent<T> nearest(const Vec3T<T>& x) const {
     const Vec3T<T> at = local(x), past = excess(at);
-    const auto inside = largest(past) <= T(0);
-    Tangent<T> tangent = over_corner(at);
-    if (any(inside)) tangent = select(inside, over_face(at, past), tangent);
+    const T least = lesser(past.x, past.y), most = greater(past.x, past.y);
+    const auto over_two = greater(least, lesser(most, past.z)) > T(0);  // the second largest
+    Tangent<T> tangent = over_face(at, past);
+    if (any(over_two)) tangent = select(over_two, over_corner(at), tangent);
     return tangent;
   }
   template <class T>
@@ -257,11 +258,16 @@ struct AnyBoxSurface {
   }
   template <class T>
   [[gnu::always_inline]] Tangent<T> face(int axis, T sign) const {
+    const Real most[3] = {half.x, half.y, half.z}, middle[3] = {center.x, center.y, center.z};
+    if constexpr (along_axes) {
+      const T none(0);
+      return {{axis == 0 ? sign : none, axis == 1 ? sign : none, axis == 2 ? sign : none},
+              sign * T(middle[axis]) + T(most[axis])};
+    }
     const Vec3T<T> normal = sign * spread_out<T>(axes[axis]);
-    const Real most[3] = {half.x, half.y, half.z};
     return {normal, dot(normal, spread_out<T>(center)) + T(most[axis])};
   }
-  /// From inside, out of the nearest face.
+  /// Out of the nearest face; from outside, over that face and no other, away from it.
   template <class T>
   [[gnu::always_inline]] Tangent<T> over_face(const Vec3T<T>& at, const Vec3T<T>& past) const {
     const auto sign = [](T v) __attribute__((always_inline)) {
@@ -270,7 +276,7 @@ struct AnyBoxSurface {
     const Tangent<T> xy = select(past.y > past.x, face(1, sign(at.y)), face(0, sign(at.x)));
     return select(past.z > greater(past.x, past.y), face(2, sign(at.z)), xy);
   }
-  /// From outside, straight away from the nearest point of the box.
+  /// From outside, away from the nearest point, of an edge or corner.
   template <class T>
   [[gnu::always_inline]] Tangent<T> over_corner(const Vec3T<T>& at) const {
     const Vec3T<T> h = spread_out<T>(half);
