@@ -220,31 +220,62 @@ TEST(Lights, AreAKeyFromTheLeftAFillFromTheRightAndTheSky) {
   for (std::size_t i = 18; i < 36; ++i) EXPECT_GT(lights[i].direction.y(), 0);
 }
 
-TEST(Lights, OpenGroundIsOneAndWhatLiesBelowACanopyIsDark) {
-  const std::vector<Light> lights = light_set(24, Vec3f::UnitY(), camera_in_front());
+/// Mean brightness, 0 to 1, of the pixels around this place of a picture.
+double brightness(const Image& picture, double x, double y) {
+  double sum = 0;
+  for (int j = -2; j <= 2; ++j)
+    for (int i = -2; i <= 2; ++i) {
+      const Rgb8 c = picture.at(static_cast<int>(x * picture.width()) + i,
+                                static_cast<int>(y * picture.height()) + j);
+      sum += (c.r + c.g + c.b) / (3 * 255.0 * 25);
+    }
+  return sum;
+}
+
+// A canopy over level ground, seen from 60 degrees above: what lies in its shade is dark, its upper
+// side and the ground far from it are as bright as if there were nothing else.
+TEST(Lights, OpenGroundIsBrightAndWhatLiesBelowACanopyIsDark) {
+  Panel panel;
+  const std::vector<Vec3> seen{Vec3(-2, 0, -2), Vec3(2, 0, 2)};
+  panel.camera = fit_camera(seen, Vec3::UnitY(), View{0, 60}, 1, FitRegion{});
+  panel.theme = Theme::paper();
+  panel.theme.line = 0, panel.theme.shadow = 1;
+  panel.lights = light_set(24, Vec3f::UnitY(), panel.camera);
+  panel.ground.half_side = 2;
+  panel.casters = {Vec3f::Zero(), 1};
+  const GlContext gl;
+  const Renderer renderer(gl, 200, 200, 1, {24, 256, 80});
+
   const Scene scene = test::level_sheet(9);
-  std::vector<double> none(scene.start.x.size(), 0);
-  std::vector<Vec3> canopy = scene.start.x, patch = scene.start.x;
-  for (Vec3& p : canopy) p.y() = 0.12;
-  for (Vec3& p : patch) p = 0.2 * p + Vec3(0, 0.001, 0);
+  const std::vector<double> none(scene.start.x.size(), 0);
+  std::vector<Vec3> x = scene.start.x;
   const ClothMesher mesher(scene, 8);
-  GroundLight ground;
-  ground.half_side = 2;
-  const Sphere casters{Vec3f::Zero(), 1};
-  const LightQuality quality{24, 256, 40};
-  std::vector<RenderMesh> meshes;
-  bake_light(lights, quality, casters, meshes, ground);
-  ASSERT_EQ(ground.light.size(), 1600u);
-  for (const float light : ground.light) EXPECT_NEAR(light, 1, 1e-4);
-  meshes = {mesher.mesh(canopy, none, none), mesher.mesh(patch, none, none)};
-  bake_light(lights, quality, casters, meshes, ground);
-  EXPECT_LT(ground.light[20 * 40 + 20], 0.35) << "below the canopy";
-  EXPECT_NEAR(ground.light[0], 1, 1e-3) << "far from it";
-  const auto middle = [](const std::vector<float>& side) { return side[side.size() / 2]; };
-  const bool up = meshes[0].normal[0].y() > 0;
-  EXPECT_NEAR(middle(up ? meshes[0].front : meshes[0].back), 1, 0.02) << "the canopy's upper side";
-  EXPECT_NEAR(middle(up ? meshes[0].back : meshes[0].front), 0, 0.02) << "its lower side";
-  EXPECT_LT(middle(up ? meshes[1].front : meshes[1].back), 0.35) << "the patch in its shade";
+  const auto sheet = [&](double scale, double height) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = scale * scene.start.x[i] + Vec3(0, height, 0);
+    return mesher.mesh(x, none, none);
+  };
+  /// Where a point of the world stands in the picture, of brightness 0 to 1.
+  const auto at = [&](const Image& picture, const Vec3f& p) {
+    const Eigen::Vector4f clip = panel.camera.world_to_clip(1) * p.homogeneous();
+    return brightness(picture, 0.5 + 0.5 * clip.x() / clip.w(), 0.5 - 0.5 * clip.y() / clip.w());
+  };
+  const Vec3f far(1.7f, 0, 0), below(0, 0, 0.3f);
+  const RenderMesh speck = sheet(0.001, 0), high = sheet(0.9, 0.5), lower = sheet(0.2, 0.05);
+
+  panel.painted = {{&speck, rgb(0x808080), 0}};
+  const Image open = renderer.draw(panel);
+  EXPECT_NEAR(at(open, below), at(open, far), 0.02) << "open ground is the background";
+  EXPECT_NEAR(at(open, far), 0.92, 0.03);
+
+  panel.painted = {{&high, {}, 0}};
+  const Image covered = renderer.draw(panel);
+  panel.painted = {{&lower, {}, 0}};
+  const double uncovered = at(renderer.draw(panel), Vec3f(0, 0.05f, 0));
+  EXPECT_NEAR(at(covered, Vec3f(0, 0.5f, 0)), uncovered, 0.01) << "height makes no difference";
+  EXPECT_NEAR(at(covered, far), at(open, far), 0.01) << "far from it";
+  // The key light comes from the left at 52 degrees: its shadow is seen to the right of the canopy.
+  EXPECT_LT(at(covered, Vec3f(0.65f, 0, -0.1f)), 0.85 * at(open, far)) << "in its shade";
+  EXPECT_GT(at(covered, Vec3f(-0.65f, 0, -0.1f)), 0.9 * at(open, far)) << "on its bright side";
 }
 
 TEST(Places, FollowClothThatNothingHoldsAndPutTheGroundBelow) {
@@ -259,13 +290,13 @@ TEST(Places, FollowClothThatNothingHoldsAndPutTheGroundBelow) {
   EXPECT_GE(loose.cell, 0.3 * loose.radius);
   EXPECT_LE(loose.cell, loose.radius);
   EXPECT_LT(centroid(runs, 0).norm(), 1e-9);
-  const GroundLight below = loose.floor_below(Vec3(1, 5, 2));
+  const Ground below = loose.floor_below(Vec3(1, 5, 2));
   EXPECT_NEAR(below.origin.y(), loose.ground, 1e-6);
   EXPECT_NEAR(below.origin.x(), 1, 1e-6);
   EXPECT_NEAR(below.half_side, 2.6 * loose.radius, 1e-5);
   EXPECT_NEAR(below.u.cross(below.v).dot(below.up), 1, 1e-5);
   const Vec3 high(0, 10.3 * loose.cell, 0);
-  const GroundLight wall = loose.wall(high);
+  const Ground wall = loose.wall(high);
   EXPECT_NEAR(wall.origin.y(), 10 * loose.cell, 1e-5) << "its lines stay where they are";
   EXPECT_NEAR(wall.half_side, 2.2 * loose.radius, 1e-5);
   EXPECT_LT((wall.origin - high.cast<float>()).dot(loose.camera.back), 0);

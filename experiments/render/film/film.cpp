@@ -115,7 +115,7 @@ MediaOptions options_of(const Film& film, std::size_t runs) {
   if (!film.studied) {
     options.width = 704, options.height = 320;
     options.fps = 16;
-    options.quality.light = {16, 192, 96};
+    options.quality.light = {18, 128, 96};
     options.crf = 27;
   }
   options.width = options.width / static_cast<int>(panels) * static_cast<int>(runs) / 2 * 2;

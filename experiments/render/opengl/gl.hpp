@@ -1,42 +1,43 @@
 #pragma once
 
-#define GL_GLEXT_PROTOTYPES  // for the types of the functions below; nothing of OpenGL is linked
+#define GL_GLEXT_PROTOTYPES  // for the types of the functions below
 #include <GL/glcorearb.h>
 
 #include <string>
 
 namespace taut {
 
-/// The functions of OpenGL 3.3 core that the renderer calls, opened at run time. libepoxy 1.5 would
-/// do it for EGL alone: under OSMesa it finds no context and aborts.
+/// The functions of OpenGL 3.3 core that the renderer calls, opened when the first context is made.
+/// Linked, Mesa and its LLVM would be loaded by every process of every case: 30 ms at each start
+/// instead of 1 ms.
 // clang-format off
 #define TAUT_GL_FUNCTIONS(X)                                                                       \
   X(glActiveTexture) X(glAttachShader) X(glBindBuffer) X(glBindFramebuffer) X(glBindRenderbuffer)  \
   X(glBindTexture) X(glBindVertexArray) X(glBlendFunc) X(glBlitFramebuffer) X(glBufferData)        \
   X(glCheckFramebufferStatus) X(glClear) X(glCompileShader) X(glCreateProgram) X(glCreateShader)   \
   X(glDeleteBuffers) X(glDeleteFramebuffers) X(glDeleteProgram) X(glDeleteRenderbuffers)           \
-  X(glDeleteShader) X(glDeleteTextures) X(glDeleteVertexArrays) X(glDepthMask) X(glDisable)        \
-  X(glDrawArrays) X(glDrawElements) X(glEnable) X(glEnableVertexAttribArray)                       \
-  X(glFramebufferRenderbuffer) X(glGenBuffers) X(glGenFramebuffers) X(glGenRenderbuffers)          \
-  X(glGenTextures) X(glGenVertexArrays) X(glGetIntegerv) X(glGetProgramInfoLog) X(glGetProgramiv)  \
+  X(glDeleteShader) X(glDeleteTextures) X(glDeleteVertexArrays) X(glDisable)                       \
+  X(glDrawArrays) X(glDrawBuffer) X(glDrawElements) X(glEnable) X(glEnableVertexAttribArray)       \
+  X(glFramebufferRenderbuffer) X(glFramebufferTexture2D) X(glFramebufferTextureLayer)              \
+  X(glGenBuffers) X(glGenFramebuffers) X(glGenRenderbuffers) X(glGenTextures)                      \
+  X(glGenVertexArrays) X(glGetIntegerv) X(glGetProgramInfoLog) X(glGetProgramiv)                   \
   X(glGetShaderInfoLog) X(glGetShaderiv) X(glGetString) X(glGetUniformLocation) X(glLineWidth)     \
-  X(glLinkProgram) X(glPixelStorei) X(glPolygonMode) X(glReadPixels)                               \
-  X(glRenderbufferStorageMultisample) X(glShaderSource) X(glTexImage2D) X(glTexParameteri)         \
-  X(glUniform1f) X(glUniform1i) X(glUniform2f) X(glUniform3f) X(glUniform4f) X(glUniformMatrix4fv) \
-  X(glUseProgram) X(glVertexAttribPointer) X(glViewport)
+  X(glLinkProgram) X(glPixelStorei) X(glPolygonMode) X(glPolygonOffset) X(glReadPixels)            \
+  X(glRenderbufferStorageMultisample) X(glShaderSource) X(glTexImage2D) X(glTexImage3D)            \
+  X(glTexParameterfv) X(glTexParameteri) X(glUniform1f) X(glUniform1i) X(glUniform2f)              \
+  X(glUniform3f) X(glUniform4f) X(glUniform4fv) X(glUniformMatrix4fv) X(glUseProgram)              \
+  X(glVertexAttribPointer) X(glViewport)
 // clang-format on
 #define TAUT_GL_DECLARE(name) inline decltype(&::name) name = nullptr;
 TAUT_GL_FUNCTIONS(TAUT_GL_DECLARE)
 #undef TAUT_GL_DECLARE
 
-/// An off-screen OpenGL 3.3 core context of Mesa's software rasteriser: OSMesa if the machine has
-/// it, else EGL without a surface; pictures are the same bytes with either. TAUT_OSMESA and
-/// TAUT_EGL name other libraries than libOSMesa.so.8 and libEGL.so.1. Needs no display, no graphics
-/// card and no network. Current on the thread that made it; draw to framebuffer objects only.
+/// An off-screen OpenGL 3.3 core context of Mesa's software rasteriser, OSMesa: no display,
+/// graphics card or network. Current on the thread that made it; draw to framebuffer objects only.
 class GlContext {
  public:
-  GlContext();  ///< throws InputError that lists what was tried
-  ~GlContext() { destroy_(context_); }
+  GlContext();  ///< throws InputError with the reason if the machine has no OSMesa
+  ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
   /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe (LLVM 15.0.6, 256 bits)"
@@ -44,7 +45,6 @@ class GlContext {
 
  private:
   void* context_ = nullptr;
-  void (*destroy_)(void*) = nullptr;
 };
 
 }  // namespace taut

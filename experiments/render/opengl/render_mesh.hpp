@@ -16,7 +16,6 @@ struct RenderMesh {
   std::vector<Eigen::Vector2f> uv;  ///< of a sheet: material coordinates in quads
   std::vector<float> hidden;        ///< of a sheet: particles' depth below a collider [m]
   std::vector<float> value;         ///< the quantity that colours it, SI
-  std::vector<float> front, back;   ///< baked light on either side; 1: open, facing the sky
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
   /// Area-weighted means of the faces' normals.

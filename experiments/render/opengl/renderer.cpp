@@ -12,10 +12,11 @@ namespace {
 
 /// A vertex as the surface shader reads it.
 struct Vertex {
-  float position[3], normal[3], uv[2], data[4];
+  float position[3], normal[3], uv[2], data[2];
 };
 
-GLuint compile(const GlContext& gl, const char* vertex, const char* fragment) {
+/// `lit`: which of the two sums up the lights; 0: neither.
+GLuint compile(const GlContext& gl, const char* vertex, const char* fragment, GLenum lit = 0) {
   std::string log(2000, '\0');
   const auto length = static_cast<GLsizei>(log.size());
   const auto check = [&](GLint good) {
@@ -26,8 +27,10 @@ GLuint compile(const GlContext& gl, const char* vertex, const char* fragment) {
   for (const auto& [kind, body] : {std::pair{GLenum{GL_VERTEX_SHADER}, vertex},
                                    std::pair{GLenum{GL_FRAGMENT_SHADER}, fragment}}) {
     const GLuint shader = glCreateShader(kind);
-    const char* parts[] = {
-        kind == GL_FRAGMENT_SHADER ? shaders::kFragmentCommon : shaders::kVersion, body};
+    const char* parts[] = {kind == lit                  ? shaders::kLightCommon
+                           : kind == GL_FRAGMENT_SHADER ? shaders::kFragmentCommon
+                                                        : shaders::kVersion,
+                           body};
     glShaderSource(shader, 2, parts, nullptr);
     glCompileShader(shader);
     glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
@@ -60,19 +63,14 @@ Vec3f as_linear(Rgb8 c) {
   return Eigen::Vector3d(linear_of(c.r), linear_of(c.g), linear_of(c.b)).cast<float>();
 }
 
-std::vector<Vertex> vertices_of(const RenderMesh& mesh) {
-  std::vector<Vertex> vertices;
-  vertices.reserve(mesh.position.size());
+void append(std::vector<Vertex>& vertices, const RenderMesh& mesh) {
   for (std::size_t i = 0; i < mesh.position.size(); ++i) {
     const Vec3f &p = mesh.position[i], &n = mesh.normal[i];
-    Vertex& v = vertices.emplace_back(Vertex{{p.x(), p.y(), p.z()},
-                                             {n.x(), n.y(), n.z()},
-                                             {},
-                                             {mesh.front[i], mesh.back[i], mesh.value[i], 0}});
+    Vertex& v = vertices.emplace_back(
+        Vertex{{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, {}, {mesh.value[i], 0}});
     if (mesh.uv.empty()) continue;
-    v.uv[0] = mesh.uv[i].x(), v.uv[1] = mesh.uv[i].y(), v.data[3] = mesh.hidden[i];
+    v.uv[0] = mesh.uv[i].x(), v.uv[1] = mesh.uv[i].y(), v.data[1] = mesh.hidden[i];
   }
-  return vertices;
 }
 
 /// The triangles that are lower than a pixel where the picture is `width` x `height` pixels: none
@@ -97,6 +95,18 @@ std::vector<std::array<std::uint32_t, 3>> thinner_than_a_pixel(const RenderMesh&
   return thin;
 }
 
+/// Linear between texels; stays bound.
+GLuint make_texture(GLenum kind, GLint beyond) {
+  GLuint texture = 0;
+  glGenTextures(1, &texture);
+  glBindTexture(kind, texture);
+  glTexParameteri(kind, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(kind, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(kind, GL_TEXTURE_WRAP_S, beyond);
+  glTexParameteri(kind, GL_TEXTURE_WRAP_T, beyond);
+  return texture;
+}
+
 template <class T>
 void upload(GLenum target, GLuint buffer, const std::vector<T>& data) {
   glBindBuffer(target, buffer);
@@ -114,16 +124,22 @@ Theme Theme::dark() {
   return {rgb(0x242A34), rgb(0x242A34), rgb(0x7A8496), rgb(0xC9D1DE), 0.8f, 0.035f};
 }
 
-Renderer::Renderer(const GlContext& gl, int width, int height, int supersampling)
-    : gl_(gl), width_(width), height_(height), supersampling_(supersampling) {
+Renderer::Renderer(const GlContext& gl, int width, int height, int supersampling,
+                   const LightQuality& quality)
+    : gl_(gl), width_(width), height_(height), supersampling_(supersampling), quality_(quality) {
   background_ = compile(gl, shaders::kBackgroundVertex, shaders::kBackgroundFragment);
+  depth_ = compile(gl, shaders::kDepthVertex, shaders::kDepthFragment);
+  ground_light_ =
+      compile(gl, shaders::kBackgroundVertex, shaders::kGroundLightFragment, GL_FRAGMENT_SHADER);
   ground_ = compile(gl, shaders::kGroundVertex, shaders::kGroundFragment);
-  surface_ = compile(gl, shaders::kSurfaceVertex, shaders::kSurfaceFragment);
+  surface_ = compile(gl, shaders::kSurfaceVertex, shaders::kSurfaceFragment, GL_VERTEX_SHADER);
   make_targets();
+  make_light_maps();
   glGenVertexArrays(1, &layout_);
   glBindVertexArray(layout_);
   glGenBuffers(1, &vertices_);
   glGenBuffers(1, &indices_);
+  glGenBuffers(1, &thin_);
   glBindBuffer(GL_ARRAY_BUFFER, vertices_);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
   const auto attribute = [&](GLuint index, GLint size, std::size_t offset) {
@@ -134,26 +150,20 @@ Renderer::Renderer(const GlContext& gl, int width, int height, int supersampling
   attribute(0, 3, offsetof(Vertex, position));
   attribute(1, 3, offsetof(Vertex, normal));
   attribute(2, 2, offsetof(Vertex, uv));
-  attribute(3, 4, offsetof(Vertex, data));
-  glGenTextures(1, &texture_);
-  glBindTexture(GL_TEXTURE_2D, texture_);
+  attribute(3, 2, offsetof(Vertex, data));
+  colours_ = make_texture(GL_TEXTURE_2D, GL_CLAMP_TO_EDGE);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
 Renderer::~Renderer() {
-  for (const GLuint program : {background_, ground_, surface_}) glDeleteProgram(program);
-  glDeleteFramebuffers(1, &drawn_);
-  glDeleteFramebuffers(1, &resolved_);
+  for (const GLuint program : {background_, depth_, ground_light_, ground_, surface_})
+    glDeleteProgram(program);
+  for (const GLuint framebuffer : {drawn_, resolved_, lit_}) glDeleteFramebuffers(1, &framebuffer);
   glDeleteRenderbuffers(3, buffers_);
-  glDeleteBuffers(1, &vertices_);
-  glDeleteBuffers(1, &indices_);
+  for (const GLuint buffer : {vertices_, indices_, thin_}) glDeleteBuffers(1, &buffer);
   glDeleteVertexArrays(1, &layout_);
-  glDeleteTextures(1, &texture_);
+  for (const GLuint texture : {colours_, ground_map_, depth_maps_}) glDeleteTextures(1, &texture);
 }
 
 void Renderer::make_targets() {
@@ -180,20 +190,130 @@ void Renderer::make_targets() {
                      std::to_string(height) + " pixels");
 }
 
+/// Beyond a map nothing casts shadows: its border is as far as can be.
+void Renderer::make_light_maps() {
+  const GLsizei side = quality_.depth_map, ground = quality_.ground_map;
+  depth_maps_ = make_texture(GL_TEXTURE_2D_ARRAY, GL_CLAMP_TO_BORDER);
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT32F, side, side, quality_.lights, 0,
+               GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+  const float farthest[] = {1, 1, 1, 1};
+  glTexParameterfv(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BORDER_COLOR, farthest);
+  glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  ground_map_ = make_texture(GL_TEXTURE_2D, GL_CLAMP_TO_EDGE);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, ground, ground, 0, GL_RED, GL_FLOAT, nullptr);
+  glGenFramebuffers(1, &lit_);
+}
+
 Image Renderer::draw(const Panel& panel) const {
+  glBindVertexArray(layout_);
+  const std::vector<Range> ranges = upload(panel);
+  draw_light(panel, ranges);
   glBindFramebuffer(GL_FRAMEBUFFER, drawn_);
   glViewport(0, 0, width_ * supersampling_, height_ * supersampling_);
-  glBindVertexArray(layout_);
-  glDepthMask(GL_TRUE);
   glClear(GL_DEPTH_BUFFER_BIT);
   const Eigen::Matrix4f world_to_clip =
       panel.camera.world_to_clip(static_cast<float>(width_) / static_cast<float>(height_));
   glDisable(GL_DEPTH_TEST);
   draw_background(panel.theme);
   glEnable(GL_DEPTH_TEST);
-  if (panel.ground) draw_ground(panel, world_to_clip);
-  for (const Painted& painted : panel.painted) draw_mesh(panel, painted, world_to_clip);
+  draw_ground(panel, world_to_clip);
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    draw_mesh(panel, panel.painted[i], ranges[i], world_to_clip);
   return read();
+}
+
+std::vector<Renderer::Range> Renderer::upload(const Panel& panel) const {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+  std::vector<Range> ranges;
+  for (const Painted& painted : panel.painted) {
+    const RenderMesh& mesh = *painted.mesh;
+    ranges.push_back(
+        {vertices.size(), indices.size(), static_cast<GLsizei>(3 * mesh.triangles.size())});
+    for (const auto& triangle : mesh.triangles)
+      for (const std::uint32_t corner : triangle)
+        indices.push_back(static_cast<std::uint32_t>(vertices.size()) + corner);
+    append(vertices, mesh);
+  }
+  taut::upload(GL_ARRAY_BUFFER, vertices_, vertices);
+  taut::upload(GL_ELEMENT_ARRAY_BUFFER, indices_, indices);
+  return ranges;
+}
+
+/// World to a light's map: texture coordinates in x and y, depth in z, the nearest to the light 0.
+Eigen::Matrix4f Renderer::to_map(const Light& light, const Sphere& casters) const {
+  const Vec3f u = light.direction.unitOrthogonal(), v = light.direction.cross(u);
+  const float across = static_cast<float>(quality_.depth_map - 4) /
+                       static_cast<float>(quality_.depth_map) / (2 * casters.radius);
+  Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
+  m.block<1, 3>(0, 0) = across * u.transpose();
+  m.block<1, 3>(1, 0) = across * v.transpose();
+  m.block<1, 3>(2, 0) = -1 / (2 * casters.radius) * light.direction.transpose();
+  m.block<3, 1>(0, 3) = Vec3f::Constant(0.5f) - m.block<3, 3>(0, 0) * casters.centre;
+  return m;
+}
+
+/// The share of each light is that of what open, level ground receives.
+void Renderer::set_lights(GLuint program, const Panel& panel) const {
+  float open = 0;
+  for (const Light& light : panel.lights)
+    open += light.weight * std::max(0.0f, panel.ground.up.dot(light.direction));
+  std::vector<Eigen::Vector4f> lights;
+  std::vector<Eigen::Matrix4f> maps;
+  for (const Light& light : panel.lights) {
+    lights.emplace_back();
+    lights.back() << light.direction, light.weight / open;
+    maps.push_back(to_map(light, panel.casters));
+  }
+  const auto count = static_cast<GLsizei>(lights.size());
+  const auto texels = static_cast<float>(quality_.depth_map - 4);
+  glUseProgram(program);
+  glUniform1i(glGetUniformLocation(program, "lights"), count);
+  glUniform4fv(glGetUniformLocation(program, "light"), count, lights.front().data());
+  glUniformMatrix4fv(glGetUniformLocation(program, "to_map"), count, GL_FALSE, maps.front().data());
+  set(program, "texel", 2 * panel.casters.radius / texels);
+  set(program, "bias", 1 / texels);
+  glUniform1i(glGetUniformLocation(program, "depth_maps"), 1);
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D_ARRAY, depth_maps_);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+/// The depth map of each light, then the light on the ground.
+void Renderer::draw_light(const Panel& panel, const std::vector<Range>& ranges) const {
+  glBindFramebuffer(GL_FRAMEBUFFER, lit_);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+  glDrawBuffer(GL_NONE);
+  glViewport(0, 0, quality_.depth_map, quality_.depth_map);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_DEPTH_CLAMP);
+  glEnable(GL_POLYGON_OFFSET_FILL);  // what light grazes does not shade itself
+  glPolygonOffset(1.5f, 0);
+  glUseProgram(depth_);
+  const GLsizei indices = static_cast<GLsizei>(ranges.back().first_index) + ranges.back().indices;
+  for (std::size_t k = 0; k < panel.lights.size(); ++k) {
+    glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth_maps_, 0,
+                              static_cast<GLint>(k));
+    glClear(GL_DEPTH_BUFFER_BIT);
+    set(depth_, "to_map", to_map(panel.lights[k], panel.casters));
+    glDrawElements(GL_TRIANGLES, indices, GL_UNSIGNED_INT, nullptr);
+  }
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glDisable(GL_DEPTH_CLAMP);
+  glDisable(GL_DEPTH_TEST);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, 0, 0);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, ground_map_, 0);
+  glDrawBuffer(GL_COLOR_ATTACHMENT0);
+  glViewport(0, 0, quality_.ground_map, quality_.ground_map);
+  set_lights(ground_light_, panel);
+  set(ground_light_, "origin", panel.ground.origin);
+  set(ground_light_, "u", panel.ground.u);
+  set(ground_light_, "v", panel.ground.v);
+  set(ground_light_, "up", panel.ground.up);
+  set(ground_light_, "half_side", panel.ground.half_side);
+  set(ground_light_, "size", static_cast<float>(quality_.ground_map));
+  glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void Renderer::draw_background(const Theme& theme) const {
@@ -204,9 +324,8 @@ void Renderer::draw_background(const Theme& theme) const {
 }
 
 void Renderer::draw_ground(const Panel& panel, const Eigen::Matrix4f& world_to_clip) const {
-  const GroundLight& ground = *panel.ground;
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, ground.size, ground.size, 0, GL_RED, GL_FLOAT,
-               ground.light.data());
+  const Ground& ground = panel.ground;
+  glBindTexture(GL_TEXTURE_2D, ground_map_);
   glUseProgram(ground_);
   set(ground_, "world_to_clip", world_to_clip);
   set(ground_, "origin", ground.origin);
@@ -224,17 +343,16 @@ void Renderer::draw_ground(const Panel& panel, const Eigen::Matrix4f& world_to_c
   glDisable(GL_BLEND);
 }
 
-void Renderer::draw_mesh(const Panel& panel, const Painted& painted,
+void Renderer::draw_mesh(const Panel& panel, const Painted& painted, const Range& range,
                          const Eigen::Matrix4f& world_to_clip) const {
   const std::vector<Rgb8>& table = panel.scale.map().table();
+  glBindTexture(GL_TEXTURE_2D, colours_);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, static_cast<GLsizei>(table.size()), 1, 0, GL_RGB,
                GL_UNSIGNED_BYTE, table.data());
-  upload(GL_ARRAY_BUFFER, vertices_, vertices_of(*painted.mesh));
-  upload(GL_ELEMENT_ARRAY_BUFFER, indices_, painted.mesh->triangles);
-  glUseProgram(surface_);
+  set_lights(surface_, panel);
   set(surface_, "world_to_clip", world_to_clip);
   set(surface_, "eye", panel.camera.eye);
-  set(surface_, "up", panel.ground ? panel.ground->up : Vec3f::UnitY());
+  set(surface_, "up", panel.ground.up);
   glUniform2f(glGetUniformLocation(surface_, "range"), static_cast<float>(panel.scale.low()),
               static_cast<float>(panel.scale.high));
   const Vec3f colour = as_linear(painted.colour.value_or(Rgb8{}));
@@ -243,14 +361,17 @@ void Renderer::draw_mesh(const Panel& panel, const Painted& painted,
   set(surface_, "spacing", static_cast<float>(painted.grid_spacing));
   set(surface_, "hatch_depth", panel.hatch_depth);
   set(surface_, "line_width", 1.3f * static_cast<float>(supersampling_));
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * painted.mesh->triangles.size()),
-                 GL_UNSIGNED_INT, nullptr);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
+  glDrawElements(GL_TRIANGLES, range.indices, GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(range.first_index * sizeof(std::uint32_t)));
   if (painted.colour) return;
   // Cloth never vanishes: what is too thin to be filled is drawn by its edges, a pixel wide.
-  const auto thin = thinner_than_a_pixel(*painted.mesh, world_to_clip, static_cast<float>(width_),
-                                         static_cast<float>(height_));
+  auto thin = thinner_than_a_pixel(*painted.mesh, world_to_clip, static_cast<float>(width_),
+                                   static_cast<float>(height_));
   if (thin.empty()) return;
-  upload(GL_ELEMENT_ARRAY_BUFFER, indices_, thin);
+  for (auto& triangle : thin)
+    for (std::uint32_t& corner : triangle) corner += static_cast<std::uint32_t>(range.first_vertex);
+  taut::upload(GL_ELEMENT_ARRAY_BUFFER, thin_, thin);
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   glLineWidth(static_cast<float>(supersampling_));
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * thin.size()), GL_UNSIGNED_INT, nullptr);

@@ -5,6 +5,23 @@ namespace taut::shaders {
 
 inline constexpr const char* kVersion = "#version 330 core\n";
 
+/// What a point receives of all lights: `light.w` weighs each by its share of the light of
+/// open ground, `visible` is the share of four texels around the point that the light sees; nothing
+/// beyond the maps casts a shadow.
+inline constexpr const char* kLightCommon = R"(#version 330 core
+const int kMostLights = 96;
+uniform int lights;
+uniform vec4 light[kMostLights];     // unit, towards the light; its share
+uniform mat4 to_map[kMostLights];    // world to texture coordinates and depth
+uniform float texel;                 // m
+uniform float bias;                  // of depth
+uniform sampler2DArrayShadow depth_maps;
+float visible(int k, vec3 p) {
+  vec3 q = (to_map[k] * vec4(p, 1.0)).xyz;
+  return texture(depth_maps, vec4(q.xy, float(k), min(q.z - bias, 1.0)));
+}
+)";
+
 inline constexpr const char* kFragmentCommon = R"(#version 330 core
 vec3 decode(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), vec3(greaterThan(c, vec3(0.04045)))); }
 vec3 encode(vec3 c) {
@@ -37,6 +54,28 @@ out vec4 pixel;
 void main() { pixel = vec4(mix(bottom, top, height), 1.0); }
 )";
 
+/// A depth map: nothing but depth.
+inline constexpr const char* kDepthVertex = R"(
+uniform mat4 to_map;
+layout(location = 0) in vec3 at;
+void main() { gl_Position = vec4(2.0 * (to_map * vec4(at, 1.0)).xyz - 1.0, 1.0); }
+)";
+inline constexpr const char* kDepthFragment = "void main() {}\n";
+
+/// Light that reaches the ground, in units of open ground: a texel of a map that covers it.
+inline constexpr const char* kGroundLightFragment = R"(
+uniform vec3 origin, u, v, up;
+uniform float half_side, size;
+out vec4 received;
+void main() {
+  vec2 place = half_side * (2.0 * gl_FragCoord.xy / size - 1.0);
+  vec3 p = origin + place.x * u + place.y * v;
+  float sum = 0.0;
+  for (int k = 0; k < lights; ++k) sum += light[k].w * dot(light[k].xyz, up) * visible(k, p);
+  received = vec4(sum);
+}
+)";
+
 /// The ground catches shadows: what is open is the background itself, so that there is no horizon.
 /// Blended as pixel.rgb + background * pixel.a.
 inline constexpr const char* kGroundVertex = R"(
@@ -50,14 +89,19 @@ void main() {
 }
 )";
 inline constexpr const char* kGroundFragment = R"(
-uniform sampler2D light;
+uniform sampler2D map;
 uniform float half_side, shadow, line, cell, line_width;
 in vec2 place;
 out vec4 pixel;
+float received(vec2 at) {  // smoothed over three by three texels
+  vec2 step = 0.75 / vec2(textureSize(map, 0));
+  return 0.25 * (texture(map, at - step).r + texture(map, at + step).r +
+                 texture(map, at + vec2(step.x, -step.y)).r + texture(map, at + vec2(-step.x, step.y)).r);
+}
 void main() {
   vec2 st = place / half_side;
   float inside = 1.0 - smoothstep(0.75, 1.0, max(abs(st.x), abs(st.y)));
-  float open = mix(1.0, min(texture(light, st * 0.5 + 0.5).r, 1.0), inside);
+  float open = mix(1.0, min(received(st * 0.5 + 0.5), 1.0), inside);
   float kept = pow(mix(1.0, open, shadow), 1.0 / 2.2);
   float fade = exp(-dot(place, place) / (half_side * half_side) * 0.9);
   float drawn = abs(line) * lines(place / cell, line_width) * fade;
@@ -65,12 +109,13 @@ void main() {
 }
 )";
 
+/// Light on either side of the surface, per vertex.
 inline constexpr const char* kSurfaceVertex = R"(
 uniform mat4 world_to_clip;
 layout(location = 0) in vec3 at;
 layout(location = 1) in vec3 at_normal;
 layout(location = 2) in vec2 at_uv;
-layout(location = 3) in vec4 at_data;
+layout(location = 3) in vec2 at_data;  // value, depth inside a collider
 out vec3 world, normal;
 out vec4 data;
 out vec2 uv;
@@ -78,11 +123,16 @@ void main() {
   world = at;
   normal = at_normal;
   uv = at_uv;
-  data = at_data;
+  data = vec4(0.0, 0.0, at_data);
+  for (int k = 0; k < lights; ++k) {
+    float cosine = dot(at_normal, light[k].xyz);
+    vec3 above = at + sign(cosine) * 1.3 * texel * at_normal;
+    data[cosine > 0.0 ? 0 : 1] += light[k].w * abs(cosine) * visible(k, above);
+  }
   gl_Position = world_to_clip * vec4(at, 1.0);
 }
 )";
-/// Baked light of the side that is seen, 0.12 of the other side's shining through, ambient and the
+/// Light of the side that is seen, 0.12 of the other side's shining through, ambient and the
 /// light that the ground throws back; normalised to 1 for open cloth that faces the sky.
 inline constexpr const char* kSurfaceFragment = R"(
 uniform sampler2D map;

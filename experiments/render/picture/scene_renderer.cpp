@@ -212,8 +212,8 @@ Vec3 centroid(const std::vector<RecordedRun>& runs, double t) {
   return sum / count;
 }
 
-GroundLight Placing::floor_below(const Vec3& point) const {
-  GroundLight level;
+Ground Placing::floor_below(const Vec3& point) const {
+  Ground level;
   level.up = up.cast<float>();
   level.v = level.up.unitOrthogonal();
   level.u = level.v.cross(level.up);
@@ -222,8 +222,8 @@ GroundLight Placing::floor_below(const Vec3& point) const {
   return level;
 }
 
-GroundLight Placing::wall(const Vec3& point) const {
-  GroundLight wall;
+Ground Placing::wall(const Vec3& point) const {
+  Ground wall;
   wall.up = up.cast<float>();
   wall.u = camera.right;
   wall.v = wall.up;
@@ -266,7 +266,8 @@ SceneRenderer::SceneRenderer(const Scene& scene, const std::vector<RecordedRun>&
       options_(options),
       scale_{options.colour_by, options.range},
       mesher_(scene, options.quality.finest_sheet),
-      renderer_(gl_, options.width, options.height, options.quality.supersampling) {
+      renderer_(gl_, options.width, options.height, options.quality.supersampling,
+                options.quality.light) {
   options_.to = std::min(options_.to, scene.duration());
   choose_scale();
   placing_ =
@@ -347,14 +348,13 @@ Image SceneRenderer::panel(std::size_t index, double t) const {
   const auto& frame = runs_[index].at(t);
   const Vec3 moved = placing_.follows ? centroid(runs_, frame.t) : Vec3::Zero();
   const Vec3 centre = placing_.centre + moved;
-  std::vector<RenderMesh> meshes = this->meshes(frame, centre);
-  GroundLight ground = placing_.follows ? placing_.wall(centre) : placing_.floor_below(centre);
-  bake_light(lights_, options_.quality.light,
-             {centre.cast<float>(), static_cast<float>(1.02 * placing_.radius)}, meshes, ground);
+  const std::vector<RenderMesh> meshes = this->meshes(frame, centre);
   Panel panel{.camera = placing_.camera,
               .theme = options_.theme,
               .scale = scale_,
-              .ground = &ground,
+              .ground = placing_.follows ? placing_.wall(centre) : placing_.floor_below(centre),
+              .lights = lights_,
+              .casters = {centre.cast<float>(), static_cast<float>(1.02 * placing_.radius)},
               .ground_cell = static_cast<float>(placing_.cell),
               .hatch_depth = static_cast<float>(hatch_depth())};
   panel.camera.eye += moved.cast<float>();

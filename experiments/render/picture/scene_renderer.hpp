@@ -64,10 +64,10 @@ struct Placing {
   const Collider* floor = nullptr;  ///< a level plane at rest: it is the ground
 
   /// The ground below a point.
-  GroundLight floor_below(const Vec3& point) const;
+  Ground floor_below(const Vec3& point) const;
   /// Behind cloth that the camera follows: lines that stay where they are in the world, so that the
   /// motion is seen.
-  GroundLight wall(const Vec3& point) const;
+  Ground wall(const Vec3& point) const;
 };
 
 /// Mean position of all runs' vertices at time t [m].
@@ -85,9 +85,9 @@ struct RenderQuality {
   int supersampling = 1;
   int finest_sheet = 64;  ///< quads along a side after refinement
 
-  static RenderQuality draft() { return {{6, 192, 64}, 1, 33}; }
-  static RenderQuality video() { return {{32, 256, 112}, 1, 66}; }
-  static RenderQuality still() { return {{96, 512, 224}, 2, 132}; }
+  static RenderQuality draft() { return {{9, 96, 64}, 1, 33}; }
+  static RenderQuality video() { return {{18, 128, 112}, 1, 66}; }
+  static RenderQuality still() { return {{96, 256, 224}, 2, 132}; }
 };
 
 struct SceneRendererOptions {
