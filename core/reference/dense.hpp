@@ -2,13 +2,12 @@
 
 #include <Eigen/Core>
 
-// The one place for dense eigenvalues and linear systems. LAPACK computes them: Eigen's own
-// decompositions, instantiated here, took a tenth of the time of a clean build.
+// The one place that instantiates Eigen's dense decompositions, which take long to compile.
 
 namespace taut::reference {
 
 /// Eigenvalues of a general real matrix and, as columns in the same order, its eigenvectors, each
-/// of norm one (LAPACK dgeev).
+/// of norm one.
 struct Modes {
   Eigen::VectorXcd eigenvalues;
   Eigen::MatrixXcd eigenvectors;
@@ -22,12 +21,11 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd&);
 /// The largest |eigenvalue|.
 double spectral_radius(const Eigen::MatrixXd&);
 
-/// Eigenvalues, ascending, of the symmetric matrix with this diagonal and these values beside it
-/// (LAPACK dsterf).
+/// Eigenvalues, ascending, of the symmetric matrix with this diagonal and these values beside it.
 Eigen::VectorXd tridiagonal_eigenvalues(const Eigen::VectorXd& diagonal,
                                         const Eigen::VectorXd& beside);
 
-/// x of `matrix` x = `right`, by partial pivoting (LAPACK dgesv). Throws std::runtime_error if the
+/// x of `matrix` x = `right`, by partial pivoting. Throws std::runtime_error if the
 /// matrix is exactly singular.
 Eigen::VectorXd solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
