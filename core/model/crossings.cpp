@@ -67,6 +67,15 @@ std::vector<std::array<int, 2>> crossings(const std::vector<Triangle>& faces,
   return pairs_of(faces, x, 0, cross);
 }
 
+double contour_length(const std::vector<Triangle>& faces, const std::vector<Vec3>& x,
+                      const std::vector<std::array<int, 2>>& crossings) {
+  double length = 0;
+  for (const auto& [a, b] : crossings)
+    length += crossing_length(corners(faces[static_cast<std::size_t>(a)], x),
+                              corners(faces[static_cast<std::size_t>(b)], x));
+  return length;
+}
+
 std::vector<std::array<int, 2>> coincidences(const std::vector<Triangle>& faces,
                                              const std::vector<Vec3>& x, double distance) {
   return pairs_of(faces, x, distance, [distance](const Corners& s, const Corners& t) {

@@ -11,6 +11,10 @@ namespace taut {
 /// longest side of their bounding box, so that only those that overlap there are compared.
 std::vector<std::array<int, 2>> crossings(const std::vector<Triangle>&, const std::vector<Vec3>& x);
 
+/// Length [m] of the lines along which these pairs of faces cross.
+double contour_length(const std::vector<Triangle>&, const std::vector<Vec3>& x,
+                      const std::vector<std::array<int, 2>>& crossings);
+
 /// Pairs of faces that share no vertex, do not cross, and are nearer than `distance` [m] to each
 /// other, ascending: layers in one place, which cross nowhere if they lie in one plane.
 std::vector<std::array<int, 2>> coincidences(const std::vector<Triangle>&,

@@ -167,6 +167,25 @@ bool cross(const Corners& s, const Corners& t) {
   return false;
 }
 
+double crossing_length(const Corners& s, const Corners& t) {
+  std::array<Vec3, 6> ends;
+  std::size_t count = 0;
+  const auto add = [&](const Vec3& p, const Vec3& q, const Corners& through) {
+    if (!pierces(p, q, through)) return;
+    const Vec3 normal = (through[1] - through[0]).cross(through[2] - through[0]);
+    const double below = normal.dot(p - through[0]), above = normal.dot(q - through[0]);
+    ends[count++] = p + below / (below - above) * (q - p);
+  };
+  for (std::size_t a = 0; a < 3; ++a) {
+    add(s[a], s[(a + 1) % 3], t);
+    add(t[a], t[(a + 1) % 3], s);
+  }
+  double longest = 0;
+  for (std::size_t a = 0; a < count; ++a)
+    for (std::size_t b = 0; b < a; ++b) longest = std::max(longest, (ends[a] - ends[b]).norm());
+  return longest;
+}
+
 double distance(const Corners& s, const Corners& t) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t a = 0; a < 3; ++a) {

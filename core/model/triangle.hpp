@@ -43,6 +43,10 @@ double enclosing_radius(const Corners&);
 /// overlap within one plane do not count.
 bool cross(const Corners&, const Corners&);
 
+/// Length [m] of the line along which two triangles cross: between the two places where an edge of
+/// one passes through the inside of the other; 0 if they do not cross.
+double crossing_length(const Corners&, const Corners&);
+
 /// Distance of two triangles that do not cross [m]; 0 where they touch or overlap.
 double distance(const Corners&, const Corners&);
 

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "core/model/index.hpp"
@@ -180,7 +181,79 @@ std::vector<std::string> refuse_dynamic(const Scene& scene) {
   return reasons;
 }
 
+namespace {
+
+/// Whether every row of a flat grid with all structural and shear links, hung by its first row and
+/// let go with straight rows, stays straight: then it swings as one column of rods. Proof, row by
+/// row: a vertex at the distances l and sqrt(l^2 + s^2) from the vertex above it and from that
+/// one's neighbour at the distance s is displaced from the first at a right angle to the row; the
+/// links along the row then make these displacements equal.
+bool rows_stay_straight(const Scene& scene) {
+  const auto& grid = scene.mesh.grid;
+  if (!grid || grid->nu < 2 || grid->nv < 2 || !scene.pin_motions.empty() || scene.wind ||
+      !scene.colliders.empty() || scene.self_collision)
+    return false;
+  const std::vector<Vec3>& x = scene.start.x;
+  const auto at = [&](int i, int j) { return to_index(grid->index(i, j)); };
+  const Vec3 row = scene.mesh.rest[1] - scene.mesh.rest[0],
+             column = scene.mesh.rest[at(0, 1)] - scene.mesh.rest[0];
+  const double tiny = 1e-9 * row.norm();
+  std::vector<int> first(to_index(grid->nu));
+  std::iota(first.begin(), first.end(), 0);
+  const std::vector<Link> all = grid_links(scene.mesh, {.shear = true});
+  if (scene.pins != first || std::abs(row.dot(column)) > tiny * column.norm() ||
+      std::abs(row.dot(scene.gravity)) > tiny * scene.gravity.norm() ||
+      !std::ranges::equal(scene.links, all, [&](const Link& a, const Link& b) {
+        return a.a == b.a && a.b == b.b && std::abs(a.rest - b.rest) < tiny;
+      }))
+    return false;
+  for (int j = 0; j < grid->nv; ++j)
+    for (int i = 0; i < grid->nu; ++i)
+      if ((x[at(i, j)] - x[at(0, j)] - i * row).norm() > tiny * grid->nu ||
+          std::abs(row.dot(x[at(i, j)] - x[at(i, 0)])) > tiny * row.norm() ||
+          scene.start.v[at(i, j)].norm() > 0)
+        return false;
+  return true;
+}
+
+/// Its first column, with the masses of whole rows.
+Scene first_column(const Scene& scene) {
+  const Grid& grid = *scene.mesh.grid;
+  Scene column = scene;
+  column.mesh = {}, column.start = {}, column.pins = {0};
+  column.mesh.grid = Grid{1, grid.nv};
+  for (int j = 0; j < grid.nv; ++j) {
+    const auto at = to_index(grid.index(0, j));
+    double mass = 0;
+    for (int i = 0; i < grid.nu; ++i) mass += scene.mesh.mass[to_index(grid.index(i, j))];
+    column.mesh.rest.push_back(scene.mesh.rest[at]), column.mesh.mass.push_back(mass);
+    column.start.x.push_back(scene.start.x[at]), column.start.v.push_back(scene.start.v[at]);
+  }
+  column.links = grid_links(column.mesh, {});
+  return column;
+}
+
+Trajectory motion_of_rows(const Scene& scene, const std::vector<double>& times, double dt) {
+  const Grid& grid = *scene.mesh.grid;
+  Trajectory m = converged_motion(first_column(scene), times, dt);
+  m.derivation += "; of one column with the masses of the rows, which stay straight";
+  for (State& state : m.states) {
+    const State column = std::move(state);
+    state = scene.start;
+    for (int j = 0; j < grid.nv; ++j)
+      for (int i = 0; i < grid.nu; ++i) {
+        const auto at = to_index(grid.index(i, j));
+        state.x[at] = column.x[to_index(j)] + scene.start.x[to_index(i)] - scene.start.x[0];
+        state.v[at] = column.v[to_index(j)];
+      }
+  }
+  return m;
+}
+
+}  // namespace
+
 Trajectory converged_motion(const Scene& scene, const std::vector<double>& times, double dt) {
+  if (rows_stay_straight(scene)) return motion_of_rows(scene, times, dt);
   Trajectory m;
   if (const auto reasons = refuse_dynamic(scene); !reasons.empty()) {
     m.reason = reasons.front();

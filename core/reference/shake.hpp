@@ -39,7 +39,8 @@ class Shake {
 };
 
 /// States at `times` [s, ascending, > 0], each a multiple of dt: Richardson-extrapolated from dt
-/// and dt/2. The floor is the distance between that and the same from dt/2 and dt/4.
+/// and dt/2. The floor is the distance between that and the same from dt/2 and dt/4. A sheet with
+/// shear links that hangs by its first row and starts with straight rows is computed as one column.
 Trajectory converged_motion(const Scene&, const std::vector<double>& times, double dt);
 
 }  // namespace taut::reference

@@ -1,5 +1,7 @@
 #include "experiments/case/reference_store.hpp"
 
+#include <algorithm>
+
 #include "experiments/case/digest.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -73,8 +75,12 @@ References find_references(const Scene& scene, const std::filesystem::path& root
     if (reference.x.size() != scene.start.x.size() ||
         reference.digest != reference_digest(scene, reference.kind))
       continue;
-    (reference.kind == "static" ? known.rest : known.motion) = std::move(reference);
+    if (reference.kind == "static")
+      known.rest = std::move(reference);
+    else
+      known.motion.push_back(std::move(reference));
   }
+  std::ranges::sort(known.motion, {}, &Reference::t);
   return known;
 }
 

@@ -37,7 +37,7 @@ inline constexpr Unit kNumber{"1", ""}, kCount{"1", "", 1, false}, kShare{"1", "
     kAcceleration{"m/s^2", "m/s\u00B2"};
 /// The same of errors, which are never below 0.
 inline constexpr Unit kErrorCount{"1", "", 1, false, true}, kErrorShare{"1", "%", 100, true, true},
-    kErrorLength{"m", "mm", 1e3, true, true},
+    kErrorLength{"m", "mm", 1e3, true, true}, kErrorSpeed{"m/s", "m/s", 1, true, true},
     kErrorAcceleration{"m/s^2", "m/s\u00B2", 1, true, true};
 
 /// Of which part of a run a value speaks.
@@ -53,8 +53,9 @@ constexpr std::string_view to_string(Window w) {
 /// What a report makes of a value beside listing it: its charts, and its place in sentences. In
 /// this order they are shown.
 enum class Role {
-  none,          ///< drawn if somebody asks for it
-  error,         ///< of what a solver is to keep: over sweeps; its mean over scenes is compared
+  none,    ///< drawn if somebody asks for it
+  error,   ///< of what a solver is to keep: over sweeps; its mean over scenes is compared
+  motion,  ///< what a motion loses or lags behind: over sweeps; a strain alone can be deceived
   vertex_depth,  ///< of a vertex below a surface: over sweeps and time steps; the deepest is said
   face_depth,    ///< the same of a face
   passages,      ///< of vertices through colliders: drawn alike; the sum over scenes is said

@@ -4,6 +4,7 @@
 
 #include "core/model/index.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/metrics/reference_path.hpp"
 
 namespace taut {
 
@@ -34,9 +35,43 @@ class Distance final : public Metric {
        false, Window::none},
       {"reference.motion_floor", kLength, "the dynamic reference's own error, by self-convergence",
        false, Window::none},
+      {.name = "motion.share",
+       .unit = kSignedShare,
+       .help =
+           "share of the way travelled: of the ways of the free vertices from each moment of the "
+           "dynamic reference to the next (0.5 s), sum of (cloth's . reference's) over sum of "
+           "reference's squared; 0 of a cloth that stands still; none if the reference hardly "
+           "moves, at most "
+           "5 % of the cloth's size",
+       .window = Window::none,
+       .title = "share of the way travelled",
+       .role = Role::motion},
+      {.name = "motion.error",
+       .unit = kErrorShare,
+       .help = "distance of the free vertices from the dynamic reference at its moments, RMS, over "
+               "the reference's distance from the start; 1 of a cloth that stands still",
+       .window = Window::none,
+       .title = "distance from the reference in motion, per way"},
+      {.name = "motion.phase",
+       .unit = kTime,
+       .help =
+           "shift of time that brings the cloth nearest to the dynamic reference at its moments; "
+           "positive: late; at most the first moment (0.5 s), of the moments that the run "
+           "outlasts by as much",
+       .window = Window::none,
+       .title = "phase behind the reference in motion"},
+      {.name = "motion.horizon",
+       .unit = kTime,
+       .help = "last moment of the dynamic reference that the run reached: beyond it the motion is "
+               "chaotic or was not computed",
+       .window = Window::none,
+       .title = "horizon of the reference in motion"},
   };
   Distance(const Scene& scene, References known)
-      : free_(free_vertices(scene)), known_(std::move(known)), end_(scene) {
+      : free_(free_vertices(scene)),
+        known_(std::move(known)),
+        path_(scene, known_.motion),
+        end_(scene) {
     if (!known_.rest) return;
     strain_ = 0;
     for (const Link& link : scene.links)
@@ -52,8 +87,9 @@ class Distance final : public Metric {
       rms_.add(m.step, true, gap.mean_square);
       max_.add(m.step, true, gap.max);
     }
-    if (known_.motion && std::abs(m.t - known_.motion->t) < 1e-6)
-      at_moment_ = std::sqrt(from(*known_.motion, m.state).mean_square);
+    if (!known_.motion.empty() && std::abs(m.t - known_.motion[0].t) < 1e-6)
+      at_moment_ = std::sqrt(from(known_.motion[0], m.state).mean_square);
+    path_.observe(m);
   }
   std::vector<double> finish() override {
     return {std::sqrt(rms_.mean()),
@@ -61,13 +97,18 @@ class Distance final : public Metric {
             at_moment_,
             known_.rest ? known_.rest->floor : Summary::kNone,
             strain_,
-            known_.motion ? known_.motion->floor : Summary::kNone};
+            known_.motion.empty() ? Summary::kNone : known_.motion[0].floor,
+            path_.share(),
+            path_.error(),
+            path_.phase(),
+            path_.horizon()};
   }
   std::vector<double> now(const Snapshot& m) const override {
-    constexpr double none = Summary::kNone;
-    if (!known_.rest) return {none, none, none, none, none, none};
+    std::vector<double> values(std::size(kValues), Summary::kNone);
+    if (!known_.rest) return values;
     const Gap gap = from(*known_.rest, m.state);
-    return {std::sqrt(gap.mean_square), gap.max, none, none, none, none};
+    values[0] = std::sqrt(gap.mean_square), values[1] = gap.max;
+    return values;
   }
 
  private:
@@ -85,6 +126,7 @@ class Distance final : public Metric {
   }
   std::vector<std::size_t> free_;
   References known_;
+  ReferencePath path_;
   LastSecond end_;
   Summary rms_, max_;
   double strain_ = Summary::kNone;
@@ -97,7 +139,7 @@ class Distance final : public Metric {
 template <>
 std::unique_ptr<Metric> make_metric<Distance>(const Scene& scene) {
   References known = known_references(scene);
-  if (!known.rest && !known.motion) return nullptr;
+  if (!known.rest && known.motion.empty()) return nullptr;
   return std::make_unique<Distance>(scene, std::move(known));
 }
 

@@ -22,7 +22,8 @@ struct Reference {
 
 /// What is known of a scene; the shipped references if they belong to exactly this cloth.
 struct References {
-  std::optional<Reference> rest, motion;
+  std::optional<Reference> rest;
+  std::vector<Reference> motion;  ///< ascending in t, up to the horizon of convergence
 };
 
 /// Found by experiments/case/reference_store, so that metrics know no files. Throws InputError on

@@ -23,6 +23,12 @@ class SelfIntersection final : public Metric {
        "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
        "overlap of the particles' balls, worst of ten moments of the last second",
        true},
+      {.name = "self.contour",
+       .unit = kErrorLength,
+       .help = "length of the lines along which faces that share no vertex cross, at the end",
+       .in_series = true,
+       .window = Window::end,
+       .title = "length of intersections"},
   };
   static bool measures(const Scene& scene) { return scene.self_collision.has_value(); }
   explicit SelfIntersection(const Scene& scene)
@@ -35,29 +41,35 @@ class SelfIntersection final : public Metric {
   void observe(const Snapshot& m) override {
     const bool at_end = end_.samples(m.step);
     if (!at_end && m.step % std::max(1, steps_ / 20) != 0) return;
-    const double count = pairs(m.state.x);
-    count_.add(m.step, at_end, count);
-    if (m.step == steps_) final_ = count;
+    const Crossings found = crossed(m.state.x);
+    count_.add(m.step, at_end, found.pairs);
+    if (m.step == steps_) final_ = found;
     if (at_end) overlap_.add(m.step, true, -least_gap(m.state.x, rest_, radius_));
   }
   std::vector<double> finish() override {
-    return {final_, count_.max(), count_.peak(), 0 - overlap_.max()};
+    return {final_.pairs, count_.max(), count_.peak(), 0 - overlap_.max(), final_.length};
   }
   std::vector<double> now(const Snapshot& m) const override {
-    return {pairs(m.state.x), Summary::kNone, Summary::kNone, least_gap(m.state.x, rest_, radius_)};
+    const Crossings found = crossed(m.state.x);
+    return {found.pairs, Summary::kNone, Summary::kNone, least_gap(m.state.x, rest_, radius_),
+            found.length};
   }
 
  private:
-  double pairs(const std::vector<Vec3>& x) const {
-    return static_cast<double>(crossings(faces_, x).size() +
-                               coincidences(faces_, x, 0.01 * radius_).size());
+  struct Crossings {
+    double pairs = Summary::kNone, length = Summary::kNone;  ///< coincident ones have no length; m
+  };
+  Crossings crossed(const std::vector<Vec3>& x) const {
+    const auto crossing = crossings(faces_, x);
+    return {static_cast<double>(crossing.size() + coincidences(faces_, x, 0.01 * radius_).size()),
+            contour_length(faces_, x, crossing)};
   }
   std::vector<Triangle> faces_;
   std::vector<Vec3> rest_;
   double radius_;
   int steps_;
   LastSecond end_;
-  double final_ = Summary::kNone;
+  Crossings final_;
   Summary count_, overlap_;
 };
 

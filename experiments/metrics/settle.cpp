@@ -6,38 +6,47 @@ namespace {
 
 class Settle final : public Metric {
  public:
+  static constexpr double kSpeed = 5e-3, kWay = 5e-4;  ///< m/s, m
+
   static constexpr ValueSpec kValues[] = {
       {.name = "settle.time",
        .unit = kTime,
-       .help = "last time at which the RMS speed of the free vertices exceeds 1e-3 sqrt(g L); the "
-               "duration if it still does at the end; L is the diagonal of the rest shape's "
-               "bounding box",
+       .help = "when the last rest begins: from a step on no free vertex is faster than 5 mm/s or "
+               "goes further than 0.5 mm from where it was at that step; the duration if one still "
+               "does at the end",
        .window = Window::run,
        .kept = true},
   };
   static bool measures(const Scene& scene) {
     return !scene.gravity.isZero(0) && !free_vertices(scene).empty();
   }
-  explicit Settle(const Scene& scene)
-      : free_(free_vertices(scene)),
-        threshold_square_(1e-6 * scene.gravity.norm() * extent(scene)) {}
+  explicit Settle(const Scene& scene) : free_(free_vertices(scene)) {}
 
   void observe(const Snapshot& m) override {
-    if (m.step == 0) return;  // the speed of the start is the scene's, often 0 by construction
-    if (!(mean_square_speed(m.state, free_) <= threshold_square_)) last_ = m.t;
+    // The speed of the start is the scene's, often 0 by construction.
+    if (m.step > 0 && rests(m.state)) return;
+    since_ = m.t, place_ = m.state.x;
   }
-  std::vector<double> finish() override { return {last_}; }
+  std::vector<double> finish() override { return {since_}; }
   std::vector<double> now(const Snapshot&) const override { return {Summary::kNone}; }
 
  private:
+  bool rests(const State& s) const {
+    return std::ranges::all_of(free_, [&](std::size_t i) {
+      return s.v[i].squaredNorm() <= kSpeed * kSpeed &&
+             (s.x[i] - place_[i]).squaredNorm() <= kWay * kWay;
+    });
+  }
+
   std::vector<std::size_t> free_;
-  double threshold_square_;  ///< m^2/s^2
-  double last_ = 0;          ///< s
+  double since_ = 0;         ///< s
+  std::vector<Vec3> place_;  ///< where the vertices were then
 };
 
 }  // namespace
 
 TAUT_METRIC(settle, Settle, "When the cloth comes to rest",
-            "compare 8 N^2 dt/(pi^2 k) of k Gauss-Seidel sweeps on N links");
+            "thresholds of GAUGE's longest stationary duration; compare 8 N^2 dt/(pi^2 k) of k "
+            "Gauss-Seidel sweeps on N links");
 
 }  // namespace taut

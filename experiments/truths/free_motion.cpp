@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/reference/closed_forms.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -208,6 +209,34 @@ TAUT_TRUTH(float_gravity, 3, 9,
   findings.deviates(solver, "way fallen in 800 steps of 1/1024 s from 4.5 m off the origin", "m",
                     -4.5 - sim.x(0).y(), fallen * step, fallen * std::round(step / unit) * unit,
                     1e-12, "g dt^2 = 19.6 units in the last place of the coordinates counts as 20");
+}
+
+TAUT_TRUTH(free_spin, 3, 11,
+           "two masses on a link: projections keep momentum, and lose angular momentum as "
+           "tan(phi') = sin(phi)/(2 - cos(phi)); springs keep both",
+           "a correction along the link as it will lie turns it back; phi = angle per step") {
+  const double spin = 6;
+  const auto check = [&](const std::string& solver, double angular, double tolerance) {
+    Scene s = bare::pair(1, 1, 1, 1);
+    const Vec3 throws(1, 2, -0.5),
+        center = (s.start.x[0] + s.start.x[1]) / 2,
+        axis = Vec3(1, -2, 0).normalized();  // at a right angle to the link
+    for (const std::size_t i : {0u, 1u})
+      s.start.v[i] = throws + spin * axis.cross(s.start.x[i] - center);
+    if (!can_run(findings, solver, s)) return;
+    Simulation sim(s, solver, 64);
+    findings.below(solver, "change of momentum in 64 steps, of 4.6 kg m/s", "kg m/s",
+                   (sim.v(0) + sim.v(1) - 2 * throws).norm(), 1e-12);
+    const Vec3 arm = (sim.x(1) - sim.x(0)) / 2, turns = (sim.v(1) - sim.v(0)) / 2;
+    findings.equal(solver, "angular momentum after 64 steps of 1/64 s over that at 6 rad/s", "1",
+                   2 * arm.cross(turns).dot(axis) / (2 * 0.25 * spin), angular, tolerance);
+  };
+  const double dt = 1.0 / 64;
+  double phi = std::atan(spin * dt);  // the first step goes along the tangent
+  for (int n = 1; n < 64; ++n) phi = reference::stick_next_angle(phi);
+  for (const std::string& solver : {jakobsen(1), jakobsen(8, "sqrt-free"), xpbd(1), bullet(8)})
+    check(solver, std::sin(phi) / (spin * dt), 1e-12);
+  check(mass_spring("verlet", 1000), 1, 1e-12);
 }
 
 }  // namespace taut

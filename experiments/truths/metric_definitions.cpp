@@ -1,8 +1,12 @@
 // Section 10: metrics on states whose values are known by construction.
 #include <cmath>
+#include <numbers>
 
 #include "core/model/index.hpp"
+#include "core/reference/closed_forms.hpp"
+#include "core/reference/dense.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/metrics/reference_path.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -86,6 +90,11 @@ TAUT_TRUTH(metric_motion, 10, 3, "jitter, popping, drift and settling of prescri
     for (Vec3& v : slows[n].v) v.x() = 1;
   findings.equal("metric:settle", "settle.time of a sheet that stops after step 31", "s",
                  measured("settle.time", s, slows), 31 * s.dt, 1e-14);
+  std::vector<State> creeps(129, s.start);
+  for (std::size_t n = 0; n < creeps.size(); ++n)
+    for (Vec3& x : creeps[n].x) x.x() += 0.002 * static_cast<double>(n) * s.dt;
+  findings.equal("metric:settle", "of one that creeps at 2 mm/s, 0.5 mm further after 17 steps",
+                 "s", measured("settle.time", s, creeps), 7 * 17 * s.dt, 1e-14);
 }
 
 TAUT_TRUTH(metric_penetration, 10, 4, "penetration is max(0, -signed distance)",
@@ -148,6 +157,175 @@ TAUT_TRUTH(metric_crossings, 10, 7, "crossing faces that share no vertex are cou
                  measured("self.crossings", s, {s.start, s.start}), 1, 0);
   findings.equal("metric:self_intersection", "of two faces apart", "1",
                  measured("self.crossings", s, {apart, apart}), 0, 0);
+}
+
+TAUT_TRUTH(metric_contour, 10, 8, "the line along which two faces cross has its length",
+           "two triangles at right angles") {
+  Scene s = bare::scene({Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, 3, 0), Vec3(1, 0.5, -1),
+                         Vec3(1, 0.5, 1), Vec3(1, 5, 1)},
+                        std::vector<double>(6, 1.0), {});
+  s.mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  s.self_collision = SelfCollision{0.01};
+  findings.equal("metric:self_intersection", "self.contour from y = 0.5 m to the hem at 2 m", "m",
+                 measured("self.contour", s, {s.start, s.start}), 1.5, 1e-14);
+}
+
+TAUT_TRUTH(metric_momentum, 10, 9,
+           "a rigid body in free flight keeps momentum and angular momentum",
+           "Newton; the exact path of a spinning sheet") {
+  Scene s = sheet();
+  const double spin = 3;
+  const Vec3 center(0.5, -0.5, 0), axis = Vec3::UnitZ();
+  const auto path = [&](double pull, double spin_left) {
+    std::vector<State> states;
+    for (int n = 0; n <= 64; ++n) {
+      const double t = n * s.dt;
+      State state = s.start;
+      for (std::size_t i = 0; i < state.x.size(); ++i) {
+        const Vec3 arm = Eigen::AngleAxisd(spin * t, axis) * (s.mesh.rest[i] - center);
+        state.x[i] = center + arm + pull * s.gravity * t * t / 2;
+        state.v[i] = pull * s.gravity * t + (n > 0 ? spin_left : 1) * spin * axis.cross(arm);
+      }
+      states.push_back(state);
+    }
+    return states;
+  };
+  const auto check = [&](const char* name, double pull, double spin_left, const char* what,
+                         const char* unit, double expected) {
+    findings.equal("metric:momentum", std::string(name) + what, unit,
+                   measured(name, s, path(pull, spin_left)), expected, 1e-12);
+  };
+  check("momentum.linear", 1, 1, " of the exact path", "m/s", 0);
+  check("momentum.angular", 1, 1, " of the exact path", "1", 0);
+  check("momentum.linear", 0.9, 1, " with a tenth of gravity missing, after 1 s", "m/s", 0.1 * kG);
+  check("momentum.angular", 1, 0.8, " with a fifth of the spin missing", "1", 0.2);
+}
+
+TAUT_TRUTH(metric_energy_loss, 10, 10,
+           "of each swing's kinetic energy as much is lost as the turning points are lower",
+           "a body on prescribed energies") {
+  const Scene s = sheet();
+  std::vector<State> states;
+  for (int n = 0; n <= 130; ++n) {  // three swings of 40 steps, and a part of a fourth
+    const double moves = std::pow(std::sin(std::numbers::pi * n / 40), 2);  // J/kg
+    State state = s.start;
+    for (Vec3& v : state.v) v.x() = std::sqrt(2 * moves);
+    for (Vec3& x : state.x) x.y() += (-0.1 * n / 40 - moves) / kG;
+    states.push_back(state);
+  }
+  findings.equal("metric:energy_loss", "energy.loss of a body that loses a tenth in each swing",
+                 "1", measured("energy.loss", s, states), 0.1, 1e-12);
+}
+
+TAUT_TRUTH(metric_pins, 10, 11, "pins carry the weight of a cloth at rest",
+           "momentum balance of the whole cloth") {
+  Scene s = sheet();
+  s.pins = {0, 4};
+  findings.equal("metric:pins", "pins.force of a cloth at rest", "1",
+                 measured("pins.force", s, {s.start, s.start}), 1, 1e-14);
+  std::vector<State> lifted(65, s.start);
+  for (std::size_t n = 0; n < lifted.size(); ++n)
+    for (Vec3& v : lifted[n].v) v.y() = 2 * static_cast<double>(n) * s.dt;
+  const double pinned = (s.mesh.mass[0] + s.mesh.mass[4]) / 0.2;
+  findings.equal("metric:pins", "the same, lifted ever faster at 2 m/s^2", "1",
+                 measured("pins.force", s, lifted), 1 + (1 - pinned) * 2 / kG, 1e-12);
+}
+
+TAUT_TRUTH(metric_principal, 10, 12,
+           "simple shear by k has sigma = sqrt(1 + k^2/4) +- k/2 and strains no weft",
+           "linear algebra") {
+  const Scene s = sheet();
+  const double k = 0.6;
+  State sheared = s.start;
+  for (Vec3& x : sheared.x) x.x() -= k * x.y();  // v points down
+  const auto check = [&](const char* name, double expected) {
+    findings.equal("metric:principal", std::string(name) + " in simple shear by 0.6", "1",
+                   measured(name, s, {sheared, sheared}), expected, 1e-14);
+  };
+  check("principal.first.p50", std::sqrt(1 + k * k / 4) + k / 2 - 1);
+  check("principal.second.p95", 1 - std::sqrt(1 + k * k / 4) + k / 2);
+  check("principal.weft.max", 0);
+  check("principal.warp.max", std::sqrt(1 + k * k) - 1);
+  check("principal.bias.p50", std::hypot(1 + k, 1) / std::sqrt(2.0) - 1);
+}
+
+TAUT_TRUTH(metric_path, 10, 13,
+           "a cloth that is late has the delay as its phase, a frozen one has travelled nothing",
+           "a prescribed path beside itself") {
+  const Scene s = sheet();
+  const auto place = [&](double t) {
+    std::vector<Vec3> x = s.start.x;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] += (1 - std::cos(2 * t)) * Vec3(0.1, 0.02 * static_cast<double>(i), -0.3);
+    return x;
+  };
+  const auto path = [&](double speed, double late) {
+    std::vector<Reference> moments;
+    for (const double t : {0.5, 1.0})
+      moments.push_back({"", "", "motion", t, "closed form", 0, place(t)});
+    Scene longer = s;
+    longer.steps = 128;
+    ReferencePath result(longer, moments);
+    for (int n = 0; n <= longer.steps; ++n) {
+      const State state = still(place(speed * n * s.dt - late));
+      result.observe({n, n * s.dt, state});
+    }
+    return result;
+  };
+  findings.equal("metric:reference", "motion.share of the path itself", "1", path(1, 0).share(), 1,
+                 1e-14);
+  findings.equal("metric:reference", "motion.phase of the same path 0.2 s later", "s",
+                 path(1, 0.2).phase(), 0.2, 1e-4);
+  const double a = 1 - std::cos(1.0), b = 1 - std::cos(2.0), half = 1 - std::cos(0.5);
+  findings.equal("metric:reference", "motion.share at half the speed", "1", path(0.5, 0).share(),
+                 (a * half + (b - a) * (a - half)) / (a * a + (b - a) * (b - a)), 1e-14);
+  findings.equal("metric:reference", "motion.share of a frozen cloth", "1", path(0, 0).share(), 0,
+                 0);
+  findings.equal("metric:reference", "motion.error of a frozen cloth", "1", path(0, 0).error(), 1,
+                 0);
+}
+
+TAUT_TRUTH(metric_mode, 10, 14,
+           "a damped swing has its damping ratio; under k sweeps that of z^2 - 2 mu z + mu = 0",
+           "logarithmic decrement; linearised Gauss-Seidel sweeps about the hanging chain") {
+  const int n = 8;
+  Scene s = under_gravity(bare::chain(n, 1, 0.1));
+  s.mesh.grid = Grid{1, n + 1};
+  const double w = reference::hanging_chain_frequencies(n, 1, kG)[0], ratio = 0.02;
+  const std::vector<double> shape = reference::hanging_chain_mode(n, 1);
+  std::vector<State> swing;
+  for (int step = 0; step <= 1280; ++step) {
+    const double t = step * s.dt, decay = ratio / std::sqrt(1 - ratio * ratio) * w;
+    State state = s.start;
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      state.x[i + 1].x() += 0.01 * shape[i] * std::exp(-decay * t) * std::cos(w * t);
+    swing.push_back(state);
+  }
+  Scene let_go = s;
+  let_go.start = swing[0];
+  findings.equal("metric:mode", "mode.damping of a swing of 2 %", "1",
+                 measured("mode.damping", let_go, swing), ratio, 1e-5);
+  findings.equal("metric:mode", "mode.period of the same swing", "1",
+                 measured("mode.period", let_go, swing), 0, 1e-5);
+  for (const int k : {16, 64, 1500}) {
+    const reference::Modes modes =
+        reference::modes(reference::transverse_sweeps(n, k, kG * s.dt * s.dt, 1.0 / n));
+    Eigen::Index lowest = 0;
+    modes.eigenvalues.cwiseAbs().maxCoeff(&lowest);
+    const double mu = modes.eigenvalues[lowest].real(), decay = -std::log(mu) / 2,
+                 angle = std::acos(std::sqrt(mu));  // of a step
+    const std::string at = ", 8 links, " + std::to_string(k) + " sweeps";
+    for (const std::string& solver : {jakobsen(k), bullet(k)}) {
+      if (!can_run(findings, solver, let_go)) continue;
+      Simulation sim(let_go, solver);
+      std::vector<State> states{let_go.start};
+      for (int step = 0; step < 640; ++step) sim.step(), states.push_back(sim.state());
+      findings.equal(solver, "mode.damping" + at, "1", measured("mode.damping", let_go, states),
+                     decay / std::hypot(decay, angle), 1e-4);
+      findings.equal(solver, "mode.period" + at, "1", measured("mode.period", let_go, states),
+                     w * s.dt / angle - 1, 1e-4);
+    }
+  }
 }
 
 }  // namespace taut

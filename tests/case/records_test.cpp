@@ -202,25 +202,29 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
                      scene.start.x};
   };
   write_reference(reference("static", 0), scratch.path() / "small");
-  write_reference(reference("motion", 0.5), scratch.path() / "small");
+  for (const double t : {1.5, 0.5, 10.0})
+    write_reference(reference("motion", t), scratch.path() / "small");
   write_file(scratch.path() / "small" / "notes.txt", "not read");
   EXPECT_TRUE(std::filesystem::exists(scratch.path() / "small" / "static.json"));
   EXPECT_TRUE(std::filesystem::exists(scratch.path() / "small" / "motion-0.5s.json"));
   const auto found = [&] { return find_references(scene, scratch.path()); };
-  ASSERT_TRUE(found().rest && found().motion);
+  ASSERT_TRUE(found().rest);
+  ASSERT_EQ(found().motion.size(), 3u);
   EXPECT_EQ(found().rest->kind, "static");
-  EXPECT_EQ(found().motion->t, 0.5);
-  EXPECT_EQ(found().motion->derivation, "by hand");
+  EXPECT_TRUE(std::ranges::is_sorted(found().motion, {}, &Reference::t));
+  EXPECT_EQ(found().motion[0].t, 0.5);
+  EXPECT_EQ(found().motion[0].derivation, "by hand");
   scene.start.v[3].x() = 1;
-  EXPECT_TRUE(found().rest && !found().motion) << "rest does not depend on where it came from";
+  EXPECT_TRUE(found().rest && found().motion.empty())
+      << "rest does not depend on where it came from";
   scene.start.v[3].x() = 0, scene.damping = 1;
-  EXPECT_TRUE(found().rest && !found().motion);
+  EXPECT_TRUE(found().rest && found().motion.empty());
   scene.damping = 0.5, scene.dt /= 2, scene.steps *= 3;
-  EXPECT_TRUE(found().rest && found().motion);
+  EXPECT_TRUE(found().rest && !found().motion.empty());
   scene.gravity.x() = 1;
-  EXPECT_FALSE(found().rest || found().motion);
+  EXPECT_FALSE(found().rest || !found().motion.empty());
   scene.gravity.x() = 0, scene.name = "";
-  EXPECT_FALSE(found().rest || found().motion);
+  EXPECT_FALSE(found().rest || !found().motion.empty());
 }
 
 }  // namespace

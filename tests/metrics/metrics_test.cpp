@@ -197,16 +197,34 @@ TEST(Energy, OfALiftedBodyIsItsHeight) {
 TEST(Jitter, IsTheSpeedOfFreeVerticesAndSettlingItsEnd) {
   Scene scene = sheet(3);
   scene.pins = {0};
-  const double unit = std::sqrt(9.81 * std::sqrt(2.0));
   const auto v = measure(scene, [&](int step) {
     State state = scene.start;
-    for (Vec3& u : state.v) u.x() = step <= 96 ? 0.01 * unit : 0.0005 * unit;
+    for (Vec3& u : state.v) u.x() = step <= 96 ? 0.006 : 0.004;
     state.v[0].x() = 1000;  // a pin that a solver reports as moving is not jitter
     return state;
   });
-  EXPECT_NEAR(v.at("jitter.rms"), 0.0005 * unit, 1e-12);
-  EXPECT_NEAR(v.at("jitter.max"), 0.0005 * unit, 1e-12);
+  EXPECT_NEAR(v.at("jitter.rms"), 0.004, 1e-12);
+  EXPECT_NEAR(v.at("jitter.max"), 0.004, 1e-12);
   EXPECT_DOUBLE_EQ(v.at("settle.time"), 1.5);
+}
+
+TEST(Settle, IsWhenTheLastRestBeginsOfEveryVertex) {
+  Scene scene = sheet(3);
+  scene.pins = {0};
+  const auto when = [&](double first, double second) {  // ways of one vertex at steps 40 and 70
+    return measure(scene,
+                   [&](int step) {
+                     State state = scene.start;
+                     state.x[5].z() += (step >= 40 ? first : 0) + (step >= 70 ? second : 0);
+                     state.x[0].z() += step;  // a pin
+                     return state;
+                   })
+        .at("settle.time");
+  };
+  EXPECT_DOUBLE_EQ(when(0.4e-3, 0), 0);
+  EXPECT_DOUBLE_EQ(when(0.6e-3, 0.4e-3), 40 * scene.dt);
+  EXPECT_DOUBLE_EQ(when(0.6e-3, 0.6e-3), 70 * scene.dt);
+  EXPECT_DOUBLE_EQ(when(0.3e-3, 0.3e-3), 70 * scene.dt);
 }
 
 TEST(Jitter, IsTheRootMeanSquareOverVerticesAndTimeBesideTheFastest) {
@@ -339,20 +357,23 @@ std::vector<State> noisy_states(const Scene& scene) {
 void expect_same(const Values& a, const Values& b) {
   ASSERT_EQ(a.size(), b.size());
   for (const auto& [name, value] : a)
-    EXPECT_NEAR(value, b.at(name), 1e-9 * std::max(1.0, std::abs(value))) << name;
+    if (std::isnan(value))
+      EXPECT_TRUE(std::isnan(b.at(name))) << name;
+    else
+      EXPECT_NEAR(value, b.at(name), 1e-9 * std::max(1.0, std::abs(value))) << name;
 }
 
 TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
   Scene scene =
       load_scene(std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/drape.toml");
   const References known = known_references(scene);
-  ASSERT_TRUE(known.rest && known.motion);
+  ASSERT_TRUE(known.rest && !known.motion.empty());
   scene.dt = 0.1, scene.steps = 10;  // neither matters
   const auto pins = [&](std::size_t i) {
     return std::ranges::count(scene.pins, static_cast<int>(i));
   };
   const auto motion = [&](int step) {
-    State state{step == 5 ? known.motion->x : known.rest->x, scene.start.v};
+    State state{step == 5 ? known.motion[0].x : known.rest->x, scene.start.v};
     for (std::size_t i = 0; i < state.x.size(); ++i) {
       if (pins(i)) state.x[i] += Vec3(0, 0, 5);  // which the scene moves, not the solver
       if (step != 5) state.x[i] += Vec3(0, 0.03, -0.04);
@@ -363,7 +384,7 @@ TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
   EXPECT_EQ(v.at("reference.motion"), 0);
   EXPECT_GT(v.at("reference.max"), 0.05);  // at step 5, where it should not rest yet
   EXPECT_EQ(v.at("reference.floor"), known.rest->floor);
-  EXPECT_EQ(v.at("reference.motion_floor"), known.motion->floor);
+  EXPECT_EQ(v.at("reference.motion_floor"), known.motion[0].floor);
   scene.steps = 4, scene.dt = 0.25;
   const Values end = measure(scene, [&](int) { return motion(1); });
   EXPECT_NEAR(end.at("reference.rms"), 0.05, 1e-15);
@@ -384,7 +405,8 @@ TEST(Metrics, DoNotCareWhereTheWorldIs) {
 }
 
 TEST(Metrics, DoNotCareHowVerticesAreNumbered) {
-  const Scene scene = busy_scene();
+  Scene scene = busy_scene();
+  scene.mesh.grid.reset();  // which numbers them
   const auto states = noisy_states(scene);
   const int n = scene.mesh.size();
   const auto to = [n](int i) { return (i * 7 + 3) % n; };  // 7 and 36 have no common factor
@@ -396,7 +418,6 @@ TEST(Metrics, DoNotCareHowVerticesAreNumbered) {
   };
   const auto permuted_state = [&](const State& s) { return State{permuted(s.x), permuted(s.v)}; };
   Scene other = scene;
-  other.mesh.grid.reset();
   other.mesh.rest = permuted(scene.mesh.rest), other.mesh.mass = permuted(scene.mesh.mass);
   other.start = permuted_state(scene.start);
   for (Triangle& t : other.mesh.triangles) t = {to(t[1]), to(t[2]), to(t[0])};

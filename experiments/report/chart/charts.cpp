@@ -99,11 +99,16 @@ void draw_levels(Chart& chart) {
 
 /// What the chart of a value is called in its scene; where several have the role, after the value.
 std::string id_of(const ValueSpec& value) {
-  constexpr std::string_view kNames[] = {"",         "convergence", "vertices", "faces",
-                                         "passages", "reference",   "slip"};
+  constexpr std::string_view kNames[] = {"",      "convergence", "motion",    "vertices",
+                                         "faces", "passages",    "reference", "slip"};
   const std::vector<const ValueSpec*> all = values_with_role();
   const bool alone = std::ranges::count(all, value.role, &ValueSpec::role) == 1;
   return std::string(alone ? kNames[static_cast<std::size_t>(value.role)] : value.name);
+}
+
+bool over_sweeps_alone(const ValueSpec& value) {
+  return value.role == Role::error || value.role == Role::motion ||
+         value.role == Role::reference_error;
 }
 
 std::string caption_of(const ValueSpec& value) {
@@ -321,7 +326,7 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
   };
   const std::vector<const ValueSpec*> values = values_with_role();
   for (const ValueSpec* value : values) {
-    if (value->role != Role::error && value->role != Role::reference_error) continue;
+    if (!over_sweeps_alone(*value)) continue;
     const std::string y(value->name);
     if (!add(id_of(*value), "convergence", kSweeps, y, kSweeps, caption_of(*value))) continue;
     for (const StudyResult& study : input.studies)
@@ -336,7 +341,7 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
           "Down and left is better."))
     charts.back().front = true;
   for (const ValueSpec* value : values) {
-    if (value->role == Role::error || value->role == Role::reference_error) continue;
+    if (over_sweeps_alone(*value)) continue;
     const std::string y(value->name);
     add(id_of(*value), "contact", kSweeps, y, kSweeps, caption_of(*value));
     add(id_of(*value) + "-dt", "contact", "dt", y, "dt", caption_of(*value));

@@ -41,6 +41,17 @@ struct CostScene {
             {"high", cost.high},
             {"case", refs.key(c.record)}};
   }
+  /// "share of the way travelled 98 %": what a small strain may have cost.
+  std::string motion(std::size_t at) const {
+    std::string text;
+    for (const ValueSpec* value : values_with_role())
+      if (value->role == Role::motion)
+        if (const double v = value_of(bench.cases[at].record, std::string(value->name));
+            std::isfinite(v))
+          text += (text.empty() ? "" : ", ") + quantity(std::string(value->name)).title + " " +
+                  quantity(std::string(value->name)).text(v);
+    return text;
+  }
   /// "not reached by the settings tried (at best 0.12 %)".
   std::string missed(const std::string& solver) const {
     const std::vector<Candidate> candidates = bench.candidates(kErrorMetric);
@@ -101,11 +112,13 @@ Json levels_table(const CostScene& scene) {
       }
       Json cell = scene.cell(
           *r.at, milliseconds(scene.bench.cases[*r.at].cost()) + ", " + scene.setting(*r.at));
+      std::string note = scene.motion(*r.at);
       if (r.times && r.times->mid > 1) {
         const Certainty sure = judge(*r.times, scene.bench.control);
-        cell["note"] = ratio_note(*r.times, sure);
+        note = ratio_note(*r.times, sure) + (note.empty() ? "" : "; ") + note;
         if (sure != Certainty::none) cell["sure"] = to_string(sure);
       }
+      if (!note.empty()) cell["note"] = note;
       row.push_back(std::move(cell));
     }
     table["rows"].push_back(std::move(row));
@@ -130,11 +143,13 @@ Json budgets_table(const CostScene& scene) {
         row.push_back("nothing that cheap");
         continue;
       }
-      row.push_back({{"text", q.text(candidates[*at].error) + " for " +
-                                  milliseconds(candidates[*at].cost, 1e3 * kFrame) + ", " +
-                                  scene.setting(*at)},
-                     {"value", candidates[*at].error},
-                     {"case", scene.refs.key(scene.bench.cases[*at].record)}});
+      Json cell{{"text", q.text(candidates[*at].error) + " for " +
+                             milliseconds(candidates[*at].cost, 1e3 * kFrame) + ", " +
+                             scene.setting(*at)},
+                {"value", candidates[*at].error},
+                {"case", scene.refs.key(scene.bench.cases[*at].record)}};
+      if (const std::string motion = scene.motion(*at); !motion.empty()) cell["note"] = motion;
+      row.push_back(std::move(cell));
     }
     table["rows"].push_back(std::move(row));
   }
