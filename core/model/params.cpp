@@ -115,7 +115,7 @@ std::vector<ParamItem> param_items(std::string_view text) {
 }
 
 Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::string_view text)
-    : specs_(specs) {
+    : owner_(owner), specs_(specs) {
   std::vector<Diagnostic> problems;
   std::vector<std::string> names;
   for (const ParamSpec& spec : specs) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace taut {
@@ -54,6 +55,16 @@ class Params {
   double real(std::string_view name) const;
   std::string_view choice(std::string_view name) const;
   bool is(std::string_view name, std::string_view value) const { return choice(name) == value; }
+  /// What the choice stands for, of pairs of a value's name and what it stands for.
+  template <class T, std::size_t n>
+  T one_of(std::string_view name, const std::pair<std::string_view, T> (&choices)[n]) const {
+    std::size_t i = 0;
+    while (choices[i].first != choice(name)) ++i;  // Params accepts no other
+    return choices[i].second;
+  }
+  bool has(std::string_view name) const { return find(name) < specs_.size(); }
+  /// Whose parameters they are.
+  const std::string& owner() const { return owner_; }
 
   /// "key=value,..." in declared order: all of them, or only those that differ from their defaults.
   std::string canonical() const { return text(false); }
@@ -65,6 +76,7 @@ class Params {
  private:
   std::string text(bool only_changed) const;
   std::size_t find(std::string_view name) const;
+  std::string owner_;
   std::span<const ParamSpec> specs_;
   std::vector<std::string> values_;  ///< canonical text
 };

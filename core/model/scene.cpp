@@ -95,12 +95,14 @@ Vec3 pin_position(const Scene& scene, int vertex, double t) {
 
 std::string content(const Scene& scene) {
   // Every member is named here: a new one does not compile until it has an answer.
-  const auto& [name, summary, mesh, start, pins, pin_motions, links, colliders, wind,
+  const auto& [name, summary, mesh, start, pins, pin_motions, links, stiffness, colliders, wind,
                self_collision, gravity, damping, thickness, dt, steps] = scene;
   Bytes bytes;
   bytes.add(mesh), bytes.add(start), bytes.add(pins), bytes.add(pin_motions), bytes.add(links);
   bytes.add(colliders), bytes.add(wind), bytes.add(self_collision);
   bytes.add(gravity), bytes.add(damping), bytes.add(thickness), bytes.add(dt), bytes.add(steps);
+  if (stiffness != kRigid)  // a scene without has the bytes that it had before there was any
+    for (const double k : stiffness) bytes.add(k);
   return bytes.take();
 }
 

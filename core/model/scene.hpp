@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +41,10 @@ struct PinMotion {
   Motion motion;              ///< of the place where the vertex starts
 };
 
+inline constexpr std::array<double, kFamilies.size()> kRigid{
+    std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+    std::numeric_limits<double>::infinity()};
+
 /// What to simulate: plain data in SI units, no behaviour. Every solver receives this same object.
 /// An empty vector or disengaged optional means that the effect is absent, and an absent effect
 /// costs neither memory nor time (tests/solver/absent_is_free_test.cpp).
@@ -50,6 +56,8 @@ struct Scene {
   std::vector<int> pins;               ///< sorted, unique: vertices that no solver may integrate
   std::vector<PinMotion> pin_motions;  ///< empty: pins stay where they start
   std::vector<Link> links;             ///< Gauss-Seidel order, families contiguous
+  /// Of the links of each family [N/m], > 0; infinite: rigid.
+  std::array<double, kFamilies.size()> stiffness = kRigid;
   std::vector<Collider> colliders;
   std::optional<Wind> wind;
   std::optional<SelfCollision> self_collision;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""CONTRIBUTING.md means what it says: its code is built into taut-toy, its solver gives what ours gives, its scene and
+"""CONTRIBUTING.md means what it says: its code is built into taut-toy, its solvers give what ours gives, its scene and
 study run.
 
 Usage: contributing_test.py BUILD; `contributing_test.py --extract FOLDER` writes the code that CMake then builds."""
@@ -43,6 +43,13 @@ class Contributing(CommandLine):
         self.assertLess(max(abs(a - b) for a, b in zip(toy, ours, strict=True)), 1e-9)
         other = self.end_of("hang", "toy:iterations=8")
         self.assertGreater(max(abs(a - b) for a, b in zip(toy, other, strict=True)), 1e-3)
+
+    def test_the_toy_pass_gives_what_ours_gives_with_contact_too(self):
+        for scene in ("hang", "ball"):
+            toy = self.end_of(scene, "toy-pass:iterations=16")
+            ours = self.end_of(scene, "jakobsen:substeps=1,order=mesh,projection=exact,precision=double,iterations=16")
+            self.assertLess(max(abs(a - b) for a, b in zip(toy, ours, strict=True)), 1e-6)
+        self.assertNotEqual(self.end_of("ball", "toy-pass"), self.end_of("ball", "toy-pass:contact=after"))
 
     def test_the_toy_solver_says_what_it_does_not_do(self):
         record = json.loads(self.taut("case", "ball", "toy", "--json", program="taut-toy").out)

@@ -31,18 +31,18 @@ TEST(SolverSettings, OfJakobsenAreTheseLines) {
   const Lines plain{{"time step", "0.00390625 s x 4"},
                     {"integration", "Verlet"},
                     {"projection", "exact, weighted by inverse mass"},
+                    {"link order", "the scene's"},
                     {"gravity", "the scene's"},
-                    {"precision", "double"},
-                    {"link order", "the scene's"}};
+                    {"precision", "double"}};
   EXPECT_EQ(settings(hanging_sheet(3, 3),
                      "jakobsen:substeps=4,projection=exact,precision=double,order=mesh"),
             plain);
   const Lines all{{"time step", "0.0078125 s x 2"},
                   {"integration", "Verlet"},
                   {"projection", "sqrt-free, weighted by inverse mass"},
+                  {"link order", "coloured"},
                   {"gravity", "the scene's"},
                   {"precision", "float"},
-                  {"link order", "coloured"},
                   {"damping", "velocity x " + shortest(std::exp(-0.5 / 128)) + " per substep"},
                   {"contact response", "discrete"},
                   {"friction", "Coulomb: tangential correction at most mu times the depth"},

@@ -5,7 +5,6 @@
 
 #include "core/model/input_error.hpp"
 #include "core/solver/constraints/hierarchy.hpp"
-#include "core/solver/constraints/tethers.hpp"
 #include "core/solver/layout/colour_batches.hpp"
 #include "core/solver/layout/interleaved_sheet.hpp"
 
@@ -176,19 +175,6 @@ std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const 
   return std::make_unique<GaussSeidelPass<Real, kind>>(std::move(constraints), std::move(costs));
 }
 
-template <class Real, Projection kind>
-std::vector<std::unique_ptr<Pass<Real>>> accelerators(const Scene& scene, std::span<const double> w,
-                                                      const RelaxationSettings& settings) {
-  std::vector<std::unique_ptr<Pass<Real>>> passes;
-  if (settings.levels > 1)
-    if (auto levels = make_hierarchy(scene, w, settings.levels - 1); !levels.empty())
-      passes.push_back(std::make_unique<HierarchyPass<Real, kind>>(std::move(levels), w.size()));
-  if (settings.tethers)
-    if (auto tethers = make_tethers(scene); !tethers.empty())
-      passes.push_back(std::make_unique<TetherPass<Real>>(scene, tethers, kind, settings.simd));
-  return passes;
-}
-
 }  // namespace
 
 template <class Real>
@@ -218,23 +204,30 @@ Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
 }
 
 template <class Real>
-std::vector<std::unique_ptr<Pass<Real>>> make_accelerators(const Scene& scene,
-                                                           std::span<const double> w,
-                                                           const RelaxationSettings& settings) {
-  return settings.projection == Projection::exact
-             ? accelerators<Real, Projection::exact>(scene, w, settings)
-             : accelerators<Real, Projection::sqrt_free>(scene, w, settings);
+std::vector<std::unique_ptr<Pass<Real>>> make_levels(const Scene& scene, std::span<const double> w,
+                                                     const RelaxationSettings& settings) {
+  std::vector<std::unique_ptr<Pass<Real>>> passes;
+  if (settings.levels == 1) return passes;
+  auto levels = make_hierarchy(scene, w, settings.levels - 1);
+  if (levels.empty()) return passes;
+  if (settings.projection == Projection::exact)
+    passes.push_back(
+        std::make_unique<HierarchyPass<Real, Projection::exact>>(std::move(levels), w.size()));
+  else
+    passes.push_back(
+        std::make_unique<HierarchyPass<Real, Projection::sqrt_free>>(std::move(levels), w.size()));
+  return passes;
 }
 
 template Relaxation<float> make_relaxation(const Scene&, std::span<const double>,
                                            const RelaxationSettings&, ThreadPool&);
 template Relaxation<double> make_relaxation(const Scene&, std::span<const double>,
                                             const RelaxationSettings&, ThreadPool&);
-template std::vector<std::unique_ptr<Pass<float>>> make_accelerators(const Scene&,
-                                                                     std::span<const double>,
-                                                                     const RelaxationSettings&);
-template std::vector<std::unique_ptr<Pass<double>>> make_accelerators(const Scene&,
-                                                                      std::span<const double>,
-                                                                      const RelaxationSettings&);
+template std::vector<std::unique_ptr<Pass<float>>> make_levels(const Scene&,
+                                                               std::span<const double>,
+                                                               const RelaxationSettings&);
+template std::vector<std::unique_ptr<Pass<double>>> make_levels(const Scene&,
+                                                                std::span<const double>,
+                                                                const RelaxationSettings&);
 
 }  // namespace taut

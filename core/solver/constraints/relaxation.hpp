@@ -37,7 +37,6 @@ struct RelaxationSettings {
   LinkLayout layout = LinkLayout::automatic;
   double omega = 1;  ///< relaxation factor: the share of a correction that is made
   int levels = 1;    ///< of the hierarchy; 1: the cloth alone
-  bool tethers = false;
   Simd simd = Simd::scalar;
 };
 
@@ -53,9 +52,9 @@ template <class Real>
 Relaxation<Real> make_relaxation(const Scene&, std::span<const double> w, const RelaxationSettings&,
                                  ThreadPool&);
 
-/// What the settings ask to do before each sweep: coarse levels, then tethers.
+/// The coarse levels to relax before each sweep; none if there are none.
 template <class Real>
-std::vector<std::unique_ptr<Pass<Real>>> make_accelerators(const Scene&, std::span<const double> w,
-                                                           const RelaxationSettings&);
+std::vector<std::unique_ptr<Pass<Real>>> make_levels(const Scene&, std::span<const double> w,
+                                                     const RelaxationSettings&);
 
 }  // namespace taut

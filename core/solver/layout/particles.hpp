@@ -191,12 +191,16 @@ class Pass {
   virtual ~Pass() = default;
   /// The solver starts anew from another state: forget what was.
   virtual void restart() {}
+  /// Once for the step [t, t + dt], before integration; called of a pass that asks for it alone.
+  virtual void accelerate(Particles<Real>&, double /*t*/, double /*dt*/) {}
   /// Once for the step [t, t + dt], after integration and before the first sweep.
   virtual void begin(Particles<Real>&, double /*t*/, double /*dt*/) {}
   /// For the step [t, t + dt].
   virtual void apply(Particles<Real>&, double t, double dt) = 0;
-  /// Whether begin() and apply() touch particles only in what they queue (ThreadPool::queue):
-  /// before those of any other pass, what is queued has to be finished.
+  /// Once for the step, after the last sweep and contact: called of those that solve links.
+  virtual void end(Particles<Real>&, double /*t*/, double /*dt*/) {}
+  /// Whether all of these touch particles only in what they queue (ThreadPool::queue): before those
+  /// of any other pass, what is queued has to be finished.
   virtual bool queues() const { return false; }
   /// Of one application, a line for each thing it does; the solver sets `repeats`.
   virtual std::vector<PassCost> cost() const = 0;

@@ -1,0 +1,295 @@
+#include "core/solver/loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
+#include "core/solver/constraints/tethers.hpp"
+#include "core/solver/wind.hpp"
+
+namespace taut::loop {
+
+namespace {
+
+template <class T>
+using Choice = std::pair<std::string_view, T>;
+
+constexpr Choice<Response> kResponses[] = {
+    {"continuous", Response::continuous}, {"discrete", Response::discrete},
+    {"before", Response::before},         {"after", Response::after},
+    {"freeze", Response::freeze},         {"halt", Response::halt}};
+constexpr Choice<SelfCollisionMethod> kSelfCollision[] = {{"grid", SelfCollisionMethod::grid},
+                                                          {"octree", SelfCollisionMethod::octree},
+                                                          {"off", SelfCollisionMethod::off}};
+
+/// Throws InputError if this machine does not have it.
+Simd simd_of(const Params& params) {
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
+    if (params.is("simd", to_string(simd))) {
+      if (available(simd)) return simd;
+      throw InputError(params.owner() + ": simd=" + std::string(to_string(simd)) +
+                       ": this machine does not have it; its widest is " +
+                       std::string(to_string(widest())));
+    }
+  return widest();
+}
+
+ContactSettings contact_settings(const Params& params) {
+  return {.response = params.one_of("contact", kResponses),
+          .faces = params.is("faces", "on"),
+          .self = params.one_of("self", kSelfCollision),
+          .simd = simd_of(params)};
+}
+
+/// The vertices that are not integrated: held, or moved along the scene's motions.
+class Pins {
+ public:
+  Pins(const Scene& scene, const Layout& layout) {
+    std::vector<int> free = scene.pins;
+    std::vector<Moved> moved;
+    for (const PinMotion& group : scene.pin_motions) {
+      motions_.push_back(group.motion);
+      for (const int v : group.vertices) {
+        std::erase(free, v);
+        moved.push_back({v, motions_.size() - 1, scene.start.x[static_cast<std::size_t>(v)]});
+      }
+    }
+    std::vector<Held> held;
+    for (const int v : free) held.push_back({v});
+    held_ = {std::move(held), layout}, moved_ = {std::move(moved), layout};
+  }
+  Pins() = default;
+
+  /// Undoes what integration did to those of blocks [begin, end) and puts them where they have to
+  /// be at time t [s].
+  template <class Real>
+  void place(Particles<Real>& p, std::size_t begin, std::size_t end, double t) {
+    for (const auto& [v] : held_.of(begin, end))
+      p.x.set(static_cast<std::size_t>(v), p.previous[static_cast<std::size_t>(v)]);
+    for (const auto& [v, motion, start] : moved_.of(begin, end))
+      p.x.set(static_cast<std::size_t>(v), motions_[motion].moved(start, t).template cast<Real>());
+  }
+
+  bool empty() const { return held_.empty() && moved_.empty(); }
+  std::size_t size() const { return held_.size() + moved_.size(); }
+  std::size_t bytes() const { return held_.bytes() + moved_.bytes(); }
+
+ private:
+  struct Held {
+    int vertex;
+  };
+  struct Moved {
+    int vertex;
+    std::size_t motion;
+    Vec3 start;  ///< m
+  };
+  std::vector<Motion> motions_;
+  ByBlock<Held> held_;
+  ByBlock<Moved> moved_;
+};
+
+/// The step of Thomas Jakobsen, Advanced Character Physics (GDC 2001), with any solver of links.
+template <class Real>
+class Loop final : public Solver {
+ public:
+  Loop(const Scene& scene, const Params& params, MakeLinks<Real> make_links)
+      : iterations_(params.has("iterations") ? params.integer("iterations") : 1),
+        substeps_(params.integer("substeps")),
+        h_(scene.dt / substeps_),
+        gravity_(scene.gravity),
+        damping_(scene.damping),
+        simd_(simd_of(params)),
+        pool_(params.integer("threads")) {
+    const std::vector<double> w = inverse_masses(scene);
+    Links<Real> links = make_links({scene, params, w, simd_, pool_});
+    p_ = Particles<Real>(std::move(links.layout));
+    p_.w.assign(w.begin(), w.end());
+    p_.x = p_.previous = Points<Real>(p_.layout);
+    if (links.accelerates) accelerating_ = links.pass.get();
+    if (scene.wind) forces_.push_back(make_wind<Real>(scene, w, *p_.layout, simd_, pool_));
+    if (accelerating_ || scene.wind) p_.a = Points<Real>(p_.layout);
+    constraints_ = std::move(links.coarse);
+    if (params.has("tethers") && params.is("tethers", "on"))
+      if (const std::vector<Tether> tethers = make_tethers(scene); !tethers.empty())
+        constraints_.push_back(
+            std::make_unique<TetherPass<Real>>(scene, tethers, links.tethers, simd_));
+    if (links.pass) constraints_.push_back(std::move(links.pass));
+    pins_ = Pins(scene, *p_.layout);
+    contact_ = make_contact<Real>(scene, *p_.layout, contact_settings(params), pool_);
+  }
+
+  /// The published TimeStep(), substeps times with dt / substeps.
+  void step(double t, double dt) override {
+    const double h = dt / substeps_;
+    prepare_verlet(h);
+    for (int s = 0; s < substeps_; ++s, t += h) {
+      if (accelerating_) ready_for(*accelerating_).accelerate(p_, t, h);
+      apply(forces_, t, h);  // AccumulateForces
+      verlet(t + h);         // Verlet
+      for (const auto* list : {&constraints_, &contact_.before, &contact_.sweep, &contact_.after})
+        for (auto& pass : *list) ready_for(*pass).begin(p_, t, h);
+      apply(contact_.before, t, h);
+      for (int k = 0; k < iterations_; ++k) {  // SatisfyConstraints
+        apply(constraints_, t, h);
+        apply(contact_.sweep, t, h);
+      }
+      apply(contact_.after, t, h);
+      for (auto& pass : constraints_) ready_for(*pass).end(p_, t, h);
+      if (s + 1 < substeps_) substep_ended(t + h);
+    }
+    pool_.finish();
+  }
+
+  void load(const State& state) override {
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+      const Vec3 previous = state.x[i] - h_ * state.v[i];
+      p_.x.set(i, state.x[i].template cast<Real>());
+      p_.previous.set(i, previous.template cast<Real>());
+    }
+    for (const auto* list :
+         {&forces_, &constraints_, &contact_.before, &contact_.sweep, &contact_.after})
+      for (auto& pass : *list) pass->restart();
+  }
+
+  void store(State& state) const override {
+    pool_.finish();  // who visits substeps comes while work is queued
+    state.x.resize(p_.size()), state.v.resize(p_.size());
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+      state.x[i] = p_.x[i].template cast<double>();
+      state.v[i] = (p_.x[i] - p_.previous[i]).template cast<double>() / h_;
+    }
+  }
+
+  std::vector<PassCost> step_cost() const override {
+    std::vector<PassCost> costs;
+    const auto add = [&](std::vector<PassCost> lines, int repeats) {
+      for (PassCost& line : lines) {
+        line.repeats = static_cast<std::size_t>(repeats);
+        costs.push_back(std::move(line));
+      }
+    };
+    const std::size_t bytes = p_.x.bytes() + p_.previous.bytes() + p_.a.bytes() +
+                              p_.w.size() * sizeof(Real) + p_.layout->bytes();
+    for (const auto& force : forces_) add(force->cost(), substeps_);
+    add({{.pass = "verlet", .items = p_.size(), .bytes = bytes}}, substeps_);
+    if (!pins_.empty())
+      add({{.pass = "pins", .items = pins_.size(), .bytes = pins_.bytes()}}, substeps_);
+    for (const auto& pass : contact_.before) add(pass->cost(), substeps_);
+    for (const auto& constraint : constraints_) add(constraint->cost(), substeps_ * iterations_);
+    for (const auto& pass : contact_.sweep) add(pass->cost(), substeps_ * iterations_);
+    for (const auto& pass : contact_.after) add(pass->cost(), substeps_);
+    return costs;
+  }
+
+ private:
+  using PassList = std::vector<std::unique_ptr<Pass<Real>>>;
+
+  void apply(PassList& passes, double t, double dt) {
+    for (auto& pass : passes) ready_for(*pass).apply(p_, t, dt);
+  }
+  Pass<Real>& ready_for(Pass<Real>& pass) {
+    if (!pass.queues()) pool_.finish();
+    return pass;
+  }
+
+  /// Gravity and damping of substeps of dt [s]: as much work as integrating hundreds of particles.
+  void prepare_verlet(double dt) {
+    if (dt == prepared_for_) return;
+    for (std::size_t i = 0; i < kGrain; ++i) {
+      const int axis = p_.layout->axis(i);
+      g_[i] = static_cast<Real>(axis < 3 ? gravity_[axis] * dt * dt : 0);
+    }
+    verlet_ = {.x = p_.x.data(),
+               .previous = p_.previous.data(),
+               .a = p_.a.empty() ? nullptr : p_.a.data(),
+               .keep = static_cast<Real>(std::exp(-damping_ * dt)),
+               .dt2 = static_cast<Real>(dt * dt),
+               .g = g_};
+    prepared_for_ = dt;
+  }
+
+  /// x* = x + (x - x') + a dt^2, the velocity x - x' damped; pins as they are at time t.
+  void verlet(double t) {
+    pool_.queue(
+        p_.layout->blocks(),
+        [this, t](std::size_t begin, std::size_t end) {
+          const Kernels<Real>& k = kernels<Real>(simd_);
+          const auto kernel = p_.layout->stride() == kWide ? k.wide_verlet : k.narrow_verlet;
+          kernel(verlet_, p_.layout->place_of_block(begin), p_.layout->place_of_block(end));
+          pins_.place(p_, begin, end, t);
+        },
+        p_.size() >= ThreadPool::kWorthSharing);
+  }
+
+  int iterations_;
+  int substeps_;
+  double h_;  ///< s, of a substep
+  Vec3 gravity_;
+  double damping_;
+  Simd simd_;
+  mutable ThreadPool pool_;
+  Pins pins_;
+  Particles<Real> p_;
+  alignas(64) Real g_[kGrain];
+  VerletStep<Real> verlet_{};
+  double prepared_for_ = 0;  ///< s; 0: for no substep yet
+  PassList forces_;
+  PassList constraints_;
+  Pass<Real>* accelerating_ = nullptr;  ///< of constraints_
+  ContactPasses<Real> contact_;
+};
+
+bool in_float(const Params& params) {
+  return params.has("precision") && params.is("precision", "float");
+}
+
+}  // namespace
+
+template <class Real>
+std::unique_ptr<Solver> make(const Scene& scene, const Params& params, MakeLinks<Real> links) {
+  return std::make_unique<Loop<Real>>(scene, params, links);
+}
+template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<float>);
+template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<double>);
+
+/// In float, x + g h^2 is x once g h^2 is less than half a unit in the last place of x: nothing
+/// would ever begin to fall.
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
+  if (!in_float(params)) return {};
+  const double h = scene.dt / params.integer("substeps");
+  double farthest = 0;
+  for (const Vec3& x : scene.start.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
+  const double resolution = farthest * 0x1p-25, move = scene.gravity.norm() * h * h;
+  if (move == 0 || move >= resolution) return {};
+  const auto most = static_cast<int>(scene.dt / std::sqrt(resolution / scene.gravity.norm()));
+  return {"in float, gravity's move of " + std::to_string(move * 1e9) +
+          " nm a substep is lost in coordinates of " + std::to_string(farthest) + " m: at most " +
+          std::to_string(std::max(most, 1)) + " substeps, or precision=double"};
+}
+
+ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
+                                   const ResolvedSettings& own) {
+  const double h = scene.dt / params.integer("substeps");
+  ResolvedSettings lines{
+      {"time step", shortest(h) + " s x " + std::string(params.value("substeps"))},
+      {"integration", "Verlet"}};
+  lines.insert(lines.end(), own.begin(), own.end());
+  lines.emplace_back("gravity", "the scene's");
+  lines.emplace_back("precision", in_float(params) ? "float" : "double");
+  if (scene.damping > 0)
+    lines.emplace_back("damping",
+                       "velocity x " + shortest(std::exp(-scene.damping * h)) + " per substep");
+  if (!scene.colliders.empty()) {
+    lines.emplace_back("contact response", std::string(params.choice("contact")));
+    lines.emplace_back("friction", "Coulomb: tangential correction at most mu times the depth");
+    lines.emplace_back("contact distance", "the scene's thickness");
+    lines.emplace_back("contact of faces", std::string(params.choice("faces")));
+  }
+  if (scene.self_collision)
+    lines.emplace_back("self-collision", std::string(params.choice("self")));
+  return lines;
+}
+
+}  // namespace taut::loop

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/model/solver.hpp"
+#include "core/solver/contact/responses.hpp"
+#include "core/solver/layout/particles.hpp"
+#include "core/solver/simd/distance.hpp"
+#include "core/solver/thread_pool.hpp"
+
+/// The step that solvers of distance constraints share (core/solver/loop.cpp): Verlet, pins and
+/// their motions, wind, damping, contact, self-collision, tethers, substeps, threads, float and
+/// double. A solver of one's own is one file with what differs: a pass that solves the links.
+///
+///     template <class Real>
+///     class MyLinks final : public Pass<Real> {               // core/solver/layout/particles.hpp
+///       void restart() override;                              // load() was called: forget
+///       void accelerate(Particles<Real>&, double t, double h) override;
+///       void begin(Particles<Real>&, double t, double h) override;
+///       void apply(Particles<Real>&, double t, double h) override;
+///       void end(Particles<Real>&, double t, double h) override;
+///       std::vector<PassCost> cost() const override;
+///     };
+///     template <class Real>
+///     loop::Links<Real> make_links(const loop::Setup& s) {
+///       return {.layout = Layout::packed(s.w.size()), .pass = std::make_unique<MyLinks<Real>>(s)};
+///     }
+///     std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
+///       return loop::make<double>(scene, params, make_links<double>);
+///     }
+///
+/// A substep [t, t + h] of the loop, p its particles:
+///
+///  1. accelerate(), if Links::accelerates: p.x = x_t, and (p.x - p.previous) / h the velocity
+///     [m/s], as always between substeps. What is added to p.a [m/s^2] is integrated in 2.
+///  2. Verlet: p.previous = x_t and p.x = y = x_t + exp(-damping h) (x_t - x_t-1) + h^2 (g + p.a);
+///     a pin is where it has to be at t + h.
+///  3. begin(): y and x_t are there to be kept; multipliers are set to zero, or kept.
+///  4. `iterations` times: apply() moves p.x once towards the links' lengths, then contact with
+///     friction puts out what is inside colliders. apply() finds p.x as contact left it.
+///  5. end(): after the last iteration. To move p.x without a change of velocity, move p.previous
+///     by as much.
+///
+/// Rules for a pass: p.w[i] = 0 [1/kg] is a pin, and p.x of it is not written. Whatever else is
+/// needed of steps before the pass keeps itself. Loops over particles read p.x[i] and write
+/// p.x.set(i, ..), in any layout; Layout::packed(n) has x y z 0 of particle i at p.x.data() + 4 i.
+/// cost() is that of one apply(); its `projections` count where a line solves links one by one.
+namespace taut::loop {
+
+/// Of what a solver makes its passes.
+struct Setup {
+  const Scene& scene;
+  const Params& params;
+  std::span<const double> w;  ///< [n] inverse masses [1/kg]; 0: pinned
+  Simd simd;                  ///< for kernels<Real>()
+  ThreadPool& pool;           ///< for passes that queue
+};
+
+/// What a solver adds to the loop. In every iteration come first `coarse`, then tethers, then
+/// `pass`.
+template <class Real>
+struct Links {
+  Layout layout;                                    ///< where the particles lie in memory
+  std::unique_ptr<Pass<Real>> pass = nullptr;       ///< null: no link can move
+  bool accelerates = false;                         ///< `pass` does, and p.a is there
+  std::vector<std::unique_ptr<Pass<Real>>> coarse;  ///< accelerators of `pass`
+  Projection tethers = Projection::exact;
+};
+template <class Real>
+using MakeLinks = Links<Real> (*)(const Setup&);
+
+/// Throws InputError if this machine does not have the instruction set.
+template <class Real>
+std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<Real>);
+
+/// By the parameter `precision`.
+inline std::unique_ptr<Solver> make(const Scene& scene, const Params& params,
+                                    MakeLinks<float> in_float, MakeLinks<double> in_double) {
+  if (params.is("precision", "float")) return make<float>(scene, params, in_float);
+  return make<double>(scene, params, in_double);
+}
+
+/// What the loop itself would get wrong (SolverEntry::unsupported).
+std::vector<std::string> unsupported(const Scene&, const Params&);
+
+/// The loop's lines, `own` after those of time integration (SolverEntry::resolved_settings).
+ResolvedSettings resolved_settings(const Scene&, const Params&, const ResolvedSettings& own);
+
+// The loop's parameters. `iterations` (one without it), `tethers` and `precision` (double without
+// it) may be left out.
+constexpr ParamSpec iterations(std::string_view default_value, std::string_view help) {
+  return ParamSpec::integer("iterations", default_value, 0, 1e6, help);
+}
+constexpr ParamSpec substeps(std::string_view default_value, std::string_view help) {
+  return ParamSpec::integer("substeps", default_value, 1, 1e6, help);
+}
+inline constexpr ParamSpec kContact =
+    ParamSpec::choice("contact", "continuous", "continuous|discrete|before|after|freeze|halt",
+                      "response to colliders: out in every sweep, with a test against passing "
+                      "through (continuous) or without (discrete); once, before or after the "
+                      "sweeps; or put on the surface for good (freeze) or for a step (halt)");
+inline constexpr ParamSpec kFaces = ParamSpec::choice(
+    "faces", "off", "off|on",
+    "keep faces, not only vertices, out of balls and of the edges and corners of boxes");
+inline constexpr ParamSpec kSelf = ParamSpec::choice(
+    "self", "grid", "grid|octree|off",
+    "self-collision where the scene has it: grid, octree as published by Vasilovici, or none");
+inline constexpr ParamSpec kTethers = ParamSpec::choice(
+    "tethers", "off", "off|on",
+    "long-range attachments: no vertex farther from a pin than along the cloth at rest");
+inline constexpr ParamSpec kPrecision =
+    ParamSpec::choice("precision", "float", "float|double", "scalar type of the simulation");
+inline constexpr ParamSpec kSimd =
+    ParamSpec::choice("simd", "auto", "auto|scalar|sse2|avx2|avx512",
+                      "instruction set; every one computes the same bits");
+inline constexpr ParamSpec kThreads = ParamSpec::integer(
+    "threads", "1", 1, 64,
+    "that divide the sweeps of order=coloured; any number computes the same bits");
+
+/// A solver's own parameters, then those that every solver of the loop has.
+template <std::size_t n>
+constexpr auto with_common(const ParamSpec (&own)[n]) {
+  constexpr std::array common{kContact, kFaces, kSelf, kSimd, kThreads};
+  std::array<ParamSpec, n + common.size()> all{};
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i < n ? own[i] : common[i - n];
+  return all;
+}
+
+}  // namespace taut::loop
