@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::vector<std::string> scenes;
-  bool all = false, json = false;
-  std::string output = references_folder().string();
+  bool all = false, replace = false, json = false;
+  std::string output = (results_folder() / "references").string();
 };
 
 std::vector<fs::path> chosen(const Options& options) {
@@ -33,7 +33,19 @@ struct Outcome {
   double floor = 0;
 };
 
-Outcome write_static(const Scene& scene, const fs::path& out) {
+/// Why a reference of this kind is not computed; "": it is.
+std::string kept(const Scene& scene, const std::string& kind, double t, const Options& options) {
+  const fs::path file =
+      reference_file({scene.name, reference_digest(scene, kind), kind, t, "", 0, {}},
+                     fs::path(options.output) / scene.name);
+  if (options.replace || !fs::exists(file)) return "";
+  return file.string() + " is there; --replace computes it again";
+}
+
+Outcome write_static(const Scene& scene, const Options& options) {
+  const fs::path out = options.output;
+  if (const std::string why = kept(scene, "static", 0, options); !why.empty())
+    return {scene.name, "static", "", why};
   const reference::Equilibrium rest = reference::static_equilibrium(scene);
   if (!rest.unique) return {scene.name, "static", "", rest.reason};
   write_reference({scene.name, reference_digest(scene, "static"), "static", 0, rest.derivation,
@@ -43,8 +55,11 @@ Outcome write_static(const Scene& scene, const fs::path& out) {
 }
 
 /// The same for the state after half a second, before any chaos.
-Outcome write_motion(const Scene& scene, const fs::path& out) {
+Outcome write_motion(const Scene& scene, const Options& options) {
+  const fs::path out = options.output;
   const double t = 0.5;
+  if (const std::string why = kept(scene, "motion", t, options); !why.empty())
+    return {scene.name, "motion", "", why};
   const reference::Trajectory motion = reference::converged_motion(scene, {t}, 1.0 / 1024);
   if (!motion.unique) return {scene.name, "motion", "", motion.reason};
   write_reference({scene.name, reference_digest(scene, "motion"), "motion", t, motion.derivation,
@@ -68,8 +83,7 @@ int run(const Options& options) {
   const Countdown countdown("scene");
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Scene scene = load_scene(files[i]);
-    for (const Outcome& o :
-         {write_static(scene, options.output), write_motion(scene, options.output)}) {
+    for (const Outcome& o : {write_static(scene, options), write_motion(scene, options)}) {
       written += o.refused.empty();
       all.push_back({{"scene", o.scene},
                      {"kind", o.kind},
@@ -88,8 +102,8 @@ int run(const Options& options) {
 void add_options(CLI::App& app, Options& options) {
   app.add_option("SCENE", options.scenes, "Names of shipped scenes, or scene files");
   app.add_flag("--all", options.all, "Every shipped scene");
-  add_output(app, options.output,
-             "Where references are kept (default: beside those that came with the program)");
+  add_output(app, options.output, "Where references are kept (default: " + options.output + ")");
+  app.add_flag("--replace", options.replace, "Compute again what is there of the same scene");
   add_json(app, options.json, "What became of each");
 }
 
