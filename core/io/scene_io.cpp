@@ -251,7 +251,7 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
   root.diagnostics().report(
       item.place, "the cloth starts inside this " + std::string(type_name(collider.shape)) + ": " +
                       std::to_string(count) + " vertices, vertex " + std::to_string(vertex) + " " +
-                      shortest(deepest) +
+                      shortest(std::round(1e9 * deepest) / 1e9) +
                       " m deep; move one of them, or set start_inside = \"resolve\" in [cloth]");
 }
 

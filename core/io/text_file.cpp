@@ -15,17 +15,37 @@ void fail_in(const std::filesystem::path& file, const std::string& why, int line
   throw InputError({{file.string(), line, column, why}});
 }
 
-std::string read_text(const std::filesystem::path& path, std::size_t most) {
+namespace {
+
+/// A descriptor of a regular file; what is none is not waited for.
+int open_regular(const std::filesystem::path& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   const auto fail = [&](const std::string& why) {
     if (fd >= 0) close(fd);
     fail_in(path, why);
   };
-  const auto fail_reading = [&] { fail(std::string("cannot be read: ") + std::strerror(errno)); };
   struct stat about {};
-  if (fd < 0 || fstat(fd, &about) != 0) fail_reading();
+  if (fd < 0 || fstat(fd, &about) != 0)
+    fail(std::string("cannot be read: ") + std::strerror(errno));
   if (S_ISDIR(about.st_mode)) fail("is a folder, not a file");
   if (!S_ISREG(about.st_mode)) fail("is no regular file");
+  return fd;
+}
+
+}  // namespace
+
+std::ifstream open_file(const std::filesystem::path& path) {
+  close(open_regular(path));
+  return std::ifstream(path, std::ios::binary);
+}
+
+std::string read_text(const std::filesystem::path& path, std::size_t most) {
+  const int fd = open_regular(path);
+  const auto fail = [&](const std::string& why) {
+    close(fd);
+    fail_in(path, why);
+  };
+  const auto fail_reading = [&] { fail(std::string("cannot be read: ") + std::strerror(errno)); };
   std::string text;
   char piece[65536];
   for (;;) {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ inline constexpr std::size_t kMostResultBytes = std::size_t{1} << 30;
 /// Everything in a regular file. Throws InputError that names it: it cannot be read, is no regular
 /// file (a folder, a pipe, a device; none is waited for) or is larger than `most` bytes.
 std::string read_text(const std::filesystem::path&, std::size_t most = kMostResultBytes);
+
+/// For those who read a regular file by parts. Throws InputError as read_text().
+std::ifstream open_file(const std::filesystem::path&);
 
 /// Throws InputError: what is wrong with a file, and where in it (1-based; 0: nowhere).
 [[noreturn]] void fail_in(const std::filesystem::path&, const std::string& why, int line = 0,

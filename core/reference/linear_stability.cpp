@@ -79,6 +79,27 @@ double spring_eigenvalue(const std::vector<Bar>& springs, const std::vector<doub
   });
 }
 
+/// A mode of x' = v, v' = -w^2 x - y v, y = c/m, has the multipliers 1 + h l, l^2 + y l + w^2 = 0:
+/// of a complex pair |z|^2 = 1 - y h + w^2 h^2. Empty with unequal masses, whose modes drag
+/// couples.
+std::optional<LinearStability> dragged_explicit_euler(const std::vector<double>& w,
+                                                      const std::vector<Bar>& all, double h,
+                                                      double drag) {
+  double inverse_mass = 0;
+  for (const double one : w) {
+    if (one == 0) continue;
+    if (inverse_mass > 0 && std::abs(one / inverse_mass - 1) > 1e-9) return {};
+    inverse_mass = one;
+  }
+  const double y = drag * inverse_mass, w2 = spring_eigenvalue(all, w, 1, 0);
+  const bool swings = 4 * w2 > y * y;
+  const double swinging = swings ? std::sqrt(1 - y * h + w2 * h * h) : 0;
+  const double margin = std::max(swings ? h * w2 / y : 0, y * h / 2);
+  return LinearStability{
+      margin, std::max({1.0, std::abs(1 - y * h), swinging}),
+      "explicit Euler with drag: dt < c/(m w^2) of the fastest mode, and dt < 2 m/c"};
+}
+
 std::optional<LinearStability> stability(const Scene& scene, const LinearSprings& model) {
   if (scene.wind) return {};
   const std::vector<double> w = inverse_masses(scene);
@@ -87,7 +108,8 @@ std::optional<LinearStability> stability(const Scene& scene, const LinearSprings
   const std::vector<Bar> all = bars(scene, w, model.stiffness);
   if (all.empty()) return {};
   if (model.explicit_euler) {
-    if (drag > 0 || scene.damping > 0) return {};
+    if (scene.damping > 0) return {};
+    if (drag > 0) return dragged_explicit_euler(w, all, h, drag);
     const double growth = std::sqrt(1 + spring_eigenvalue(all, w, h * h, 0));
     return LinearStability{growth, growth, "explicit Euler grows by sqrt(1 + w^2 dt^2) at any dt"};
   }

@@ -25,7 +25,8 @@ struct LinearStability {
 ///     central drag   h^2 K - (1 - q) h C    against 2 (1 + q) M
 /// For one mass: h < (2/w)(sqrt(1 + zeta^2) - zeta), and 2/w without drag. `margin` is the largest
 /// eigenvalue of M^-1/2 (left) M^-1/2 over 2 (1 + q), by Lanczos. Explicit Euler without drag or
-/// damping grows by sqrt(1 + h^2 w^2) at every h.
+/// damping grows by sqrt(1 + h^2 w^2) at every h; with drag and equal masses it is stable while
+/// h < C/(M w^2), and h < 2 M/C.
 ///
 /// LinearSweeps, at most 128 links. k sweeps G take the predicted strains to
 /// e' = G^k ((1 + q) e - q e''), so an eigenvalue mu of G^k gives the multipliers

@@ -50,7 +50,8 @@ struct Softest {
   double strain = 0;     ///< largest of a cut, over its shortest link
 };
 
-Softest softest(const Scene& scene, const Hanging& hanging) {
+/// `dt` is that of the step that is computed [s], here and below.
+Softest softest(const Scene& scene, const Hanging& hanging, double dt) {
   const std::size_t cuts = to_index(hanging.depth()) + 1;
   std::vector<double> mass(cuts, 0), yielding(cuts, 0), links(cuts, 0), shortest(cuts, 0);
   const std::vector<double> w = inverse_masses(scene);
@@ -69,8 +70,8 @@ Softest softest(const Scene& scene, const Hanging& hanging) {
   for (std::size_t cut = cuts - 1; cut > 0; --cut) {
     below += mass[cut];
     if (links[cut] == 0) continue;
-    const double opening = below * yielding[cut] / (links[cut] * links[cut]) *
-                           scene.gravity.norm() * scene.dt * scene.dt;
+    const double opening =
+        below * yielding[cut] / (links[cut] * links[cut]) * scene.gravity.norm() * dt * dt;
     all.extension += opening;
     all.strain = std::max(all.strain, opening / shortest[cut]);
   }
@@ -132,7 +133,7 @@ double repair(const Scene& scene) {
 }
 
 /// Energy [J] that strained links store if they are the stiffest springs that a step can hold.
-double stored(const Scene& scene, const std::vector<double>& w) {
+double stored(const Scene& scene, const std::vector<double>& w, double dt) {
   const auto& x = scene.start.x;
   double energy = 0;
   for (const auto& [a, b, rest, family] : scene.links) {
@@ -140,7 +141,7 @@ double stored(const Scene& scene, const std::vector<double>& w) {
     if (yielding > 0)
       energy += 2 * square((x[to_index(b)] - x[to_index(a)]).norm() - rest) / yielding;
   }
-  return energy / square(scene.dt);
+  return energy / square(dt);
 }
 
 double area(const Scene& scene) {
@@ -154,7 +155,8 @@ double area(const Scene& scene) {
 
 }  // namespace
 
-EnergyBudget::EnergyBudget(const Scene& scene) : gravity_(scene.gravity.norm()), dt_(scene.dt) {
+EnergyBudget::EnergyBudget(const Scene& scene, int substeps)
+    : gravity_(scene.gravity.norm()), dt_(scene.dt / substeps) {
   const Hanging hanging = hang(scene);
   const std::vector<double> w = inverse_masses(scene);
   double mass = 0, lightest = 0, farthest = 0, fastest = 0;
@@ -168,12 +170,12 @@ EnergyBudget::EnergyBudget(const Scene& scene) : gravity_(scene.gravity.norm()),
     (hanging.hops[i] < 0 ? free_mass_ : hung_mass_) += m;
     constant_ += m * scene.start.v[i].squaredNorm() / 2;
   }
-  reach_ = 2 * (hanging.longest() + softest(scene, hanging).extension);
+  reach_ = 2 * (hanging.longest() + softest(scene, hanging, dt_).extension);
   const double rounding = 1e-6 * (farthest + extent(scene));
-  constant_ += mass / 2 *
-               (square(2 * motion_speed(scene)) +
-                (square(repair(scene)) + square(rounding)) / square(scene.dt));
-  stored_ = stored(scene, w);
+  constant_ +=
+      mass / 2 *
+      (square(2 * motion_speed(scene)) + (square(repair(scene)) + square(rounding)) / square(dt_));
+  stored_ = stored(scene, w, dt_);
   size_ = farthest + extent(scene);
   speed_ = fastest + motion_speed(scene);
   if (!scene.wind) return;
@@ -200,11 +202,12 @@ double EnergyBudget::farthest(double t) const {
   return std::min(1e6, 1e3 * size_ + 10 * way);
 }
 
-double legitimate_strain(const Scene& scene) {
-  return std::clamp(2 * softest(scene, hang(scene)).strain, 10.0, 30.0);
+double legitimate_strain(const Scene& scene, int substeps) {
+  return std::clamp(2 * softest(scene, hang(scene), scene.dt / substeps).strain, 10.0, 30.0);
 }
 
-std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& step_cost) {
+std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& step_cost,
+                                    int substeps) {
   const bool moved = std::any_of(scene.pin_motions.begin(), scene.pin_motions.end(),
                                  [](const PinMotion& pins) { return !pins.motion.at_rest(); });
   std::size_t sweeps = 0;
@@ -220,17 +223,18 @@ std::optional<double> settling_time(const Scene& scene, const std::vector<PassCo
   const double links = hanging.depth(), pi = std::numbers::pi;
   const double relaxing = 8 * links * links * scene.dt / (pi * pi * static_cast<double>(sweeps));
   const double w = 1.2024 * std::sqrt(gravity / hanging.longest());
-  const double swinging =
-      1 / (std::log1p(square(w * scene.dt)) / (2 * scene.dt) + scene.damping / 2);
+  const double h = scene.dt / substeps;
+  const double swinging = 1 / (std::log1p(square(w * h)) / (2 * h) + scene.damping / 2);
   return relaxing + swinging;
 }
 
-DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<PassCost>& step_cost)
+DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<PassCost>& step_cost,
+                                       int substeps)
     : scene_(scene),
-      budget_(scene),
-      legitimate_strain_(legitimate_strain(scene)),
+      budget_(scene, substeps),
+      legitimate_strain_(legitimate_strain(scene, substeps)),
       free_mass_(scene.mesh.mass),
-      settling_(settling_time(scene, step_cost)),
+      settling_(settling_time(scene, step_cost, substeps)),
       duration_(scene.duration()),
       slow_(1e-3 * std::sqrt(scene.gravity.norm() * extent(scene))) {
   for (const int pin : scene.pins) free_mass_[to_index(pin)] = 0;

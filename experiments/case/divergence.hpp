@@ -12,8 +12,10 @@ namespace taut {
 
 /// An upper bound on the kinetic energy [J] that the scene itself can put into the cloth until time
 /// t: the "available potential drop", wind, prescribed motion and a strained start included. It
-/// knows the scene only, so that it is the same for every solver, and it is generous wherever a
-/// soft solver may legitimately stretch. The sum of
+/// knows the scene and the step that is computed, so that it is the same for every solver, and it
+/// is generous wherever a soft solver may legitimately stretch. dt is the scene's time step or, of
+/// a solver with substeps, the substep: a motion has one budget, however it is cut into steps. The
+/// sum of
 ///
 ///   start    m v^2/2 of every free vertex
 ///   gravity  m |g| h: h is the discrete free fall |g| t (t + dt)/2, but for a piece of cloth that
@@ -37,7 +39,7 @@ namespace taut {
 ///   rounding (1e-6 |x|/dt)^2 M/2: positions in binary32
 class EnergyBudget {
  public:
-  explicit EnergyBudget(const Scene&);
+  explicit EnergyBudget(const Scene&, int substeps = 1);
   double available(double t) const;  ///< J at time t [s]
   /// A coordinate [m] that no vertex can have at time t: a thousand sizes of the scene and ten
   /// times the way that start, motion, wind and gravity can carry it, 1e6 at most.
@@ -47,7 +49,7 @@ class EnergyBudget {
   double constant_ = 0;           ///< start, motion, repair, rounding [J]
   double stored_ = 0;             ///< J, before the first step
   double gravity_ = 0;            ///< |g| [m/s^2]
-  double dt_ = 0;                 ///< s
+  double dt_ = 0;                 ///< s, of a substep
   double free_mass_ = 0;          ///< kg, of pieces without a pin
   double hung_mass_ = 0;          ///< kg, of pinned pieces, without their pins
   double reach_ = 0;              ///< m, of pinned pieces
@@ -63,14 +65,16 @@ class EnergyBudget {
 /// softest relaxation, one sweep a step (truth legitimate-strain: 2 (N - 1) g dt^2/l in a hanging
 /// chain; here by cuts, as in EnergyBudget), but at most 30: what a scene asks for beyond that, by
 /// its start, its step or its forces, belongs into no mean.
-double legitimate_strain(const Scene&);
+double legitimate_strain(const Scene&, int substeps = 1);
 
 /// Theoretical settling time [s]: in it the slowest mode of a hanging cloth decays by 1/e. Relaxing
 /// strain takes 8 N^2 dt/(pi^2 k) (Gauss-Seidel, N links from a pin to the farthest vertex, k
-/// sweeps per step); swinging takes the inverse of ln(1 + w^2 dt^2)/(2 dt) + damping/2 with w
-/// = 1.2024 sqrt(g/L) (backward projection of the slowest transverse mode). Their sum. Empty where
-/// no such time is known: wind, motion, contact, no gravity, unpinned pieces, no sweeps.
-std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& step_cost);
+/// sweeps per step); swinging takes the inverse of ln(1 + w^2 h^2)/(2 h) + damping/2 with h the
+/// substep and w = 1.2024 sqrt(g/L) (backward projection of the slowest transverse mode). Their
+/// sum. Empty where no such time is known: wind, motion, contact, no gravity, unpinned pieces, no
+/// sweeps.
+std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& step_cost,
+                                    int substeps = 1);
 
 /// Judges a run, step by step; never by strain, which a soft solver may rightly bring to 500 %.
 ///   error                the solver stored another number of vertices than the scene has
@@ -86,7 +90,7 @@ std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& s
 class DivergenceDetector {
  public:
   /// The scene must outlive it.
-  DivergenceDetector(const Scene&, const std::vector<PassCost>& step_cost);
+  DivergenceDetector(const Scene&, const std::vector<PassCost>& step_cost, int substeps = 1);
   /// False if the run has exploded at this boundary; status() says how.
   bool observe(int step, double t, const State&);
   /// At the end of a run that was seen to the end.

@@ -20,9 +20,8 @@ constexpr std::tuple kFields{Field{"scene", &Reference::scene},
                              Field{"floor_m", &Reference::floor}};
 
 std::string file_name(const Reference& reference) {
-  if (reference.kind == "static") return "static.json";
-  std::string t = to_text(Json(reference.t));
-  return "motion-" + t + "s.json";
+  if (reference.kind == "static") return "static";
+  return "motion-" + to_text(Json(reference.t)) + "s";
 }
 
 }  // namespace
@@ -40,7 +39,16 @@ void write_reference(const Reference& reference, const std::filesystem::path& fo
   }
   text += "\n ]\n}\n";
   make_folder(folder);
-  write_file(folder / file_name(reference), text);
+  write_file(reference_file(reference, folder), text);
+}
+
+std::filesystem::path reference_file(const Reference& reference,
+                                     const std::filesystem::path& folder) {
+  const std::string name = file_name(reference);
+  const std::filesystem::path file = folder / (name + ".json");
+  if (!std::filesystem::exists(file) || read_reference(file).digest == reference.digest)
+    return file;
+  return folder / (name + "-" + reference.digest.substr(0, 8) + ".json");
 }
 
 Reference read_reference(const std::filesystem::path& path) {
@@ -85,7 +93,11 @@ References find_references(const Scene& scene, const std::filesystem::path& root
 }
 
 References known_references(const Scene& scene) {
-  return find_references(scene, references_folder());
+  References known = find_references(scene, references_folder());
+  const References own = find_references(scene, results_folder() / "references");
+  if (!known.rest) known.rest = own.rest;
+  if (!known.motion) known.motion = own.motion;
+  return known;
 }
 
 }  // namespace taut

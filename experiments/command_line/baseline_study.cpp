@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
@@ -78,8 +79,10 @@ BaselineStudy baseline_study(const std::string& name, const BaselineOptions& opt
   result.folder = std::filesystem::path(options.baselines) / study.name;
   result.tolerances = read_tolerances(result.folder);
   result.before = read_baseline(result.folder);
-  std::ifstream made_with(result.folder / kToolchainFile);
-  std::getline(made_with, result.toolchain);
+  if (const auto file = result.folder / kToolchainFile; std::filesystem::exists(file)) {
+    std::ifstream made_with = open_file(file);
+    std::getline(made_with, result.toolchain);
+  }
   result.toolchain = printable(result.toolchain);
   if (result.before.empty() && needs_baseline) return result;
 

@@ -204,6 +204,17 @@ int parse_and_run(int argc, char** argv) {
   return code;
 }
 
+/// A file that this program opens would else become its standard input, output or error. Nothing
+/// can be written to this standard output: that it is missing is said, not passed over.
+void open_standard_descriptors() {
+  for (const int mode : {O_RDONLY, O_RDONLY, O_WRONLY}) {
+    const int fd = open("/dev/null", mode);
+    if (fd <= STDERR_FILENO) continue;
+    close(fd);
+    break;
+  }
+}
+
 const VerbEntry* find_verb(const std::string& name) {
   const auto found = std::ranges::find(verbs(), name, &VerbEntry::name);
   return found == verbs().end() ? nullptr : *found;
@@ -212,6 +223,7 @@ const VerbEntry* find_verb(const std::string& name) {
 }  // namespace
 
 int command_line(int argc, char** argv) {
+  open_standard_descriptors();
   std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit on files a write fails, and says so
   if (argc > 1 && argv[1][0] != '-' && !find_verb(argv[1])) {
     std::vector<std::string> names;
@@ -234,6 +246,9 @@ int command_line(int argc, char** argv) {
     std::cerr << printable(error.path1().string()) << ": " << error.code().message() << '\n';
   } catch (const std::system_error& error) {  // as of a thread that cannot be started
     std::cerr << error.what() << '\n';
+  } catch (const std::exception& error) {
+    std::cerr << "taut" << (argc > 1 ? " " + printable(argv[1]) : "")
+              << ": what was not foreseen: " << printable(error.what()) << '\n';
   }
   return kUsage;
 }

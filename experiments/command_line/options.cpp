@@ -12,6 +12,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/study/store.hpp"
+#include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -22,6 +23,18 @@ CLI::Validator above_zero() {
         double value = 0;
         const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
         return number && value > 0 ? "" : "'" + text + "' is not a number above 0";
+      },
+      "above 0");
+}
+
+CLI::Validator above_zero_seconds() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0;
+        const bool number = CLI::detail::lexical_cast(text, value);
+        return number && value > 0 && value <= kLongestSeconds
+                   ? ""
+                   : "'" + text + "' is not a number above 0, at most " + shortest(kLongestSeconds);
       },
       "above 0");
 }
@@ -62,7 +75,7 @@ CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
 void add_limits(CLI::App& app, Limits& limits) {
   app.add_option("--timeout", limits.seconds,
                  "CPU time limit of a case [s] (default: 120); wall time: five times that")
-      ->check(above_zero());
+      ->check(above_zero_seconds());
   const auto set = [&limits](double mb) { limits.bytes = static_cast<std::size_t>(mb) << 20; };
   app.add_option_function<double>("--memory", set, "Memory limit of a case [MB] (default: 2048)")
       ->check(CLI::Range(64.0, 1e9));
@@ -84,7 +97,7 @@ void add_samples(CLI::App& app, int& rounds, double& seconds, int fewest_rounds)
       ->check(CLI::Range(fewest_rounds, 1000));
   app.add_option("--seconds", seconds,
                  "CPU time of one sample (default: " + shortest(seconds) + ")")
-      ->check(above_zero());
+      ->check(above_zero_seconds());
 }
 
 void add_judgement(CLI::App& app, std::string& metric, double& tolerance) {

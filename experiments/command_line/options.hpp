@@ -13,6 +13,8 @@ namespace taut {
 
 /// A check of an option's value: a number above 0.
 CLI::Validator above_zero();
+/// Seconds above 0, kLongestSeconds at most.
+CLI::Validator above_zero_seconds();
 
 /// One of these names; the message suggests the nearest and lists them if they are few.
 CLI::Validator known(const std::string& what, std::vector<std::string> names);

@@ -146,7 +146,8 @@ int exit_code(const CampaignProgress& campaign, const Store& store) {
     std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
               << (store.root() / "conflicts").string() << '\n';
   if (campaign.interrupted) return kInterrupted;
-  return campaign.conflicts > 0 ? kConflict : kPass;
+  if (campaign.conflicts > 0) return kConflict;
+  return campaign.ended_from_outside > 0 ? kIncomplete : kPass;
 }
 
 }  // namespace taut

@@ -1,15 +1,18 @@
 #include "experiments/external/connection.hpp"
 
-#include <wordexp.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
@@ -23,17 +26,89 @@ namespace fs = std::filesystem;
 
 std::string Command::text() const { return join(words, " ", shell_word); }
 
+namespace {
+
+/// Splits a command into words as a POSIX shell would, with quotes, `~` and `$NAME`, but expands no
+/// pattern and starts nothing. What a variable holds stays one word.
+class Splitter {
+ public:
+  explicit Splitter(const std::string& text) : text_(text) {}
+
+  std::vector<std::string> words() {
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (quote_ != '\'' && c == '\\' && at_ + 1 < text_.size())
+        escaped();
+      else if (quote_ != '\'' && (c == '$' || c == '`'))
+        variable();
+      else if (c == quote_)
+        quote_ = 0;
+      else if (quote_ != 0)
+        add(c);
+      else if (c == '\'' || c == '"')
+        quote_ = c, begun_ = true;
+      else if (c == ' ' || c == '\t')
+        end_word();
+      else if (std::string_view("\n|&;<>(){}").find(c) != std::string_view::npos)
+        refuse();
+      else if (c == '~' && !begun_ &&
+               (at_ + 1 == text_.size() || std::strchr("/ \t", text_[at_ + 1])))
+        add(value_of("HOME"));
+      else
+        add(c);
+    }
+    if (quote_ != 0) throw InputError("cmd='" + text_ + "': a quote is not closed");
+    end_word();
+    return std::move(words_);
+  }
+
+ private:
+  void add(char c) { word_ += c, begun_ = true; }
+  void add(const std::string& text) { word_ += text, begun_ = begun_ || !text.empty(); }
+  void end_word() {
+    if (begun_) words_.push_back(std::exchange(word_, {}));
+    begun_ = false;
+  }
+  void escaped() {
+    const char next = text_[++at_];
+    if (quote_ == '"' && !std::strchr("$`\"\\", next)) add('\\');
+    add(next);
+  }
+  void variable() {
+    const bool braces = text_.compare(at_, 2, "${") == 0;
+    std::size_t end = at_ + (braces ? 2 : 1);
+    const std::size_t begin = end;
+    while (end < text_.size() &&
+           (std::isalnum(static_cast<unsigned char>(text_[end])) || text_[end] == '_'))
+      ++end;
+    if (text_[at_] == '`' || end == begin || (braces && (end == text_.size() || text_[end] != '}')))
+      refuse();
+    add(value_of(text_.substr(begin, end - begin)));
+    at_ = braces ? end : end - 1;
+  }
+  [[noreturn]] void refuse() const {
+    throw InputError("cmd='" + text_ +
+                     "': no shell runs it; put | & ; < > ( ) { } $( ) in a script");
+  }
+  static std::string value_of(const std::string& name) {
+    const char* value = std::getenv(name.c_str());
+    return value ? value : "";
+  }
+
+  const std::string& text_;
+  std::size_t at_ = 0;
+  char quote_ = 0;      ///< the quote that is open; 0: none
+  bool begun_ = false;  ///< a word has begun, be it an empty one in quotes
+  std::string word_;
+  std::vector<std::string> words_;
+};
+
+}  // namespace
+
 Command split_command(const std::string& text, const fs::path& folder) {
-  wordexp_t words{};
-  const int problem = wordexp(text.c_str(), &words, WRDE_NOCMD);
   Command command;
   command.folder = folder;
-  if (problem == 0) command.words.assign(words.we_wordv, words.we_wordv + words.we_wordc);
-  wordfree(&words);
-  if (problem == WRDE_BADCHAR || problem == WRDE_CMDSUB)
-    throw InputError("cmd='" + text +
-                     "': no shell runs it; put | & ; < > ( ) { } $( ) in a script");
-  if (problem == WRDE_SYNTAX) throw InputError("cmd='" + text + "': a quote is not closed");
+  command.words = Splitter(text).words();
   if (command.words.empty()) throw InputError("cmd='" + text + "' names no program");
   const std::string& program = command.words.front();
   const bool there =
@@ -84,7 +159,7 @@ std::string name_for(std::string_view called, std::string_view told_by) {
   std::string name(called.substr(0, 30));
   std::ranges::replace_if(
       name, [](char c) { return !allowed(c); }, '-');
-  if (!is_solver_name(name)) name = "external" + name;
+  if (!is_solver_name(name)) name = ("external" + name).substr(0, 30);
   return name + "-" + sha256(std::string(told_by)).substr(0, 4);
 }
 
@@ -112,6 +187,13 @@ void Connection::ended() {
   const std::string why = said.empty() ? "" : ": " + said;
   if (!end) fail("protocol", "closed its standard output" + during);
   if (end->signal == SIGXCPU) fail("timeout", "CPU time");
+  rlimit memory{};
+  getrlimit(RLIMIT_DATA, &memory);
+  const auto most = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
+                    static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  if (end->from_outside(std::min<std::size_t>(most, memory.rlim_cur)))
+    throw EndedFromOutside("the solver's program was ended (" + end->text() +
+                           ") from outside; nothing is stored of its case");
   if (end->signal == SIGKILL) fail("oom", "killed by the system" + during);
   if (names_memory(log())) fail("oom", "out of memory" + during + why);
   fail("crash", end->text() + during + why);

@@ -37,6 +37,7 @@ class ExternalSolver final : public Solver {
 
   void load(const State& state) override {
     load_state(*connection_, state);
+    owed_ = false;
     if (timed_ && unmeasurable_.empty() && connection_->has_helpers())
       unmeasurable_ = "it starts processes of its own, whose time its CPU clock does not hold";
   }
@@ -50,9 +51,18 @@ class ExternalSolver final : public Solver {
     said_ += take_steps(*connection_, t, dt, 1);
     clock_ += connection_->cpu_seconds() - before - empty_;
     ++steps_;
+    owed_ = true;
   }
 
-  void store(State& state) const override { store_state(*connection_, vertices_, state); }
+  void store(State& state) const override {
+    if (!timed_ || !owed_) return store_state(*connection_, vertices_, state);
+    const double before = connection_->cpu_seconds();
+    store_state(*connection_, vertices_, state);
+    const double first = connection_->cpu_seconds();
+    store_state(*connection_, vertices_, state);
+    clock_ += std::max(0.0, 2 * first - before - connection_->cpu_seconds());
+    owed_ = false;
+  }
   std::vector<PassCost> step_cost() const override { return plan_; }
   std::size_t peak_bytes() const override { return connection_->peak_bytes(); }
   std::string log() const override { return connection_->log(); }
@@ -60,6 +70,8 @@ class ExternalSolver final : public Solver {
   double cpu_seconds() const override {
     if (!unmeasurable_.empty()) return std::numeric_limits<double>::quiet_NaN();
     if (!timed_) measure_empty_exchange();
+    State state;
+    if (owed_) store(state);
     return clock_;
   }
 
@@ -89,8 +101,11 @@ class ExternalSolver final : public Solver {
   std::vector<PassCost> plan_;
   std::string unmeasurable_;
   mutable bool timed_ = false;
-  mutable double empty_ = 0;     ///< CPU s of an exchange without a step
-  double clock_ = 0, said_ = 0;  ///< CPU s of the steps since timing began: measured, and its word
+  mutable double empty_ = 0;   ///< CPU s of an exchange without a step
+  mutable double clock_ = 0;   ///< CPU s of the steps since timing began, as measured: what the
+                               ///< first state after them costs beyond a second one is theirs too
+  mutable bool owed_ = false;  ///< steps were asked for, and no state since: they may be undone
+  double said_ = 0;            ///< CPU s of the steps, its word
   int steps_ = 0;
 };
 
@@ -322,6 +337,12 @@ std::vector<std::string> registered_names() {
     if (name == kAny.name || name == kPositions.name ||
         std::ranges::any_of(solvers(), [&](auto* e) { return e->name == name; }))
       throw InputError(file.path().string() + ": there is already a solver '" + name + "'");
+    if (!is_solver_name(name))
+      throw InputError(file.path().string() + ": '" + name +
+                       "' is no name of a solver: a letter, then letters, digits, _ and -, at most "
+                       "40 characters");
+    if (!file.is_regular_file(none))
+      throw InputError(file.path().string() + ": is no regular file");
     names.push_back(name);
   }
   std::ranges::sort(names);

@@ -71,6 +71,8 @@ template <class Read>
 auto judged(Connection& connection, Read read) {
   try {
     return read();
+  } catch (const EndedFromOutside&) {
+    throw;
   } catch (const InputError& error) {
     connection.fail("protocol", error.what());
   }

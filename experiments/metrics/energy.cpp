@@ -14,8 +14,11 @@ class Energy final : public Metric {
        "second; L is the diagonal of the rest shape's bounding box",
        true},
       {"energy.kinetic", kNumber, "its kinetic part, mean over the last second", true},
-      {"energy.peak", kNumber, "largest (kinetic + potential energy)/(m g L) over the run", false,
-       Window::run},
+      {"energy.peak", kNumber,
+       "largest (kinetic + potential energy)/(m g L) after any step, the start left out: below 0 "
+       "if "
+       "the cloth never has again what it had there",
+       false, Window::run},
   };
   static bool measures(const Scene& scene) { return !scene.gravity.isZero(0); }
   explicit Energy(const Scene& scene)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <iostream>
 #include <list>
 #include <thread>
 
@@ -85,7 +86,16 @@ class Campaign {
 
   void reap() {
     for (auto one = running_.begin(); one != running_.end();) {
-      const std::optional<Record> record = one->poll();
+      std::optional<Record> record;
+      try {
+        record = one->poll();
+      } catch (const EndedFromOutside& error) {
+        std::cerr << error.what() << '\n';
+        std::filesystem::remove_all(one->folder());
+        ++progress_.ended_from_outside;
+        one = running_.erase(one);
+        continue;
+      }
       if (!record) {
         ++one;
         continue;

@@ -21,10 +21,11 @@ double estimated_work(const Case&);
 
 /// How far a campaign is.
 struct CampaignProgress {
-  std::size_t cases = 0;      ///< of this shard
-  std::size_t reused = 0;     ///< were stored already
-  std::size_t ran = 0;        ///< have been run now
-  std::size_t conflicts = 0;  ///< gave another result than the one stored
+  std::size_t cases = 0;               ///< of this shard
+  std::size_t reused = 0;              ///< were stored already
+  std::size_t ran = 0;                 ///< have been run now
+  std::size_t conflicts = 0;           ///< gave another result than the one stored
+  std::size_t ended_from_outside = 0;  ///< by somebody else, so that nothing is stored of them
   std::map<Status::Kind, std::size_t> by_status;
   double work = 0, work_done = 0;  ///< estimated, of what is to be run; any unit
   bool interrupted = false;

@@ -104,6 +104,10 @@ Record IsolatedCase::wait() {
   return record;
 }
 
+void IsolatedCase::fail_from_outside(const std::string& how) const {
+  throw EndedFromOutside(case_.id + ": was " + how + " from outside; nothing is stored of it");
+}
+
 Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   using Kind = Status::Kind;
   const int beat = Heartbeat::last(folder_ / "heartbeat"), step = std::max(beat, -1);
@@ -114,7 +118,10 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   // What is no property of the case leaves no record: it would be taken for the case's result.
   if (!fs::exists(folder_))
     throw InputError(folder_.string() + ": vanished while its case was running");
+  if (!end && process_.was_stopped()) fail_from_outside("stopped");
   if (!end) return failed(Kind::timeout, "wall time");
+  if (end->from_outside(bytes_)) fail_from_outside("ended (" + end->text() + ")");
+  if (end->exit_code == kEndedFromOutside) throw EndedFromOutside(case_.id + ": " + said);
   if (end->exit_code == kCannotWrite && beat == Heartbeat::kCannotWrite)
     throw InputError(said.empty() ? folder_.string() + ": cannot write: " + std::strerror(ENOSPC)
                                   : said);  // on a full disk its words are lost too
@@ -175,6 +182,9 @@ int run_into(const Case& one, const fs::path& folder, int frames) try {
   return written ? 0 : kCannotWrite;
 } catch (const std::bad_alloc&) {
   return kOutOfMemory;
+} catch (const EndedFromOutside& error) {
+  std::cerr << error.what() << '\n';
+  return kEndedFromOutside;
 } catch (const std::exception& error) {
   std::cerr << error.what() << '\n';
   return 1;

@@ -23,6 +23,9 @@ inline constexpr int kOutOfMemory = 77;
 /// campaign ends, for a full disk is no property of the case that meets it.
 inline constexpr int kCannotWrite = 74;
 
+/// Exit code by which a case says that its solver's own program was ended from outside.
+inline constexpr int kEndedFromOutside = 78;
+
 /// The step that a case has reached, in a file that outlives it: 4 bytes, mapped, so that reporting
 /// costs a store to memory.
 class Heartbeat {
@@ -52,7 +55,8 @@ class IsolatedCase {
   /// Ready for reading when the process has ended.
   int descriptor() const { return process_.descriptor(); }
   /// Its record once it has ended or its time is up (it is killed then); until then nothing.
-  /// Throws InputError if it could not write what it found.
+  /// Throws InputError if it could not write what it found, and EndedFromOutside if somebody else
+  /// stopped or ended it.
   std::optional<Record> poll();
   Record wait();  ///< the same, when it has ended or its time is up
   const std::filesystem::path& folder() const { return folder_; }
@@ -61,6 +65,7 @@ class IsolatedCase {
  private:
   /// `end`: nothing if its time was up.
   Record record_of(const std::optional<ProcessEnd>& end) const;
+  [[noreturn]] void fail_from_outside(const std::string& how) const;
   Case case_;
   std::filesystem::path folder_;
   std::chrono::steady_clock::time_point deadline_;

@@ -23,10 +23,14 @@ inline double seconds_since(SteadyClock::time_point start) {
 }
 inline double seconds_until(SteadyClock::time_point end) { return -seconds_since(end); }
 
-/// So many seconds after `start`.
+/// The longest time that anybody may ask for [s]: 11 days.
+inline constexpr double kLongestSeconds = 1e6;
+
+/// So many seconds after `start`: ten times kLongestSeconds at most, which no clock overflows.
 inline SteadyClock::time_point after(SteadyClock::time_point start, double seconds) {
-  return start + std::chrono::duration_cast<SteadyClock::duration>(
-                     std::chrono::duration<double>(std::max(0.0, seconds)));
+  const double most = std::clamp(seconds, 0.0, 10 * kLongestSeconds);
+  return start +
+         std::chrono::duration_cast<SteadyClock::duration>(std::chrono::duration<double>(most));
 }
 inline SteadyClock::time_point in_seconds(double seconds) {
   return after(SteadyClock::now(), seconds);

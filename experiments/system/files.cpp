@@ -1,6 +1,8 @@
 #include "experiments/system/files.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <mutex>
 #include <random>
 
 #include "core/model/input_error.hpp"
@@ -18,6 +21,8 @@ namespace taut {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::time_t kAbandonedAge = 60;  ///< s; a younger folder may not have its lock yet
 
 [[noreturn]] void fail(const fs::path& path, const char* what) {
   throw InputError(path.string() + ": cannot " + what + ": " + std::strerror(errno));
@@ -94,10 +99,33 @@ bool place_durably(const fs::path& path, std::string_view bytes, const fs::path&
   return placed;
 }
 
-fs::path new_scratch_folder() {
+/// What processes left that were killed: a lock on a folder goes with its process.
+void remove_abandoned(const fs::path& temporary) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(temporary, ignored)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with("taut.") || name.size() != 11 || !entry.is_directory(ignored)) continue;
+    const int fd = open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (fd < 0) continue;
+    struct stat about {};
+    const bool old = fstat(fd, &about) == 0 && about.st_uid == geteuid() &&
+                     std::time(nullptr) - about.st_mtime > kAbandonedAge;
+    if (old && flock(fd, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry.path(), ignored);
+    close(fd);
+  }
+}
+
+fs::path temporary_folder() {
   std::error_code error;
   fs::path folder = fs::temp_directory_path(error);
   if (error) folder = "/tmp";
+  static std::once_flag once;
+  std::call_once(once, [&] { remove_abandoned(folder); });
+  return folder;
+}
+
+fs::path new_scratch_folder() {
+  const fs::path folder = temporary_folder();
   std::string name = fs::absolute(folder) / "taut.XXXXXX";
   if (!mkdtemp(name.data())) fail(folder, "make a folder there");
   return name;
@@ -105,10 +133,16 @@ fs::path new_scratch_folder() {
 
 }  // namespace
 
-Scratch::Scratch() : path_(new_scratch_folder()), tie_(path_) {}
+Scratch::Scratch()
+    : path_(new_scratch_folder()),
+      lock_(open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)),
+      tie_(path_) {
+  flock(lock_, LOCK_SH);
+}
 
 Scratch::~Scratch() {
   std::error_code ignored;
+  close(lock_);
   fs::remove_all(path_, ignored);
 }
 

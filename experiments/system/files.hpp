@@ -44,7 +44,8 @@ void sync_folder(const std::filesystem::path&);
 void make_folder(const std::filesystem::path&);
 
 /// A folder below $TMPDIR with a name that nobody foresees; it goes with this object or, at a
-/// signal, with the program.
+/// signal, with the program. The first one of a process removes those of killed processes: what is
+/// older than a minute and has no lock.
 class Scratch {
  public:
   Scratch();  ///< throws InputError
@@ -55,6 +56,7 @@ class Scratch {
 
  private:
   std::filesystem::path path_;
+  int lock_;  ///< a descriptor of the folder, locked for as long as the process lives
   EndsWithProgram tie_;
 };
 

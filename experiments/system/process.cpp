@@ -16,6 +16,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <sstream>
 #include <utility>
 
@@ -126,8 +127,9 @@ double left(SteadyClock::time_point end, double seconds) {
   return seconds < 0 ? -1 : std::max(0.0, seconds_until(end));
 }
 
+/// An hour at most: who waits looks at the clock again.
 int milliseconds_until(SteadyClock::time_point end, double seconds) {
-  return seconds < 0 ? -1 : static_cast<int>(std::ceil(1e3 * left(end, seconds)));
+  return seconds < 0 ? -1 : static_cast<int>(std::ceil(1e3 * std::min(left(end, seconds), 3600.0)));
 }
 
 }  // namespace
@@ -136,6 +138,12 @@ std::string ProcessEnd::text() const {
   if (signal == 0) return "exit code " + std::to_string(exit_code);
   const char* name = sigabbrev_np(signal);
   return name ? "SIG" + std::string(name) : "signal " + std::to_string(signal);
+}
+
+bool ProcessEnd::from_outside(std::size_t memory) const {
+  if (signal == SIGKILL) return memory == 0 || peak_bytes < memory / 2;
+  return signal == SIGTERM || signal == SIGINT || signal == SIGHUP || signal == SIGQUIT ||
+         exit_code == kInterruptedExit;
 }
 
 std::string last_line(std::istream&& in) {
@@ -200,12 +208,22 @@ ProcessEnd Process::reap() {
   }
   kill(-pid_, SIGKILL);
   int status = 0;
-  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  rusage used{};
+  while (wait4(pid_, &status, 0, &used) < 0 && errno == EINTR) {
   }
   tie_.reset();
   end_orphans(mark_);
   end_ = WIFEXITED(status) ? ProcessEnd{WEXITSTATUS(status), 0} : ProcessEnd{-1, WTERMSIG(status)};
+  end_->peak_bytes = static_cast<std::size_t>(used.ru_maxrss) * 1024;
   return *end_;
+}
+
+bool Process::is_stopped() const {
+  std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+  std::string line;
+  std::getline(file, line);
+  const auto name_ends = line.rfind(')');
+  return !end_ && name_ends != line.npos && line.substr(name_ends).starts_with(") T");
 }
 
 std::optional<ProcessEnd> Process::poll() {
@@ -220,9 +238,11 @@ std::optional<ProcessEnd> Process::poll() {
 std::optional<ProcessEnd> Process::wait(double seconds) {
   const auto end = in_seconds(seconds);
   pollfd ended{descriptor_, POLLIN, 0};
-  while (!end_ && ::poll(&ended, 1, milliseconds_until(end, seconds)) < 0 && errno == EINTR) {
+  while (!end_ && ::poll(&ended, 1, milliseconds_until(end, seconds)) <= 0 &&
+         (seconds < 0 || SteadyClock::now() < end)) {
   }
   if (poll()) return end_;
+  was_stopped_ = is_stopped();
   kill(pid_, SIGKILL);
   reap();
   return {};
@@ -237,7 +257,9 @@ bool Process::write(std::string_view bytes, double seconds) {
       continue;
     }
     pollfd ready{input_, POLLOUT, 0};
-    if (errno == EAGAIN && ::poll(&ready, 1, milliseconds_until(end, seconds)) == 0) return false;
+    if (errno == EAGAIN && ::poll(&ready, 1, milliseconds_until(end, seconds)) == 0 &&
+        SteadyClock::now() >= end)
+      return false;
     if (errno != EAGAIN && errno != EINTR) return false;
   }
   return true;
@@ -269,6 +291,7 @@ bool Process::read_more(double seconds) {
       if (got > 0) buffer_.append(piece, static_cast<std::size_t>(got));
       return got > 0;
     }
+    if (count == 0 && !end_ && (seconds < 0 || SteadyClock::now() < end)) continue;
     if (count <= 0) return false;
     poll();  // it has ended: what else holds its pipe ends too, and what it left is read
   }

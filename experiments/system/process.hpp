@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/model/input_error.hpp"
 #include "experiments/system/signals.hpp"
 
 namespace taut {
@@ -34,8 +35,18 @@ struct ProcessOptions {
 struct ProcessEnd {
   int exit_code = -1;  ///< -1: a signal ended it
   int signal = 0;
+  std::size_t peak_bytes = 0;  ///< the largest size of its resident set
   bool good() const { return exit_code == 0; }
+  /// Whether somebody else ended it: by a signal that asks to end (a program that it interrupted
+  /// says so by its exit code), or by SIGKILL although it had less than half of the memory that it
+  /// may use. The system that runs out of memory kills what has much of it.
+  bool from_outside(std::size_t memory) const;
   std::string text() const;  ///< "SIGSEGV" or "exit code 3"
+};
+
+/// Somebody else ended a process: that is no property of what it was to do, and no result of it.
+struct EndedFromOutside : InputError {
+  using InputError::InputError;
 };
 
 /// The last line of what a program said that is not blank, its first 300 bytes.
@@ -56,6 +67,8 @@ class Process {
   pid_t pid() const { return pid_; }  ///< until it is reaped
   /// Ready for reading when it has ended.
   int descriptor() const { return descriptor_; }
+  /// Whether a signal had stopped it (SIGSTOP) when its time was up.
+  bool was_stopped() const { return was_stopped_; }
   /// How it ended; nothing while it runs.
   std::optional<ProcessEnd> poll();
   /// Waits for its end. Nothing: it still ran after so many seconds (< 0: no limit) and was killed.
@@ -83,12 +96,14 @@ class Process {
   bool read_more(double seconds);
   std::string take(std::size_t bytes);  ///< off buffer_
   ProcessEnd reap();
+  bool is_stopped() const;
   void stop();
 
   pid_t pid_ = -1;
   std::string mark_;  ///< in the environment of all that it starts
   int descriptor_ = -1, input_ = -1, output_ = -1;
   std::optional<ProcessEnd> end_;
+  bool was_stopped_ = false;
   std::unique_ptr<EndsWithProgram> tie_;
   std::string buffer_;
 };

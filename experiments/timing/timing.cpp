@@ -7,8 +7,10 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -183,6 +185,46 @@ SampledCase start_case(const CaseToTime& timed, const TimingOptions& options) {
   return one;
 }
 
+/// The A/A control: a second worker of the first case that can be timed, and of the next one if
+/// that fails on the way. So the order of the cases decides nothing.
+class Control {
+ public:
+  Control(const std::vector<CaseToTime>& all, const TimingOptions& options)
+      : all_(all), options_(options) {}
+
+  /// What is to be sampled twice in a round, between the ways there and back.
+  SampledCase& twin(const std::vector<SampledCase>& cases) {
+    while (of_ < cases.size() &&
+           (!started_ || !twin_.timing.failure.empty() || !cases[of_].timing.failure.empty())) {
+      if (started_) ++of_;
+      while (of_ < cases.size() && !cases[of_].timing.failure.empty()) ++of_;
+      started_ = true;
+      if (of_ == cases.size()) break;
+      twin_ = start_case(all_[of_], options_);
+      twin_.steps = cases[of_].steps;
+      skipped_ = cases[of_].timing.samples.size();
+    }
+    return twin_;
+  }
+
+  Interval ratio(const std::vector<Timing>& timings) const {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double>& again = twin_.timing.samples;
+    if (of_ >= timings.size() || again.empty() || !twin_.timing.failure.empty() ||
+        !timings[of_].failure.empty())
+      return {kNone, kNone, kNone};
+    return interleaved_ratio(std::span(timings[of_].samples).subspan(skipped_), again);
+  }
+
+ private:
+  const std::vector<CaseToTime>& all_;
+  const TimingOptions& options_;
+  bool started_ = false;
+  std::size_t of_ = 0;       ///< the case whose twin it is
+  std::size_t skipped_ = 0;  ///< its samples before the twin began
+  SampledCase twin_;
+};
+
 }  // namespace
 
 int times_within(double seconds, double each, int most) {
@@ -217,11 +259,9 @@ Interval TimingSession::ratio(std::size_t i, std::size_t j) const {
 TimingSession time_cases(const std::vector<CaseToTime>& all, const TimingOptions& options) {
   std::vector<SampledCase> cases;
   for (const CaseToTime& one : all) cases.push_back(start_case(one, options));
-  if (!all.empty()) {
-    cases.push_back(start_case(all.front(), options));  // the A/A control
-    cases.back().steps = cases.front().steps;
-  }
+  Control control(all, options);
   const auto sample = [](SampledCase& one) {
+    if (!one.worker) return;  // of a control that no case can have
     one.guard([&] {
       const StepTime time = one.worker->sample(one.steps);
       one.timing.samples.push_back(time.cpu);
@@ -232,7 +272,9 @@ TimingSession time_cases(const std::vector<CaseToTime>& all, const TimingOptions
   for (int round = 0; round < options.rounds; ++round) {
     const SteadyClock::time_point start = SteadyClock::now();
     if (options.deadline - start < longest + longest / 2) break;
+    SampledCase& twin = control.twin(cases);
     std::for_each(cases.begin(), cases.end(), sample);
+    sample(twin), sample(twin);
     std::for_each(cases.rbegin(), cases.rend(), sample);
     if (options.progress)
       options.progress(static_cast<std::size_t>(round) + 1,
@@ -247,11 +289,7 @@ TimingSession time_cases(const std::vector<CaseToTime>& all, const TimingOptions
     });
     session.timings.push_back(std::move(one.timing));
   }
-  if (all.empty()) return session;
-  const Timing control = std::move(session.timings.back());
-  session.timings.pop_back();
-  if (control.failure.empty() && session.timings.front().failure.empty())
-    session.control = interleaved_ratio(session.timings.front().samples, control.samples);
+  session.control = control.ratio(session.timings);
   return session;
 }
 

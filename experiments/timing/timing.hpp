@@ -107,11 +107,11 @@ struct CaseToTime {
 };
 
 /// Every case sampled in rounds of alternating order (ABBA: A B C C B A), so that a
-/// drift of the machine's speed cancels between any two of them; the first case runs twice as its
-/// own A/A control.
+/// drift of the machine's speed cancels between any two of them; the first case that can be timed
+/// runs twice as its own A/A control.
 struct TimingSession {
   std::vector<Timing> timings;
-  Interval control;  ///< ratio of the first case to itself
+  Interval control;  ///< ratio of a case to itself; not a number: none could be timed
 
   /// Cost of case i over case j, from their interleaved samples.
   Interval ratio(std::size_t i, std::size_t j) const;

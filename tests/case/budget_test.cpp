@@ -35,6 +35,26 @@ TEST(Budget, AtRestNothingButTheRoundingOfCoordinatesIsThere) {
   EXPECT_NEAR(EnergyBudget(scene).available(3), 0.16 / 2 * off * off, 1e-12);
 }
 
+TEST(Budget, DoesNotDependOnHowAMotionIsCutIntoSteps) {
+  Scene whole = chain(Vec3(0, -kG, 0));
+  whole.thickness = 0.125;
+  whole.colliders = {{.shape = Ball{{0, -0.5, 0}, 0.0625}}};
+  whole.start.x[4].y() -= 0.75;
+  whole.damping = 0.25;
+  Scene cut = whole;
+  cut.dt /= 32;
+  for (const double t : {0.0, 0.25, 4.0})
+    EXPECT_NEAR(EnergyBudget(whole, 32).available(t) / EnergyBudget(cut).available(t), 1, 1e-12);
+  whole.dt = 4, cut.dt = 0.125;
+  EXPECT_EQ(legitimate_strain(whole, 32), legitimate_strain(cut));
+  EXPECT_LT(legitimate_strain(whole, 32), legitimate_strain(whole));
+  whole.colliders.clear(), cut.colliders.clear();
+  const auto sweeps = [](std::size_t each) {
+    return std::vector<PassCost>{{.pass = "links", .repeats = each, .projections = true}};
+  };
+  EXPECT_NEAR(*settling_time(whole, sweeps(32 * 2), 32), *settling_time(cut, sweeps(2)), 1e-9);
+}
+
 TEST(Budget, WhatMovesAtTheStartHasItsKineticEnergy) {
   Scene scene = chain();
   scene.start.v[2] = {3, 0, 4}, scene.start.v[4] = {0, 1, 0};

@@ -223,7 +223,12 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
   EXPECT_TRUE(found().rest && !found().motion.empty());
   scene.gravity.x() = 1;
   EXPECT_FALSE(found().rest || !found().motion.empty());
-  scene.gravity.x() = 0, scene.name = "";
+  scene.gravity.x() = 0, scene.mesh.mass[1] *= 2;  // another scene of that name
+  write_reference(reference("static", 0), scratch.path() / "small");
+  EXPECT_TRUE(found().rest);
+  scene.mesh.mass[1] /= 2;
+  EXPECT_TRUE(found().rest) << "its own was not replaced";
+  scene.name = "";
   EXPECT_FALSE(found().rest || !found().motion.empty());
 }
 

@@ -39,6 +39,27 @@ Status verdict_on(const Scene& scene, const std::string& solver) {
   return run_case(scene, parse_solver(solver)).record.status;
 }
 
+TEST(DivergenceDetector, TheSameMotionHasTheSameStatusHoweverItIsCutIntoSteps) {
+  Scene scene;
+  scene.name = "two";
+  scene.mesh.rest = {Vec3::Zero(), Vec3(1, 0, 0)};
+  scene.mesh.mass = {0.7, 0.7};
+  scene.start = {{Vec3::Zero(), Vec3(1.1, 0, 0)}, {Vec3::Zero(), Vec3::Zero()}};
+  scene.links = {{0, 1, 1, Family::structural}};
+  scene.gravity.setZero();
+  scene.dt = 1.0 / 64, scene.steps = 16;
+  Scene cut = scene;
+  cut.dt /= 32, cut.steps *= 32;
+  const std::string spring = "mass-spring:precision=double,structural=1e6,substeps=";
+  EXPECT_EQ(verdict_on(cut, spring + "1").kind, Status::Kind::ok);
+  EXPECT_EQ(verdict_on(scene, spring + "32").kind, Status::Kind::ok)
+      << verdict_on(scene, spring + "32").reason;
+  EXPECT_EQ(verdict_on(cut, "mass-spring:precision=double,structural=1e9,substeps=1").kind,
+            Status::Kind::exploded);
+  EXPECT_EQ(verdict_on(scene, "mass-spring:precision=double,structural=1e9,substeps=32").kind,
+            Status::Kind::exploded);
+}
+
 /// A solver that is told what the state is after each step.
 struct Scripted final : Solver {
   explicit Scripted(const Scene& scene) : state(scene.start) {}

@@ -440,6 +440,24 @@ class Verbs(CommandLine):
         for name in ["../../x y", "a;b", ".hidden", "a\nb"]:
             self.taut("new", "scene", name, expect=2)
 
+    def test_a_reference_goes_to_the_results_and_replaces_nothing_unasked(self):
+        (self.folder / "hang.toml").write_text((self.folder / "small.toml").read_text().replace('["top-left"]', '["top"]'))
+        own = {**os.environ, "TAUT_RESULTS": str(self.folder / "own")}
+        self.taut("reference", "./hang.toml", env=own)
+        kept = self.folder / "own/references/hang/static.json"
+        before = kept.read_bytes()
+        self.assertFalse((self.folder / "results").exists())
+        self.assertIn("--replace computes it again", self.taut("reference", "./hang.toml", env=own, expect=4).out)
+        self.taut("reference", "./hang.toml", "--replace", env=own)
+        self.assertEqual(kept.read_bytes(), before)
+        record = json.loads(self.taut("case", "./hang.toml", "jakobsen", "--json", env=own).out)
+        self.assertLess(record["values"]["reference.rms"], 1)
+        self.assertIsNone(json.loads(self.taut("case", "./hang.toml", "jakobsen", "--json").out)["values"].get("reference.rms"))
+        (self.folder / "hang.toml").write_text((self.folder / "hang.toml").read_text().replace("[4, 4]", "[5, 4]"))
+        self.taut("reference", "./hang.toml", env=own)
+        self.assertEqual(kept.read_bytes(), before, "another scene of that name")
+        self.assertEqual(len(list(kept.parent.glob("static*.json"))), 2)
+
     def test_plan(self):
         plan = json.loads(self.taut("plan", "./small.toml", "jakobsen:iterations=2,substeps=3", "--json").out)
         structural, = [p for p in plan["passes"] if p["pass"] == "structural"]

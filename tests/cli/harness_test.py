@@ -93,8 +93,35 @@ class FaultySolvers(CommandLine):
         self.assertEqual(process.returncode, 130)
         self.assertEnds(int(left.read_text()))
 
-    def test_a_case_that_is_stopped_runs_out_of_wall_time(self):
-        self.assertEqual(self.run_modes("stop", seconds=0.2)["stop"], {"kind": "timeout", "reason": "wall time", "step": 4, "vertex": -1})
+    def test_what_is_stopped_or_ended_from_outside_has_no_result_and_runs_again(self):
+        study = self.study(solvers=["jakobsen:precision=double", "faulty:mode=stop"])
+        run = self.taut("run", study, "--timeout", 0.2, "-j", 2, program="taut-faulty", expect=3)
+        self.assertIn("was stopped from outside; nothing is stored of it", run.err)
+        self.assertEqual([r["solver"] for r in self.records()], ["jakobsen"])
+        for end in (signal.SIGKILL, signal.SIGTERM):
+            study = self.study(solvers=["faulty:mode=slow", "faulty:mode=stable"], rest='set = ["time.duration=2"]\n')
+            process = self.start("run", study, program="taut-faulty")
+            cases = []
+            while not cases:
+                cases = [p for p in self.children_of(process.pid) if b"faulty:mode=slow" in b"".join(p[1])]
+                time.sleep(0.02)
+            os.kill(cases[0][0], end)
+            said = process.communicate(timeout=60)[1]
+            self.assertEqual(process.returncode, 3, said)
+            self.assertIn("from outside; nothing is stored of it", said)
+            self.assertNotIn("slow", [r["params"].get("mode") for r in self.records()])
+        awake = {**os.environ, "TAUT_TEST_AWAKE": "1"}
+        self.assertRegex(self.taut("run", study, program="taut-faulty", env=awake).err, r"2/2 cases: .* 2 \(1 were stored already\)")
+
+    def children_of(self, pid):
+        found = []
+        for task in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
+            for child in task.read_text().split():
+                try:
+                    found.append((int(child), pathlib.Path(f"/proc/{child}/cmdline").read_bytes().split(b"\0")))
+                except OSError:
+                    pass
+        return found
 
     def test_an_extreme_is_marked_wherever_it_shows(self):
         status = self.run_modes("stretch")["stretch"]
@@ -299,6 +326,27 @@ class Store(CommandLine):
                                      stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
         self.assertEqual(process.returncode, 2, process.stderr)
         self.assertIn("cannot be written", process.stderr)
+
+    def test_without_standard_descriptors_nothing_is_lost(self):
+        def closed():
+            for descriptor in (0, 1, 2):
+                os.close(descriptor)
+        run = subprocess.run([BINARIES / "taut", "run", self.study()], cwd=self.folder, preexec_fn=closed, timeout=60)
+        self.assertEqual(run.returncode, 2, "its output cannot be written")
+        self.assertEqual([r["status"]["kind"] for r in self.records()], ["ok"])
+        case = [BINARIES / "taut", "case", "./small.toml", "jakobsen", "--trajectory"]
+        subprocess.run([*case, "closed.npy"], cwd=self.folder, preexec_fn=closed, timeout=60)
+        subprocess.run([*case, "open.npy"], cwd=self.folder, stdout=subprocess.DEVNULL, timeout=60, check=True)
+        self.assertEqual((self.folder / "closed.npy").read_bytes(), (self.folder / "open.npy").read_bytes())
+
+    def test_limits_have_a_largest_value(self):
+        study = self.study()
+        for words in (["run", study, "--timeout"], ["advise", "hang", "--error", "1%", "--patience"], ["require", "hang", "--patience"],
+                      ["bench", study, "--seconds"], ["bench", "scaling", "--limit"]):
+            for value in ("1e300", "1e18", "inf", "1000001"):
+                self.assertIn("at most 1e+06", self.taut(*words, value, expect=2).err)
+        self.taut("run", study, "--timeout", 1e6)
+        self.assertEqual([r["status"]["kind"] for r in self.records()], ["ok"])
 
     def test_a_corrupt_entry_is_reported_set_aside_and_run_again(self):
         study = self.study(rest=self.MANY)

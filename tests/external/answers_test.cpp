@@ -155,6 +155,17 @@ TEST(Commands, AreSplitAsAShellWouldButRunByNone) {
   for (const char* text :
        {"./prog | cat", "./prog; true", "./prog & x", "./prog $(id)", "./prog `id`"})
     EXPECT_NE(said(text).find("no shell runs it"), std::string::npos) << text;
+  setenv("TAUT_TEST_WORD", "/*/* b", 1);
+  EXPECT_EQ(
+      split_command(
+          R"(./prog "" /* ~ ~x a\ b "c\"d" '$TAUT_TEST_WORD' $TAUT_TEST_WORD x"${TAUT_TEST_WORD}"y $TAUT_TEST_NONE ?[a])",
+          scratch.path())
+          .words,
+      (std::vector<std::string>{"./prog", "", "/*", std::getenv("HOME") ? std::getenv("HOME") : "",
+                                "~x", "a b", "c\"d", "$TAUT_TEST_WORD", "/*/* b", "x/*/* by",
+                                "?[a]"}))
+      << "no pattern is expanded";
+  EXPECT_NE(said("./prog \"$(id)\"").find("no shell runs it"), std::string::npos);
   EXPECT_NE(said("./prog 'a").find("a quote is not closed"), std::string::npos);
   EXPECT_NE(said("  ").find("names no program"), std::string::npos);
   EXPECT_NE(said("./no x").find("no program './no'"), std::string::npos);
@@ -380,9 +391,7 @@ TEST(Connections, SayHowAProgramFailed) {
     const char *script, *status, *reason, *log;
   };
   for (const Failure& one :
-       {Failure{"read x; echo said >&2; kill -KILL $$", "oom", "killed by the system during 'go'",
-                "said\n"},
-        Failure{"read x; kill -XCPU $$", "timeout", "CPU time", ""},
+       {Failure{"read x; kill -XCPU $$", "timeout", "CPU time", ""},
         Failure{"read x; kill -SEGV $$", "crash", "SIGSEGV during 'go'", ""},
         Failure{"read x; echo first >&2; echo last >&2; exit 3", "crash",
                 "exit code 3 during 'go': last", "first\nlast\n"},
@@ -407,6 +416,15 @@ TEST(Connections, SayHowAProgramFailed) {
   }
 }
 
+TEST(Connections, AProgramThatIsEndedFromOutsideHasNoResult) {
+  for (const char* signal : {"KILL", "TERM"}) {
+    Connection connection({.words = {"sh", "-c", std::string("read x; kill -") + signal + " $$"},
+                           .folder = "",
+                           .seconds = 20});
+    EXPECT_THROW(connection.ask_line("go"), EndedFromOutside) << signal;
+  }
+}
+
 TEST(SolverNames, StartWithALetterAndAreShort) {
   EXPECT_TRUE(is_solver_name("a"));
   EXPECT_TRUE(is_solver_name("aB_c-9"));
@@ -421,6 +439,9 @@ TEST(SolverNames, StartWithALetterAndAreShort) {
   EXPECT_EQ(name_for(std::string(50, 'a'), "x").size(), 35u);
   EXPECT_TRUE(name_for("9", "x").starts_with("external9-"));
   EXPECT_TRUE(name_for("", "x").starts_with("external-"));
+  for (std::size_t length = 1; length < 60; ++length)
+    for (const char first : {'a', '9', ' '})
+      EXPECT_TRUE(is_solver_name(name_for(std::string(length, first), "x"))) << first << length;
 }
 
 }  // namespace

@@ -95,6 +95,8 @@ class Toys(Programs):
         self.check("cpp")
 
     def test_node(self):
+        if not shutil.which("node"):
+            self.skipTest("node is missing")
         self.check("node")
 
     def test_what_it_cannot_do_is_unsupported(self):
@@ -155,6 +157,42 @@ class Everywhere(Programs):
         model = json.loads(self.taut("report", study, "--no-media", "--json").out)
         self.taut("report", study, "--no-media")
         return model, (self.folder / "report.html").read_text()
+
+    def test_a_misnamed_file_is_an_error_that_names_it(self):
+        for name in ("my.solver", "x y", "9lives", "é", "a" * 41):
+            file = self.solvers / f"{name}.toml"
+            file.write_text(f"cmd = '{TOYS['cpp']}'\n")
+            for words in (["list", "solvers"], ["plan", "hang", "nosuch"], ["advise", "hang", "--error", "1%"]):
+                said = self.taut(*words, expect=2).err
+                self.assertIn(f"{name}.toml: '{name}' is no name of a solver", said)
+            file.unlink()
+        os.mkfifo(self.solvers / "pipe.toml")
+        self.assertIn("pipe.toml: is no regular file", self.taut("list", "solvers", expect=2).err)
+        (self.solvers / "pipe.toml").unlink()
+
+    def test_any_kind_of_parameter_may_be_called_substeps_or_iterations(self):
+        shutil.copy(SDK / "taut_solver.py", self.folder)
+        program = (SDK / "toy.py").read_text().replace('self.sweeps = params["iterations"]', "self.sweeps = 4")
+        kinds = {"text": {"type": "text", "default": "many"}, "choice": {"type": "choice", "choices": ["few", "many"], "default": "few"},
+                 "real": {"type": "real", "min": 0, "max": 9, "default": 8.5}}
+        for kind, spec in kinds.items():
+            begin = program.index("    params = ")
+            text = program[:begin] + f"    params = {{'iterations': {spec!r}, 'substeps': {spec!r}}}\n" + program[program.index("\n", begin) + 1:]
+            (self.folder / f"{kind}.py").write_text(text.replace("toy-python", "toy " + kind))
+        study = self.study(solvers=["jakobsen"] + [f"{kind}:cmd='python3 {kind}.py'" for kind in kinds])
+        self.taut("run", study)
+        self.assertEqual({r["status"]["kind"] for r in self.records()}, {"ok"})
+        model, page = self.report(study)
+        self.assertIn("many", page)
+
+    def test_a_program_with_any_name_is_scored(self):
+        shutil.copy(SDK / "taut_solver.py", self.folder)
+        for name in ("9" + "x" * 39, "1e99999999999", "."):
+            (self.folder / "named.py").write_text((SDK / "toy.py").read_text().replace("toy-python", name).replace('"1"', '"1e99999999999"'))
+            study = self.study(f"named{len(name)}.toml", solvers=["external:cmd='python3 named.py'", "jakobsen"])
+            self.taut("run", study)
+            self.report(study)
+        self.assertEqual({r["status"]["kind"] for r in self.records()}, {"ok"})
 
     def test_two_commands_are_two_solvers(self):
         for name in ("toy.py", "taut_solver.py"):
@@ -364,6 +402,14 @@ class Hostile(Programs):
         timing, = [c for c in json.loads(bench)["scenes"][0]["cases"] if "lie" in c["record"]["spec"]["solver"]]
         self.assertRegex(timing["remark"], r"it says 1 us a step, its CPU clock [23]\d\d\d us")
         self.assertGreater(min(timing["cpu_seconds_per_step"]), 0.0015)
+
+    def test_what_a_program_puts_off_until_its_state_is_asked_for_is_counted(self):
+        self.assertGreater(min(self.times("later")), 0.0015)
+        self.assertLess(max(self.times("plain")), 0.001)
+
+    def times(self, mode):
+        bench = self.taut("bench", "./five.toml", "--solver", hostile(mode, 30), "--rounds", 2, "--json").out
+        return json.loads(bench)["scenes"][0]["cases"][0]["cpu_seconds_per_step"]
 
     def test_helpers_have_no_cost(self):
         bench = self.taut("bench", "./five.toml", "--solver", hostile("fork", 30), "--solver", "jakobsen", "--rounds", 2, "--json").out

@@ -77,7 +77,7 @@ def main():
         print("Loading model...", flush=True)
     global real
     n = x = v = gravity = None
-    steps = 0
+    steps = queue = 0
     for line in sys.stdin.buffer:
         request = json.loads(line)
         op = request["op"]
@@ -89,6 +89,7 @@ def main():
             n, gravity, w, steps = scene["vertices"], scene["gravity"], scene["inverse_mass"], 0
             answer({"vertices": n})
         elif op == "load":
+            queue = 0
             values = array.array("d", sys.stdin.buffer.read(request["bytes"]))
             x, v = values[:3 * n], values[3 * n:]
             answer({})
@@ -98,6 +99,8 @@ def main():
                 misbehave()
             if real and MODE == "lie":
                 spin(0.002 * request["count"])
+            if real and MODE == "later":
+                queue += request["count"]
             for k in range(3 * n * request["count"]):
                 k %= 3 * n
                 if w[k // 3] > 0:
@@ -108,6 +111,8 @@ def main():
             if not (real and steps == 5 and MODE in ("garbage", "error")):
                 answer({"cpu_ns": 1000} if MODE == "lie" else {})
         elif op == "store":
+            spin(0.002 * queue)
+            queue = 0
             state = x.tobytes() + v.tobytes()
             if real and steps == 5 and MODE == "half":
                 answer({"bytes": len(state)}, state[:len(state) // 2])

@@ -17,6 +17,9 @@ EXAMPLES = pathlib.Path(__file__).resolve().parent / "examples"
 VERSION = re.search(r"project\(taut VERSION (\S+)", (TREE / "CMakeLists.txt").read_text())[1]
 
 
+os.environ["CMAKE_GENERATOR"] = "Ninja"  # what ./taut installs; CMake's own default is make
+
+
 def call(*words, expect=0, **more):
     done = subprocess.run([*map(str, words)], text=True, capture_output=True, timeout=280, **more)
     assert done.returncode == expect, f"{words}: {done.returncode}\n{done.stdout}\n{done.stderr}"

@@ -255,6 +255,9 @@ TEST(SceneValues, AStartInsideAColliderIsMeasured) {
   EXPECT_EQ(problems(level("pins = [2, 5]", plane)),
             "x:6:1: the cloth starts inside this plane: 4 vertices, vertex 8 0.75" + advice)
       << "a pin may be";
+  EXPECT_EQ(problems(level("", plane), {"collider.0.offset=-0.95"}),
+            "x:6:1: the cloth starts inside this plane: 3 vertices, vertex 2 0.05" + advice)
+      << "not 0.050000000000000044";
   EXPECT_EQ(problems(level("pins = 'right'", plane)),
             "x:6:1: the cloth starts inside this plane: 3 vertices, vertex 1 0.25" + advice);
   EXPECT_EQ(problems(level("", plane), {"collider.0.offset=-1"}), "none") << "touches";

@@ -102,6 +102,7 @@ TEST(Words, AreJoinedAndCapitalisedAsInASentence) {
     EXPECT_EQ(capitalised(plain), capital);
   EXPECT_EQ(sentence_if("Not: ", {}), "");
   EXPECT_EQ(sentence_if("Not: ", {"a", "b"}), "Not: a and b.");
+  EXPECT_EQ(typeset("1e99999999999 2e-07 3e+00"), "1×10⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹ 2×10⁻⁷ 3×10⁰");
   EXPECT_EQ(typeset("(-3) x^3 <= 1e+06, e-5, 2e5x, 3-4, a - b"),
             "(−3) x³ ≤ 1×10⁶, e-5, 2e5x, 3-4, a − b");
 }

@@ -76,7 +76,6 @@ TEST_F(Isolated, EveryEndHasItsStatus) {
       {"printf '\\007\\0\\0\\0' >$5/heartbeat; exit 74", "exit code 74", Kind::error, 7},
       {"kill -SEGV $$", "SIGSEGV", Kind::crash},
       {"echo why >&2; kill -ABRT $$", "SIGABRT: why", Kind::crash},
-      {"kill -KILL $$", "killed by the system", Kind::oom},
       {"kill -XCPU $$", "CPU time", Kind::timeout},
       {"exit 77", "more than the limit of 300 MB (taut run --memory raises it)", Kind::oom}};
   for (const End& end : ends) {
@@ -89,6 +88,26 @@ TEST_F(Isolated, EveryEndHasItsStatus) {
     EXPECT_EQ(record.id, one_.id);
     fs::remove_all(folder_);
   }
+}
+
+// What somebody else does to a case is no property of it: it is run again the next time.
+TEST_F(Isolated, WhatIsEndedFromOutsideHasNoRecord) {
+  for (const char* script : {"kill -KILL $$", "kill -TERM $$", "kill -INT $$", "kill -HUP $$",
+                             "exit 130", "echo why >&2; exit 78"}) {
+    EXPECT_THROW(record_of(script, {.bytes = 300 << 20}), EndedFromOutside) << script;
+    fs::remove_all(folder_);
+  }
+  EXPECT_THROW(record_of("kill -STOP $$; sleep 9", {.seconds = 0.05}), EndedFromOutside);
+  fs::remove_all(folder_);
+  EXPECT_EQ(record_of("sleep 9", {.seconds = 0.05}).status.reason, "wall time");
+}
+
+TEST(ProcessEnds, OutOfMemoryIsToldFromAKillByTheMemoryThatItHad) {
+  const std::size_t limit = std::size_t{1} << 30;
+  EXPECT_TRUE((ProcessEnd{-1, SIGKILL, limit / 2 - 1}).from_outside(limit));
+  EXPECT_FALSE((ProcessEnd{-1, SIGKILL, limit / 2}).from_outside(limit));
+  EXPECT_FALSE((ProcessEnd{-1, SIGSEGV, 1}).from_outside(limit));
+  EXPECT_FALSE((ProcessEnd{3, 0, 1}).from_outside(limit));
 }
 
 TEST_F(Isolated, OnlyItsOwnRecordIsTaken) {

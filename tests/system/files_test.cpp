@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut::files_test {
 namespace {
@@ -149,6 +151,32 @@ TEST(Scratches, AreBelowTmpdirAndGoWithAllThatIsInThem) {
   EXPECT_TRUE(fs::is_empty(outer.path()));
   const Environment nowhere("TMPDIR", "/no/such/folder");
   EXPECT_EQ(Scratch().path().parent_path(), "/tmp");
+}
+
+TEST(Scratches, OfKilledProcessesAreRemovedByTheNextAndThoseOfLivingOnesStay) {
+  const Scratch outer;
+  const auto old = [&](const std::string& name) {
+    const fs::path folder = outer.path() / name;
+    make_folder(folder);
+    write_file(folder / "x", "x");
+    const timespec times[] = {{1000000000, 0}, {1000000000, 0}};
+    utimensat(AT_FDCWD, folder.c_str(), times, 0);
+    return folder;
+  };
+  const fs::path left = old("taut.aB3xYz"), held = old("taut.held00"),
+                 other = old("taut-of-others"), longer = old("taut.somebodys"),
+                 young = outer.path() / "taut.young0";
+  make_folder(young);
+  const int lock = open(held.c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(flock(lock, LOCK_SH), 0);
+  {
+    const Environment there("TMPDIR", outer.path().c_str());
+    Process({TAUT_BINARY_DIR "/taut", "external", "probe", "true"}).wait();
+  }
+  EXPECT_FALSE(fs::exists(left));
+  for (const fs::path& stays : {held, other, longer, young})
+    EXPECT_TRUE(fs::exists(stays)) << stays;
+  close(lock);
 }
 
 TEST(Names, AreThoseOfTheHostTheProcessAndTheTime) {

@@ -24,6 +24,12 @@ TEST(JsonText, IsInOrderAndReplacesWhatIsNotUtf8) {
   EXPECT_TRUE(json_number(-kInfinity).is_null());
 }
 
+TEST(JsonText, ANulByteIsNoEnd) {
+  EXPECT_THROW(parse_json(std::string_view("{}\0", 3)), Json::exception);
+  EXPECT_THROW(parse_json(std::string_view("{}\0{", 4)), Json::exception);
+  EXPECT_EQ(parse_json("{}"), Json::object());
+}
+
 TEST(JsonText, AFieldIsAddedUnlessItIsEmpty) {
   Json object{{"first", 1}};
   for (const Json& empty : {Json(""), Json(), Json::array(), Json::object()})

@@ -35,11 +35,7 @@ namespace {
 
 /// The first bytes of a file, as many as it has of them.
 std::string first_bytes(const std::filesystem::path& path, std::size_t most) {
-  std::error_code error;
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    fail_in(path, "is no regular file");  // a pipe would be waited for
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail_in(path, std::string("cannot be read: ") + std::strerror(errno));
+  std::ifstream in = open_file(path);
   std::string bytes(most, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(most));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
@@ -57,7 +53,7 @@ struct FrameBlock {
 class BlockReader final : public PositionReader {
  public:
   BlockReader(const std::filesystem::path& path, const FrameBlock& block, PositionsHeader header)
-      : path_(path), in_(path, std::ios::binary), block_(block) {
+      : path_(path), in_(open_file(path)), block_(block) {
     header_ = std::move(header);
     header_.vertices = static_cast<int>(block.n);
     header_.frames = static_cast<int>(block.frames);

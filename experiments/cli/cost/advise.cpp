@@ -366,7 +366,7 @@ void add_options(CLI::App& app, Options& o) {
   add_judgement(app, o.metric, o.tolerance);
   app.add_option("--patience", o.patience,
                  "Search, time and verify within this time [s] (default: 120)")
-      ->check(above_zero());
+      ->check(above_zero_seconds());
   add_samples(app, o.rounds, o.seconds, 2);
   add_results(app, o.out);
   add_json(app, o.json, "The answer and all that was tried");

@@ -36,6 +36,10 @@ std::vector<Record> physics(const std::vector<Case>& cases, const Options& optio
 }
 
 void print_control(const SceneBench& bench, double tolerance) {
+  if (std::isnan(bench.control.mid)) {
+    std::cout << "  no case could be timed\n";
+    return;
+  }
   const bool noisy = spread(bench.control) > tolerance;
   std::cout << "  the same code against itself: " << interval_text(bench.control) << ", tolerance "
             << number_text(100 * tolerance) << " %"
@@ -63,10 +67,13 @@ std::string verdict(const Interval& ratio, const Interval& control, double toler
 }
 
 void print_pairs(const SceneBench& bench, double tolerance) {
-  for (std::size_t i = 1; i < bench.cases.size(); ++i)
-    if (const auto ratio = bench.ratio(i, 0))
+  const auto timed = [](const BenchedCase& c) { return c.timing.failure.empty(); };
+  const auto first =
+      static_cast<std::size_t>(std::ranges::find_if(bench.cases, timed) - bench.cases.begin());
+  for (std::size_t i = first + 1; i < bench.cases.size(); ++i)
+    if (const auto ratio = bench.ratio(i, first))
       std::cout << "  " << bench.cases[i].record.id << ": " << interval_text(*ratio) << " x "
-                << bench.cases[0].record.id << ": " << verdict(*ratio, bench.control, tolerance)
+                << bench.cases[first].record.id << ": " << verdict(*ratio, bench.control, tolerance)
                 << '\n';
 }
 

@@ -122,7 +122,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--limit", o.limit,
                  "Skip a case that would take longer than this, physics and timing [s] "
                  "(default: 20)")
-      ->check(above_zero());
+      ->check(above_zero_seconds());
   app.add_option("--samples", o.samples, "Samples of each case (default: 6)")
       ->check(CLI::Range(1, 1000));
   add_results(app, o.out);

@@ -63,7 +63,7 @@ void print_theory(const Prediction& theory, const Frontier& found, const std::st
 }
 
 void print_text(const CaseFrontier& result, const std::optional<Prediction>& theory,
-                const std::string& unit) {
+                const std::string& unit, double seconds) {
   const Frontier& found = result.frontier;
   const auto outcome = [&](double value) {
     const Probed* probe = found.at(value);
@@ -79,8 +79,7 @@ void print_text(const CaseFrontier& result, const std::optional<Prediction>& the
   if (theory)
     print_theory(*theory, found, unit);
   else
-    print_line("theory",
-               "none for these settings; there is one for few links, with jakobsen in order=mesh");
+    print_line("theory", "none for these settings");
   std::string above = std::to_string(found.above) + " values above the bracket, ";
   if (found.stable_above.empty()) {
     above += "none stable";
@@ -89,6 +88,8 @@ void print_text(const CaseFrontier& result, const std::optional<Prediction>& the
     for (const double value : found.stable_above) above += " " + shortest(value);
   }
   if (found.kind != Frontier::Kind::all_stable) print_line("looked at", above);
+  print_line("growth", "looked for over " + number_text(seconds) +
+                           " s; what grows more slowly counts as stable");
   print_line("cases", std::to_string(found.probes.size()) + ", of which " +
                           std::to_string(result.ran) + " were run now");
 }
@@ -278,7 +279,7 @@ int run(const Options& options) {
   }
   const CaseSpec spec = question.base;
   std::cout << first.scene->name << ' ' << spec.solver << ": largest stable " << options.of << '\n';
-  print_text(result, theory, unit_of(options, first.choice));
+  print_text(result, theory, unit_of(options, first.choice), first.scene->duration());
   return kPass;
 }
 

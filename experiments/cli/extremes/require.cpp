@@ -338,7 +338,7 @@ void add_options(CLI::App& app, Options& o) {
       ->allow_extra_args(false);
   add_settings(app, o.settings);
   app.add_option("--patience", o.patience, "For all of a scene's work [s] (default: 120)")
-      ->check(above_zero());
+      ->check(above_zero_seconds());
   add_output(app, o.output,
              "Where to draw both models (default: models.png beside the smallest scene)");
   add_jobs(app, o.jobs);

@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::vector<std::string> scenes;
-  bool all = false, json = false;
-  std::string output = references_folder().string();
+  bool all = false, replace = false, json = false;
+  std::string output = (results_folder() / "references").string();
 };
 
 std::vector<fs::path> chosen(const Options& options) {
@@ -33,7 +33,19 @@ struct Outcome {
   double t = 0, floor = 0;  ///< s, m
 };
 
-Outcome write_static(const Scene& scene, const fs::path& out) {
+/// Why a reference of this kind is not computed; "": it is.
+std::string kept(const Scene& scene, const std::string& kind, double t, const Options& options) {
+  const fs::path file =
+      reference_file({scene.name, reference_digest(scene, kind), kind, t, "", 0, {}},
+                     fs::path(options.output) / scene.name);
+  if (options.replace || !fs::exists(file)) return "";
+  return file.string() + " is there; --replace computes it again";
+}
+
+Outcome write_static(const Scene& scene, const Options& options) {
+  const fs::path out = options.output;
+  if (const std::string why = kept(scene, "static", 0, options); !why.empty())
+    return {scene.name, "static", "", why};
   const reference::Equilibrium rest = reference::static_equilibrium(scene);
   if (!rest.unique) return {scene.name, "static", "", rest.reason};
   write_reference({scene.name, reference_digest(scene, "static"), "static", 0, rest.derivation,
@@ -47,7 +59,10 @@ Outcome write_static(const Scene& scene, const fs::path& out) {
 constexpr double kConverged = 1e-4;
 
 /// The same for states in motion, up to the horizon to which they are converged.
-std::vector<Outcome> write_motion(const Scene& scene, const fs::path& out) {
+std::vector<Outcome> write_motion(const Scene& scene, const Options& options) {
+  const fs::path out = options.output;
+  if (const std::string why = kept(scene, "motion", 0.5, options); !why.empty())
+    return {{scene.name, "motion", "", why}};
   std::vector<double> times{0.5, 1, 1.5, 2};
   reference::Trajectory motion = reference::converged_motion(scene, times, 1.0 / 1024);
   for (; !motion.unique && times.size() > 1 && reference::refuse_dynamic(scene).empty();
@@ -88,8 +103,8 @@ int run(const Options& options) {
   const Countdown countdown("scene");
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Scene scene = load_scene(files[i]);
-    std::vector<Outcome> outcomes = write_motion(scene, options.output);
-    outcomes.insert(outcomes.begin(), write_static(scene, options.output));
+    std::vector<Outcome> outcomes = write_motion(scene, options);
+    outcomes.insert(outcomes.begin(), write_static(scene, options));
     for (const Outcome& o : outcomes) {
       written += o.refused.empty();
       all.push_back({{"scene", o.scene},
@@ -110,8 +125,8 @@ int run(const Options& options) {
 void add_options(CLI::App& app, Options& options) {
   app.add_option("SCENE", options.scenes, "Names of shipped scenes, or scene files");
   app.add_flag("--all", options.all, "Every shipped scene");
-  add_output(app, options.output,
-             "Where references are kept (default: beside those that came with the program)");
+  add_output(app, options.output, "Where references are kept (default: " + options.output + ")");
+  app.add_flag("--replace", options.replace, "Compute again what is there of the same scene");
   add_json(app, options.json, "What became of each");
 }
 

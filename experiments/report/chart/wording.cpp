@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
@@ -22,9 +23,11 @@ namespace {
 constexpr std::array<const char*, 10> kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
 
 /// 10 to this power.
-std::string power_of_ten(int exponent) {
-  std::string text = exponent < 0 ? "10⁻" : "10";
-  for (const char digit : std::to_string(std::abs(exponent)))
+/// Of an exponent as typed, of any length: "-09" -> "10⁻⁹".
+std::string power_of_ten(std::string_view exponent) {
+  const auto digits = std::min(exponent.find_first_not_of("+-0"), exponent.size() - 1);
+  std::string text = exponent.front() == '-' && exponent[digits] != '0' ? "10⁻" : "10";
+  for (const char digit : exponent.substr(digits))
     text += kRaised[static_cast<std::size_t>(digit - '0')];
   return text;
 }
@@ -38,7 +41,7 @@ std::string powers(const std::string& scientific) {
     if (mantissa.back() == '.') mantissa.pop_back();
   }
   return (mantissa == "1" ? "" : mantissa + "×") +
-         power_of_ten(std::stoi(scientific.substr(e + 1)));
+         power_of_ten(std::string_view(scientific).substr(e + 1));
 }
 
 }  // namespace
@@ -99,7 +102,7 @@ std::string typeset(std::string_view plain) {
     if (found != std::end(kSigns)) {
       out += found->second, i += found->first.size();
     } else if (at(i) == 'e' && digit(i - 1) && end > digits && !letter(end)) {
-      out += "×" + power_of_ten(std::stoi(std::string(plain.substr(i + 1, end - i - 1)))), i = end;
+      out += "×" + power_of_ten(plain.substr(i + 1, end - i - 1)), i = end;
     } else {
       out += minus ? "−" : std::string(1, plain[i]), ++i;
     }
@@ -148,9 +151,9 @@ constexpr std::array kTitles{
     Titled{"vertices", "vertices", kNumber},
     Titled{"links", "links", kNumber},
     Titled{"cpu.per_second", "CPU time per simulated second", kCost,
-           "median of samples that alternate between the solvers, one thread's time"},
+           "median of samples that alternate between the solvers, of all threads of the process"},
     Titled{"cpu.per_step", "CPU time per step", kCost,
-           "median of samples that alternate between the solvers, one thread's time"},
+           "median of samples that alternate between the solvers, of all threads of the process"},
     Titled{"wall.per_step", "wall time per step", kCost, "median of the same samples"},
     Titled{"memory.peak", "peak memory of the process", {"bytes", "MB", 1e-6}},
     Titled{"structural", "structural links: stiffness in N/m, of xpbd compliance in m/N", kNumber},
@@ -296,10 +299,11 @@ std::string brief_settings(const std::string& solver) try {
   std::string text;
   for (const ParamSpec& spec : choice.params.specs()) {
     const std::string value(choice.params.value(spec.name));
-    if (spec.name == sweeps)
-      work.sweeps = std::stoi(value);
-    else if (spec.name == substeps)
-      work.substeps = std::stoi(value);
+    const std::optional<int> number = whole<int>(value);  // a solver from outside may want a text
+    if (number && spec.name == sweeps)
+      work.sweeps = *number;
+    else if (number && spec.name == substeps)
+      work.substeps = *number;
     else if (value != spec.default_value)
       text += ", " + std::string(spec.name) + "=" + value;
   }

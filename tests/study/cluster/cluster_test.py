@@ -437,6 +437,9 @@ class Starts(Cluster):
     def mounted(self, script):
         """Runs a shell script with a small file system of its own at ./disk; skips where none can be mounted."""
         mount = "mkdir -p disk && mount -t tmpfs -o size=300k tmpfs disk && "
+        for tool in ("unshare", "mount"):
+            if not shutil.which(tool):
+                self.skipTest(f"{tool} is missing")
         process = subprocess.run(["unshare", "--mount", "--map-root-user", "bash", "-c", mount + script], cwd=self.folder,
                                  text=True, capture_output=True, env=QUICK | {"TAUT": str(BINARIES / "taut")})
         if "unshare:" in process.stderr or "mount:" in process.stderr:

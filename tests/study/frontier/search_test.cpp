@@ -264,6 +264,30 @@ TEST(LinearStability, OneMassOnASpring) {
   EXPECT_GT(margin(scene, spring + ",integrator=explicit-euler", 1e-3), 1);
 }
 
+TEST(LinearStability, DragHoldsExplicitEulerUpToItsClosedForm) {
+  Scene scene = hung_chain(1);
+  const double m = scene.mesh.mass[1], k = 40, w2 = k / m, c = 0.5, y = c / m;
+  const std::string spring =
+      "mass-spring:substeps=1,structural=40,precision=double,integrator=explicit-euler,drag=0.5";
+  ASSERT_LT(y * y, 4 * w2);
+  EXPECT_NEAR(margin(scene, spring, y / w2), 1, 1e-9) << "dt < c/(m w^2)";
+  scene.dt = 1.5 * y / w2;
+  const auto theory = linear_stability(scene, parse_solver(spring));
+  EXPECT_NEAR(theory->growth, std::sqrt(1 - y * scene.dt + w2 * scene.dt * scene.dt), 1e-12);
+  // The invariant w^2 x^2 + v^2 + y x v of the continuous motion grows by |z|^2 in each step.
+  scene.start.x[1].y() -= 1e-6;
+  const auto size = [&](const State& s) {
+    const double x = s.x[1].y() + 1, v = s.v[1].y();
+    return std::sqrt(w2 * x * x + v * v + y * x * v);
+  };
+  const State before = simulate(scene, spring, 10), after = simulate(scene, spring, 60);
+  EXPECT_NEAR(std::pow(size(after) / size(before), 1.0 / 50), theory->growth, 1e-5);
+  const std::string stiff =
+      "mass-spring:substeps=1,structural=1e-3,integrator=explicit-euler,drag=0.5";
+  EXPECT_NEAR(margin(scene, stiff, 2 / y), 1, 1e-9) << "drag alone";
+  EXPECT_FALSE(linear_stability(hanging_sheet(4, 4), parse_solver(spring))) << "unequal masses";
+}
+
 TEST(LinearStability, AChainOfSpringsHasItsClosedForm) {
   const int n = 16;
   const Scene scene = hung_chain(n);
