@@ -53,7 +53,9 @@ class Mode final : public Metric {
            "damping ratio of the lowest mode of small swings, which nothing damps in truth: "
            "d/sqrt(4 pi^2 + d^2), d the logarithmic decrement per period, from the first "
            "amplitude to the last of at least 1 % of it; only of rows hung from a pinned one, let "
-           "go at most 0.1 rad from rest, without damping, wind, colliders or self-collision",
+           "go at most 0.1 rad from rest, without damping, wind, colliders or self-collision; rows "
+           "that "
+           "stretch by much trade swinging for bouncing",
        .window = Window::run,
        .title = "damping ratio of the lowest mode",
        .role = Role::motion},
