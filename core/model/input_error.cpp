@@ -54,6 +54,9 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
       least = d;
       best = &candidate;
     }
+  const std::string begin = word.substr(0, std::max<std::size_t>(3, word.size()) - 1);
+  for (const std::string& candidate : candidates)  // an abbreviation, or its plural
+    if (!best && begin.size() > 2 && candidate.starts_with(begin)) best = &candidate;
   return best ? "; did you mean '" + *best + "'?" : "";
 }
 

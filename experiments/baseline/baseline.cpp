@@ -10,6 +10,7 @@
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/answer/number.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/system/text.hpp"
 
@@ -26,7 +27,7 @@ std::string status_text(const Status& status) {
 
 std::string digits(double value, int count) { return formatted("%.*g", count, value); }
 
-std::string readable(double value) { return std::isnan(value) ? "none" : digits(value, 7); }
+std::string readable(double value) { return std::isnan(value) ? "none" : number_text(value, 7); }
 
 /// "stretch.max 0.0123 -> 0.0145 (+18 %; allowed 1e-06)".
 std::string moved_text(const std::string& name, double before, double now, const Tolerance& t) {
@@ -35,7 +36,7 @@ std::string moved_text(const std::string& name, double before, double now, const
     text = name + " " + digits(before, 17) + " -> " + digits(now, 17);
   if (std::isnan(before) || std::isnan(now)) return text;
   const double allowed = t.absolute + t.relative * std::abs(before);
-  return text + " (by " + digits(now - before, 3) + ", allowed " + digits(allowed, 3) + ")";
+  return text + " (by " + number_text(now - before) + ", allowed " + number_text(allowed) + ")";
 }
 
 /// The same number with no more digits than the tolerance asks for.
@@ -283,31 +284,27 @@ std::string junit(const std::string& study, const Baseline& now, const Compariso
 
 double MovedValue::relative() const { return relative_change(*largest); }
 
-std::vector<MovedValue> roll_up(const Comparison& comparison) {
-  std::map<std::pair<std::string, std::string>, MovedValue> groups;
+std::vector<MovedValue> roll_up(const Comparison& comparison,
+                                const std::function<std::string(const std::string&)>& group_of) {
+  std::vector<MovedValue> all;
   for (const Change& c : comparison.findings) {
     if (!c.is_regression()) continue;
-    MovedValue& group = groups[{c.scene, c.value}];
-    group.scene = c.scene, group.value = c.value;
-    ++group.cases, group.less += c.now<c.before, group.more += c.now> c.before;
-    if (!group.largest || std::abs(relative_change(c)) > std::abs(group.relative()))
-      group.largest = &c;
+    const std::string group = group_of(c.value);
+    auto at = std::ranges::find_if(
+        all, [&](const MovedValue& m) { return m.solver == c.solver && m.group == group; });
+    if (at == all.end()) at = all.insert(all.end(), MovedValue{c.solver, group});
+    ++at->cases, at->less += c.now<c.before, at->more += c.now> c.before;
+    if (!at->largest || std::abs(relative_change(c)) > std::abs(at->relative())) at->largest = &c;
   }
-  std::vector<MovedValue> all;
-  for (const auto& [name, group] : groups) all.push_back(group);
-  std::ranges::stable_sort(all, [](const MovedValue& a, const MovedValue& b) {
-    return std::abs(a.relative()) > std::abs(b.relative());
-  });
   return all;
 }
 
-std::string text(const MovedValue& moved, std::string_view unit) {
-  if (moved.largest->kind == Change::Kind::status_changed) return moved.largest->text;
-  const std::string change = formatted("%.4g -> %.4g", moved.largest->before, moved.largest->now) +
-                             (unit == "1" || unit.empty() ? "" : " " + std::string(unit));
-  return std::isfinite(moved.relative())
-             ? formatted("%+.3g %% (", 100 * moved.relative()) + change + ")"
-             : change;
+std::string_view to_string(Change::Kind kind) {
+  constexpr std::string_view kNames[] = {"value moved",      "status changed", "case missing",
+                                         "case new",         "case renamed",   "scene changed",
+                                         "solver missing",   "solver new",     "value missing",
+                                         "value unrecorded", "value new"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace taut

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/model/solver.hpp"
@@ -83,6 +85,9 @@ struct Change {
   bool is_mismatch() const { return !is_regression() && kind != Kind::value_new; }
 };
 
+/// "value moved", "case new", ...
+std::string_view to_string(Change::Kind);
+
 struct Comparison {
   std::vector<Change> findings;  ///< sorted by solver and id
   std::size_t cases = 0;         ///< compared
@@ -92,9 +97,9 @@ struct Comparison {
   bool mismatched() const;
 };
 
-/// How one value moved on one scene, over all its cases.
+/// How values moved, over all cases of a solver.
 struct MovedValue {
-  std::string scene, value;
+  std::string solver, group;  ///< a value or several; "status"
   std::size_t cases = 0;
   std::size_t less = 0, more = 0;   ///< of these: now below, above what it was
   const Change* largest = nullptr;  ///< relative change; into the comparison
@@ -104,11 +109,10 @@ struct MovedValue {
   double relative() const;
 };
 
-/// Statuses that changed and values that moved, by scene and value; the largest change first.
-std::vector<MovedValue> roll_up(const Comparison&);
-
-/// "+12 % (0.01 -> 0.0112 m)", from the case with the largest change.
-std::string text(const MovedValue&, std::string_view unit);
+/// Statuses that changed and values that moved, by solver and by what `group_of` makes of the
+/// value's name; groups in the order of their first change.
+std::vector<MovedValue> roll_up(const Comparison&,
+                                const std::function<std::string(const std::string&)>& group_of);
 
 /// The command that runs a case in the foreground: "taut case hang jakobsen:iterations=8 --set
 /// ...".

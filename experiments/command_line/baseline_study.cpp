@@ -37,7 +37,7 @@ void mark_flaky(const std::vector<Case>& cases, const Store& store, const Baseli
     const auto a = store.find(one), b = second.find(one);
     if (!a || !b || (a->digest == b->digest && a->status.step == b->status.step)) continue;
     for (BaselineRow& row : result.now) row.flaky = row.flaky || row.id == one.id;
-    std::cout << result.name << ": " << one.id << ": does not repeat bit for bit: flaky\n";
+    progress() << result.name << ": " << one.id << ": does not repeat bit for bit: flaky\n";
   }
   std::filesystem::remove_all(folder);
 }
@@ -105,15 +105,30 @@ BaselineStudy baseline_study(const std::string& name, const BaselineOptions& opt
   return result;
 }
 
-void print_findings(const BaselineStudy& study, const Comparison& comparison) {
-  for (std::size_t i = 0; i < comparison.findings.size(); ++i) {
-    const Change& finding = comparison.findings[i];
-    const std::string what = finding.id.empty() ? "solver " + finding.solver : finding.id;
-    std::cout << study.name << ": " << what << ": " << finding.text << '\n';
-    const bool last =
-        i + 1 == comparison.findings.size() || comparison.findings[i + 1].id != finding.id;
+Table findings_table() {
+  return {"findings",
+          "all that differs",
+          {{"study"},
+           {"kind"},
+           {"case"},
+           {"change"},
+           {"command"},
+           Column("solver").in_detail(),
+           Column("scene").in_detail(),
+           Column("value").in_detail(),
+           Column("before", "", kNumber, 7).in_detail(),
+           Column("now", "", kNumber, 7).in_detail()}};
+}
+
+void add_findings(Table& table, const BaselineStudy& study, const Comparison& comparison) {
+  for (const Change& finding : comparison.findings) {
     const BaselineRow* row = find_row(study.now, finding.id);
-    if (last && row) std::cout << "    " << reproduce(*row) << '\n';
+    const bool number = finding.kind == Change::Kind::value_moved;
+    table.rows.push_back({study.name, to_string(finding.kind),
+                          finding.id.empty() ? "solver " + finding.solver : finding.id,
+                          finding.text, row ? Cell(reproduce(*row)) : Cell(), finding.solver,
+                          finding.scene, finding.value, number ? Cell(finding.before) : Cell(),
+                          number ? Cell(finding.now) : Cell()});
   }
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/answer/answer.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/study/campaign.hpp"
 
@@ -37,9 +38,9 @@ struct BaselineStudy {
 /// if there is no baseline and `needs_baseline`. Throws InputError.
 BaselineStudy baseline_study(const std::string& study, const BaselineOptions&, bool needs_baseline);
 
-/// Prints each finding as "study: case: from -> to", and below the last of each case the command
-/// that runs it again.
-void print_findings(const BaselineStudy&, const Comparison&);
+/// A table of findings, empty: every change with the command that runs its case again.
+Table findings_table();
+void add_findings(Table&, const BaselineStudy&, const Comparison&);
 
 /// File in a baseline's folder that says what it was made with.
 inline constexpr const char* kToolchainFile = "toolchain.txt";

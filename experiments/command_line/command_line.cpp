@@ -253,20 +253,4 @@ int command_line(int argc, char** argv) {
   return kUsage;
 }
 
-int invoke(const std::string& name, std::vector<std::string> words, Output output) {
-  const VerbEntry* verb = find_verb(name);
-  if (!verb) throw InputError("this program has no verb '" + name + "'");
-  CLI::App app(std::string(verb->summary), name);
-  const std::function<int()> run = bind(*verb, app);
-  std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
-  try {
-    app.parse(words);
-  } catch (const CLI::ParseError& error) {
-    throw InputError(name + ": " + error.what());
-  }
-  std::optional<DiscardedOutput> discarded;
-  if (output == Output::discarded) discarded.emplace();
-  return run();
-}
-
 }  // namespace taut

@@ -14,6 +14,7 @@
 #include "experiments/study/store.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut {
 
@@ -68,8 +69,10 @@ CLI::Option* add_preset(CLI::App& app, std::string& preset) {
 
 CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
   return app
-      .add_option("--set", settings, "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'")
-      ->allow_extra_args(false);
+      .add_option("--set", settings,
+                  "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'; repeat it for each")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void add_limits(CLI::App& app, Limits& limits) {
@@ -111,6 +114,17 @@ void add_judgement(CLI::App& app, std::string& metric, double& tolerance) {
 void add_baselines(CLI::App& app, std::string& folder) {
   folder = results_folder() / "baselines";
   app.add_option("--baselines", folder, "Folder of the baselines (default: " + folder + ")");
+}
+
+void add_format(CLI::App& app, Format& format, const char* details) {
+  auto* json = app.add_flag("--json", format.json, "Print it as JSON: numbers in SI, every table");
+  auto* csv = app.add_flag("--csv", format.csv,
+                           "Print the first table as CSV; --csv=NAME another one, --csv=facts what "
+                           "stands above the tables");
+  auto* markdown = app.add_flag("--markdown", format.markdown, "Print it as Markdown");
+  json->excludes(csv)->excludes(markdown);
+  csv->excludes(markdown);
+  if (details) app.add_flag("--all", format.details, details);
 }
 
 CLI::Option* add_json(CLI::App& app, bool& json, const std::string& what) {
@@ -168,15 +182,26 @@ Case CaseOptions::make() const { return make_case(spec()); }
 void continue_in_right_program(const SolverChoice& choice) {
   const std::string needed(choice.entry->program ? choice.entry->program(choice.params) : "");
   if (needed.empty() || needed == this_program().filename()) return;
-  std::ifstream in("/proc/self/cmdline", std::ios::binary);
-  std::vector<std::string> words;
-  for (std::string word; std::getline(in, word, '\0');) words.push_back(word);
+  std::vector<std::string> words = typed_words();
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const std::string program = sibling_program(needed);
   execv(program.c_str(), argv.data());
   throw InputError(choice.brief() + " needs the program " + program + ", which cannot be run");
+}
+
+std::vector<std::string> typed_words() {
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(in, word, '\0');) words.push_back(word);
+  return words;
+}
+
+std::string typed_command() {
+  std::vector<std::string> words = typed_words();
+  if (!words.empty()) words[0] = std::filesystem::path(words[0]).filename();
+  return printable(join(words, " ", shell_word));
 }
 
 }  // namespace taut

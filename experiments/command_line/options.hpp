@@ -6,6 +6,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/case.hpp"
+#include "experiments/command_line/output.hpp"
 #include "experiments/study/isolate.hpp"
 #include "experiments/study/study.hpp"
 
@@ -52,6 +53,9 @@ void add_judgement(CLI::App&, std::string& metric, double& tolerance);
 /// The folder of the baselines, as --baselines.
 void add_baselines(CLI::App&, std::string& folder);
 
+/// --json, --csv and --markdown of an answer; --all if it has `details` that people rarely want.
+void add_format(CLI::App&, Format&, const char* details = nullptr);
+
 /// --json, which says `what` is printed instead.
 CLI::Option* add_json(CLI::App&, bool& json, const std::string& what);
 
@@ -89,5 +93,9 @@ class CaseOptions {
 /// Replaces this process by the program that can run the choice (same arguments), if it is another
 /// one; returns if it is this. Throws InputError if the other is not installed.
 void continue_in_right_program(const SolverChoice&);
+
+/// The words with which this program was started, and the same for a shell: "taut check -j 2".
+std::vector<std::string> typed_words();
+std::string typed_command();
 
 }  // namespace taut

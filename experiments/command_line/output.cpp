@@ -5,29 +5,41 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <iomanip>
 #include <iostream>
+#include <sstream>
 
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/process.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut {
 
 namespace {
 
-std::size_t characters(const std::string& text) {
-  const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
-  return static_cast<std::size_t>(std::ranges::count_if(text, begins));
-}
-
 bool g_shown = true;
 
-std::string clock_text(double seconds) {
-  return formatted("%d:%02d", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
+/// The verdicts of a text in colour: words that stand in a line by themselves.
+std::string with_verdicts(const std::string& text) {
+  static const std::pair<std::string_view, Colour> kVerdicts[] = {
+      {"passed", Colour::green},  {"ok", Colour::green},        {"holds", Colour::green},
+      {"broken", Colour::red},    {"FAILED", Colour::red},      {"overturned", Colour::red},
+      {"moved", Colour::red},     {"deviates", Colour::yellow}, {"not applicable", Colour::yellow},
+      {"skipped", Colour::yellow}};
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line); out += line + '\n')
+    for (const auto& [word, colour] : kVerdicts)
+      if (const auto at = line.find("  " + std::string(word));
+          at != std::string::npos && (at + 2 + word.size() == line.size() ||
+                                      line.compare(at + 2 + word.size(), 2, "  ") == 0)) {
+        line.replace(at + 2, word.size(), coloured(word, colour));
+        break;
+      }
+  return out;
 }
 
 }  // namespace
@@ -39,17 +51,19 @@ std::string coloured(std::string_view text, Colour colour) {
 }
 
 void print_columns(const std::vector<Row>& rows, std::size_t names) {
-  std::vector<std::size_t> width(rows.front().size());
-  for (const Row& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], characters(row[i]));
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const bool last = i + 1 == row.size();
-      const std::string blanks(width[i] - characters(row[i]), ' ');
-      std::cout << "  " << (i < names || last ? row[i] + (last ? "" : blanks) : blanks + row[i]);
-    }
-    std::cout << '\n';
-  }
+  std::cout << in_columns(rows, names);
+}
+
+void print(const Answer& answer, const Format& format) {
+  if (format.json)
+    std::cout << to_json(answer);
+  else if (format.markdown)
+    std::cout << '`' << typed_command() << "`\n\n" << to_markdown(answer, format.details);
+  else if (!format.csv.empty())
+    std::cout << to_csv(answer, format.csv == "true" ? "" : format.csv);
+  else
+    std::cout << with_verdicts(to_text(answer, format.details));
+  std::cout << std::flush;
 }
 
 std::string counts(const CampaignProgress& campaign) {
@@ -66,21 +80,23 @@ void print_files(const std::vector<std::string>& files, bool json) {
     for (const std::string& file : files) std::cout << file << '\n';
 }
 
-void print_record(const Record& record) {
-  std::cout << record.id << "\n  status       " << to_string(record.status.kind);
-  if (!record.status.reason.empty()) std::cout << " (" << record.status.reason << ")";
-  if (record.status.step >= 0) std::cout << ", step " << record.status.step;
-  if (record.status.vertex >= 0) std::cout << ", vertex " << record.status.vertex;
-  std::cout << "\n  steps        " << record.steps << " of " << record.dt << " s\n  cloth        "
-            << record.vertices << " vertices, " << record.links << " links\n  work         "
-            << record.projections << " projections per step\n  state        " << record.digest
-            << '\n';
-  for (const auto& [name, value] : record.values)
-    if (!std::isnan(value)) {
-      const ValueSpec* spec = find_value(name).second;
-      std::cout << "  " << std::left << std::setw(26) << name << std::setprecision(6) << value
-                << ' ' << (!spec || spec->unit.si == "1" ? "" : spec->unit.si) << '\n';
-    }
+Answer answer_of(const Record& record, std::string kind) {
+  Answer answer{std::move(kind), record.id};
+  answer.add({"status"}, Cell(to_string(record.status.kind)).with(record.status.reason));
+  if (record.status.step >= 0) answer.add({"step"}, record.status.step);
+  if (record.status.vertex >= 0) answer.add({"vertex"}, record.status.vertex);
+  answer.add({"steps"}, record.steps);
+  answer.add({"dt", "time step", kTime, 6}, record.dt);
+  answer.add({"vertices"}, record.vertices);
+  answer.add({"links"}, record.links);
+  answer.add({"projections", "projections per step"}, record.projections);
+  answer.add({"digest", "final state"}, record.digest);
+  for (const auto& [name, value] : record.values) {
+    const Column column(name, name, unit_of_value(name), 6);
+    answer.add(std::isnan(value) ? column.in_detail() : column, value);
+  }
+  answer.add(Column("key").in_detail(), record.key);
+  return answer;
 }
 
 Progress::Progress() : start_(std::chrono::steady_clock::now()), terminal_(isatty(2) == 1) {}

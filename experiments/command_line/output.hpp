@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/answer/answer.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/study/campaign.hpp"
 
@@ -18,16 +19,28 @@ std::string coloured(std::string_view text, Colour);
 
 using Row = std::vector<std::string>;
 
-/// Rows on stdout in columns, two blanks before each: the first `names` columns and the last are
-/// flush left, the others flush right. All rows are as long as the first. Widths count characters
-/// of UTF-8.
+/// Rows on stdout, in_columns().
 void print_columns(const std::vector<Row>&, std::size_t names);
+
+/// How an answer is printed: add_format().
+struct Format {
+  bool json = false, markdown = false;
+  std::string csv;       ///< the table; "true": the first; "": no CSV
+  bool details = false;  ///< to people all that data have
+
+  /// Whether it is for programs, who are told nothing else on standard output.
+  bool is_data() const { return json || markdown || !csv.empty(); }
+};
+
+/// Prints the answer on stdout: on a terminal verdicts in colour; as Markdown with the command that
+/// makes it. Throws InputError: no such table.
+void print(const Answer&, const Format&);
 
 /// The files that a verb wrote: a line each, or {"files": [...]}.
 void print_files(const std::vector<std::string>& files, bool json);
 
-/// A record for people, on standard output: what ran, how it ended, every value that has a meaning.
-void print_record(const Record&);
+/// What ran, how it ended, every value that has a meaning.
+Answer answer_of(const Record&, std::string kind);
 
 /// Shows a campaign on stderr: one line that is rewritten, with the time left, on a terminal; a
 /// line per case otherwise.

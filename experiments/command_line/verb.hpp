@@ -66,12 +66,6 @@ std::span<const VerbEntry* const> verbs();
 /// What main() does: finds the verb, parses its options, runs it; gives the exit code.
 int command_line(int argc, char** argv);
 
-/// Runs another verb of this program as if it had been typed: how `taut run` ends in a report
-/// without knowing how reports are made. Gives its exit code; throws InputError if its arguments
-/// are wrong. Progress and complaints are shown even if its output is discarded.
-enum class Output { shown, discarded };
-int invoke(const std::string& verb, std::vector<std::string> arguments, Output = Output::shown);
-
 }  // namespace taut
 
 #define TAUT_VERB(id)               \

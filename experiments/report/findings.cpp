@@ -5,7 +5,9 @@
 #include <map>
 #include <type_traits>
 
+#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
+#include "experiments/baseline/baseline.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -14,30 +16,35 @@ namespace taut::report {
 
 namespace {
 
-/// How far a finding is on the way to its tolerance; 1: at it.
-double share_of_tolerance(const JsonReader& finding) {
-  const double off =
-      std::abs(finding.at("measured").number_or_null() - finding.at("expected").number_or_null());
-  const double tolerance = finding.at("tolerance").number_or_null();
-  return tolerance > 0 ? off / tolerance : off;
-}
+/// A row of the findings of `taut verify`, by the names of their columns.
+struct Found {
+  const Table& table;
+  const std::vector<Cell>& row;
+  std::string text(const char* column) const { return table.at(row, column).text(); }
+  double number(const char* column) const { return table.at(row, column).number(); }
+
+  /// How far a finding is on the way to its tolerance; 1: at it.
+  double share_of_tolerance() const {
+    const double off = std::abs(number("measured") - number("expected"));
+    return number("tolerance") > 0 ? off / number("tolerance") : off;
+  }
+};
 
 /// A row of the model: a closed form or a published number beside what was measured.
-Json row_of(const JsonReader& truth, const JsonReader& finding) {
-  const std::string si = finding.at("unit").text(), unit = si == "1" ? "" : " " + si,
-                    verdict = finding.at("verdict").text();
-  const double expected = finding.at("expected").number_or_null(),
-               slack = finding.at("tolerance").number_or_null();
-  Json row{{"section", truth.at("section_title").text()},
-           {"statement", typeset(truth.at("statement").text())},
-           {"source", typeset(truth.at("source").text())},
-           {"subject", finding.at("subject").text()},
+Json row_of(const Found& truth, const Found& finding) {
+  const std::string si = finding.text("unit"), unit = si == "1" ? "" : " " + si,
+                    verdict = finding.text("verdict");
+  const double expected = finding.number("expected"), slack = finding.number("tolerance");
+  Json row{{"section", truth.text("section_title")},
+           {"statement", typeset(truth.text("statement"))},
+           {"source", typeset(truth.text("source"))},
+           {"subject", finding.text("subject")},
            {"expected", ""},
            {"measured", ""},
            {"verdict", verdict}};
-  add_if(row, "why", typeset(finding.at("why").text()));
+  add_if(row, "why", typeset(finding.text("why")));
   if (verdict == "not applicable") return row;
-  const double measured = finding.at("measured").number_or_null();
+  const double measured = finding.number("measured");
   const auto say = [&](const std::string& wanted, const std::string& found) {
     row["expected"] = typeset(wanted), row["measured"] = typeset(found);
     return row;
@@ -56,17 +63,25 @@ Json row_of(const JsonReader& truth, const JsonReader& finding) {
   return say("exactly " + significant(expected, 3) + unit, significant(measured, 3) + unit);
 }
 
-/// What `read` makes of a file; nothing if there is none or another program wrote it. Throws
-/// InputError if it is damaged.
+/// What `read` makes of the answer in a file; nothing if there is none or another program gave it.
+/// Throws InputError if it is damaged.
 template <class Read>
-auto read_found(const std::filesystem::path& file, const char* schema, std::string_view program,
-                Read read) {
-  using Found = std::optional<std::invoke_result_t<Read, JsonReader>>;
-  if (!std::filesystem::exists(file)) return Found();
-  return read_json(read_text(file), file.string(), [&](const JsonReader& root) {
-    root.require_schema(schema);
-    return root.at("program").text() == program ? Found(read(root)) : Found();
-  });
+auto read_found(const std::filesystem::path& file, std::string_view program, Read read) {
+  std::optional<std::invoke_result_t<Read, const Answer&>> found;
+  if (!std::filesystem::exists(file)) return found;
+  const Answer answer = answer_from_json(read_text(file), file.string());
+  if (answer.fact("program").text() == program) try {
+      found = read(answer);
+    } catch (const InputError& error) {
+      throw InputError({{file.string(), 0, 0, error.what()}});
+    }
+  return found;
+}
+
+std::size_t count(const Answer& answer, const char* fact) {
+  const double number = answer.fact(fact).number();
+  if (!(number >= 0 && number < 1e15)) throw InputError("has no number of " + std::string(fact));
+  return static_cast<std::size_t>(number);
 }
 
 /// Files below `results`/`folder` that end so, sorted.
@@ -80,17 +95,52 @@ std::vector<std::filesystem::path> files_below(const std::filesystem::path& fold
   return files;
 }
 
+/// Of each truth the finding nearest to its tolerance, and all that did not simply pass.
+Truths truths_of(const Answer& answer) {
+  const Table &all = answer.table("truths"), &findings = answer.table("findings"),
+              &assertions = answer.table("assertions");
+  Truths truths;
+  std::map<std::string, int> verdicts;
+  Json rows;
+  for (const auto& own : all.rows) {
+    const Found truth{all, own};
+    std::optional<std::size_t> nearest;
+    Json apart;
+    for (std::size_t i = 0; i < findings.rows.size(); ++i) {
+      const Found finding{findings, findings.rows[i]};
+      if (finding.text("truth") != truth.text("name")) continue;
+      const std::string verdict = finding.text("verdict");
+      ++verdicts[verdict];
+      if (verdict != "passed")
+        apart.push_back(row_of(truth, finding));
+      else if (!nearest || finding.share_of_tolerance() >
+                               Found{findings, findings.rows[*nearest]}.share_of_tolerance())
+        nearest = i;
+    }
+    if (nearest) rows.push_back(row_of(truth, {findings, findings.rows[*nearest]}));
+    for (Json& row : apart) rows.push_back(std::move(row));
+  }
+  truths.shown = {
+      {"truths", all.rows.size()}, {"findings", findings.rows.size()}, {"verdicts", verdicts}};
+  add_if(truths.shown, "rows", std::move(rows));
+  for (const auto& row : assertions.rows) {
+    const Found one{assertions, row};
+    truths.assertions[one.text("assertion")] = {one.text("verdict"), one.text("figure")};
+  }
+  return truths;
+}
+
 }  // namespace
 
 Json stored_requirements(const std::filesystem::path& results, std::string_view program) {
   Json rows;
   for (const auto& file : files_below(results / "require", "found.json"))
-    if (auto row = read_found(file, "taut-require-1", program, [](const JsonReader& root) {
-          const auto text = [&](const char* key) { return root.at("summary").at(key).text(); };
-          const std::string chaotic = text("chaotic");
+    if (auto row = read_found(file, program, [](const Answer& answer) {
+          const auto text = [&](const char* fact) { return answer.fact(fact).text(); };
+          const double left = answer.fact("time_left").number();
           return Json::array({text("scene"), solver_title(solver_name(text("solver"))),
-                              chaotic.empty() ? "no" : chaotic, text("answers"), text("drop"),
-                              text("keep"), text("time")});
+                              text("chaotic"), text("kept"), text("can_go"), text("required"),
+                              std::isnan(left) ? "-" : number_text(left, kShare, 2)});
         }))
       rows.push_back(std::move(*row));
   return rows;
@@ -100,51 +150,28 @@ std::vector<ParameterFrontier> stored_frontiers(const std::filesystem::path& res
                                                 std::string_view program) {
   std::vector<ParameterFrontier> all;
   for (const auto& file : files_below(results / kFrontiersFolder, ".json"))
-    if (const auto found = read_frontiers(file, program))
+    if (const auto found = read_found(file, program, frontiers_of))
       all.insert(all.end(), found->begin(), found->end());
   return all;
 }
 
 std::optional<Truths> stored_truths(const std::filesystem::path& results,
                                     std::string_view program) {
-  return read_found(results / "verify.json", "taut-truths-2", program, [](const JsonReader& root) {
-    Truths truths;
-    int count = 0;
-    std::map<std::string, int> verdicts;
-    Json rows;
-    for (const JsonReader& truth : root.at("truths").items()) {
-      std::optional<JsonReader> nearest;
-      Json apart;
-      for (const JsonReader& finding : truth.at("findings").items()) {
-        const std::string verdict = finding.at("verdict").text();
-        ++count, ++verdicts[verdict];
-        if (verdict != "passed")
-          apart.push_back(row_of(truth, finding));
-        else if (!nearest || share_of_tolerance(finding) > share_of_tolerance(*nearest))
-          nearest = finding;
-      }
-      if (nearest) rows.push_back(row_of(truth, *nearest));
-      for (Json& row : apart) rows.push_back(std::move(row));
-    }
-    truths.shown = {
-        {"truths", root.at("truths").items().size()}, {"findings", count}, {"verdicts", verdicts}};
-    add_if(truths.shown, "rows", std::move(rows));
-    for (const JsonReader& one : root.at("assertions").items())
-      truths.assertions[one.at("assertion").text()] = {one.at("verdict").text(),
-                                                       one.at("figure").text()};
-    return truths;
-  });
+  return read_found(results / "verify.json", program, truths_of);
 }
 
 std::optional<Json> stored_regressions(const std::filesystem::path& results,
                                        std::string_view program) {
-  return read_found(results / "check.json", "taut-check-1", program, [](const JsonReader& root) {
-    Json regressions{{"cases", root.at("cases").integer()},
-                     {"values", root.at("values").integer()}};
-    for (const JsonReader& f : root.at("findings").items())
-      regressions["rows"].push_back({{"study", f.at("study").text()},
-                                     {"case", f.at("case").text()},
-                                     {"change", f.at("change").text()}});
+  return read_found(results / "check.json", program, [](const Answer& answer) {
+    const Table& findings = answer.table("findings");
+    Json regressions{{"cases", count(answer, "cases")}, {"values", count(answer, "values")}};
+    for (const auto& row : findings.rows) {
+      const Found one{findings, row};
+      if (one.text("kind") == to_string(Change::Kind::value_new)) continue;  // for information
+      regressions["rows"].push_back({{"study", one.text("study")},
+                                     {"case", one.text("case")},
+                                     {"change", one.text("change")}});
+    }
     return regressions;
   });
 }

@@ -16,20 +16,44 @@ bool same(const Unit& unit, const Unit& other) {
   return unit.si == other.si && unit.shown == other.shown;
 }
 
-/// What 100 % is of.
-double whole(const KeptAnswer& answer, const Observation& full) {
+/// What 100 % is of; NaN: of the full model's value.
+double whole(const KeptAnswer& answer, const Scene& scene) {
   const Unit unit = unit_of(answer);
-  if (unit.si == "m") return extent(*full.one.scene);
-  if (unit.si == "s") return full.one.scene->duration();
-  if (unit.shown == "%") return 1;
-  return std::abs(value_of(answer, full));
+  return unit.si == "m"      ? extent(scene)
+         : unit.si == "s"    ? scene.duration()
+         : unit.shown == "%" ? 1
+                             : std::nan("");
 }
+double whole(const KeptAnswer& answer, const Observation& full) {
+  const double of_scene = whole(answer, *full.one.scene);
+  return std::isnan(of_scene) ? std::abs(value_of(answer, full)) : of_scene;
+}
+
+bool is_count(const Unit& unit) { return same(unit, kCount) && !unit.logarithmic; }
 
 double default_tolerance(const KeptAnswer& answer, const Observation& full) {
   const Unit unit = unit_of(answer);
-  if (same(unit, kCount) && !unit.logarithmic) return 0;
+  if (is_count(unit)) return 0;
   const double share = answer.is_shape() || unit.shown == "%" ? 0.01 : unit.si == "m" ? 0.001 : 0.1;
   return share * whole(answer, full);
+}
+
+/// The number after the colon of `asked`, in SI; `hundred`: what 100 % is of.
+double tolerance_of(const std::string& asked, const Unit& known, double hundred) {
+  const std::string text = asked.substr(asked.find(':') + 1);
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const std::string unit(end);
+  const bool shown = unit == known.shown && unit != "%";
+  const bool share = unit == "%" && !std::isnan(hundred);
+  if (end == text.c_str() || !std::isfinite(number) || number < 0 ||
+      !(unit.empty() || share || shown))
+    throw InputError("--keep " + asked + ": expected a number of at least 0 after ':' and then " +
+                     (known.shown.empty() || known.shown == "%"
+                          ? std::string()
+                          : "'" + std::string(known.shown) + "', ") +
+                     "'%' or nothing");
+  return share ? number / 100 * hundred : shown && !unit.empty() ? number / known.scale : number;
 }
 
 /// The scene's place of a vertex of a grid in another grid of the same sheet, bilinearly.
@@ -96,9 +120,7 @@ Unit unit_of(const KeptAnswer& answer) {
 
 std::string text(const KeptAnswer& answer, double value) {
   if (!std::isfinite(value)) return "-";
-  const Unit unit = unit_of(answer);
-  return number_text(unit.scale * value) +
-         (unit.shown.empty() ? "" : " " + std::string(unit.shown));
+  return number_text(value, unit_of(answer));
 }
 
 std::string name_of_answer(const std::string& asked) {
@@ -120,23 +142,32 @@ KeptAnswer parse_answer(const std::string& asked, const Observation& full) {
     answer.tolerance = default_tolerance(answer, full);
     return answer;
   }
-  const std::string text = asked.substr(colon + 1);
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  const std::string unit(end);
-  const Unit known = unit_of(answer);
-  const bool shown = unit == known.shown && unit != "%";
-  if (end == text.c_str() || !std::isfinite(number) || number < 0 ||
-      !(unit.empty() || unit == "%" || shown))
-    throw InputError("--keep " + asked + ": expected a number of at least 0 after ':' and then " +
-                     (known.shown.empty() || known.shown == "%"
-                          ? std::string()
-                          : "'" + std::string(known.shown) + "', ") +
-                     "'%' or nothing");
-  answer.tolerance = unit == "%"              ? number / 100 * whole(answer, full)
-                     : shown && !unit.empty() ? number / known.scale
-                                              : number;
+  answer.tolerance = tolerance_of(asked, unit_of(answer), whole(answer, full));
   return answer;
+}
+
+KeptAnswer parse_limit(const std::string& asked, const Scene& scene) {
+  KeptAnswer limit{name_of_answer(asked), 0};
+  const MetricEntry* metric = find_value(limit.name).first;
+  if (!metric) throw InputError("--keep " + asked + ": is no metric value (taut list metrics)");
+  if (asked.find(':') == std::string::npos)
+    throw InputError("--keep " + asked + ": expected a limit after ':', as in " + asked + ":1%");
+  if (!metric->make(scene)) throw InputError("--keep " + asked + ": has no value on this scene");
+  limit.tolerance = tolerance_of(asked, unit_of(limit), whole(limit, scene));
+  return limit;
+}
+
+std::vector<KeptAnswer> default_limits(const Scene& scene) {
+  std::vector<KeptAnswer> all;
+  for (const MetricEntry* metric : metrics()) {
+    if (!metric->make(scene)) continue;
+    for (const ValueSpec& value : metric->values) {
+      const bool depth = value.kept && value.role == Role::vertex_depth;
+      if (depth || value.role == Role::passages || (value.kept && is_count(value.unit)))
+        all.push_back({std::string(value.name), depth ? 0.001 * extent(scene) : 0});
+    }
+  }
+  return all;
 }
 
 std::vector<std::string> default_answers(const Observation& full) {

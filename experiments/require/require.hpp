@@ -123,6 +123,14 @@ KeptAnswer parse_answer(const std::string&, const Observation& full);
 /// The METRIC alone. Throws InputError: unknown name.
 std::string name_of_answer(const std::string& asked);
 
+/// "METRIC:LIMIT", the largest size of a value that is accepted of a scene: in SI units, in the
+/// unit shown, or in "%" of the cloth's extent and of the duration; of shares, points. Throws
+/// InputError.
+KeptAnswer parse_limit(const std::string&, const Scene&);
+/// What is accepted unless something is asked for: no passage and no crossing, depths below 0.1 %
+/// of the cloth's extent; as far as the scene has them.
+std::vector<KeptAnswer> default_limits(const Scene&);
+
 /// What is kept unless something is asked for: shape, largest stretch, depth of vertices (and of
 /// faces, if the solver keeps them out), crossings, settling time; as far as the case has them.
 std::vector<std::string> default_answers(const Observation& full);

@@ -53,6 +53,10 @@ class JsonReader {
   std::vector<JsonReader> items(std::size_t count) const;
   std::vector<std::pair<std::string, JsonReader>> members() const;  ///< of an object
 
+  bool is_null() const { return json_->is_null(); }
+  bool is_text() const { return json_->is_string(); }
+  bool is_flag() const { return json_->is_boolean(); }
+  bool is_array() const { return json_->is_array(); }
   std::string text() const;
   bool flag() const;
   double number() const;          ///< finite

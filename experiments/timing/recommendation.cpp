@@ -5,6 +5,8 @@
 #include <numeric>
 #include <set>
 
+#include "experiments/answer/answer.hpp"
+
 namespace taut {
 
 namespace {
@@ -22,11 +24,12 @@ std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates, const
 
 std::string line(const BenchedCase& c, const std::string& metric) {
   return parse_solver(c.record.spec.solver).brief() + ", " + metric + " " +
-         number_text(c.record.value(metric)) + ", " + interval_text(c.cost(), 1e-3) +
-         " ms CPU per simulated s";
+         number_text(c.record.value(metric), unit_of_value(metric)) + ", " +
+         text(c.cost(), Column("cost", "", kFrameCost));
 }
 
-/// What the certainty speaks of: the lead over the runner-up, or whether the budget holds.
+}  // namespace
+
 std::string verdict(const Recommendation& recommendation, const SceneBench& bench) {
   const std::string sure = recommendation.certainty == Certainty::clear ? "clearly " : "likely ";
   if (recommendation.target.budget) return sure + "within the budget";
@@ -43,7 +46,6 @@ std::string verdict(const Recommendation& recommendation, const SceneBench& benc
   return sure + "cheaper than " + rest;
 }
 
-/// What a solver that did not reach the target came nearest to.
 std::string nearest(const SolverRecommendation& solver, const SceneBench& bench,
                     const Recommendation& recommendation, const std::string& metric) {
   constexpr double kAny = std::numeric_limits<double>::max();
@@ -54,8 +56,6 @@ std::string nearest(const SolverRecommendation& solver, const SceneBench& bench,
                                  : "not by the settings tried";
   return missed + (at ? "; nearest: " + line(bench.cases[*at], metric) : "; every case failed");
 }
-
-}  // namespace
 
 std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Target& target,
                                    std::size_t most) {
@@ -107,9 +107,8 @@ Interval cost_expected_again(const SceneBench& bench, std::size_t at) {
 }
 
 std::string text(const Target& target, const std::string& metric) {
-  if (target.error) return metric + " <= " + number_text(*target.error);
-  return "least " + metric + " within " + number_text(1e3 * kFrame * *target.budget) +
-         " ms per frame of 1/60 s";
+  if (target.error) return metric + " <= " + number_text(*target.error, unit_of_value(metric));
+  return "least " + metric + " within " + number_text(*target.budget, kFrameCost) + " of 1/60 s";
 }
 
 std::string text(const Recommendation& recommendation, const SceneBench& bench,

@@ -34,12 +34,19 @@ Recommendation recommend(const SceneBench&, const Target&, const std::string& me
 /// interval, wider by how far identical code strayed from itself in this one.
 Interval cost_expected_again(const SceneBench&, std::size_t at);
 
-/// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms per frame of 1/60 s".
+/// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms a frame of 1/60 s".
 std::string text(const Target&, const std::string& metric);
 
+/// How sure of what: "clearly within the budget", "likely cheaper than bullet", "costs the same as
+/// bullet within 5 %". Precondition: there is a best.
+std::string verdict(const Recommendation&, const SceneBench&);
+
+/// What a solver that did not reach the target came nearest to, and whether it could not.
+std::string nearest(const SolverRecommendation&, const SceneBench&, const Recommendation&,
+                    const std::string& metric);
+
 /// The recommendation in lines, the first without indentation: who, for what error and cost, and
-/// how sure of what ("clearly within the budget", "likely cheaper than bullet", "costs the same as
-/// bullet within 5 %"); then a line for every other solver.
+/// how sure; then a line for every other solver.
 std::string text(const Recommendation&, const SceneBench&, const std::string& metric);
 
 /// Whom to time: the best by quick cost of every solver that meets the target, at most `most`, then

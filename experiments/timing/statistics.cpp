@@ -6,8 +6,6 @@
 #include <limits>
 #include <random>
 
-#include "experiments/system/text.hpp"
-
 namespace taut {
 
 namespace {
@@ -21,15 +19,6 @@ double median_of(std::vector<double>& values) {
 }
 
 }  // namespace
-
-std::string number_text(double value, int digits) {
-  return std::isnan(value) ? "-" : formatted("%.*g", digits, value);
-}
-
-std::string interval_text(const Interval& i, double unit) {
-  return number_text(i.mid / unit) + " (" + number_text(i.low / unit) + " to " +
-         number_text(i.high / unit) + ")";
-}
 
 double median(std::span<const double> samples) {
   std::vector<double> values(samples.begin(), samples.end());

@@ -6,25 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/reference/fit.hpp"
+#include "experiments/answer/number.hpp"
+
 namespace taut {
-
-/// An estimate with its confidence interval.
-struct Interval {
-  double low = 0;
-  double mid = 0;
-  double high = 0;
-  bool contains(double value) const { return low <= value && value <= high; }
-  Interval operator*(double factor) const { return {low * factor, mid * factor, high * factor}; }
-};
-/// [low, mid, high]: found by the JSON library, wherever an interval becomes JSON.
-template <class Json>
-void to_json(Json& json, const Interval& i) {
-  json = {i.low, i.mid, i.high};
-}
-
-/// A number with so many significant digits ("-": NaN), and "2.3 (2.1 to 2.5)" in a unit.
-std::string number_text(double value, int digits = 3);
-std::string interval_text(const Interval&, double unit = 1);
 
 double median(std::span<const double>);  ///< NaN if empty
 
@@ -39,6 +24,11 @@ Interval bootstrap_median(std::span<const double> samples, double confidence = 0
 /// the interval is over blocks.
 Interval interleaved_ratio(std::span<const double> a, std::span<const double> b,
                            double confidence = 0.95, std::uint64_t seed = 1);
+
+/// The exponent of a fit, two standard errors to either side.
+inline Interval interval_of_exponent(const PowerLaw& law) {
+  return {law.exponent - 2 * law.error, law.exponent, law.exponent + 2 * law.error};
+}
 
 /// Relative differences below this are none.
 inline constexpr double kTolerance = 0.05;

@@ -43,6 +43,8 @@ inline constexpr int kMostSubsteps = 1024, kMostSweeps = 128;
 inline constexpr const char* kErrorMetric = "stretch.rms";
 inline constexpr double kErrorLevels[] = {0.1, 0.01, 0.001, 0.0001};
 inline constexpr double kFrame = 1.0 / 60;  ///< s; budgets are CPU time within it
+/// Of CPU seconds per simulated second, as people are told: of a frame.
+inline constexpr Unit kFrameCost{"s/s", "ms a frame", 1e3 * kFrame};
 inline constexpr double kFrameBudgets[] = {0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3};  ///< s per frame
 
 /// A case whose physics and whose cost were both measured.

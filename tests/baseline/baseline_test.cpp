@@ -61,7 +61,7 @@ TEST(Baseline, TheSameRunHasNothingToReport) {
 TEST(Baseline, AMovedValueSaysFromWhatToWhat) {
   const Comparison c = after([](Baseline& now) { now[0].values["stretch.max"] = 0.6; });
   ASSERT_EQ(kinds(c), std::vector{Kind::value_moved});
-  EXPECT_EQ(c.findings[0].text, "stretch.max 0.5 -> 0.6 (by 0.1, allowed 5e-07)");
+  EXPECT_EQ(c.findings[0].text, "stretch.max 0.5 -> 0.6 (by 0.1, allowed 5e-7)");
   EXPECT_EQ(c.findings[0].id, "ball jakobsen:iterations=3");
   EXPECT_TRUE(c.regressed());
 }
@@ -150,7 +150,7 @@ TEST(Baseline, JUnitHasATestCaseForEveryRowAndEveryLoss) {
   EXPECT_EQ(junit("small <study>", now, compare(before, now, {})),
             "<testsuite name=\"small &lt;study&gt;\" tests=\"3\" failures=\"2\">\n"
             "  <testcase classname=\"small &lt;study&gt;\" name=\"ball jakobsen:iterations=3\">"
-            "<failure>stretch.max 0.5 -&gt; 1 (by 0.5, allowed 5e-07)\n</failure></testcase>\n"
+            "<failure>stretch.max 0.5 -&gt; 1 (by 0.5, allowed 5e-7)\n</failure></testcase>\n"
             "  <testcase classname=\"small &lt;study&gt;\" name=\"box bullet:iterations=3\">"
             "<failure>missing: the study does not have this case of the baseline\n</failure>"
             "</testcase>\n"

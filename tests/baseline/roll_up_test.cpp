@@ -1,85 +1,78 @@
-// What moved, by scene and value.
+// What moved, by solver and value.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <tuple>
-#include <utility>
+#include <vector>
 
 #include "experiments/baseline/baseline.hpp"
 
 namespace taut::roll_up_test {
 namespace {
 
-Change moved(const char* scene, const char* value, double before, double now) {
+Change moved(const char* solver, const char* value, double before, double now) {
   Change c;
-  c.id = scene, c.scene = scene, c.value = value, c.before = before, c.now = now;
+  c.id = c.solver = solver, c.scene = "hang", c.value = value, c.before = before, c.now = now;
   return c;
 }
 
-TEST(RollUp, TheLargestChangeOfEveryValueIsNamedAndTheLargestIsFirst) {
+/// Values that begin alike are one group.
+std::vector<MovedValue> rolled(const Comparison& comparison) {
+  return roll_up(comparison,
+                 [](const std::string& value) { return value.substr(0, value.find('.')); });
+}
+
+TEST(RollUp, CountsAndNamesTheLargestChangeOfASolversValues) {
   Comparison comparison;
-  comparison.findings = {moved("hang", "stretch.rms", 0.01, 0.0101),
-                         moved("hang", "stretch.rms", 0.01, 0.0098),
-                         moved("ball", "penetration.max", 0.001, 0.002)};
+  comparison.findings = {
+      moved("xpbd", "stretch.rms", 0.01, 0.0101), moved("xpbd", "stretch.max", 0.01, 0.0098),
+      moved("bullet", "stretch.rms", -0.5, -0.25), moved("xpbd", "penetration.max", 0.001, 0.002)};
   for (int i = 0; i < 2; ++i)
     comparison.findings.push_back(
-        {Change::Kind::status_changed, "hang", "", "status ok -> crash", "hang", "status"});
+        {Change::Kind::status_changed, "hang", "xpbd", "status ok -> crash", "hang", "status"});
   comparison.findings.push_back({Change::Kind::case_new, "new", "", "is new"});
-  const auto all = roll_up(comparison);
-  ASSERT_EQ(all.size(), 3u);
-  EXPECT_EQ(all[0].value, "status") << "a failure is no smaller than any change of a value";
-  EXPECT_EQ(all[0].cases, 2u);
-  EXPECT_EQ(text(all[0], ""), "status ok -> crash");
-  EXPECT_EQ(all[1].value, "penetration.max");
-  EXPECT_EQ(text(all[1], "m"), "+100 % (0.001 -> 0.002 m)");
-  EXPECT_EQ(all[2].cases, 2u);
-  EXPECT_EQ(std::pair(all[2].less, all[2].more), std::pair(std::size_t{1}, std::size_t{1}));
-  EXPECT_EQ(text(all[2], "1"), "-2 % (0.01 -> 0.0098)");
+  const auto all = rolled(comparison);
+  ASSERT_EQ(all.size(), 4u);
+  const auto& [solver, group, cases, less, more, largest] = all[0];
+  EXPECT_EQ((std::tuple(solver, group, cases, less, more)),
+            (std::tuple(std::string("xpbd"), std::string("stretch"), std::size_t{2}, std::size_t{1},
+                        std::size_t{1})));
+  EXPECT_EQ(largest, &comparison.findings[1]);
+  EXPECT_NEAR(all[0].relative(), -0.02, 1e-12);
+  EXPECT_DOUBLE_EQ(all[1].relative(), 0.5) << "a share of the size of what was";
+  EXPECT_DOUBLE_EQ(all[2].relative(), 1);
+  EXPECT_EQ(all[3].group, "status");
+  EXPECT_EQ(all[3].cases, 2u);
 }
 
 TEST(RollUp, FromNothingIsWorseThanAnyPerCent) {
   Comparison comparison;
-  comparison.findings = {moved("hang", "a", 1, 5), moved("hang", "b", 0, 1e-9),
-                         moved("hang", "c", 1, std::numeric_limits<double>::quiet_NaN())};
-  const auto all = roll_up(comparison);
-  EXPECT_EQ(all[0].value, "b");
-  EXPECT_EQ(all[1].value, "c");
-  EXPECT_EQ(text(all[1], "1"), "1 -> nan");
-  EXPECT_EQ(all[2].value, "a");
-}
-
-TEST(RollUp, ChangesAreSharesOfTheSizeOfWhatWasWhateverTheirSign) {
-  Comparison comparison;
-  comparison.findings = {moved("hang", "a", -0.5, -0.25), moved("hang", "b", 2, -4),
-                         moved("hang", "c", 2, 4),        moved("ball", "c", 2, 1.5),
-                         moved("hang", "c", 2, -3),       moved("hang", "c", 2, 2)};
-  const auto all = roll_up(comparison);
-  ASSERT_EQ(all.size(), 4u);
-  std::string order;
-  for (const MovedValue& one : all) order += one.scene + " " + one.value + ", ";
-  EXPECT_EQ(order, "hang b, hang c, hang a, ball c, ");
-  EXPECT_EQ(text(all[0], "J"), "-300 % (2 -> -4 J)");
-  EXPECT_EQ(text(all[1], ""), "-250 % (2 -> -3)");
-  EXPECT_EQ(text(all[2], "1"), "+50 % (-0.5 -> -0.25)");
-  EXPECT_EQ(text(all[3], "m"), "-25 % (2 -> 1.5 m)");
-  EXPECT_EQ((std::tuple{all[1].cases, all[1].less, all[1].more}),
-            (std::tuple{std::size_t{3}, std::size_t{1}, std::size_t{1}}));
+  comparison.findings = {moved("xpbd", "a", 1, 5), moved("xpbd", "a", 0, 1e-9),
+                         moved("xpbd", "b", 1, std::numeric_limits<double>::quiet_NaN()),
+                         moved("xpbd", "b", 1, -900)};
+  const auto all = rolled(comparison);
+  EXPECT_EQ(all[0].largest, &comparison.findings[1]);
+  EXPECT_EQ(all[1].largest, &comparison.findings[2]);
+  EXPECT_TRUE(std::isinf(all[1].relative()));
 }
 
 TEST(RollUp, OnlyAnotherAnswerIsCounted) {
   Comparison comparison;
   for (const auto kind : {Change::Kind::value_moved, Change::Kind::status_changed,
                           Change::Kind::case_missing, Change::Kind::value_new}) {
-    Change one = moved("hang", "a", 0, 0);
+    Change one = moved("xpbd", "a", 0, 0);
     one.kind = kind;
     comparison.findings.push_back(one);
   }
-  ASSERT_EQ(roll_up(comparison).size(), 1u);
-  EXPECT_EQ(roll_up(comparison)[0].cases, 2u);
+  ASSERT_EQ(rolled(comparison).size(), 1u);
+  EXPECT_EQ(rolled(comparison)[0].cases, 2u);
   std::string said;
   for (const Change& one : comparison.findings)
     said += one.is_regression() ? 'r' : one.is_mismatch() ? 'm' : '-';
   EXPECT_EQ(said, "rrm-");
+  EXPECT_EQ(to_string(Change::Kind::value_moved), "value moved");
+  EXPECT_EQ(to_string(Change::Kind::value_new), "value new");
 }
 
 TEST(JUnit, TextsAreNoMarkupAndOnlyFailuresFail) {

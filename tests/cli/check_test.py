@@ -6,7 +6,7 @@ import re
 import shlex
 import xml.etree.ElementTree
 
-from command_line import SCENE, CommandLine, main
+from command_line import SCENE, CommandLine, main, rows_of
 
 
 class Check(CommandLine):
@@ -40,7 +40,7 @@ class Check(CommandLine):
     def test_the_same_run_passes_and_an_update_then_writes_nothing(self):
         self.update()
         for _ in range(2):
-            self.assertIn("study: 4 cases and", self.check(0))
+            self.assertRegex(self.check(0), r"study +passed +4 +\d+ +0 +0")
         before = self.files()
         self.assertIn("nothing was written", self.update().out)
         self.assertEqual(self.files(), before)
@@ -60,14 +60,16 @@ class Check(CommandLine):
             rows[0]["values"]["stretch.max"] *= 1.5
             return rows
         self.edit("jakobsen", plant)
-        out = self.check(1, "--junit", "check.xml")
-        self.assertRegex(out, r"study: small \S+: stretch.max \S+ -> \S+ \(by \S+, allowed \S+\)")
-        self.assertRegex(out, r"\./small\.toml +stretch\.max +1 case, +largest change -33.3 % \(\S+ -> \S+\); better in 1")
-        self.assertLess(out.index("largest change -33.3 %"), out.index("allowed"), "first all in all, then one by one")
-        said = json.loads(self.check(1, "--json"))["studies"][0]["moved"]
-        self.assertEqual([(m["value"], m["cases"]) for m in said], [("stretch.max", 1)])
-        command = next(line.strip() for line in out.splitlines() if line.strip().startswith("taut case"))
-        self.taut(*shlex.split(command)[1:])
+        out = self.check(1, "--junit", "check.xml", "--all")
+        self.assertRegex(out, r"value moved +small \S+ +stretch.max \S+ -> \S+ \(by \S+, allowed \S+\) +taut case")
+        self.assertRegex(out, r"jakobsen +other values +1 +1 +0 +\./small\.toml stretch\.max, \S+ -> \S+ % +-33.3")
+        self.assertLess(out.index("allowed"), out.index("-33.3"), "all in all last, where it is read")
+        said = json.loads(self.check(1, "--json"))
+        self.assertEqual([(m["value"], m["cases"], m["less"]) for m in rows_of(said, "moved")], [("other values", 1, 1)])
+        change, = rows_of(said, "findings")
+        self.assertEqual(change["value"], "stretch.max")
+        self.assertAlmostEqual(change["before"] / change["now"], 1.5, 6)
+        self.taut(*shlex.split(change["command"])[1:])
         suites = xml.etree.ElementTree.parse(self.folder / "check.xml").getroot()
         self.assertEqual([suites[0].get("tests"), suites[0].get("failures")], ["4", "1"])
         self.taut("baseline", "diff", "./study.toml", expect=1)
@@ -87,20 +89,34 @@ class Check(CommandLine):
             return plant
         self.edit("jakobsen", scale(2, 1.25))  # now it is less: better
         self.edit("bullet", scale(0.25, 1))    # and here four times as much
-        out = self.check(1).split("allowed")[0]
-        row = r"\./small\.toml +%s +3 cases, +largest change \+300 %% \((\S+) -> (\S+)( \S+)?\)%s\n"
-        self.assertRegex(out, row % ("stretch.rms", "; better in 2, worse in 1"))
-        self.assertRegex(out, row % ("energy.kinetic", ""))
-        before, now = map(float, re.search(row % ("stretch.rms", ".*"), out).groups()[:2])
+        out = self.check(1)
+        self.assertLessEqual(len(out.splitlines()), 25)
+        row = r"%s +%s +2 +%d +%d +\./small\.toml, (\S+) -> (\S+) %% +%s +%s\n"
+        self.assertRegex(out, row % ("jakobsen", "RMS stretch", 2, 0, r"\S+", "less is better"))
+        before, now = map(float, re.search((row % ("bullet", "RMS stretch", 0, 1, "300", "less is better")).replace(" +2 ", " +1 "), out).groups())
         self.assertAlmostEqual(now / before, 4, delta=0.05)
-        self.assertIn("6 moved", out)
+        self.assertRegex(out, r"other values +2 +2 +0 .*energy\.kinetic")
+        self.assertRegex(out, r"study +moved +4 +\d+ +6 ")
+        self.assertIn('taut baseline update ./study.toml --why "..."', out)
         self.edit("bullet", lambda rows: rows[:1] + [rows[1] | {"status": "exploded (energy)"}])
         out = self.check(1)
-        self.assertLess(out.index("exploded (energy) -> ok"), out.index("stretch.rms"), "no change of a value is worse than a status")
-        moved = {m["value"]: m for m in json.loads(self.check(1, "--json"))["studies"][0]["moved"]}
-        said = {"cases": 3, "less": 2, "more": 1, "scene": "./small.toml"}
-        self.assertEqual(moved["stretch.rms"] | said | {"less_is_better": True, "unit": "1"}, moved["stretch.rms"])
-        self.assertEqual(moved["energy.kinetic"] | said | {"less_is_better": False}, moved["energy.kinetic"])
+        self.assertLess(out.index("exploded (energy) -> ok"), out.index("RMS stretch"), "no change of a value is worse than a status")
+        moved = {(m["solver"], m["value"]): m for m in rows_of(json.loads(self.check(1, "--json")), "moved")}
+        self.assertEqual({key: (m["cases"], m["less"], m["more"]) for key, m in moved.items()},
+                         {("bullet", "status"): (1, None, None), ("bullet", "RMS stretch"): (1, 0, 1), ("bullet", "other values"): (1, 0, 1),
+                          ("jakobsen", "RMS stretch"): (2, 2, 0), ("jakobsen", "other values"): (2, 2, 0)})
+
+    def test_a_hundred_changes_are_told_in_twenty_five_lines(self):
+        self.study(solvers=["jakobsen", "bullet", "xpbd", "mass-spring"], rest="[axes]\niterations = [1, 2, 3, 4]\n"
+                   "'cloth.grid' = [[3, 3], [4, 4], [5, 5]]\n")
+        self.update()
+        for solver in ("jakobsen", "bullet", "xpbd", "mass-spring"):
+            if (self.baseline / f"{solver}.jsonl").exists():
+                self.edit(solver, lambda rows: [row | {"values": {k: v and 2 * v for k, v in row["values"].items()}} for row in rows[1:]])
+        out = self.check(1)
+        self.assertLessEqual(len(out.splitlines()), 25, out)
+        self.assertRegex(out, r"jakobsen +case new +1 ")
+        self.assertGreater(len(self.check(1, "--all").splitlines()), 100)
 
     def test_a_change_of_status_is_a_regression(self):
         self.update()
@@ -118,7 +134,7 @@ class Check(CommandLine):
         self.study(solvers=["jakobsen", "bullet"], rest="[axes]\niterations = [1]\n")
         self.assertIn("missing: the study does not have this case", self.check(4))
         self.study(solvers=["jakobsen"], rest="[axes]\niterations = [1, 4]\n")
-        self.assertIn("solver bullet: the baseline has this solver", self.check(4))
+        self.assertRegex(self.check(4), r"bullet +solver missing +1 +solver bullet +the baseline has this solver")
         self.update("one solver less")
         self.assertFalse((self.baseline / "bullet.jsonl").exists())
         (self.folder / "small.toml").write_text(SCENE.replace("mass = 0.1", "mass = 0.2"))
@@ -141,16 +157,15 @@ tolerance = 0.1
 
     def test_a_frontier_that_moves_is_a_regression_though_every_case_passes(self):
         self.with_frontier()
-        self.assertIn("study: 5 cases and", self.check(0))
+        self.assertRegex(self.check(0), r"study +passed +5 ")
 
         def plant(rows):
             rows[0]["values"]["frontier.unstable"] *= 1.2
             return rows
         self.edit("mass-spring", plant)
-        out = self.check(1)
-        self.assertRegex(out, r"frontier of dt: frontier.unstable \S+ -> ")
-        command = next(line.strip() for line in out.splitlines() if line.strip().startswith("taut frontier"))
-        self.assertIn("unstable from", self.taut(*shlex.split(command)[1:]).out)
+        change, = rows_of(json.loads(self.check(1, "--json")), "findings")
+        self.assertRegex(change["case"] + ": " + change["change"], r"frontier of dt: frontier.unstable \S+ -> ")
+        self.assertIn("unstable from", self.taut(*shlex.split(change["command"])[1:]).out)
         (self.baseline / "frontiers.toml").unlink()
         self.check(4)
         (self.baseline / "frontiers.toml").write_text(self.FRONTIER.replace("of =", "off ="))
@@ -194,7 +209,7 @@ tolerance = 0.1
 
         def taut(*words, expect=0):
             return self.taut(*words, program="taut-faulty", expect=expect)
-        said = taut("baseline", "update", "./study.toml", "--why", "the first one").out
+        said = taut("baseline", "update", "./study.toml", "--why", "the first one").err
         self.assertEqual(said.count("does not repeat bit for bit"), 1, said)
         rows = [json.loads(line) for line in (self.baseline / "faulty.jsonl").read_text().splitlines()]
         self.assertEqual(sorted(row.get("flaky", False) for row in rows), [False, True])

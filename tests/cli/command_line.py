@@ -25,6 +25,17 @@ duration = 0.5
 """
 
 
+def facts_of(answer):
+    """{name: value} of an answer that a verb printed with --json"""
+    return {name: fact["value"] for name, fact in answer["facts"].items()}
+
+
+def rows_of(answer, table):
+    """Its rows, each {name of the column: value}"""
+    names = [column["name"] for column in answer["tables"][table]["columns"]]
+    return [dict(zip(names, row, strict=True)) for row in answer["tables"][table]["rows"]]
+
+
 class CommandLine(unittest.TestCase):
     def setUp(self):
         scratch = tempfile.TemporaryDirectory()
@@ -42,6 +53,9 @@ class CommandLine(unittest.TestCase):
         if expect is not None:
             self.assertEqual(process.returncode, expect, f"{words}\n{process.out}\n{process.err}")
         return process
+
+    def answer(self, *words, **more):
+        return json.loads(self.taut(*words, "--json", **more).out)
 
     def study(self, name="study.toml", scenes=("./small.toml",), solvers=("jakobsen",), rest=""):
         file = self.folder / name

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 """What holds for every verb of the program, by its own list of them: --json, --quiet, colour, progress, manual, completion."""
 
+import csv
+import io
 import json
 import os
 import pathlib
 import pty
 import re
+import shlex
 import subprocess
 
 from command_line import BINARIES, CommandLine, main
@@ -33,7 +36,7 @@ ALSO_ASKED = [("new", ["scene", "bN"])]
 WITHOUT_RESULTS = {"cluster run", "external scene"}  # they fill a folder or write a file, and print nothing
 
 
-def documented_keys():
+def documented_names():
     """verb -> what its row of the README names, with the keys of a record where it speaks of one"""
     text = (pathlib.Path(__file__).resolve().parents[2] / "experiments/cli/README.md").read_text()
     table, record = text.split("## A record", 1)
@@ -46,14 +49,17 @@ def documented_keys():
     return rows
 
 
-def keys_of(value):
-    """Every key of a JSON value, but those of objects whose keys are data (names of metrics, of solvers)."""
+def names_of(value):
+    """Of an answer its facts and tables but those that have the name of a value or end in a number; of another JSON text every key,
+    but those of objects whose keys are data (names of metrics, of solvers)."""
+    if isinstance(value, dict) and value.get("schema") == "taut-answer-1":
+        return {re.sub(r"_\d+$", "", name) for name in [*value["facts"], *value["tables"]] if "." not in name}
     if isinstance(value, list):
-        return set().union(*map(keys_of, value))
+        return set().union(*map(names_of, value))
     if not isinstance(value, dict):
         return set()
     named = {"values", "params", "statuses", "resolved_settings", "moved", "accuracy_parameters"}
-    return set(value).union(*(keys_of(inner) for key, inner in value.items() if key not in named))
+    return set(value).union(*(names_of(inner) for key, inner in value.items() if key not in named))
 
 
 class EveryVerb(CommandLine):
@@ -75,9 +81,23 @@ class EveryVerb(CommandLine):
         self.taut("cluster", "run", "c0", "--shard", "1")
         self.taut("case", "./small.toml", "jakobsen", "--trajectory", "end.pc2")
 
+    def assert_other_forms_agree(self, words, printed):
+        """CSV has the first table's columns and rows, Markdown is headed by the command; where timings do not change the rows."""
+        self.assertEqual(printed["schema"], "taut-answer-1")
+        table = next(iter(printed["tables"].values()), None)
+        lines = list(csv.reader(io.StringIO(self.taut(*words, "--csv", expect=None).out)))
+        wanted = [column["name"] for column in table["columns"]] if table else ["name", "value", "unit"]
+        self.assertEqual([name for name in lines[0] if name in wanted], wanted)
+        if table and table["rows"] and words[0] not in ("advise", "require"):
+            self.assertEqual(len(lines), len(table["rows"]) + 1)
+        self.assertTrue(all(len(line) == len(lines[0]) for line in lines))
+        self.assertIn("facts", self.taut(*words, "--csv=nosuch", expect=2).err)
+        heading = self.taut(*words, "--markdown", expect=None).out.splitlines()[0]
+        self.assertEqual(heading, "`" + shlex.join(["taut", *words, "--markdown"]) + "`")
+
     def test_every_verb_that_prints_results_takes_json_and_quiet(self):
         self.prepare()
-        verbs, documented = self.verbs(), documented_keys()
+        verbs, documented = self.verbs(), documented_names()
         self.assertEqual(sorted(verbs), sorted(ASKED), "every verb is asked here")
         undocumented = {verb for verb in ASKED if verb not in documented and verb.split()[0] not in documented}
         self.assertEqual(undocumented - WITHOUT_RESULTS, {"report"}, "its model has a document of its own")
@@ -91,8 +111,10 @@ class EveryVerb(CommandLine):
                 if verb not in WITHOUT_RESULTS:
                     printed = json.loads(self.taut(*words, "--json").out)
                     names = documented.get(verb, documented.get(verb.split()[0]))
-                    if names is not None and verb not in ("export", "list"):  # their keys are a study's own
-                        self.assertEqual(keys_of(printed) - names, set(), "keys that the README does not name")
+                    if names is not None and verb != "export":  # its keys are a study's own
+                        self.assertEqual(names_of(printed) - names, set(), "names that the README does not have")
+                    if "--csv" in verbs[verb]:
+                        self.assert_other_forms_agree(words, printed)
                 words = [re.sub(f"(?<=[abc]){number}$", f"{number}q", word) for word in words]
                 quiet = self.taut(*words, "--quiet")
                 self.assertEqual((quiet.out, quiet.err), ("", ""))

@@ -275,6 +275,15 @@ def program(attempt):
     attempt.taut('external', 'probe', text, '--json')
 
 
+def listed_solvers(build):
+    """[{'name': 'bullet', 'params': [{'name': ..., 'default': ..., 'allowed': ...}]}]"""
+    tables = json.loads(subprocess.run([build / 'taut', 'list', 'solvers', '--json'], capture_output=True, check=True).stdout)['tables']
+
+    def rows(name):
+        return [dict(zip((column['name'] for column in tables[name]['columns']), row)) for row in tables[name]['rows']]
+    return [one | {'params': [p for p in rows('parameters') if p['solver'] == one['name']]} for one in rows('solvers')]
+
+
 KINDS = {each.__name__: each for each in (scene_made, scene_damaged, mesh, solver, study_made, study_damaged, arguments, record, bench, session,
                                           baseline, trajectory, program)}
 SOLVERS = []
@@ -292,7 +301,7 @@ def main():
     kind, _, number = options.only.partition(':')
     kinds = [kind] if kind else list(KINDS)
     scratch = pathlib.Path(tempfile.mkdtemp(prefix='taut-fuzz.'))
-    SOLVERS.extend(json.loads(subprocess.run([build / 'taut', 'list', 'solvers', '--json'], capture_output=True, check=True).stdout))
+    SOLVERS.extend(listed_solvers(build))
     print(f'seed {options.seed}', flush=True)
     end, findings, codes = time.monotonic() + options.seconds, 0, {each: {} for each in kinds}
     i = int(number) if number else 0

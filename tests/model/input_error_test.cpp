@@ -58,6 +58,10 @@ TEST(Suggestion, IsTheNearestNameWithinAFewSlips) {
   EXPECT_EQ(suggestion("hnag", {"hung", "hang", "hand"}), "; did you mean 'hang'?");
   EXPECT_EQ(suggestion("ab", {"ac", "ad"}), "; did you mean 'ac'?") << "the first of equals";
   EXPECT_EQ(suggestion("ab", {}), "");
+  EXPECT_EQ(suggestion("iters", {"omega", "iterations"}), "; did you mean 'iterations'?");
+  EXPECT_EQ(suggestion("prec", {"precision"}), "; did you mean 'precision'?");
+  EXPECT_FALSE(near("itxrs", "iterations"));
+  EXPECT_FALSE(near("ite", "iterations")) << "three letters and one that may be wrong";
 }
 
 TEST(Diagnostics, SayTheirPlaceAsFarAsItIsKnown) {

@@ -17,29 +17,49 @@
 namespace taut::report::findings_test {
 namespace {
 
-Json finding(const std::string& subject, double expected, double tolerance, double measured,
-             const std::string& verdict = "passed", const std::string& unit = "m") {
-  return {{"subject", subject},
-          {"unit", unit},
-          {"expected", expected},
-          {"tolerance", tolerance},
-          {"measured", measured},
-          {"verdict", verdict},
-          {"why", verdict == "passed" ? "" : "reasons >= pi"}};
+using Cells = std::vector<Cell>;
+
+Cells finding(const std::string& subject, double expected, double tolerance, double measured,
+              const std::string& verdict = "passed", const std::string& unit = "m") {
+  return {verdict,  "",       subject,   unit,
+          measured, expected, tolerance, verdict == "passed" ? "" : "reasons >= pi"};
 }
 
-Truths truths_of(const std::vector<std::vector<Json>>& findings) {
+Answer answer_by(const char* program) {
+  Answer answer{"made up"};
+  answer.add({"program"}, program);
+  return answer;
+}
+
+void put(const std::filesystem::path& file, const Answer& answer) {
+  make_folder(file.parent_path());
+  write_file(file, to_json(answer));
+}
+
+Truths truths_of(const std::vector<std::vector<Cells>>& findings) {
   const Scratch scratch;
-  Json all{{"schema", "taut-truths-2"},
-           {"program", "p"},
-           {"truths", Json::array()},
-           {"assertions", {{{"assertion", "c"}, {"verdict", "holds"}, {"figure", "f"}}}}};
-  for (const auto& of_truth : findings)
-    all["truths"].push_back({{"section_title", "S"},
-                             {"statement", "T^2"},
-                             {"source", "Q x 2"},
-                             {"findings", of_truth}});
-  write_file(scratch.path() / "verify.json", all.dump());
+  Answer all = answer_by("p");
+  all.add(Table{"truths", "", {{"name"}, {"section_title"}, {"statement"}, {"source"}}});
+  all.add(Table{"findings",
+                "",
+                {{"verdict"},
+                 {"truth"},
+                 {"subject"},
+                 {"unit"},
+                 {"measured"},
+                 {"expected"},
+                 {"tolerance"},
+                 {"why"}}});
+  all.add(Table{"assertions", "", {{"assertion"}, {"verdict"}, {"figure"}}, {{"c", "holds", "f"}}});
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    const std::string name = "truth" + std::to_string(i);
+    all.tables[0].rows.push_back({name, "S", "T^2", "Q x 2"});
+    for (Cells row : findings[i]) {
+      row[1] = name;
+      all.tables[1].rows.push_back(row);
+    }
+  }
+  put(scratch.path() / "verify.json", all);
   EXPECT_FALSE(stored_truths(scratch.path(), "another"));
   return *stored_truths(scratch.path(), "p");
 }
@@ -95,43 +115,42 @@ TEST(StoredTruths, WriteAsManyDigitsAsTheToleranceLetsMatter) {
 
 TEST(StoredFindings, AreThoseOfThisProgramAndNoneWithoutAFile) {
   const Scratch scratch;
-  const auto put = [&](const std::string& file, const Json& json) {
-    make_folder((scratch.path() / file).parent_path());
-    write_file(scratch.path() / file, json.dump());
-  };
   EXPECT_FALSE(stored_truths(scratch.path(), "p"));
   EXPECT_FALSE(stored_regressions(scratch.path(), "p"));
   EXPECT_TRUE(stored_requirements(scratch.path(), "p").empty());
   EXPECT_TRUE(stored_frontiers(scratch.path(), "p").empty());
-  put("check.json", {{"schema", "taut-check-1"},
-                     {"program", "p"},
-                     {"cases", 7},
-                     {"values", 90},
-                     {"findings", {{{"study", "s"}, {"case", "c"}, {"change", "a -> b"}}}}});
+  Answer check = answer_by("p");
+  check.add({"cases"}, 7);
+  check.add({"values"}, 90);
+  check.add(Table{"findings",
+                  "",
+                  {{"study"}, {"kind"}, {"case"}, {"change"}},
+                  {{"s", "value moved", "c", "a -> b"}, {"s", "value new", "c", "is new"}}});
+  put(scratch.path() / "check.json", check);
   const auto found = stored_regressions(scratch.path(), "p");
   ASSERT_TRUE(found);
   EXPECT_EQ(*found, (Json{{"cases", 7},
                           {"values", 90},
                           {"rows", {{{"study", "s"}, {"case", "c"}, {"change", "a -> b"}}}}}));
   EXPECT_FALSE(stored_regressions(scratch.path(), "q"));
-  for (const char* scene : {"b", "a"})
-    put(std::string("require/") + scene + "/found.json",
-        {{"schema", "taut-require-1"},
-         {"program", "p"},
-         {"summary",
-          {{"scene", scene},
-           {"solver", "xpbd:iterations=1"},
-           {"chaotic", *scene == 'a' ? "" : "late"},
-           {"answers", "all"},
-           {"drop", "wind"},
-           {"keep", "pins"},
-           {"time", "34 %"},
-           {"command", "taut run"}}}});
-  put("require/c/found.json", {{"schema", "taut-require-1"}, {"program", "q"}});
+  for (const char* scene : {"b", "a"}) {
+    Answer one = answer_by("p");
+    for (const auto& [name, text] : std::vector<std::pair<const char*, const char*>>{
+             {"scene", scene},
+             {"solver", "xpbd:iterations=1"},
+             {"chaotic", *scene == 'a' ? "no" : "late"},
+             {"kept", "all"},
+             {"can_go", "wind"},
+             {"required", "pins"}})
+      one.add({name}, text);
+    if (*scene == 'a') one.add({"time_left"}, Interval{0.3, 0.34, 0.4});
+    put(scratch.path() / "require" / scene / "found.json", one);
+  }
+  put(scratch.path() / "require/c/found.json", answer_by("q"));
   const auto required = stored_requirements(scratch.path(), "p");
   EXPECT_EQ(required, (Json{{"a", "XPBD", "no", "all", "wind", "pins", "34 %"},
-                            {"b", "XPBD", "late", "all", "wind", "pins", "34 %"}}));
-  put("check.json", {{"schema", "taut-check-2"}, {"program", "p"}});
+                            {"b", "XPBD", "late", "all", "wind", "pins", "-"}}));
+  put(scratch.path() / "check.json", answer_by("p"));  // without numbers
   EXPECT_THROW(stored_regressions(scratch.path(), "p"), InputError);
 }
 

@@ -18,25 +18,26 @@ core/reference           | core/(model|reference)/
 bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
 experiments/metrics      | core/model/(crossings|index|scene|triangle)\.hpp|experiments/metrics/
+experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
-experiments/external     | ((core/(model|io)|experiments/(system|case|external))/|taut_solver.hpp)
-experiments/study        | (core/(model|io|reference)|experiments/(system|case|study))/
-experiments/study/cluster | (core/(model|io)|experiments/(system|case|study/cluster))/|experiments/study/[a-z_]+.hpp
-experiments/study/frontier | (core/(model|io|reference)|experiments/(system|case|study/frontier))/|experiments/study/[a-z_]+.hpp
-experiments/timing       | (core/(model|reference)|experiments/(system|case|timing))/
-experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(system|timing))/
-experiments/baseline     | (core/(model|io)|experiments/(system|case|study|truths|baseline))/
-experiments/require      | (core/(model|io)|experiments/(system|metrics|case|study|timing|require))/
-experiments/truths       | (core/(model|reference)|experiments/(metrics|case|truths))/
+experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp)
+experiments/study        | (core/(model|io|reference)|experiments/(answer|system|case|study))/
+experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/study/[a-z_]+.hpp
+experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/study/[a-z_]+.hpp
+experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|timing))/
+experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
+experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|study|truths|baseline))/
+experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|study|timing|require))/
+experiments/truths       | (core/(model|reference)|experiments/(answer|metrics|case|truths))/
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
-experiments/render/picture | (core/model|experiments/(system|case|render/(image|opengl|picture)))/
+experiments/render/picture | (core/model|experiments/(answer|system|case|render/(image|opengl|picture)))/
 experiments/render/film  | (core/(model|io)|experiments/(system|case|study|render/(picture|film)|report))/
-experiments/report       | (core/model|experiments/(system|metrics|case|study|timing|baseline|truths|report))/
-experiments/report/chart | (core/model|experiments/(system|metrics|case|timing|report/chart))/|experiments/report/input
-experiments/report/claims | (core/model|experiments/(system|metrics|case|timing|report/(chart|claims)))/|experiments/report/input
-experiments/report/plot  | (core/model|experiments/(system|study/frontier|timing|report/(chart|plot)))/
-experiments/report/model | (core/model|experiments/(system|metrics|case|timing|baseline|truths|report/(chart|claims|model)))/|experiments/report/input
+experiments/report       | (core/model|experiments/(answer|system|metrics|case|study|timing|baseline|truths|report))/
+experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|report/chart))/|experiments/report/input
+experiments/report/claims | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|claims)))/|experiments/report/input
+experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|report/(chart|plot)))/
+experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|baseline|truths|report/(chart|claims|model)))/|experiments/report/input
 '
 # what is included | files that may include it
 owners='
@@ -111,6 +112,7 @@ self_test() {
 core/model/planted.cpp|"core/solver/layout/particles.hpp"
 core/solver/planted.hpp|"experiments/case/record.hpp"
 bullet_ref/planted.cpp|"core/solver/layout/particles.hpp"
+experiments/answer/planted.cpp|"experiments/case/record.hpp"
 experiments/metrics/planted.cpp|"core/model/solver.hpp"
 experiments/metrics/planted.cpp|"core/solver/layout/particles.hpp"
 experiments/case/planted.cpp|"bullet_ref/read_back.hpp"

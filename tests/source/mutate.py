@@ -49,7 +49,7 @@ EQUIVALENT = pathlib.Path(__file__).with_name("equivalent_mutants.txt")
 # Layers and their libraries; the tests of each are in the folder of tests/ with its last name.
 LAYERS = {"core/model": "taut_model", "core/io": "taut_io", "core/solver": "taut_solver", "core/reference": "taut_reference",
           "bullet_ref": "taut_bullet64", **{f"experiments/{name}": f"taut_{name}" for name in (
-              "system", "metrics", "case", "external", "study", "timing", "require", "baseline", "truths",
+              "system", "answer", "metrics", "case", "external", "study", "timing", "require", "baseline", "truths",
               "report", "render")}}
 LEFT_OUT = re.compile(r"/(gl|font|shaders)\.[ch]pp$")  # no numbers in them
 CHOSEN = """

@@ -72,6 +72,14 @@ std::vector<Kind> kinds(const fs::path& folder) {
   const auto manifest = [](const fs::path& file) {
     read_manifests(file.parent_path().parent_path().parent_path());
   };
+  Answer check{"check"};
+  check.add({"program"}, "p");
+  check.add({"cases"}, 3);
+  check.add({"values"}, 9);
+  check.add(Table{"findings",
+                  "",
+                  {{"study"}, {"kind"}, {"case"}, {"change"}},
+                  {{"s", "value moved", "c", "x"}}});
   return {
       {"case.json", to_json(stored_record(), 1),
        [](const fs::path& file) { record_from_json(read_text(file), file.string()); }},
@@ -79,9 +87,7 @@ std::vector<Kind> kinds(const fs::path& folder) {
       {"baseline/" + rows.filename().string(), read_text(rows), baseline},
       {"root/sessions/one/manifest.jsonl", entry + entry, manifest},
       {"reference/static.json", read_text(folder / "reference/static.json"), read_reference},
-      {"check.json",
-       R"({"schema":"taut-check-1","program":"p","cases":3,"values":9,"findings":)"
-       R"([{"study":"s","case":"c","change":"x"}]})",
+      {"check.json", to_json(check),
        [](const fs::path& file) { report::stored_regressions(file.parent_path(), "p"); }},
       {"run.traj", trajectory_bytes(folder), [](const fs::path& file) { read_trajectory(file); }},
   };

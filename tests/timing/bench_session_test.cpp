@@ -205,9 +205,9 @@ TEST(Answers, WhatIsExpectedAgainStraysAsIdenticalCodeDid) {
 }
 
 TEST(Answers, ATargetReadsAsItWasAsked) {
-  EXPECT_EQ(text(Target{0.01, {}}, "stretch.rms"), "stretch.rms <= 0.01");
+  EXPECT_EQ(text(Target{0.01, {}}, "stretch.rms"), "stretch.rms <= 1 %");
   EXPECT_EQ(text(Target{{}, 0.24}, "stretch.rms"),
-            "least stretch.rms within 4 ms per frame of 1/60 s");
+            "least stretch.rms within 4 ms a frame of 1/60 s");
 }
 
 }  // namespace

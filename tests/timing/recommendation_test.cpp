@@ -96,7 +96,7 @@ TEST(Recommendation, EverySolverIsNamedWithWhatItCostsOrHowNearItCame) {
   EXPECT_EQ(found.solvers[2].at, std::nullopt);
   const std::string said = text(found, b, "e");
   for (const char* part :
-       {"e <= 0.01: jakobsen, e 0.01, 1e+03", "; clearly cheaper than bullet\n", "  bullet: 3",
+       {"e <= 0.01: jakobsen, e 0.01, 16.7", "; clearly cheaper than bullet\n", "  bullet: 3",
         "  xpbd: not by the settings tried; nearest: xpbd, e 0.02",
         "  mass-spring: not by the settings tried; every case failed\n"})
     EXPECT_NE(said.find(part), std::string::npos) << part << " in\n" << said;
@@ -117,20 +117,20 @@ TEST(Recommendation, ReadsLineByLineAsThis) {
                         still("xpbd", 0.002, 0.03), still("xpbd:substeps=1024", 0.004, 0.02),
                         still("bullet:iterations=2", 0.05, 0.01)});
   EXPECT_EQ(text(recommend(b, {0.01, {}}, "e"), b, "e"),
-            "e <= 0.01: jakobsen:iterations=4, e 0.01, 20 (20 to 20) ms CPU per simulated s; "
+            "e <= 0.01: jakobsen:iterations=4, e 0.01, 0.333 (0.333 to 0.333) ms a frame; "
             "clearly cheaper than bullet\n"
-            "  bullet: 2.5 (2.5 to 2.5) x the cost: bullet:iterations=2, e 0.01, 50 (50 to 50) ms "
-            "CPU per simulated s\n"
-            "  xpbd: not by the settings tried; nearest: xpbd:substeps=1024, e 0.02, 4 (4 to 4) ms "
-            "CPU per simulated s\n");
+            "  bullet: 2.5 (2.5 to 2.5) x the cost: bullet:iterations=2, e 0.01, 0.833 (0.833 to "
+            "0.833) ms a frame\n"
+            "  xpbd: not by the settings tried; nearest: xpbd:substeps=1024, e 0.02, 0.0667 "
+            "(0.0667 to 0.0667) ms a frame\n");
   b.cases[3].record.params = {{"substeps", "1024"}, {"iterations", "128"}};
   const std::string all = text(recommend(b, {{}, 0.0006}, "e"), b, "e");
-  EXPECT_TRUE(all.starts_with("least e within 0.01 ms per frame of 1/60 s: not reached\n")) << all;
+  EXPECT_TRUE(all.starts_with("least e within 0.01 ms a frame of 1/60 s: not reached\n")) << all;
   EXPECT_NE(all.find("  jakobsen: not by the settings tried; nearest: jakobsen:iterations=4,"),
             std::string::npos)
       << all;
   EXPECT_NE(all.find("  xpbd: never, to the end of its accuracy parameters; nearest: xpbd, e 0.03, "
-                     "2 (2 to 2) ms"),
+                     "0.0333 (0.0333 to 0.0333) ms"),
             std::string::npos)
       << "of a budget the cheapest is nearest\n"
       << all;

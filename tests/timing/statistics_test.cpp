@@ -120,9 +120,6 @@ TEST(Statistics, ARatioIsThatOfTheBlocksAndItsWordsFollowFromItsEnds) {
   EXPECT_EQ(judge({1.5, 2, 3}, {0.96, 1, 1.045}, 0.05), Certainty::clear);
   EXPECT_EQ(judge({1.5, 2, 3}, {0.94, 1, 1}, 0.05), Certainty::likely) << "identical code differed";
   EXPECT_EQ(judge({1.02, 1.06, 1.2}, {0.92, 1, 1}, 0.05), Certainty::too_noisy);
-  EXPECT_EQ(number_text(0.0123456), "0.0123");
-  EXPECT_EQ(number_text(std::nan("")), "-");
-  EXPECT_EQ(interval_text({0.002, 0.0031, 0.004}, 1e-3), "3.1 (2 to 4)");
 }
 
 TEST(Statistics, EveryCertaintyHasItsWord) {

@@ -25,7 +25,9 @@ ZERO = ("strain of 1 % after ten passes", "speed two steps after the impact", "h
 def verify():
     environment = {**os.environ, "TAUT_DATA": str(ROOT / "experiments")}
     done = subprocess.run([BUILD / "taut", "verify", "--json"], cwd=ROOT, env=environment, text=True, capture_output=True)
-    return done, [(truth["name"], f) for truth in json.loads(done.stdout)["truths"] for f in truth["findings"]]
+    table = json.loads(done.stdout)["tables"]["findings"]
+    findings = [dict(zip((column["name"] for column in table["columns"]), row)) for row in table["rows"]]
+    return done, [(f["truth"], f) for f in findings]
 
 
 def promise(truth, finding):

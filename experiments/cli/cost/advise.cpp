@@ -1,12 +1,14 @@
 #include <cmath>
-#include <iomanip>
 #include <optional>
 
+#include "core/io/scene_io.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/require/require.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/timing/recommendation.hpp"
 #include "experiments/timing/search.hpp"
@@ -17,16 +19,17 @@ namespace {
 
 constexpr int kQuickSteps = 48;            ///< of the quick cost that guides the search
 constexpr std::size_t kMostFinalists = 5;  ///< timed against each other
-constexpr std::size_t kMostRefused = 4;    ///< printed; --json has all
+constexpr std::size_t kMostRefused = 4;    ///< printed unless all are asked for
+constexpr double kSurelyDearer = 1.3;      ///< than a budget: more than a quick cost may be off
 
 struct Options {
   std::string scene, metric = kErrorMetric, error, out;
   double budget = 0;  ///< ms per frame; 0: not given
-  std::vector<std::string> solvers, settings;
+  std::vector<std::string> solvers, settings, keep;
   double patience = 120;
   int rounds = 8;
   double seconds = 0.05, tolerance = kTolerance;
-  bool json = false;
+  Format format;
 };
 
 /// "0.01" or "1%".
@@ -52,9 +55,20 @@ Target target_of(const Options& options) {
   return {{}, options.budget * 1e-3 / kFrame};
 }
 
+/// What a step of the cheapest setting costs without one effect of the scene.
+struct Without {
+  std::string effect;
+  double cost = 0;  ///< CPU s per simulated s
+};
+
 /// What was searched and found.
 struct Result {
   Target target;
+  std::vector<KeptAnswer> limits;  ///< of values beside the error
+  /// Where not even the cheapest settings fit the budget: the cheapest of all with its quick cost,
+  /// and what it would cost without each effect, the least first.
+  std::optional<Candidate> too_dear;
+  std::vector<Without> without;
   std::vector<Candidate> tried;
   std::vector<std::string> unsupported;  ///< "xpbd: why"
   std::vector<std::string> cut;          ///< solvers whose search --patience ended
@@ -73,11 +87,19 @@ class Advisor {
  public:
   explicit Advisor(const Options& options)
       : options_(options), store_(options.out), result_{.target = target_of(options)} {
+    const Scene scene = load_scene(find_scene(options.scene), options.settings);
+    result_.limits = default_limits(scene);
+    if (!options.keep.empty()) result_.limits.clear();
+    read_all(options.keep, [&](const std::string& asked) {
+      if (asked != "nothing") result_.limits.push_back(parse_limit(asked, scene));
+    });
     store_.prepare();
   }
 
   Result run() {
-    search();
+    const std::vector<std::string> solvers = supported();
+    if (result_.target.budget && !fits(solvers)) return std::move(result_);
+    search(solvers);
     decide();
     return std::move(result_);
   }
@@ -117,6 +139,10 @@ class Advisor {
     Candidate found{
         record->solver, record->spec.solver, {}, std::abs(record->value(options_.metric)), {}};
     if (!completed(record->status)) found.failure = describe(record->status);
+    for (const KeptAnswer& limit : result_.limits)
+      if (const double value = std::abs(record->value(limit.name)); value > limit.tolerance)
+        found.failure += (found.failure.empty() ? "" : "; ") + limit.name + " " +
+                         text(limit, value) + ", more than " + text(limit, limit.tolerance);
     try {
       TimingWorker worker(record->spec);
       worker.give_up_at(at(end));
@@ -132,9 +158,11 @@ class Advisor {
     }
     progress() << "  " << number_text(elapsed(), 2) << " of " << number_text(options_.patience)
                << " s  " << parse_solver(setting).brief() << ": "
-               << (found.failure.empty() ? options_.metric + " " + number_text(found.error)
-                                         : found.failure)
-               << ", " << number_text(1e3 * found.cost.mid) << " ms per simulated s\n";
+               << (found.failure.empty()
+                       ? options_.metric + " " +
+                             number_text(found.error, unit_of_value(options_.metric))
+                       : found.failure)
+               << ", " << number_text(found.cost.mid, kFrameCost) << '\n';
     return found;
   }
 
@@ -158,9 +186,47 @@ class Advisor {
     return all;
   }
 
+  /// CPU s per simulated s of a few steps; nothing: it cannot be timed.
+  std::optional<double> quick_cost(const CaseSpec& spec) const {
+    try {
+      const Case one = make_case(spec);
+      TimingWorker worker(spec);
+      worker.give_up_at(at(options_.patience));
+      return worker.pilot_run(std::min(kQuickSteps, one.scene->steps)).cpu / one.scene->dt;
+    } catch (const std::runtime_error&) {
+      return {};
+    }
+  }
+
+  /// Whether any solver's cheapest setting may be within the budget. If none is, says what costs
+  /// most in the cheapest of all.
+  bool fits(const std::vector<std::string>& solvers) {
+    std::optional<Candidate> least;
+    for (const std::string& solver : solvers) {
+      const Case one = make(cheapest_setting(solver));
+      const auto cost = quick_cost(one.spec);
+      if (!cost || *cost <= kSurelyDearer * *result_.target.budget) return true;
+      if (!least || *cost < least->cost.mid)
+        least = Candidate{solver, one.spec.solver, {*cost, *cost, *cost}, std::nan(""), ""};
+    }
+    if (!least) return true;
+    result_.too_dear = least;
+    const CaseSpec spec{options_.scene, options_.settings, least->setting};
+    const Scratch scratch;
+    for (const Effect& effect : effects_of(make_case(spec))) {
+      if (effect.reductions.size() != 1 || effect.reductions.front().change != "gone") continue;
+      Draft draft(spec);
+      effect.reductions.front().apply(draft);
+      const auto cost = quick_cost(
+          draft.write(scratch.path(), "without-" + std::to_string(result_.without.size())));
+      if (cost) result_.without.push_back({effect.name, *cost});
+    }
+    std::ranges::sort(result_.without, {}, &Without::cost);
+    return false;
+  }
+
   /// Every solver gets an equal share of the time that those before it have left.
-  void search() {
-    std::vector<std::string> solvers = supported();
+  void search(std::vector<std::string> solvers) {
     if (solvers.size() > 1)
       solvers = cheapest_first(std::move(solvers), [&](const std::string& setting) {
         return evaluate(setting, options_.patience);
@@ -232,95 +298,149 @@ std::string command(const Options& options, const Result& result) {
   return text + (options.metric == kErrorMetric ? "" : " --metric " + options.metric);
 }
 
-void line(const char* what, const std::string& text) {
-  std::cout << "  " << std::left << std::setw(11) << what << text << '\n';
-}
-
-void print_best(const Options& options, const Result& result) {
-  line("cost",
-       interval_text(result.cost, 1e-3) + " ms CPU per simulated s, " +
-           number_text(1e3 * kFrame * result.cost.mid) +
-           " ms per frame; the same code against itself: " + interval_text(result.bench.control));
-  line("verified",
-       std::string(result.same_bits ? "run again, the same bits"
-                                    : "RUN AGAIN, OTHER BITS: not deterministic") +
-           "; timed again, " + interval_text(result.again, 1e-3) + " ms" +
-           (result.confirmed() ? ""
-                               : ": OUTSIDE THE INTERVAL, THIS MACHINE IS TOO NOISY NOW TO JUDGE"));
-  line("reproduce", command(options, result));
+/// The best setting, how sure it is, and the command that compares it again.
+void add_best(Answer& answer, const Options& options, const Result& result) {
+  const Recommendation& chosen = result.recommendation;
+  const Record& record = result.best().record;
+  Cell best(parse_solver(record.spec.solver).brief());
+  best.key = record.key;
+  answer.add({"best"}, best.with(verdict(chosen, result.bench)));
+  answer.add({"error", options.metric, unit_of_value(options.metric)},
+             record.value(options.metric));
+  answer.add({"cost", "CPU time", kFrameCost}, result.cost);
+  answer.add({"again", "timed again", kFrameCost},
+             Cell(result.again)
+                 .with(result.confirmed()
+                           ? ""
+                           : "OUTSIDE THE INTERVAL: THIS MACHINE IS TOO NOISY NOW TO JUDGE"));
+  answer.add({"control", "the same code against itself"}, result.bench.control);
+  answer.add({"same_bits", "run again, the same bits"}, result.same_bits);
+  answer.add(Column("confirmed").in_detail(), result.confirmed());
+  answer.add(Column("certainty").in_detail(), to_string(chosen.certainty));
+  answer.add({"command", "compare again"}, command(options, result));
 }
 
 /// How near anything came, where nothing meets the target.
-void print_nearest(const Options& options, const Result& result) {
+void add_nearest(Answer& answer, const Options& options, const Result& result) {
   const auto miss = [&](const Candidate& c) { return result.target.error ? c.error : c.cost.mid; };
   const Candidate* nearest = nullptr;
   for (const Candidate& c : result.tried)
     if (c.failure.empty() && std::isfinite(c.error) && (!nearest || miss(c) < miss(*nearest)))
       nearest = &c;
-  std::cout << text(result.target, options.metric) << ": "
-            << (result.cut.empty() ? "never reached" : "not reached in the time given");
-  if (nearest)
-    std::cout << "; nearest: " << parse_solver(nearest->setting).brief() << ", " << options.metric
-              << " " << number_text(nearest->error) << " for "
-              << number_text(1e3 * nearest->cost.mid) << " ms CPU per simulated s";
-  std::cout << '\n';
-}
-
-void print_searched(const Options& options, const Result& result, double elapsed) {
-  line("searched", std::to_string(result.tried.size()) + " settings; " + number_text(elapsed) +
-                       " s of " + number_text(options.patience) + " s in all");
-  for (const std::string& solver : result.cut)
-    line("NOT DONE", solver + ": stopped by --patience " + number_text(options.patience));
-  for (const std::string& reason : result.unsupported) line("unsupported", reason);
-  std::size_t refused = 0;
-  for (const Candidate& c : result.tried)
-    if (!c.failure.empty() && ++refused <= kMostRefused)
-      line("refused", parse_solver(c.setting).brief() + ": " + c.failure);
-  if (refused > kMostRefused)
-    line("", "and " + std::to_string(refused - kMostRefused) + " more; --json names all");
-}
-
-Json json_of(const BenchedCase& c, const std::string& metric) {
-  return {{"setting", parse_solver(c.record.spec.solver).brief()},
-          {"solver", c.record.solver},
-          {"error", c.record.value(metric)},
-          {"cpu_seconds_per_second", c.cost()},
-          {"peak_bytes", c.timing.peak_bytes},
-          {"case", c.record.id}};
-}
-
-Json json_of(const Options& options, const Result& result, double elapsed) {
-  Json all{{"scene", options.scene},
-           {"metric", options.metric},
-           {"best", nullptr},
-           {"runner_up", nullptr},
-           {"unsupported", result.unsupported},
-           {"seconds", elapsed},
-           {"patience_seconds", options.patience},
-           {"complete", result.cut.empty()},
-           {"not_done", result.cut},
-           {"tried", json_array(result.tried, [](const Candidate& c) -> Json {
-              return {{"setting", parse_solver(c.setting).brief()},
-                      {"error", c.error},
-                      {"quick_cost", c.cost.mid},
-                      {"refused", c.failure.empty() ? Json() : Json(c.failure)}};
-            })}};
-  if (result.target.error) all["error"] = *result.target.error;
-  if (result.target.budget) all["budget_cpu_seconds_per_second"] = *result.target.budget;
-  if (const Recommendation& chosen = result.recommendation; chosen.best) {
-    all["best"] = json_of(result.best(), options.metric);
-    all["best"]["cpu_seconds_per_second"] = result.cost;
-    all["certainty"] = to_string(chosen.certainty);
-    all["control"] = result.bench.control;
-    all["verified"] = {{"same_bits", result.same_bits},
-                       {"cpu_seconds_per_second", result.again},
-                       {"inside_interval", result.confirmed()}};
-    all["command"] = command(options, result);
-    if (chosen.runner_up)
-      all["runner_up"] = json_of(result.bench.cases[*chosen.runner_up], options.metric);
-    if (chosen.ratio) all["ratio"] = *chosen.ratio;
+  answer.add({"best"}, Cell().with(result.too_dear      ? "unreachable"
+                                   : result.cut.empty() ? "never reached"
+                                                        : "not reached in the time given"));
+  if (result.too_dear) {
+    answer.add({"cheapest", "the cheapest setting"},
+               parse_solver(result.too_dear->setting).brief());
+    answer.add({"cheapest_cost", "its CPU time", kFrameCost}, result.too_dear->cost.mid);
   }
-  return all;
+  if (!nearest) return;
+  answer.add({"nearest"}, parse_solver(nearest->setting).brief());
+  answer.add({"error", options.metric, unit_of_value(options.metric)}, nearest->error);
+  answer.add({"quick_cost", "CPU time", kFrameCost}, nearest->cost.mid);
+}
+
+/// Every solver's best beside the best of all.
+Table solvers_of(const Options& options, const Result& result) {
+  Table table{"solvers",
+              "every solver's best",
+              {{"solver"},
+               {"setting"},
+               {"error", options.metric, unit_of_value(options.metric)},
+               {"cost", "CPU time", kFrameCost},
+               {"times", "x the best"},
+               {"peak_bytes", "memory", kMegabytes}}};
+  for (const KeptAnswer& limit : result.limits)
+    table.columns.push_back({limit.name, "", unit_of(limit)});
+  table.columns.emplace_back("note", "");
+  for (const SolverRecommendation& solver : result.recommendation.solvers) {
+    auto& row = table.rows.emplace_back();
+    row = {solver.solver};
+    if (solver.at) {
+      const BenchedCase& c = result.bench.cases[*solver.at];
+      row.insert(row.end(),
+                 {parse_solver(c.record.spec.solver).brief(), c.record.value(options.metric),
+                  c.cost(), solver.times, c.timing.peak_bytes});
+      for (const KeptAnswer& limit : result.limits) row.push_back(c.record.value(limit.name));
+      row.emplace_back("");
+    } else {
+      row.resize(table.columns.size());
+      row.back() = nearest(solver, result.bench, result.recommendation, options.metric);
+    }
+  }
+  return table;
+}
+
+/// What is kept beside the error, and what the best makes of it.
+Table limits_of(const Result& result) {
+  Table table{"kept", "kept beside the error", {{"value"}, {"limit", "at most"}, {"best"}}};
+  const bool any = result.recommendation.best.has_value();
+  for (const KeptAnswer& limit : result.limits) {
+    const double value = any ? std::abs(result.best().record.value(limit.name)) : std::nan("");
+    table.rows.push_back({limit.name, Cell(limit.tolerance).with(text(limit, limit.tolerance)),
+                          any ? Cell(value).with(text(limit, value)) : Cell()});
+  }
+  return table;
+}
+
+Table without_of(const Result& result) {
+  Table table{"without",
+              "what costs most in the cheapest setting",
+              {{"effect", "without"},
+               {"share", "its share", kShare, 2},
+               {"cost", "CPU time left", kFrameCost},
+               {"fits", "fits the budget"}}};
+  for (const auto& [effect, cost] : result.without)
+    table.rows.push_back(
+        {effect, 1 - cost / result.too_dear->cost.mid, cost, cost <= *result.target.budget});
+  return table;
+}
+
+Table tried_of(const Options& options, const Result& result) {
+  Table table{"tried",
+              "all that was tried",
+              {{"setting"},
+               {"error", options.metric, unit_of_value(options.metric)},
+               {"quick_cost", "quick CPU time", kFrameCost},
+               {"refused"}}};
+  for (const Candidate& c : result.tried)
+    table.rows.push_back({parse_solver(c.setting).brief(), c.error, c.cost.mid, c.failure});
+  table.detail = true;
+  return table;
+}
+
+/// What was refused, a line each.
+Table refused_of(const Result& result) {
+  Table table{"refused", "refused", {{"setting"}, {"why"}}};
+  for (const std::string& reason : result.unsupported)
+    table.rows.push_back({reason.substr(0, reason.find(": ")),
+                          "unsupported: " + reason.substr(reason.find(": ") + 2)});
+  for (const Candidate& c : result.tried)
+    if (!c.failure.empty()) table.rows.push_back({parse_solver(c.setting).brief(), c.failure});
+  table.most = kMostRefused;
+  return table;
+}
+
+Answer answer_of(const Options& options, const Result& result, double elapsed) {
+  Answer answer{"advise", options.scene + ", " + text(result.target, options.metric)};
+  if (result.recommendation.best)
+    add_best(answer, options, result);
+  else
+    add_nearest(answer, options, result);
+  answer.add({"searched", "settings searched"}, result.tried.size());
+  answer.add({"seconds", "time", kTime}, elapsed);
+  answer.add({"patience", "of", kTime}, options.patience);
+  answer.add(Column("complete").in_detail(), result.cut.empty());
+  answer.add(solvers_of(options, result));
+  answer.add(limits_of(result));
+  answer.add(without_of(result));
+  answer.add(refused_of(result));
+  Table not_done{"not_done", "NOT DONE: stopped by --patience", {{"solver"}}};
+  for (const std::string& solver : result.cut) not_done.rows.push_back({solver});
+  answer.add(std::move(not_done));
+  answer.add(tried_of(options, result));
+  return answer;
 }
 
 int run(Options options) {
@@ -333,23 +453,12 @@ int run(Options options) {
   check_solvers(options.solvers);
   Advisor advisor(options);
   const Result result = advisor.run();
-  if (result.cut.empty() && std::ranges::all_of(result.tried, [](const Candidate& c) {
-        return !c.failure.empty() || std::isnan(c.error);
-      }))
+  if (!result.too_dear && result.cut.empty() &&
+      std::ranges::all_of(result.tried, [](const Candidate& c) { return std::isnan(c.error); }))
     throw InputError(result.tried.empty()
                          ? "no solver can run scene '" + options.scene + "'"
                          : options.metric + " has no value on scene '" + options.scene + "'");
-  if (options.json) {
-    print_json(json_of(options, result, advisor.elapsed()));
-  } else {
-    std::cout << options.scene << ", ";
-    if (result.recommendation.best)
-      std::cout << text(result.recommendation, result.bench, options.metric),
-          print_best(options, result);
-    else
-      print_nearest(options, result);
-    print_searched(options, result, advisor.elapsed());
-  }
+  print(answer_of(options, result, advisor.elapsed()), options.format);
   if (!result.recommendation.best) return kNothing;
   return result.same_bits ? kPass : kConflict;
 }
@@ -360,6 +469,12 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--budget", o.budget,
                  "Reach the least error within this CPU time per frame of 1/60 s [ms]")
       ->check(above_zero());
+  app.add_option("--keep", o.keep,
+                 "VALUE:LIMIT that it must keep, too, in SI units, in the unit shown (:1mm) or in "
+                 "%; repeat it; nothing: only the error counts (default: no passage, no crossing, "
+                 "vertices at most 0.1 % of the cloth deep, as far as the scene has them)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--solver", o.solvers,
                  "Only this solver; what its text fixes is not searched; repeat it (default: all)");
   add_settings(app, o.settings);
@@ -369,7 +484,7 @@ void add_options(CLI::App& app, Options& o) {
       ->check(above_zero_seconds());
   add_samples(app, o.rounds, o.seconds, 2);
   add_results(app, o.out);
-  add_json(app, o.json, "The answer and all that was tried");
+  add_format(app, o.format, "Print all that was tried, too");
 }
 
 }  // namespace
@@ -381,6 +496,7 @@ TAUT_VERB(advise) = {
     .summary = "Finds and verifies the best setting for an error or a budget",
     .example =
         "taut advise hang --error 1%\n  taut advise ball --budget 4 --metric "
-        "stretch.max\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
+        "stretch.max\n  taut advise tunnel --error 1% --keep penetration.peak:1mm --keep "
+        "tunnelling.count:0\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
         "Exit: 0 found; 4 not reached; 6 the best does not repeat bit for bit",
     .bind = taut::bind_verb<taut::verb::advise::add_options, taut::verb::advise::run>};

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "experiments/case/question.hpp"
+#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
@@ -111,12 +112,17 @@ StudyBench bench(const std::string& name, const std::vector<Case>& cases, const 
   return result;
 }
 
-void bench_study(const std::string& name, const Options& options) {
+std::pair<StudyBench, std::filesystem::path> timed(const std::string& name,
+                                                   const Options& options) {
   if (std::ranges::count(shipped("scenes"), name) > std::ranges::count(shipped("studies"), name))
     throw InputError("'" + name + "' is a scene; --solver says what to time on it");
   const Study study = load_study(name, options.preset);
-  const StudyBench result = bench(study.name, cases_of(study), options);
-  const std::filesystem::path file = keep(options.out, result);
+  StudyBench result = bench(study.name, cases_of(study), options);
+  return {result, keep(options.out, result)};
+}
+
+void bench_study(const std::string& name, const Options& options) {
+  const auto [result, file] = timed(name, options);
   if (options.json) {
     std::cout << to_json(result);
     return;
@@ -145,7 +151,7 @@ void compare(const std::string& scene, const Options& options) {
     std::cout << one.scene << '\n';
     print_control(one, options.tolerance);
     for (const BenchedCase& c : one.cases)
-      std::cout << "  " << c.record.id << ": " << interval_text(c.cost(), 1e-3)
+      std::cout << "  " << c.record.id << ": " << interval_text(c.cost(), kMilliseconds)
                 << " ms per simulated s, " << options.metric << " "
                 << number_text(c.record.value(options.metric)) << ", "
                 << to_string(c.record.status.kind) << '\n';
@@ -193,6 +199,15 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 }  // namespace
+
+void time_study(const std::string& study, const std::string& preset, double seconds,
+                const std::string& results) {
+  require_one_quiet_host();
+  Options options;
+  options.preset = preset, options.seconds = seconds, options.out = results;
+  timed(study, options);
+}
+
 }  // namespace taut::verb::bench
 
 TAUT_VERB(bench) = {

@@ -12,7 +12,7 @@ struct Options {
   int rounds = 11;
   double seconds = 0.01;
   std::string output;
-  bool json = false;
+  Format format;
 };
 
 using Rows = std::vector<ContactRow>;
@@ -25,27 +25,53 @@ double seconds_per_step(const ContactRow& row) {
   return seconds(row, median(row.each_step) + median(row.each_sweep));
 }
 
-void print(const std::vector<ContactRow>& rows, int side) {
-  std::cout
-      << '\n'
-      << side << " x " << side << ", " << rows.front().particles
-      << " particles; CPU ns per particle of a sweep of links, of contact in each sweep and of "
-         "contact in each step besides; contact of a step in structural sweeps, 95 %\n";
-  std::vector<Row> table{{"scene", "setting", "steps", "touching", "a sweep", "in each sweep",
-                          "in each step", "step of 1 sweep", "step of 10 sweeps"}};
-  for (const ContactRow& row : rows)
-    table.push_back({row.scene, row.setting, std::to_string(row.steps),
-                     number_text(100 * row.touching) + " %", number_text(median(row.sweep)),
-                     number_text(median(row.each_sweep)), number_text(median(row.each_step)),
-                     interval_text(row.ratio(1)), interval_text(row.ratio(10))});
-  print_columns(table, 2);
-  std::cout << std::flush;
+constexpr Unit kNs = kNanoseconds;
+
+Table table_of(const std::vector<Rows>& sizes) {
+  Table table{"contact",
+              "CPU time a particle; contact of a step in structural sweeps, 95 %",
+              {{"particles"},
+               {"scene"},
+               {"setting"},
+               {"steps"},
+               {"touching", "touching", kShare},
+               {"sweep", "a sweep of links", kNs},
+               {"each_sweep", "contact in each sweep", kNs},
+               {"each_step", "in each step besides", kNs},
+               {"ratio_1", "step of 1 sweep"},
+               {"ratio_10", "step of 10 sweeps"}}};
+  for (const Rows& rows : sizes)
+    for (const ContactRow& row : rows)
+      table.rows.push_back({row.particles, row.scene, row.setting, row.steps, row.touching,
+                            1e-9 * median(row.sweep), 1e-9 * median(row.each_sweep),
+                            1e-9 * median(row.each_step), row.ratio(1), row.ratio(10)});
+  return table;
+}
+
+Table samples_of(const std::vector<Rows>& sizes) {
+  Table table{"samples",
+              "samples",
+              {{"particles"},
+               {"scene"},
+               {"setting"},
+               {"steps"},
+               {"sweep", "a sweep of links", kNs},
+               {"each_sweep", "contact in each sweep", kNs},
+               {"each_step", "in each step besides", kNs}}};
+  for (const Rows& rows : sizes)
+    for (const ContactRow& row : rows)
+      for (std::size_t i = 0; i < row.sweep.size(); ++i)
+        table.rows.push_back({row.particles, row.scene, row.setting, row.steps, 1e-9 * row.sweep[i],
+                              1e-9 * row.each_sweep[i], 1e-9 * row.each_step[i]});
+  table.detail = true;
+  return table;
 }
 
 /// Contact's cost of a step over the number of particles, as a power law, setting by setting.
-void print_exponents(const std::vector<Rows>& sizes) {
-  std::cout << "\nexponent of contact's cost over particles, 95 %\n";
-  std::vector<Row> table;
+Table exponents(const std::vector<Rows>& sizes) {
+  Table table{"exponents",
+              "exponent of contact's cost over particles, 95 %",
+              {{"scene"}, {"setting"}, {"steps"}, {"exponent"}}};
   for (std::size_t i = 0; i < sizes.front().size(); ++i) {
     std::vector<double> n, cost;
     for (const Rows& rows : sizes)
@@ -54,10 +80,9 @@ void print_exponents(const std::vector<Rows>& sizes) {
     if (n.size() < 3) continue;
     const PowerLaw law = fit_power_law(n, cost);
     const ContactRow& row = sizes.front()[i];
-    table.push_back({row.scene, row.setting, std::to_string(row.steps),
-                     number_text(law.exponent) + " +- " + number_text(2 * law.error)});
+    table.rows.push_back({row.scene, row.setting, row.steps, interval_of_exponent(law)});
   }
-  if (!table.empty()) print_columns(table, 2);
+  return table;
 }
 
 Record plotted(const ContactRow& row, const std::string& self, double seconds_per_step) {
@@ -88,37 +113,21 @@ void plot(const std::vector<Rows>& sizes, const std::string& folder) {
                          .file = "self-collision-scaling",
                          .slope = 1},
                         records, {}, folder);
-  std::cout << files.svg.string() << '\n' << files.pdf.string() << '\n';
-}
-
-Json json_of(const std::vector<Rows>& sizes) {
-  Json all = Json::array();
-  for (const Rows& rows : sizes)
-    for (const ContactRow& row : rows)
-      all.push_back({{"scene", row.scene},
-                     {"setting", row.setting},
-                     {"particles", row.particles},
-                     {"steps", row.steps},
-                     {"touching", row.touching},
-                     {"sweep_ns", row.sweep},
-                     {"each_sweep_ns", row.each_sweep},
-                     {"each_step_ns", row.each_step}});
-  return all;
+  progress() << files.svg.string() << '\n' << files.pdf.string() << '\n';
 }
 
 int run(const Options& o) {
   std::vector<Rows> sizes;
-  for (const int side : o.sizes) {
+  for (const int side : o.sizes)
     sizes.push_back(bench_contact({.side = side,
                                    .rounds = o.rounds,
                                    .seconds = o.seconds,
                                    .progress = Countdown("timing round")}));
-    if (!o.json) print(sizes.back(), side);
-  }
-  if (o.json)
-    print_json(json_of(sizes));
-  else if (sizes.size() > 2)
-    print_exponents(sizes);
+  Answer answer{"bench contact"};
+  answer.add(table_of(sizes));
+  answer.add(exponents(sizes));
+  answer.add(samples_of(sizes));
+  print(answer, o.format);
   if (!o.output.empty()) plot(sizes, o.output);
   return kPass;
 }
@@ -129,7 +138,7 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::Range(8, 1024));
   add_samples(app, o.rounds, o.seconds);
   add_output(app, o.output, "Folder for a figure of a step over particles: off, octree and grid");
-  add_json(app, o.json, "Every row with its samples");
+  add_format(app, o.format, "Print every sample, too");
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 #include <algorithm>
-#include <iostream>
+#include <tuple>
 
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/timing/bench/effects.hpp"
 #include "experiments/timing/bench/kernels.hpp"
 
@@ -20,101 +19,110 @@ struct Options {
   std::vector<int> sizes{0};
   int rounds = 11, copies = 0;
   double seconds = 0.01;
-  bool two_threads = false, json = false;
+  bool two_threads = false;
+  Format format;
 };
 
-void print_refused(const std::vector<EffectRow>& rows) {
-  for (const EffectRow& row : rows)
-    if (!row.refused.empty()) std::cout << row.scene << " not timed: " << row.refused << '\n';
-  std::cout << std::flush;
+constexpr Unit kNs = kNanoseconds;
+
+/// What `interval()` says of these samples, if there are any.
+template <class MakeInterval>
+Cell of(const std::vector<double>& samples, const MakeInterval& interval) {
+  return samples.empty() ? Cell() : Cell(interval());
 }
 
-void print_heading(const Options& options, int side) {
-  std::cout << '\n' << options.solver;
-  if (side > 0) std::cout << ", " << side << " x " << side;
+/// "as shipped", "64 x 64".
+std::string size_text(int side) {
+  return side > 0 ? std::to_string(side) + " x " + std::to_string(side) : "as shipped";
 }
 
-void print(const std::vector<EffectRow>& rows, const Options& options, int side) {
-  print_heading(options, side);
-  std::cout << "; ns a vertex and step, " << (options.copies > 0 ? "wall" : "CPU")
-            << " time; times hang's, a step and a simulated second, times the same cloth's links "
-               "alone, and times hang's if the colliders are too far away to be touched, 95 %\n";
-  std::vector<Row> table{{"scene", "effects", "vertices", "ns", "x hang, a step", "a second",
-                          "x links alone", "x hang, touching nothing"}};
+Table table_of(const std::vector<EffectRow>& rows, const Options& options, int side) {
   const double half = options.copies / 2.0;
-  if (options.copies > 0)
-    table[0].push_back(std::to_string(options.copies) + " on two threads / " + number_text(half) +
-                       " of one");
+  Table table{"effects_" + std::to_string(side),
+              size_text(side) + ": " + (options.copies > 0 ? "wall" : "CPU") +
+                  " time a vertex and step, 95 %",
+              {{"scene"},
+               {"effects"},
+               {"vertices"},
+               {"cost", "cost", kNs},
+               {"times_hang", "x hang, a step"},
+               {"times_hang_per_second", "x hang, a second"},
+               {"times_links_alone", "x its links alone"},
+               {"times_hang_touching_nothing", "x hang, touching nothing"},
+               {"times_hang_link_traffic", "x hang, link traffic"},
+               {"times_one_copy", "copies on two threads, x half as many on one"}}};
   const EffectRow& unit = rows.front();
   for (const EffectRow& row : rows) {
-    Row& line = table.emplace_back(Row{row.scene, row.effects, std::to_string(row.vertices)});
-    if (row.refused.empty()) {
-      const Interval times = row.times(unit);
-      line.insert(
-          line.end(),
-          {number_text(row.cost().mid), interval_text(times),
-           number_text(times.mid * unit.dt / row.dt), interval_text(row.times_links_alone()),
-           row.touching_nothing.empty() ? "-" : interval_text(row.touching_nothing_times(unit))});
-      if (options.copies > 0) line.push_back(interval_text(row.times_one(), half));
-    }
-    line.resize(table[0].size(), "-");
-  }
-  print_columns(table, 2);
-  for (const EffectRow& row : rows) {
-    if (!row.traffic.empty())
-      std::cout << row.scene << ": to load and store the ends of its links alone would cost "
-                << interval_text(row.traffic_times(unit)) << " x hang\n";
-  }
-  print_refused(rows);
-}
-
-void print_two_cores(const std::vector<EffectRow>& rows, const Options& options, int side) {
-  print_heading(options, side);
-  std::cout << "; wall time; two threads on one sheet, and two unrelated sheets at once, as fast "
-               "as so many single threads, 95 %; both cores were free in the rounds in which "
-               "unrelated sheets reached "
-            << TwoCores::kFree << "; a word takes " << number_text(1e9 * seconds_per_handover())
-            << " ns from one thread to the other, at its fastest\n";
-  std::vector<Row> table{{"scene", "effects", "vertices", "two threads", "unrelated sheets",
-                          "two / unrelated", "two, cores free", "free rounds"}};
-  for (const EffectRow& row : rows) {
-    Row& line = table.emplace_back(Row{row.scene, row.effects, std::to_string(row.vertices)});
-    const TwoCores& cores = row.two_cores;
+    auto& line = table.rows.emplace_back();
+    line = {row.scene, row.effects, row.vertices};
     if (row.refused.empty())
       line.insert(line.end(),
-                  {interval_text(cores.threads()), interval_text(cores.unrelated()),
-                   interval_text(cores.share()), interval_text(cores.threads_while_free()),
-                   std::to_string(cores.free_rounds()) + " of " + std::to_string(cores.rounds())});
-    line.resize(table[0].size(), "-");
+                  {row.cost() * 1e-9, row.times(unit), row.times(unit).mid * unit.dt / row.dt,
+                   row.times_links_alone(),
+                   of(row.touching_nothing, [&] { return row.touching_nothing_times(unit); }),
+                   of(row.traffic, [&] { return row.traffic_times(unit); }),
+                   of(row.copies, [&] { return row.times_one() * (1 / half); })});
+    else
+      line.push_back(Cell().with("not timed: " + row.refused));
+    line.resize(table.columns.size());
   }
-  print_columns(table, 2);
-  print_refused(rows);
+  table.caption =
+      "touching nothing: with its colliders out of reach; link traffic: the ends of its links "
+      "loaded and stored, nothing computed";
+  return table;
 }
 
-Json json_of(const std::vector<EffectRow>& rows, int side) {
-  Json all = Json::array();
+Table two_cores_of(const std::vector<EffectRow>& rows, int side) {
+  Table table{"two_threads_" + std::to_string(side),
+              size_text(side) + ": wall time; as fast as so many single threads, 95 %",
+              {{"scene"},
+               {"effects"},
+               {"vertices"},
+               {"two_threads", "two threads on one sheet"},
+               {"unrelated_sheets", "two unrelated sheets"},
+               {"share", "two threads / unrelated"},
+               {"threads_while_free", "two threads, cores free"},
+               {"free_rounds", "free rounds"},
+               {"rounds"}}};
+  for (const EffectRow& row : rows) {
+    auto& line = table.rows.emplace_back();
+    line = {row.scene, row.effects, row.vertices};
+    const TwoCores& cores = row.two_cores;
+    if (row.refused.empty())
+      line.insert(line.end(), {cores.threads(), cores.unrelated(), cores.share(),
+                               cores.threads_while_free(), cores.free_rounds(), cores.rounds()});
+    else
+      line.push_back(Cell().with("not timed: " + row.refused));
+    line.resize(table.columns.size());
+  }
+  table.caption = "both cores were free in the rounds in which unrelated sheets reached " +
+                  number_text(TwoCores::kFree) + "; a word takes " +
+                  number_text(seconds_per_handover(), kNs) +
+                  " from one thread to the other, at its fastest";
+  return table;
+}
+
+/// Every sample, two of each round.
+void add_samples_of(const std::vector<EffectRow>& rows, int side, Table& table) {
   for (const EffectRow& row : rows)
-    all.push_back({{"scene", row.scene},
-                   {"effects", row.effects},
-                   {"side", side},
-                   {"vertices", row.vertices},
-                   {"dt", row.dt},
-                   {"refused", row.refused},
-                   {"ns", row.whole},
-                   {"links_alone_ns", row.links_alone},
-                   {"touching_nothing_ns", row.touching_nothing},
-                   {"link_traffic_ns", row.traffic},
-                   {"copies_ns", row.copies},
-                   {"two_threads", row.two_cores.thread_samples()},
-                   {"unrelated_sheets", row.two_cores.unrelated_samples()}});
-  return all;
+    for (const auto& [what, scale, samples] :
+         {std::tuple("whole", 1e-9, row.whole), std::tuple("links alone", 1e-9, row.links_alone),
+          std::tuple("touching nothing", 1e-9, row.touching_nothing),
+          std::tuple("link traffic", 1e-9, row.traffic), std::tuple("copies", 1e-9, row.copies),
+          std::tuple("two threads", 1.0, row.two_cores.thread_samples()),
+          std::tuple("unrelated sheets", 1.0, row.two_cores.unrelated_samples())})
+      for (const double sample : samples)
+        table.rows.push_back({row.scene, side, what, scale * sample});
 }
 
 int run(const Options& o) {
   std::vector<std::string> scenes = o.scenes.empty() ? shipped("scenes") : o.scenes;
   std::erase(scenes, kUnit);
   scenes.insert(scenes.begin(), kUnit);
-  Json all = Json::array();
+  Answer answer{"bench effects", o.solver};
+  Table samples{"samples",
+                "samples: SI, of a vertex and step; of two threads in single threads",
+                {{"scene"}, {"side"}, {"what"}, {"value"}}};
   for (const int side : o.sizes) {
     const auto rows = bench_effects({.scenes = scenes,
                                      .solver = o.solver,
@@ -124,12 +132,12 @@ int run(const Options& o) {
                                      .rounds = o.rounds,
                                      .seconds = o.seconds,
                                      .progress = Countdown("timing round")});
-    if (o.json)
-      for (Json& row : json_of(rows, side)) all.push_back(std::move(row));
-    else
-      (o.two_threads ? print_two_cores : print)(rows, o, side);
+    answer.add(o.two_threads ? two_cores_of(rows, side) : table_of(rows, o, side));
+    add_samples_of(rows, side, samples);
   }
-  if (o.json) print_json(all);
+  samples.detail = true;
+  answer.add(std::move(samples));
+  print(answer, o.format);
   return kPass;
 }
 
@@ -150,7 +158,7 @@ void add_options(CLI::App& app, Options& o) {
          "Instead what two threads are worth beside two unrelated sheets, in wall time; fewer "
          "than 8192 vertices take one thread and are refused")
       ->excludes(copies);
-  add_json(app, o.json, "Every row with its samples");
+  add_format(app, o.format, "Print every sample, too");
 }
 
 }  // namespace

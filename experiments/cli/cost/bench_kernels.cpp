@@ -11,82 +11,105 @@ struct Options {
   int rounds = 11;
   double seconds = 0.005;
   int largest_bullet = 256;
-  bool json = false;
+  Format format;
 };
 
-/// How many times as fast, from a ratio of costs.
-std::string times(const Interval& ratio) {
-  return interval_text({1 / ratio.high, 1 / ratio.mid, 1 / ratio.low});
-}
+constexpr Unit kNs = kNanoseconds;
 
-void print(const KernelBench& bench) {
-  std::cout
-      << '\n'
-      << bench.side << " x " << bench.side << ", " << to_string(widest())
-      << ": structural, shear and bend links; ns per projection; fixed: what a step costs "
-         "without a sweep, in structural sweeps; rows of two threads in wall time; fastest: of "
-         "all parts of all samples, while nothing else used the core\n";
-  std::vector<Row> table{{"", "median, 95 %", "x textbook, 95 %", "x Bullet, 95 %", "fastest",
-                          "x textbook", "x Bullet", "floor", "flops", "bytes", "fixed"}};
+/// How many times as fast, from a ratio of costs.
+Interval times(const Interval& ratio) { return {1 / ratio.high, 1 / ratio.mid, 1 / ratio.low}; }
+
+Table table_of(const KernelBench& bench) {
+  const std::string side = std::to_string(bench.side);
+  Table table{"size_" + side,
+              side + " x " + side + ", " + std::string(to_string(widest())) +
+                  ": structural, shear and bend links",
+              {{"name", "one projection"},
+               {"cost", "median, 95 %", kNs},
+               {"times_textbook", "x textbook, 95 %"},
+               {"times_bullet", "x Bullet, 95 %"},
+               {"fastest", "fastest", kNs},
+               {"fastest_times_textbook", "x textbook"},
+               {"fastest_times_bullet", "x Bullet"},
+               {"floor", "floor", kNs},
+               {"flops"},
+               {"bytes"},
+               {"threads"},
+               {"fixed", "fixed [sweeps]"}}};
   const auto bullet = std::ranges::find_if(
       bench.rows, [](const KernelRow& row) { return row.name.starts_with("bullet"); });
   const bool timed = bullet != bench.rows.end();
+  const auto other = static_cast<std::size_t>(bullet - bench.rows.begin());
   for (std::size_t i = 0; i < bench.rows.size(); ++i) {
     const KernelRow& row = bench.rows[i];
-    const auto other = static_cast<std::size_t>(bullet - bench.rows.begin());
-    table.push_back({row.name, interval_text(row.cost()), times(bench.ratio(i, 0)),
-                     timed ? times(bench.ratio(i, other)) : "-", number_text(row.fastest),
-                     number_text(bench.rows[0].fastest / row.fastest),
-                     timed ? number_text(bullet->fastest / row.fastest) : "-",
-                     number_text(row.floor), std::to_string(row.flops), std::to_string(row.bytes),
-                     number_text(bootstrap_median(row.fixed).mid)});
+    table.rows.push_back({row.name, row.cost() * 1e-9, times(bench.ratio(i, 0)),
+                          timed ? Cell(times(bench.ratio(i, other))) : Cell(), 1e-9 * row.fastest,
+                          bench.rows[0].fastest / row.fastest,
+                          timed ? Cell(bullet->fastest / row.fastest) : Cell(), 1e-9 * row.floor,
+                          row.flops, row.bytes, row.threads, bootstrap_median(row.fixed).mid});
   }
-  print_columns(table, 1);
-  const auto in_both = [](double single, double twice) {
-    return number_text(single) + " ns in float, " + number_text(twice) + " ns in double\n";
-  };
-  std::cout << "a square-root-free projection in registers, without loads and stores: "
-            << in_both(bench.arithmetic_float, bench.arithmetic_double)
-            << "a link of a colour batch, loaded and stored with an addition instead of a "
-               "projection: "
-            << in_both(bench.traffic_float, bench.traffic_double);
-  const TwoCores& cores = bench.two_cores;
-  std::cout << "two threads: " << interval_text(cores.threads())
-            << " times one, wall time; two unrelated sheets at once: "
-            << interval_text(cores.unrelated()) << "; so two threads get "
-            << interval_text(cores.share()) << " of what two cores give\n";
-  if (cores.free_rounds() > 0)
-    std::cout << "two threads while both cores were free (" << cores.free_rounds() << " of "
-              << cores.rounds() << " rounds: unrelated sheets at " << TwoCores::kFree
-              << " and more): " << interval_text(cores.threads_while_free()) << " times one\n";
-  std::cout << std::flush;
+  table.caption =
+      "fixed: what a step costs without a sweep, in structural sweeps; rows of two threads in wall "
+      "time; fastest: of all parts of all samples, while nothing else used the core";
+  return table;
 }
 
-Json json_of(const KernelBench& bench) {
-  const auto row_of = [](const KernelRow& row) -> Json {
-    return {
-        {"name", row.name},          {"threads", row.threads},   {"ns_per_projection", row.samples},
-        {"fastest_ns", row.fastest}, {"floor_ns", row.floor},    {"flops", row.flops},
-        {"bytes", row.bytes},        {"fixed_sweeps", row.fixed}};
-  };
-  return {{"side", bench.side},
-          {"instructions", to_string(widest())},
-          {"rows", json_array(bench.rows, row_of)},
-          {"two_threads", bench.two_cores.threads()},
-          {"unrelated_sheets", bench.two_cores.unrelated()}};
+/// Of every size: what a projection is held to, and what a second core is worth.
+Table limits_of(const std::vector<KernelBench>& sizes) {
+  Table table{"limits",
+              "what bounds a projection, and a second core",
+              {{"side"},
+               {"arithmetic_float", "in registers, float", kNs},
+               {"arithmetic_double", "double", kNs},
+               {"traffic_float", "load and store a link, float", kNs},
+               {"traffic_double", "double", kNs},
+               {"two_threads", "two threads [x one]"},
+               {"unrelated_sheets", "unrelated sheets [x one]"},
+               {"share", "two threads / unrelated"},
+               {"threads_while_free", "two threads, cores free"},
+               {"free_rounds", "free rounds"},
+               {"rounds"}}};
+  for (const KernelBench& bench : sizes) {
+    const TwoCores& cores = bench.two_cores;
+    table.rows.push_back({bench.side, 1e-9 * bench.arithmetic_float, 1e-9 * bench.arithmetic_double,
+                          1e-9 * bench.traffic_float, 1e-9 * bench.traffic_double, cores.threads(),
+                          cores.unrelated(), cores.share(), cores.threads_while_free(),
+                          cores.free_rounds(), cores.rounds()});
+  }
+  table.caption = "both cores were free where unrelated sheets are at " +
+                  number_text(TwoCores::kFree) + " and more; wall time";
+  return table;
+}
+
+/// Every sample, in the order in which they were taken.
+Table samples_of(const std::vector<KernelBench>& sizes) {
+  Table table{
+      "samples",
+      "samples",
+      {{"side"}, {"name"}, {"cost", "cost of a projection", kNs}, {"fixed", "fixed [sweeps]"}}};
+  for (const KernelBench& bench : sizes)
+    for (const KernelRow& row : bench.rows)
+      for (std::size_t i = 0; i < row.samples.size(); ++i)
+        table.rows.push_back({bench.side, row.name, 1e-9 * row.samples[i],
+                              i < row.fixed.size() ? Cell(row.fixed[i]) : Cell()});
+  table.detail = true;
+  return table;
 }
 
 int run(const Options& o) {
-  Json all = Json::array();
+  Answer answer{"bench kernels"};
+  std::vector<KernelBench> sizes;
   for (const int side : o.sizes) {
-    const KernelBench bench = bench_kernels({.side = side,
-                                             .rounds = o.rounds,
-                                             .seconds = o.seconds,
-                                             .bullet = side <= o.largest_bullet,
-                                             .progress = Countdown("timing round")});
-    o.json ? all.push_back(json_of(bench)) : print(bench);
+    sizes.push_back(bench_kernels({.side = side,
+                                   .rounds = o.rounds,
+                                   .seconds = o.seconds,
+                                   .bullet = side <= o.largest_bullet,
+                                   .progress = Countdown("timing round")}));
+    answer.add(table_of(sizes.back()));
   }
-  if (o.json) print_json(all);
+  answer.add(limits_of(sizes));
+  answer.add(samples_of(sizes));
+  print(answer, o.format);
   return kPass;
 }
 
@@ -98,7 +121,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--largest-bullet", o.largest_bullet,
                  "Largest side for Bullet, whose steps take seconds beyond (default: 256)")
       ->check(CLI::Range(0, 4096));
-  add_json(app, o.json, "Every row with its samples");
+  add_format(app, o.format, "Print every sample, too");
 }
 
 }  // namespace

@@ -13,13 +13,8 @@ struct Options {
   std::string study = "scaling", preset, out;
   double limit = 20;
   int samples = 6;
-  bool json = false;
+  Format format;
 };
-
-std::string exponent(const std::optional<PowerLaw>& law) {
-  return law ? number_text(law->exponent) + " +- " + number_text(2 * law->error, 2)
-             : "too few sizes";
-}
 
 Measured measure(const Case& one, double expected, const Store& store, const Options& options) {
   const auto start = SteadyClock::now();
@@ -44,46 +39,49 @@ Measured measure(const Case& one, double expected, const Store& store, const Opt
   return {std::move(benched), seconds_since(start)};
 }
 
-void print(const ScalingLine& line) {
-  std::cout << line.setting << '\n';
-  std::vector<Row> rows{{"vertices", "CPU ms per step (95 %)", "wall ms", "ns per vertex",
-                         "stretch.rms", "bytes per vertex", "process MB"}};
-  for (const BenchedCase& c : line.cases) {
-    if (c.timing.samples.empty()) continue;
-    const Interval cpu = bootstrap_median(c.timing.samples);
-    const auto n = static_cast<double>(c.record.vertices);
-    rows.push_back({std::to_string(c.record.vertices), interval_text(cpu, 1e-3),
-                    number_text(1e3 * median(c.timing.wall)), number_text(1e9 * cpu.mid / n),
-                    number_text(c.record.value("stretch.rms")),
-                    number_text(plan_bytes(c.record) / n),
-                    number_text(1e-6 * static_cast<double>(c.timing.peak_bytes))});
+Cell exponent(const std::optional<PowerLaw>& law) {
+  return law ? Cell(interval_of_exponent(*law)) : Cell().with("too few sizes");
+}
+
+void add_tables(Answer& answer, const std::vector<ScalingLine>& lines) {
+  Table sizes{"sizes",
+              "",
+              {{"setting"},
+               {"vertices"},
+               {"cpu", "CPU time a step, 95 %", kMilliseconds},
+               {"wall", "wall time", kMilliseconds},
+               {"cpu_per_vertex", "CPU time a vertex", kNanoseconds},
+               {"stretch.rms", "stretch.rms", kShare},
+               {"plan_bytes_per_vertex", "bytes a vertex", kBytes},
+               {"peak_bytes", "process", kMegabytes},
+               {"status"}}},
+      exponents{"exponents",
+                "exponents over vertices, 95 %",
+                {{"setting"}, {"cpu", "CPU time"}, {"wall", "wall time"}, {"memory"}}},
+      samples{"samples",
+              "samples of a step",
+              {{"setting"},
+               {"vertices"},
+               {"cpu", "CPU time", kMilliseconds},
+               {"wall", "wall time", kMilliseconds}}},
+      skipped{"skipped", "skipped", {{"setting"}, {"why"}}};
+  for (const ScalingLine& line : lines) {
+    for (const BenchedCase& c : line.cases) {
+      const auto n = static_cast<double>(c.record.vertices);
+      const Interval cpu = bootstrap_median(c.timing.samples);
+      sizes.rows.push_back({line.setting, c.record.vertices, cpu, median(c.timing.wall),
+                            cpu.mid / n, c.record.value("stretch.rms"), plan_bytes(c.record) / n,
+                            c.timing.peak_bytes, to_string(c.record.status.kind)});
+      for (std::size_t i = 0; i < c.timing.samples.size(); ++i)
+        samples.rows.push_back(
+            {line.setting, c.record.vertices, c.timing.samples[i], c.timing.wall[i]});
+    }
+    exponents.rows.push_back(
+        {line.setting, exponent(line.cpu), exponent(line.wall), exponent(line.memory)});
+    for (const std::string& why : line.skipped) skipped.rows.push_back({line.setting, why});
   }
-  print_columns(rows, 1);
-  for (const std::string& skipped : line.skipped) std::cout << "    skipped " << skipped << '\n';
-  std::cout << "    exponents over vertices, 95 %: CPU " << exponent(line.cpu) << ", wall "
-            << exponent(line.wall) << ", memory " << exponent(line.memory) << '\n';
-}
-
-Json json_of(const std::optional<PowerLaw>& law) {
-  if (!law) return nullptr;
-  return {{"factor", law->factor}, {"exponent", law->exponent}, {"standard_error", law->error}};
-}
-
-Json json_of(const ScalingLine& line) {
-  Json all{{"setting", line.setting},
-           {"skipped", line.skipped},
-           {"cpu", json_of(line.cpu)},
-           {"wall", json_of(line.wall)},
-           {"memory", json_of(line.memory)}};
-  for (const BenchedCase& c : line.cases)
-    all["sizes"].push_back({{"vertices", c.record.vertices},
-                            {"status", to_string(c.record.status.kind)},
-                            {"cpu_seconds_per_step", c.timing.samples},
-                            {"wall_seconds_per_step", c.timing.wall},
-                            {"plan_bytes", plan_bytes(c.record)},
-                            {"peak_bytes", c.timing.peak_bytes},
-                            {"stretch.rms", c.record.value("stretch.rms")}});
-  return all;
+  samples.detail = true;
+  for (Table* table : {&sizes, &exponents, &skipped, &samples}) answer.add(std::move(*table));
 }
 
 /// Where `taut plot` and the report find it: a bench, but of cases that were not timed in turns.
@@ -106,13 +104,10 @@ int run(const Options& options) {
   const std::vector<ScalingLine> lines = measure_scaling(
       cases, options.limit,
       [&](const Case& one, double expected) { return measure(one, expected, store, options); });
-  const auto file = keep(study, lines, options);
-  if (options.json) {
-    print_json(json_array(lines, [](const ScalingLine& line) { return json_of(line); }));
-    return kPass;
-  }
-  for (const ScalingLine& line : lines) print(line);
-  std::cout << file.string() << '\n';
+  Answer answer{"bench scaling", study.name};
+  answer.add({"file", "session"}, keep(study, lines, options).string());
+  add_tables(answer, lines);
+  print(answer, options.format);
   return kPass;
 }
 
@@ -126,7 +121,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--samples", o.samples, "Samples of each case (default: 6)")
       ->check(CLI::Range(1, 1000));
   add_results(app, o.out);
-  app.add_flag("--json", o.json, "Everything measured, every sample, as JSON");
+  add_format(app, o.format, "Print every sample, too");
 }
 
 }  // namespace

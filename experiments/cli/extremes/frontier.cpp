@@ -1,7 +1,6 @@
 #include "experiments/study/frontier/frontier.hpp"
 
 #include <cmath>
-#include <iomanip>
 #include <iterator>
 
 #include "core/model/text.hpp"
@@ -13,8 +12,6 @@
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/text.hpp"
-#include "experiments/timing/statistics.hpp"
 
 namespace taut::verb::frontier {
 
@@ -29,14 +26,14 @@ struct Options {
   std::optional<double> from, to;
   double tolerance = SearchRange{}.tolerance;
   int jobs = 1;
-  bool json = false;
+  Format format;
 };
 
-std::string unit_of(const Options& options, const SolverChoice& choice) {
-  if (options.of == "dt") return " s";
+Unit unit_of(const Options& options, const SolverChoice& choice) {
+  if (options.of == "dt") return kTime;
   for (const ParamSpec& spec : choice.entry->params)
-    if (spec.name == options.of && !spec.unit.empty()) return " " + std::string(spec.unit);
-  return "";
+    if (spec.name == options.of && !spec.unit.empty()) return {spec.unit, spec.unit};
+  return kNumber;
 }
 
 /// How theory and the bracket agree.
@@ -46,75 +43,64 @@ std::string agreement(const Prediction& theory, const Frontier& found) {
   if (theory.kind != Frontier::Kind::bracketed) return "agrees";
   if (theory.value >= found.stable && theory.value <= found.unstable) return "inside the bracket";
   const double nearest = theory.value < found.stable ? found.stable : found.unstable;
-  const double off = 100 * (nearest / theory.value - 1);
-  return "measured " + (off < 0 ? "" : std::string("+")) + number_text(off, 2) + " % from it";
+  const double off = nearest / theory.value - 1;
+  return "measured " + std::string(off < 0 ? "" : "+") + number_text(off, kShare, 2) + " from it";
 }
 
-void print_line(std::string_view label, const std::string& text) {
-  std::cout << "  " << std::left << std::setw(16) << label << text << '\n';
+void add_theory(Answer& answer, const std::optional<Prediction>& theory, const Frontier& found,
+                const Unit& unit) {
+  const Column column("theory", "theory", unit, 5);
+  if (!theory)
+    return answer.add(column, Cell().with("none for these settings; there is one for few links, "
+                                          "with jakobsen in order=mesh"));
+  const bool bracketed = theory->kind == Frontier::Kind::bracketed;
+  answer.add(column, (bracketed ? Cell(theory->value) : Cell(to_string(theory->kind)))
+                         .with(agreement(*theory, found) + ": " + theory->law));
+  if (theory->growth > 1 + 1e-6 && theory->kind == Frontier::Kind::none_stable)
+    answer.add({"growth", "growth per step, theory", kNumber, 5}, theory->growth);
 }
 
-void print_theory(const Prediction& theory, const Frontier& found, const std::string& unit) {
-  std::string text = theory.kind == Frontier::Kind::bracketed ? number_text(theory.value, 5) + unit
-                                                              : std::string(to_string(theory.kind));
-  print_line("theory", text + ", " + agreement(theory, found) + ": " + theory.law);
-  if (theory.growth > 1 + 1e-6 && theory.kind == Frontier::Kind::none_stable)
-    print_line("", "growth per step " + number_text(theory.growth, 5));
-}
-
-void print_text(const CaseFrontier& result, const std::optional<Prediction>& theory,
-                const std::string& unit, double seconds) {
+Answer answer_of(const Options& options, const Case& first, const CaseFrontier& result,
+                 const std::optional<Prediction>& theory) {
   const Frontier& found = result.frontier;
-  const auto outcome = [&](double value) {
+  const Unit unit = unit_of(options, first.choice);
+  Answer answer{"frontier", first.scene->name + " " + options.which.spec().solver +
+                                ": largest stable " + options.of};
+  const auto end = [&](const char* name, const char* heading, double value) {
     const Probed* probe = found.at(value);
-    return shortest(value) + unit + "  " + (probe ? describe(probe->status) : "");
+    answer.add({name, heading, unit, 7}, Cell(value).with(probe ? describe(probe->status) : ""));
   };
+  answer.add(Column("of").in_detail(), options.of);
+  answer.add(Column("kind").in_detail(), to_string(found.kind));
   if (found.kind == Frontier::Kind::all_stable)
-    print_line("stable", "as far as was looked (--to): " + outcome(found.stable) +
-                             "; stable is not accurate");
+    answer.add({"stable", "stable", unit, 7},
+               Cell(found.stable).with("as far as was looked (--to); stable is not accurate"));
   else if (found.kind != Frontier::Kind::none_stable)
-    print_line("stable up to", outcome(found.stable));
+    end("stable", "stable up to", found.stable);
+  if (found.kind != Frontier::Kind::all_stable) end("unstable", "unstable from", found.unstable);
+  add_theory(answer, theory, found, unit);
   if (found.kind != Frontier::Kind::all_stable)
-    print_line("unstable from", outcome(found.unstable));
-  if (theory)
-    print_theory(*theory, found, unit);
-  else
-    print_line("theory", "none for these settings");
-  std::string above = std::to_string(found.above) + " values above the bracket, ";
-  if (found.stable_above.empty()) {
-    above += "none stable";
-  } else {
-    above += "NOT MONOTONE: stable again at";
-    for (const double value : found.stable_above) above += " " + shortest(value);
+    answer.add({"above", "values above the bracket"},
+               Cell(found.above)
+                   .with(found.stable_above.empty() ? "none stable"
+                                                    : "NOT MONOTONE: stable again at " +
+                                                          join(found.stable_above, " ", shortest)));
+  answer.add({"looked_for", "growth looked for over", kTime},
+             Cell(first.scene->duration()).with("what grows more slowly counts as stable"));
+  answer.add({"cases"}, found.probes.size());
+  answer.add({"ran", "of which were run now"}, result.ran);
+  Table probes{
+      "probes", "what was run", {{"value", options.of, unit, 7}, {"status"}, {"step"}, {"case"}}};
+  for (std::size_t i = 0; i < found.probes.size(); ++i) {
+    const Probed& one = found.probes[i];
+    Cell id(result.records[i].id);
+    id.key = result.records[i].key;
+    probes.rows.push_back({one.value, Cell(to_string(one.status.kind)).with(one.status.reason),
+                           one.status.step >= 0 ? Cell(one.status.step) : Cell(), id});
   }
-  if (found.kind != Frontier::Kind::all_stable) print_line("looked at", above);
-  print_line("growth", "looked for over " + number_text(seconds) +
-                           " s; what grows more slowly counts as stable");
-  print_line("cases", std::to_string(found.probes.size()) + ", of which " +
-                          std::to_string(result.ran) + " were run now");
-}
-
-Json to_json(const Options& options, const CaseFrontier& result,
-             const std::optional<Prediction>& theory) {
-  const Frontier& found = result.frontier;
-  Json probes = Json::array();
-  for (std::size_t i = 0; i < found.probes.size(); ++i)
-    probes.push_back({{"value", found.probes[i].value},
-                      {"status", to_string(found.probes[i].status.kind)},
-                      {"reason", found.probes[i].status.reason},
-                      {"step", found.probes[i].status.step},
-                      {"id", result.records[i].id},
-                      {"key", result.records[i].key}});
-  Json all{{"of", options.of}, {"kind", to_string(found.kind)}, {"probes", probes}};
-  if (found.kind != Frontier::Kind::none_stable) all["stable"] = found.stable;
-  if (found.kind != Frontier::Kind::all_stable) all["unstable"] = found.unstable;
-  all["stable_above"] = found.stable_above;
-  if (theory) {
-    all["theory"] = {{"kind", to_string(theory->kind)}, {"law", theory->law}};
-    if (theory->kind == Frontier::Kind::bracketed) all["theory"]["value"] = theory->value;
-    if (theory->growth > 0) all["theory"]["growth"] = theory->growth;
-  }
-  return all;
+  probes.detail = true;
+  answer.add(std::move(probes));
+  return answer;
 }
 
 int not_answered(const CaseFrontier& result) {
@@ -127,51 +113,13 @@ int not_answered(const CaseFrontier& result) {
   return kNothing;
 }
 
-/// "0.12 s", "none" or, where nothing goes wrong, "-".
-std::string with_unit(double value, const std::string& unit) {
-  return std::isnan(value) ? "-" : number_text(value) + (unit.empty() ? "" : " " + unit);
-}
-
-std::string theory_text(const ParameterFrontier& one) {
-  if (one.law.empty()) return "";
-  return (std::isnan(one.theory) ? "beyond" : number_text(one.theory)) + ": " + one.law;
-}
-
-/// A row a parameter, three columns a solver; the theory of a single one.
-void print_all(const std::vector<ParameterFrontier>& found, std::size_t solvers) {
-  const std::size_t parameters = found.size() / solvers;
-  Row head{"parameter"}, names{""};
-  for (std::size_t s = 0; s < solvers; ++s) {
-    head.insert(head.end(), {"good up to", "bad from", "what goes wrong"});
-    names.insert(names.end(), {found[s * parameters].solver, "", ""});
-  }
-  if (solvers == 1) head.emplace_back("theory"), names.emplace_back();
-  std::vector<Row> rows{names, head};
-  for (std::size_t k = 0; k < parameters; ++k) {
-    const std::string& unit = found[k].unit;
-    const bool common = found[(solvers - 1) * parameters + k].unit == unit;
-    Row row{found[k].parameter + (unit.empty() || !common ? "" : " [" + unit + "]")};
-    for (std::size_t s = 0; s < solvers; ++s) {
-      const ParameterFrontier& one = found[s * parameters + k];
-      if (!one.lacks.empty())
-        row.insert(row.end(), {"-", "-", "(" + one.lacks.substr(0, 40) + ")"});
-      else
-        row.insert(row.end(), {with_unit(one.good, common ? "" : one.unit),
-                               with_unit(one.bad, common ? "" : one.unit),
-                               std::isnan(one.bad) ? "nothing as far as was asked" : one.symptom});
-    }
-    if (solvers == 1) row.push_back(theory_text(found[k]));
-    rows.push_back(std::move(row));
-  }
-  print_columns(rows, 1);
-  for (const ParameterFrontier& one : found) {
-    if (!one.at_start.empty())
-      std::cout << one.solver << ", " << one.parameter << ": not counted, for it is so at "
-                << with_unit(one.from, one.unit) << " already: " << one.at_start << '\n';
+/// The commands that run the cases beyond.
+Table commands(const std::vector<ParameterFrontier>& found) {
+  Table table{"commands", "what runs the case beyond", {{"solver"}, {"parameter"}, {"command"}}};
+  for (const ParameterFrontier& one : found)
     if (!std::isnan(one.bad))
-      std::cout << one.solver << ", " << one.parameter << ", " << one.symptom << ":\n    "
-                << reproduce(one.beyond) << '\n';
-  }
+      table.rows.push_back({one.solver, one.parameter, reproduce(one.beyond)});
+  return table;
 }
 
 /// As a baseline keeps cases: an id, what is wrong beyond, and the ends.
@@ -235,22 +183,23 @@ int run_all(const Options& options) {
     if (!frontiers) return kInterrupted;
     const std::filesystem::path folder = std::filesystem::path(options.out) / kFrontiersFolder;
     make_folder(folder);
-    write_file(folder / (report::slug(solver) + ".json"), to_json(*frontiers, program_digest()));
+    write_file(folder / (report::slug(solver) + ".json"),
+               to_json(answer_of(*frontiers, program_digest())));
     found.insert(found.end(), frontiers->begin(), frontiers->end());
   }
-  if (options.json)
-    std::cout << to_json(found, program_digest());
-  else
-    print_all(found, solvers.size());
+  Answer answer = answer_of(found, program_digest());
+  answer.subject = join(solvers, " ");
+  answer.add(commands(found));
   try {
     std::string stem = report::slug(solvers[0]);
     if (solvers.size() == 2) stem += "-and-" + report::slug(solvers[1]);
     const auto picture =
         report::plot_frontiers(found, std::filesystem::path(options.out) / kFrontiersFolder, stem);
-    (options.json ? progress() : std::cout) << picture.string() << '\n';
+    answer.add({"picture"}, picture.string());
   } catch (const report::PlotError& error) {
     std::cerr << "no picture: " << error.what() << '\n';
   }
+  print(answer, options.format);
   return options.check || options.update ? check_or_update(options, found) : kPass;
 }
 
@@ -271,15 +220,12 @@ int run(const Options& options) {
       {.jobs = options.jobs, .progress = [&](const CampaignProgress& t, const Record* record) {
          if (record) progress.show(t, record);
        }});
-  if (result.frontier.kind == Frontier::Kind::not_answered) return not_answered(result);
-  const std::optional<Prediction> theory = predicted_frontier(question);
-  if (options.json) {
-    print_json(to_json(options, result, theory), 2);
-    return kPass;
+  if (result.frontier.kind == Frontier::Kind::not_answered) {
+    if (options.format.is_data()) print(answer_of(options, first, result, {}), options.format);
+    return not_answered(result);
   }
-  const CaseSpec spec = question.base;
-  std::cout << first.scene->name << ' ' << spec.solver << ": largest stable " << options.of << '\n';
-  print_text(result, theory, unit_of(options, first.choice), first.scene->duration());
+  const std::optional<Prediction> theory = predicted_frontier(question);
+  print(answer_of(options, first, result, theory), options.format);
   return kPass;
 }
 
@@ -308,7 +254,7 @@ void add_options(CLI::App& app, Options& options) {
       ->check(CLI::Range(1e-9, 0.5));
   add_jobs(app, options.jobs);
   add_results(app, options.out);
-  app.add_flag("--json", options.json, "Print JSON");
+  add_format(app, options.format);
 }
 
 }  // namespace

@@ -26,18 +26,14 @@ struct Options {
   std::vector<std::string> keep, settings;
   double patience = 120;
   int jobs = 1;
-  bool json = false;
+  Format format;
 };
 
-std::string percent(double share) { return number_text(100 * share, 2) + " %"; }
-
-std::string kilobytes(double bytes) { return number_text(bytes / 1000) + " kB"; }
-
-/// The part of the full model's time that an effect costs; "-": not timed.
-std::string time_text(const Requirement& found, const std::optional<Interval>& ratio) {
-  if (!ratio) return "-";
+/// The part of the full model's time that an effect costs; nothing: not timed.
+Cell time_of(const Requirement& found, const std::optional<Interval>& ratio) {
+  if (!ratio) return {};
   const bool none = ratio->contains(1) || std::abs(1 - ratio->mid) <= spread(found.control);
-  return none ? "none seen" : percent(1 - ratio->mid);
+  return none ? Cell("none seen") : Cell(1 - ratio->mid);
 }
 
 std::size_t full_bytes(const Requirement& found, const Store& store) {
@@ -52,38 +48,83 @@ std::string verdict(const EffectTrial& effect) {
   return effect.representative().why.empty() ? "keep" : "keep: " + effect.representative().why;
 }
 
-/// What is printed, as a table: head, the full model, its tolerances and noise, effects, the
-/// smallest model.
-std::vector<Row> table(const Requirement& found, std::size_t bytes) {
-  Row head{"without", "change"}, full{"(full model)", ""}, may{"(may move by)", ""},
-      noise{"(noise)", ""};
+Column column_of(const KeptAnswer& answer) { return {answer.name, "", unit_of(answer)}; }
+
+/// The answers that are kept: what they are, and by how much they may move.
+Table answers_of(const Requirement& found) {
+  Table table{"answers",
+              "answers that are kept",
+              {{"name", "answer"},
+               {"shown", "shown in"},
+               {"value", "full model"},
+               {"tolerance", "may move by"},
+               {"noise", "moves by rounding"},
+               Column("unit").in_detail()}};
   for (std::size_t i = 0; i < found.answers.size(); ++i) {
     const KeptAnswer& answer = found.answers[i];
-    head.push_back(answer.name);
-    full.push_back(answer.is_shape() ? "" : text(answer, found.values[i]));
-    may.push_back(text(answer, answer.tolerance));
-    noise.push_back(text(answer, found.noise[i]));
+    const Unit unit = unit_of(answer);
+    const auto said = [&](double value) { return Cell(value).with(text(answer, value)); };
+    table.rows.push_back({answer.name, unit.shown.empty() ? "1" : unit.shown,
+                          answer.is_shape() ? Cell() : said(found.values[i]),
+                          said(answer.tolerance),
+                          i < found.noise.size() ? said(found.noise[i]) : Cell(), unit.si});
   }
-  for (const char* name : {"time", "bytes", "verdict"}) head.emplace_back(name);
-  full.insert(full.end(), {"100 %", kilobytes(static_cast<double>(bytes)), ""});
-  std::vector<Row> rows{head, full, may, noise};
+  return table;
+}
+
+/// What every effect does to the answers, and what it costs.
+Table effects_of(const Requirement& found, std::size_t bytes) {
+  Table table{"effects", "by how much the answers move without", {{"name", "effect"}, {"change"}}};
+  for (const KeptAnswer& answer : found.answers) table.columns.push_back(column_of(answer));
+  table.columns.insert(table.columns.end(), {{"time", "its time", kShare, 2},
+                                             {"bytes", "its memory", kKilobytes},
+                                             {"verdict"},
+                                             Column("may_go").in_detail()});
   const auto add = [&](const std::string& name, const ModelTrial& trial,
-                       const std::optional<Interval>& time, const std::string& last) {
-    Row row{name, trial.change};
+                       const std::optional<Interval>& time, const std::string& verdict,
+                       bool may_go) {
+    auto& row = table.rows.emplace_back();
+    row = {name, trial.change};
     for (std::size_t i = 0; i < found.answers.size(); ++i)
-      row.push_back(i < trial.moved.size() ? text(found.answers[i], trial.moved[i]) : "-");
+      row.push_back(i < trial.moved.size() ? Cell(trial.moved[i]) : Cell());
     const double less = static_cast<double>(bytes) - static_cast<double>(bytes_of(trial.cost));
     row.insert(row.end(),
-               {time_text(found, time), trial.cost.empty() ? "-" : kilobytes(less), last});
-    rows.push_back(row);
+               {time_of(found, time), trial.cost.empty() ? Cell() : Cell(less), verdict, may_go});
   };
   for (const EffectTrial& effect : found.effects)
-    add(effect.name, effect.representative(), effect.time, verdict(effect));
+    add(effect.name, effect.representative(), effect.time, verdict(effect), effect.may_go());
   if (found.smallest)
     add("(smallest model)", *found.smallest, found.time_ratio,
-        found.verified ? "verified: the same bits from its file" : "NOT VERIFIED");
-  for (Row& row : rows) row.resize(head.size());
-  return rows;
+        found.verified ? "verified: the same bits from its file" : "NOT VERIFIED", true);
+  return table;
+}
+
+/// All that was tried.
+Table trials_of(const Requirement& found) {
+  Table table{"trials",
+              "all that was tried",
+              {{"effect"},
+               {"change"},
+               {"done"},
+               {"within"},
+               {"why"},
+               {"bytes", "bytes of a step", kBytes},
+               {"work_per_step"},
+               {"steps"},
+               {"scene"},
+               {"solver"}}};
+  for (const KeptAnswer& answer : found.answers) table.columns.push_back(column_of(answer));
+  for (const EffectTrial& effect : found.effects)
+    for (const ModelTrial& trial : effect.trials) {
+      auto& row = table.rows.emplace_back();
+      row = {effect.name,      trial.change,         trial.done,          trial.within,
+             trial.why,        bytes_of(trial.cost), work_of(trial.cost), trial.steps,
+             trial.spec.scene, trial.spec.solver};
+      for (std::size_t i = 0; i < found.answers.size(); ++i)
+        row.push_back(i < trial.moved.size() ? Cell(trial.moved[i]) : Cell());
+    }
+  table.detail = true;
+  return table;
 }
 
 std::string command_of(const CaseSpec& spec) {
@@ -91,95 +132,77 @@ std::string command_of(const CaseSpec& spec) {
          shell_word(parse_solver(spec.solver).brief());
 }
 
-std::string horizon_text(const Requirement& found) {
-  return "chaotic: a rounding error at the start moves the shape beyond its tolerance after " +
-         number_text(found.horizon, 2) + " s; only statistics are kept";
-}
+/// What goes and what stays, in words.
+struct Summary {
+  std::string kept, can_go = "nothing", required = "-";
+};
 
-void print_text(const Requirement& found, const Store& store, const std::string& picture,
-                double seconds, double patience) {
-  std::cout << found.full.id << '\n';
-  if (found.chaotic) std::cout << "  " << horizon_text(found) << '\n';
-  for (const std::string& answer : found.given_up) std::cout << "  not kept: " << answer << '\n';
-  if (!found.effects.empty()) print_columns(table(found, full_bytes(found, store)), 2);
-  if (found.smallest) {
-    std::cout << "  smallest model  " << command_of(found.smallest->spec) << '\n';
-    if (found.time_ratio)
-      std::cout << "  its CPU time    " << interval_text(*found.time_ratio)
-                << " of the full model's; that against itself: " << interval_text(found.control)
-                << '\n';
-  } else if (found.not_done.empty() && !found.interrupted) {
-    std::cout << "  nothing can go: every effect is required\n";
-  }
-  if (!picture.empty()) std::cout << "  picture         " << picture << '\n';
-  for (const std::string& what : found.not_done)
-    std::cout << "  NOT DONE        " << what << ": stopped by --patience " << number_text(patience)
-              << "; the same command goes on\n";
-  std::cout << "  looked at       " << found.cases << " cases, of which " << found.ran
-            << " were run now; " << number_text(seconds) << " s of " << number_text(patience)
-            << " s\n";
-}
-
-Json json_of(const std::optional<Interval>& i) { return i ? Json(*i) : Json(); }
-
-Json json_of(const ModelTrial& trial) {
-  return {{"change", trial.change},
-          {"scene", trial.spec.scene},
-          {"solver", trial.spec.solver},
-          {"done", trial.done},
-          {"within", trial.within},
-          {"why", trial.why.empty() ? Json() : Json(trial.why)},
-          {"moved", trial.moved},
-          {"bytes", bytes_of(trial.cost)},
-          {"work_per_step", work_of(trial.cost)},
-          {"steps", trial.steps}};
-}
-
-Json json_of(const Requirement& found, const Store& store, const std::string& picture,
-             double seconds, double patience) {
-  Json all{{"id", found.full.id},
-           {"key", found.full.key},
-           {"chaotic", found.chaotic},
-           {"horizon_seconds", found.chaotic ? Json(found.horizon) : Json()},
-           {"answers", Json::array()},
-           {"not_kept", found.given_up},
-           {"bytes", full_bytes(found, store)},
-           {"effects", Json::array()},
-           {"smallest", nullptr},
-           {"control", found.control},
-           {"cases", found.cases},
-           {"ran", found.ran},
-           {"seconds", seconds},
-           {"patience_seconds", patience},
-           {"complete", found.not_done.empty() && !found.interrupted},
-           {"not_done", found.not_done}};
-  for (std::size_t i = 0; i < found.answers.size(); ++i)
-    all["answers"].push_back({{"name", found.answers[i].name},
-                              {"unit", unit_of(found.answers[i]).si},
-                              {"value", found.values[i]},
-                              {"tolerance", found.answers[i].tolerance},
-                              {"noise", i < found.noise.size() ? Json(found.noise[i]) : Json()}});
+Summary summary_of(const Requirement& found) {
+  std::string drop, keep;
   for (const EffectTrial& effect : found.effects) {
-    Json one{{"name", effect.name},
-             {"verdict", !effect.done()  ? "not done"
-                         : effect.chosen ? "drop"
-                                         : "keep"},
-             {"may_go", effect.may_go()},
-             {"time_ratio", json_of(effect.time)},
-             {"chosen", effect.chosen ? Json(*effect.chosen) : Json()},
-             {"trials", Json::array()}};
-    for (const ModelTrial& trial : effect.trials) one["trials"].push_back(json_of(trial));
-    all["effects"].push_back(std::move(one));
+    std::string& list = effect.chosen ? drop : keep;
+    list += (list.empty() ? "" : ", ") + effect.name;
+    const ModelTrial& told =
+        effect.chosen ? effect.trials[*effect.chosen] : effect.representative();
+    if (effect.chosen && told.change != "gone") list += " " + told.change;
   }
+  for (const std::string& what : found.not_done)
+    drop += (drop.empty() ? "not done: " : "; not done: ") + what;
+  return {join(found.answers, ", ", &KeptAnswer::name), drop.empty() ? "nothing" : drop,
+          keep.empty() ? (found.effects.empty() ? "-" : "nothing") : keep};
+}
+
+std::string chaos_text(const Requirement& found) {
+  return found.chaotic ? "after " + number_text(found.horizon, kTime, 2) : "no";
+}
+
+Table list(const char* name, const char* title, const std::vector<std::string>& lines) {
+  Table table{name, title, {{"what"}}};
+  for (const std::string& line : lines) table.rows.push_back({line});
+  return table;
+}
+
+/// `seconds` of the patience were used.
+Answer answer_of(const Requirement& found, const Store& store, const std::string& picture,
+                 double seconds, double patience) {
+  Answer answer{"require", found.full.id};
+  const Summary summary = summary_of(found);
+  const std::size_t bytes = full_bytes(found, store);
+  answer.add(Column("program").in_detail(), program_digest());
+  answer.add(Column("key").in_detail(), found.full.key);
+  answer.add(Column("scene").in_detail(), found.full.scene->name);
+  answer.add(Column("solver").in_detail(), found.full.choice.brief());
+  answer.add({"can_go", "can go"}, summary.can_go);
+  answer.add({"required"}, summary.required);
+  answer.add(Column("kept").in_detail(), summary.kept);
+  answer.add({"chaotic"},
+             Cell(chaos_text(found))
+                 .with(found.chaotic ? "a rounding error at the start moves the shape beyond its "
+                                       "tolerance; only statistics are kept"
+                                     : ""));
+  answer.add(Column("horizon", "", kTime).in_detail(),
+             found.chaotic ? Cell(found.horizon) : Cell());
+  answer.add({"bytes", "memory of a step", kKilobytes}, bytes);
   if (found.smallest) {
-    all["smallest"] = json_of(*found.smallest);
-    all["smallest"]["file"] = found.file.string();
-    all["smallest"]["verified"] = found.verified;
-    all["smallest"]["time_ratio"] = json_of(found.time_ratio);
-    all["smallest"]["command"] = command_of(found.smallest->spec);
+    answer.add({"smallest", "smallest model"}, command_of(found.smallest->spec));
+    answer.add({"file", "its scene"}, found.file.string());
+    answer.add({"verified", "run again from its file, the same bits"}, found.verified);
+    answer.add({"time_left", "its CPU time", kShare}, found.time_ratio);
+    answer.add({"control", "the full model against itself"}, found.control);
   }
-  if (!picture.empty()) all["picture"] = picture;
-  return all;
+  if (!picture.empty()) answer.add({"picture"}, picture);
+  answer.add({"cases", "cases looked at"}, found.cases);
+  answer.add({"ran", "of which were run now"}, found.ran);
+  answer.add({"seconds", "time", kTime}, seconds);
+  answer.add({"patience", "of", kTime}, patience);
+  answer.add({"complete"}, found.not_done.empty() && !found.interrupted);
+  answer.add(answers_of(found));
+  answer.add(effects_of(found, bytes));
+  answer.add(list("not_kept", "not kept", found.given_up));
+  answer.add(list("not_done", "NOT DONE: stopped by --patience; the same command goes on",
+                  found.not_done));
+  answer.add(trials_of(found));
+  return answer;
 }
 
 /// One model's cloth at its end, under its own camera.
@@ -220,47 +243,8 @@ int exit_code(const Requirement& found) {
   return found.not_done.empty() ? kPass : kIncomplete;
 }
 
-/// One line of the table over all scenes.
-Row summary(const Requirement& found) {
-  std::string drop, keep;
-  for (const EffectTrial& effect : found.effects) {
-    std::string& list = effect.chosen ? drop : keep;
-    list += (list.empty() ? "" : ", ") + effect.name;
-    const ModelTrial& told =
-        effect.chosen ? effect.trials[*effect.chosen] : effect.representative();
-    if (effect.chosen && told.change != "gone") list += " " + told.change;
-  }
-  for (const std::string& what : found.not_done)
-    drop += (drop.empty() ? "not done: " : "; not done: ") + what;
-  return {found.full.scene->name,
-          found.chaotic ? number_text(found.horizon, 2) + " s" : "no",
-          join(found.answers, ", ", &KeptAnswer::name),
-          drop.empty() ? "nothing" : drop,
-          keep.empty() ? (found.effects.empty() ? "-" : "nothing") : keep,
-          found.time_ratio ? percent(found.time_ratio->mid) : "-"};
-}
-
-/// For the report.
-void leave(const Requirement& found, const Row& row, const fs::path& folder) {
-  make_folder(folder);
-  write_file(folder / "found.json",
-             to_text(Json{{"schema", "taut-require-1"},
-                          {"program", program_digest()},
-                          {"summary",
-                           {{"scene", row[0]},
-                            {"solver", found.full.choice.brief()},
-                            {"chaotic", found.chaotic ? "after " + row[1] : ""},
-                            {"answers", row[2]},
-                            {"drop", row[3]},
-                            {"keep", row[4]},
-                            {"time", row[5]},
-                            {"command", found.smallest ? command_of(found.smallest->spec) : ""}}}},
-                     1) +
-                 "\n");
-}
-
-int run_one(const Options& options, const std::string& scene, Json& all, std::vector<Row>& rows,
-            bool alone) {
+/// Adds a row to `scenes`; prints the whole answer of a scene asked for alone.
+int run_one(const Options& options, const std::string& scene, Table& scenes, bool alone) {
   const auto start = SteadyClock::now();
   const auto seconds = [&] { return seconds_since(start); };
   const CaseSpec spec{scene, options.settings, parse_solver(options.solver).canonical()};
@@ -268,7 +252,7 @@ int run_one(const Options& options, const std::string& scene, Json& all, std::ve
   for (const std::string& reason :
        full.choice.entry->unsupported(*full.scene, full.choice.params)) {
     if (alone) throw InputError(full.id + ": " + reason);
-    rows.push_back({full.scene->name, "-", "-", "-", reason, "-"});
+    scenes.rows.push_back({full.scene->name, {}, {}, {}, reason, {}});
     return kPass;
   }
   const Store store(options.out);
@@ -291,39 +275,43 @@ int run_one(const Options& options, const std::string& scene, Json& all, std::ve
     picture =
         draw(found, store,
              options.output.empty() || !alone ? folder / "models.png" : fs::path(options.output));
-  rows.push_back(summary(found));
-  if (!found.answers.empty()) leave(found, rows.back(), folder);
-  if (options.json)
-    all.push_back(json_of(found, store, picture, seconds(), options.patience));
-  else if (alone)
-    print_text(found, store, picture, seconds(), options.patience);
+  const Summary summary = summary_of(found);
+  scenes.rows.push_back({full.scene->name, chaos_text(found), summary.kept, summary.can_go,
+                         summary.required, found.time_ratio});
+  const Answer answer = answer_of(found, store, picture, seconds(), options.patience);
+  if (!found.answers.empty()) {  // for the report
+    make_folder(folder);
+    write_file(folder / "found.json", to_json(answer));
+  }
+  if (alone)
+    print(answer, options.format);
   else
-    progress() << rows.back()[0] << ": without " << rows.back()[3] << '\n';
+    progress() << full.scene->name << ": without " << summary.can_go << '\n';
   return exit_code(found);
 }
 
 int run(const Options& options) {
-  Json all = Json::array();
-  std::vector<Row> rows{{"scene", "chaotic after", "kept", "can go", "required", "time left"}};
+  Table scenes{"scenes",
+               "",
+               {{"scene"},
+                {"chaotic"},
+                {"kept"},
+                {"can_go", "can go"},
+                {"required"},
+                {"time_left", "CPU time left", kShare, 2}}};
   if (options.scene != "all") {
     find_scene(options.scene);
-    const int code = run_one(options, options.scene, all, rows, true);
-    if (options.json) print_json(all.at(0));
-    return code;
+    return run_one(options, options.scene, scenes, true);
   }
   int worst = kPass;
   for (const std::string& scene : shipped("scenes")) {
-    const int code = run_one(options, scene, all, rows, false);
+    const int code = run_one(options, scene, scenes, false);
     if (code == kInterrupted) return code;
     worst = std::max(worst, code);
   }
-  if (options.json)
-    print_json(all);
-  else
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      for (const std::string& cell : rows[i]) std::cout << "| " << cell << ' ';
-      std::cout << "|\n" << (i == 0 ? "|---|---|---|---|---|---|\n" : "");
-    }
+  Answer answer{"require", "all, " + options.solver};
+  answer.add(std::move(scenes));
+  print(answer, options.format);
   return worst;
 }
 
@@ -343,7 +331,7 @@ void add_options(CLI::App& app, Options& o) {
              "Where to draw both models (default: models.png beside the smallest scene)");
   add_jobs(app, o.jobs);
   add_results(app, o.out);
-  add_json(app, o.json, "The table, the smallest model and all that was tried");
+  add_format(app, o.format, "Print all that was tried, too");
 }
 
 }  // namespace

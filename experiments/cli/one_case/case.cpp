@@ -93,7 +93,7 @@ int run(const Options& options) try {
   if (options.json)
     std::cout << to_json(result.record, 2) << '\n';
   else
-    print_record(result.record);
+    print(answer_of(result.record, "case"), {});
   if (options.verbose)
     for (const auto& [name, value] : result.record.resolved_settings)
       std::cerr << name << ": " << value << '\n';

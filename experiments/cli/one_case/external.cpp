@@ -17,32 +17,26 @@ using external::Check;
 struct Options {
   std::string command, scene, output;
   std::vector<std::string> settings;
-  bool json = false;
+  Format format;
 };
 
 int probe(const Options& options) {
   const external::Command command = external::command_of(options.command);
-  const auto print = [&](const Check& check) {
-    if (options.json) return;
-    constexpr Colour kColours[] = {Colour::green, Colour::red, Colour::yellow};
-    std::cout << coloured(external::to_string(check.verdict),
-                          kColours[static_cast<int>(check.verdict)])
-              << "  " << check.name << ": " << check.said << std::endl;
-  };
-  const std::vector<Check> checks = external::full_probe(command, print);
+  const std::vector<Check> checks = external::full_probe(
+      command, [](const Check& check) { progress() << "checked: " << check.name << std::endl; });
   const auto failed = std::ranges::count(checks, Check::Verdict::failed, &Check::verdict);
-  if (options.json)
-    print_json({{"command", command.text()},
-                {"passed", failed == 0},
-                {"checks", json_array(checks, [](const Check& check) -> Json {
-                   return {{"check", check.name},
-                           {"verdict", external::to_string(check.verdict)},
-                           {"said", check.said}};
-                 })}});
-  else
-    std::cout << (failed == 0 ? "It may be scored.\n"
-                              : std::to_string(failed) + " of " + std::to_string(checks.size()) +
-                                    " checks failed: it is not scored.\n");
+  Answer answer{"external probe", command.text()};
+  Table table{"checks", "", {{"verdict"}, {"check"}, {"said", "what it says"}}};
+  for (const Check& check : checks)
+    table.rows.push_back({external::to_string(check.verdict), check.name, check.said});
+  answer.add(
+      {"passed", "may be scored"},
+      Cell(failed == 0)
+          .with(failed == 0 ? ""
+                            : std::to_string(failed) + " of " + std::to_string(checks.size()) +
+                                  " checks failed: it is not scored"));
+  answer.add(std::move(table));
+  print(answer, options.format);
   return failed == 0 ? kPass : kRegression;
 }
 
@@ -50,7 +44,7 @@ void add_options_probe(CLI::App& app, Options& o) {
   app.add_option("COMMAND", o.command,
                  "The command, the name of a registered solver, or external:cmd='...'")
       ->required();
-  add_json(app, o.json, "Every check with its sentence");
+  add_format(app, o.format);
 }
 
 void add_options_scene(CLI::App& app, Options& o) {
@@ -102,7 +96,7 @@ int install(const Options& o) {
 
 void add_options_install(CLI::App& app, Options& o) {
   app.add_option("PROGRAM", o.command, "jolt")->required();
-  add_json(app, o.json, "Every check of its probe");
+  add_format(app, o.format);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/case.hpp"
-#include "experiments/case/record_io.hpp"
+#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/motion_file.hpp"
 #include "experiments/system/data.hpp"
@@ -17,7 +17,7 @@ struct Options {
   std::string scene, series, picture;
   external::MotionOptions motion;
   std::vector<std::string> settings, solvers;
-  bool json = false;
+  Format format;
 };
 
 /// The scene gets the file's time step and, if the file is shorter, its duration.
@@ -34,27 +34,24 @@ std::vector<std::string> fitted(const Options& o) {
   return settings;
 }
 
-int draw(const Options& o, const CaseSpec& spec) {
-  std::vector<std::string> words{o.scene, "--solver", spec.solver, "-o", o.picture};
-  for (const std::string& other : o.solvers) words.insert(words.end(), {"--solver", other});
-  for (const std::string& text : spec.overrides) words.insert(words.end(), {"--set", text});
-  return invoke("render", words, o.json ? Output::discarded : Output::shown);
-}
-
 int run(const Options& o) {
   const Case one = CaseMaker().make({o.scene, fitted(o), external::solver_text(o.motion)});
   for (const std::string& why : one.choice.entry->unsupported(*one.scene, one.choice.params))
     throw InputError(why);
   const CaseRun scored = run_case(one, {.series_rows = o.series.empty() ? 0 : 120});
   if (!o.series.empty()) write_durably(o.series, to_csv(scored.series));
-  if (o.json) {
-    std::cout << to_json(scored.record, 2) << '\n';
-  } else {
-    for (const auto& [name, value] : scored.record.resolved_settings)
-      std::cout << name << ": " << value << '\n';
-    print_record(scored.record);
-  }
-  return o.picture.empty() ? kPass : draw(o, one.spec);
+  Answer answer = answer_of(scored.record, "external score");
+  Table read{"read", "what was made of the file", {{"what"}, {"how", "found"}}};
+  for (const auto& [name, value] : scored.record.resolved_settings)
+    read.rows.push_back({name, value});
+  answer.add(std::move(read));
+  if (!o.picture.empty()) answer.add({"picture"}, o.picture);
+  print(answer, o.format);
+  if (o.picture.empty()) return kPass;
+  RunRequest both{.scene = o.scene, .overrides = one.spec.overrides, .solvers = {one.spec.solver}};
+  both.solvers.insert(both.solvers.end(), o.solvers.begin(), o.solvers.end());
+  render::draw_end(both, o.picture);
+  return kPass;
 }
 
 void add_options(CLI::App& app, Options& o) {
@@ -76,7 +73,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--picture", o.picture, "Draw the end (.png), beside every --solver");
   app.add_option("--solver", o.solvers, "A solver to draw beside; repeat it for each")
       ->allow_extra_args(false);
-  add_json(app, o.json, "The record");
+  add_format(app, o.format);
 }
 
 }  // namespace

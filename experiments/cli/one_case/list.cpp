@@ -13,7 +13,7 @@ namespace {
 
 struct Options {
   std::string what;
-  bool json = false;
+  Format format;
 };
 
 std::string allowed(const ParamSpec& spec) {
@@ -25,122 +25,92 @@ std::string allowed(const ParamSpec& spec) {
   return shortest(spec.min) + " to " + shortest(spec.max);
 }
 
-Json list_scenes() {
-  return json_array(shipped("scenes"), [](const std::string& name) -> Json {
+void list_scenes(Answer& all) {
+  Table table{"scenes",
+              "scenes",
+              {{"name"},
+               {"vertices"},
+               {"links"},
+               {"dt", "time step", kTime},
+               {"duration", "duration", kTime},
+               {"summary"}}};
+  for (const std::string& name : shipped("scenes")) {
     const Scene scene = load_scene(find_scene(name));
-    return {{"name", name},
-            {"summary", scene.summary},
-            {"vertices", scene.mesh.size()},
-            {"links", scene.links.size()},
-            {"dt", scene.dt},
-            {"duration", scene.duration()}};
-  });
+    table.rows.push_back(
+        {name, scene.mesh.size(), scene.links.size(), scene.dt, scene.duration(), scene.summary});
+  }
+  all.add(std::move(table));
 }
 
-Json list_solvers() {
-  const auto param = [](const ParamSpec& spec) -> Json {
-    return {{"name", spec.name},
-            {"default", spec.default_value},
-            {"unit", spec.unit},
-            {"allowed", allowed(spec)},
-            {"help", spec.help}};
-  };
-  return json_array(all_solvers(), [&](const SolverEntry* entry) -> Json {
-    return {{"name", entry->name},
-            {"summary", entry->summary},
-            {"source", entry->source},
-            {"params", json_array(entry->params, param)}};
-  });
+void list_solvers(Answer& all) {
+  Table table{"solvers", "solvers", {{"name"}, {"summary"}, {"source"}}},
+      parameters{"parameters",
+                 "parameters of solvers",
+                 {{"solver"}, {"name", "parameter"}, {"default"}, {"unit"}, {"allowed"}, {"help"}}};
+  for (const SolverEntry* entry : all_solvers()) {
+    table.rows.push_back({entry->name, entry->summary, entry->source});
+    for (const ParamSpec& spec : entry->params)
+      parameters.rows.push_back(
+          {entry->name, spec.name, spec.default_value, spec.unit, allowed(spec), spec.help});
+  }
+  all.add(std::move(table));
+  all.add(std::move(parameters));
 }
 
-Json list_metrics() {
-  const auto value = [](const ValueSpec& spec) -> Json {
-    return {{"name", spec.name},
-            {"unit", spec.unit.si},
-            {"help", spec.help},
-            {"in_series", spec.in_series}};
-  };
-  return json_array(metrics(), [&](const MetricEntry* entry) -> Json {
-    return {{"name", entry->name},
-            {"summary", entry->summary},
-            {"source", entry->source},
-            {"values", json_array(entry->values, value)}};
-  });
+void list_metrics(Answer& all) {
+  Table table{"metrics", "metrics", {{"name"}, {"summary"}, {"source"}}},
+      values{"values",
+             "their values",
+             {{"metric"}, {"name", "value"}, {"unit"}, {"in_series", "over time"}, {"help"}}};
+  for (const MetricEntry* entry : metrics()) {
+    table.rows.push_back({entry->name, entry->summary, entry->source});
+    for (const ValueSpec& spec : entry->values)
+      values.rows.push_back({entry->name, spec.name, spec.unit.si, spec.in_series, spec.help});
+  }
+  all.add(std::move(table));
+  all.add(std::move(values));
 }
 
-Json list_studies() {
-  return json_array(shipped("studies"), [](const std::string& name) -> Json {
+void list_studies(Answer& all) {
+  Table table{"studies", "studies", {{"name"}, {"presets"}, {"question"}, {"scenes"}, {"solvers"}}};
+  for (const std::string& name : shipped("studies")) {
     const Study study = load_study(name);
-    return {{"name", name},
-            {"question", study.question},
-            {"presets", study.presets},
-            {"scenes", study.scenes},
-            {"solvers", study.solvers}};
-  });
+    table.rows.push_back({name, join(study.presets, ", "), study.question, join(study.scenes, ", "),
+                          join(study.solvers, "; ")});
+  }
+  all.add(std::move(table));
 }
 
 /// What Vasilovici's report asserts.
-Json list_assertions() {
-  return json_array(vasilovici_assertions(), [](const VasiloviciAssertion& assertion) -> Json {
-    return {{"name", assertion.section},
-            {"summary", assertion.assertion},
-            {"verdict", to_string(assertion.verdict)},
-            {"because", assertion.because},
-            {"truth", assertion.truth.empty() ? Json() : Json(assertion.truth)}};
-  });
+void list_assertions(Answer& all) {
+  Table table{"assertions",
+              "assertions of Vasilovici's report",
+              {{"name", "section"}, {"summary", "assertion"}, {"verdict"}, {"because"}, {"truth"}}};
+  for (const VasiloviciAssertion& assertion : vasilovici_assertions())
+    table.rows.push_back({assertion.section, assertion.assertion, to_string(assertion.verdict),
+                          assertion.because,
+                          assertion.truth.empty() ? Cell() : Cell(assertion.truth)});
+  all.add(std::move(table));
 }
 
-constexpr std::pair<const char*, Json (*)()> kKinds[] = {{"scenes", list_scenes},
-                                                         {"solvers", list_solvers},
-                                                         {"metrics", list_metrics},
-                                                         {"studies", list_studies},
-                                                         {"assertions", list_assertions}};
-
-std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
-
-void print_text(std::string_view kind, const Json& all) {
-  std::cout << kind << '\n';
-  for (const Json& one : all) {
-    std::cout << "  " << text(one["name"]) << ": "
-              << text(one.contains("summary") ? one["summary"] : one["question"]) << '\n';
-    if (one.contains("verdict")) {
-      const std::string truth = text(one["truth"]);
-      std::cout << "      " << text(one["verdict"]) << ": " << text(one["because"])
-                << (truth.empty() ? "" : " (truth " + truth + ")") << '\n';
-    }
-    if (one.contains("source")) std::cout << "      source: " << text(one["source"]) << '\n';
-    for (const Json& param : one.value("params", Json::array())) {
-      std::cout << "      " << text(param["name"]) << '=' << text(param["default"]);
-      if (const std::string unit = text(param["unit"]); !unit.empty())
-        std::cout << " [" << unit << ']';
-      std::cout << "  (" << text(param["allowed"]) << ")  " << text(param["help"]) << '\n';
-    }
-    for (const Json& value : one.value("values", Json::array()))
-      std::cout << "      " << text(value["name"]) << " [" << text(value["unit"]) << "]  "
-                << text(value["help"]) << '\n';
-  }
-}
+constexpr std::pair<const char*, void (*)(Answer&)> kKinds[] = {{"scenes", list_scenes},
+                                                                {"solvers", list_solvers},
+                                                                {"metrics", list_metrics},
+                                                                {"studies", list_studies},
+                                                                {"assertions", list_assertions}};
 
 int run(const Options& options) {
-  const std::string& what = options.what;
-  Json all;
+  Answer all{"list"};
   for (const auto& [kind, list] : kKinds)
-    if (what.empty() || what == kind) all[kind] = list();
-  if (options.json) {
-    print_json(what.empty() ? all : all[what], 2);
-    return kPass;
-  }
-  for (const auto& [kind, items] : all.items()) {
-    if (kind != all.begin().key()) std::cout << '\n';
-    print_text(kind, items);
-  }
+    if (options.what.empty() || options.what == kind) list(all);
+  print(all, options.format);
   return kPass;
 }
 
 void add_options(CLI::App& app, Options& o) {
   app.add_option("WHAT", o.what, "scenes | solvers | metrics | studies | assertions (default: all)")
       ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies", "assertions"}));
-  add_json(app, o.json, "The same");
+  add_format(app, o.format);
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 
 namespace taut::verb::planning {
@@ -7,21 +6,25 @@ namespace {
 
 struct Options {
   CaseOptions which;
-  bool json = false;
+  Format format;
 };
 
-void print_text(const Case& one, const std::vector<PassCost>& step_cost) {
-  std::vector<Row> rows{{"pass", "items", "repeats", "bytes", "projections"}};
+Answer answer_of(const Case& one, const std::vector<PassCost>& step_cost) {
+  Answer answer{"plan", one.id};
+  Table table{"passes",
+              "",
+              {{"pass"}, {"items"}, {"repeats"}, {"bytes", "bytes", kBytes}, {"projections"}}};
   std::size_t bytes = 0, projections = 0;
   for (const PassCost& cost : step_cost) {
     const std::size_t work = cost.projections ? cost.items * cost.repeats : 0;
     bytes += cost.bytes, projections += work;
-    rows.push_back({cost.pass, std::to_string(cost.items), std::to_string(cost.repeats),
-                    std::to_string(cost.bytes), std::to_string(work)});
+    table.rows.push_back({cost.pass, cost.items, cost.repeats, cost.bytes, work});
   }
-  rows.push_back({"in one step", "", "", std::to_string(bytes), std::to_string(projections)});
-  std::cout << one.id << "\nkey " << one.key << "\n\n";
-  print_columns(rows, 1);
+  answer.add({"key"}, Cell(one.key));
+  answer.add({"bytes", "bytes of a step", kBytes}, bytes);
+  answer.add({"projections", "projections per step"}, projections);
+  answer.add(std::move(table));
+  return answer;
 }
 
 int run(const Options& options) {
@@ -29,22 +32,25 @@ int run(const Options& options) {
   continue_in_right_program(one.choice);
   if (const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
       !reasons.empty()) {
-    std::cerr << one.id << " is unsupported:\n";
-    for (const std::string& reason : reasons) std::cerr << "  " << reason << '\n';
+    Answer answer{"plan", one.id};
+    answer.add({"key"}, one.key);
+    Table& table = answer.add(Table{"unsupported", "unsupported:", {{"why"}}});
+    for (const std::string& reason : reasons) {
+      table.rows.push_back({reason});
+      std::cerr << one.id << " is unsupported: " << reason << '\n';
+    }
+    if (options.format.is_data()) print(answer, options.format);
     return kNothing;
   }
   const std::unique_ptr<Solver> solver = one.choice.entry->make(*one.scene, one.choice.params);
   solver->load(one.scene->start);
-  if (options.json)
-    print_json(Json{{"id", one.id}, {"key", one.key}, {"passes", solver->step_cost()}}, 2);
-  else
-    print_text(one, solver->step_cost());
+  print(answer_of(one, solver->step_cost()), options.format);
   return kPass;
 }
 
 void add_options(CLI::App& app, Options& o) {
   o.which.bind(app);
-  add_json(app, o.json, "The passes");
+  add_format(app, o.format);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/render/image/video.hpp"
@@ -22,6 +23,7 @@ struct Options {
   std::string size, quality;
   double range = 0;
   bool sheet = false, video = false, dark = false, json = false;
+  bool silent = false;  ///< the files are not named
 };
 
 std::pair<int, int> parse_size(const std::string& text) {
@@ -159,10 +161,10 @@ int run(Options options) {
     times = {0, end / 8, end / 4, end / 2, end};
   else if (times.empty())
     times = {end};
-  print_files(options.video   ? draw_video(options, set, out)
-              : options.sheet ? draw_sheet(options, set, times, out)
-                              : draw_stills(options, set, times, out),
-              options.json);
+  const std::vector<std::string> files = options.video   ? draw_video(options, set, out)
+                                         : options.sheet ? draw_sheet(options, set, times, out)
+                                                         : draw_stills(options, set, times, out);
+  if (!options.silent) print_files(files, options.json);
   return kPass;
 }
 
@@ -193,6 +195,13 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 }  // namespace
+
+void draw_end(const RunRequest& what, const std::string& file) {
+  Options options;
+  options.what = what, options.output = file, options.silent = true;
+  run(options);
+}
+
 }  // namespace taut::verb::render
 
 TAUT_VERB(render) = {

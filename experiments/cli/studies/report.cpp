@@ -6,6 +6,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
+#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/film/film.hpp"
 #include "experiments/report/findings.hpp"
@@ -24,6 +25,7 @@ struct Options {
   std::vector<std::string> studies, films;
   std::string preset, results, output = "report.html";
   bool no_media = false, json = false;
+  bool silent = false;  ///< the file is not named
 };
 
 std::string command_line(const Options& options) {
@@ -63,7 +65,7 @@ int put_out(const report::ReportInput& input, const Options& options) {
     return kPass;
   }
   write_file(options.output, report::make_report(input));
-  std::cout << options.output << '\n';
+  if (!options.silent) std::cout << options.output << '\n';
   return kPass;
 }
 
@@ -171,6 +173,14 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 }  // namespace
+
+std::string report_main_job(const std::string& preset, const std::string& results) {
+  Options options;
+  options.preset = preset, options.results = results, options.silent = true;
+  run(options);
+  return options.output;
+}
+
 }  // namespace taut::verb::reporting
 
 TAUT_VERB(report) = {

@@ -2,11 +2,13 @@
 #include <map>
 
 #include "experiments/case/record_io.hpp"
+#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/main_job.hpp"
 #include "experiments/system/distinct.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/timing/statistics.hpp"
 
@@ -53,17 +55,17 @@ std::vector<Case> all_cases(const std::vector<Study>& studies) {
 /// still gives numbers; the report shows how noisy. Then truths and baselines: what the report says
 /// besides the studies. It says which one failed, too, so the run goes on.
 int finish_main_job(const MainJob& job, const Options& options) {
-  const std::string jobs = std::to_string(options.jobs);
-  invoke("bench", {job.bench, "--preset", job.preset, "--seconds", "0.015", "--out", options.out},
-         Output::discarded);
+  bench::time_study(job.bench, job.preset, 0.015, options.out);
   progress() << "holding solvers to closed forms and published numbers\n";
-  invoke("verify", {"-j", jobs, "-o", options.out + "/verify.json"}, Output::discarded);
+  write_file(std::filesystem::path(options.out) / "verify.json",
+             to_json(verify::verify_all(options.jobs)));
   progress() << "comparing with the committed baselines\n";
-  if (invoke("check", {"--record", "-j", jobs, "--out", options.out}) == kInterrupted)
-    throw Interrupted();
-  std::vector<std::string> arguments{"--out", options.out};  // none named: the main job's
-  if (options.preset != job.preset) arguments.insert(arguments.end(), {"--preset", options.preset});
-  return invoke("report", arguments, options.json ? Output::discarded : Output::shown);
+  const Answer compared = check::check_all(options.jobs, options.out);
+  if (!options.json) print(compared, {});
+  const std::string page =
+      reporting::report_main_job(options.preset == job.preset ? "" : options.preset, options.out);
+  if (!options.json) std::cout << page << '\n';
+  return kPass;
 }
 
 Json to_json(const CampaignProgress& campaign, const Options& options, const Store& store) {

@@ -9,7 +9,7 @@ namespace {
 
 struct Options : BaselineOptions {
   std::string study, why;
-  bool json = false;
+  Format format;
 };
 
 /// A baseline is made of results of all its cases.
@@ -25,18 +25,19 @@ int early_exit(const BaselineStudy& study) {
   return complete(study) ? kPass : kIncomplete;
 }
 
-void print(const BaselineStudy& study, const Comparison& comparison, bool json) {
-  if (!json) return print_findings(study, comparison);
-  print_json(json_array(comparison.findings, [](const Change& f) -> Json {
-    return {{"case", f.id}, {"solver", f.solver}, {"change", f.text}};
-  }));
+void tell(const BaselineStudy& study, const Comparison& comparison, const Format& format) {
+  Answer answer{"baseline", study.name};
+  answer.add({"cases", "cases compared"}, comparison.cases);
+  Table& table = answer.add(findings_table());
+  add_findings(table, study, comparison);
+  print(answer, format);
 }
 
 int diff(const Options& options) {
   const BaselineStudy study = baseline_study(options.study, options, false);
   if (const int code = early_exit(study); code != kPass) return code;
   const Comparison comparison = study.compare();
-  print(study, comparison, options.json);
+  tell(study, comparison, options.format);
   return comparison.findings.empty() ? kPass : kRegression;
 }
 
@@ -61,8 +62,9 @@ int update(Options options) {
   const BaselineStudy study = baseline_study(options.study, options, false);
   if (const int code = early_exit(study); code != kPass) return code;
   const Comparison changes = study.compare();
-  if (options.json || !study.before.empty()) print(study, changes, options.json);
-  std::ostream& news = options.json ? progress() : std::cout;
+  const bool data = options.format.is_data();
+  if (data || !study.before.empty()) tell(study, changes, options.format);
+  std::ostream& news = data ? progress() : std::cout;
   if (changes.findings.empty()) {
     news << study.name << ": " << changes.cases << " cases are as the baseline says; nothing "
          << "was written\n";
@@ -77,7 +79,7 @@ int update(Options options) {
 void add_options(CLI::App& app, Options& options) {
   app.add_option("STUDY", options.study, "Name or path")->required();
   options.bind(app);
-  add_json(app, options.json, "What differs");
+  add_format(app, options.format);
 }
 
 void add_update_options(CLI::App& app, Options& options) {

@@ -1,11 +1,17 @@
+#include <tuple>
+
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
+#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/baseline_study.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
 
 namespace taut::verb::check {
 
@@ -14,7 +20,8 @@ namespace {
 struct Options : BaselineOptions {
   std::vector<std::string> studies;
   std::string junit;
-  bool strict = false, record = false, json = false;
+  bool strict = false, record = false;
+  Format format;
 };
 
 /// Names of the studies that have a baseline, sorted.
@@ -52,129 +59,177 @@ int exit_code(const BaselineStudy& study, const Comparison& comparison) {
   return study.not_run.empty() ? kPass : kIncomplete;
 }
 
-void summarise(const BaselineStudy& study, const Comparison& comparison) {
-  const auto moved = std::ranges::count_if(comparison.findings, &Change::is_regression);
-  const auto mismatched = std::ranges::count_if(comparison.findings, &Change::is_mismatch);
-  std::cout << study.name << ": " << comparison.cases << " cases and " << comparison.values
-            << " values compared, "
-            << coloured(std::to_string(moved) + " moved", moved ? Colour::red : Colour::green);
-  if (mismatched) std::cout << ", " << mismatched << " do not match the study";
-  if (!study.not_run.empty()) std::cout << ", " << study.not_run.size() << " not run";
-  std::cout << '\n';
-  if (moved || mismatched)
-    std::cout << "  if this was meant to change: taut baseline update " << study.name
-              << " --why \"...\"\n";
-}
+constexpr std::size_t kMostRows = 12;  ///< of what moved, printed unless all is asked for
+constexpr const char* kOthers = "other values";
 
-Unit unit_of(const std::string& value) {
+/// The value's title if charts and claims tell of it.
+std::string group_of(const std::string& value) {
   const ValueSpec* spec = find_value(value).second;
-  return spec ? spec->unit : kNumber;
+  if (value == "status" || value == "projections") return value;
+  return spec && spec->role != Role::none ? report::quantity(value).title : kOthers;
 }
 
-/// "better in 3, worse in 1": of an error; "" of what has neither.
-std::string judged(const MovedValue& moved) {
-  if (!unit_of(moved.value).less_is_better || moved.less + moved.more == 0) return "";
-  std::string text;
-  if (moved.less > 0) text += "; better in " + std::to_string(moved.less);
-  if (moved.more > 0)
-    text += (text.empty() ? "; " : ", ") + ("worse in " + std::to_string(moved.more));
-  return text;
+/// "strip, 2.64 -> 2.81 %": the largest change.
+std::string largest_text(const Change& change) {
+  const Unit unit = unit_of_value(change.value);
+  std::string text = change.scene;
+  if (change.kind == Change::Kind::status_changed) return text + ", " + change.text;
+  if (group_of(change.value) == kOthers) text += " " + change.value;
+  const auto number = [&](int digits) {
+    return std::pair(number_text(change.before * unit.scale, digits),
+                     number_text(change.now * unit.scale, digits));
+  };
+  auto [before, now] = number(3);
+  for (int digits = 4; before == now && digits < 17; ++digits)
+    std::tie(before, now) = number(digits);
+  return text + ", " + before + " -> " + now +
+         (unit.shown.empty() ? "" : " " + std::string(unit.shown));
 }
 
-/// By scene and value: in how many cases it moved, and how far in the one that moved most.
-void print_roll_up(const Comparison& comparison) {
-  std::vector<Row> rows;
-  for (const MovedValue& moved : roll_up(comparison))
-    rows.push_back({moved.scene, moved.value,
-                    std::to_string(moved.cases) + (moved.cases == 1 ? " case," : " cases,"),
-                    "largest change " + text(moved, unit_of(moved.value).si) + judged(moved)});
-  if (!rows.empty()) print_columns(rows, 2);
-}
-
-/// What the report reads: how much was compared, and what differs.
-struct Notes {
-  std::size_t cases = 0, values = 0;
-  Json findings = Json::array(), studies = Json::array();
-
-  void add(const BaselineStudy& study, const Comparison& comparison) {
-    cases += comparison.cases, values += comparison.values;
-    for (const Change& f : comparison.findings)
-      if (f.is_regression() || f.is_mismatch())
-        findings.push_back(
-            {{"study", study.name}, {"case", f.id.empty() ? f.solver : f.id}, {"change", f.text}});
-    const auto moved = [](const MovedValue& m) -> Json {
-      return {{"scene", m.scene},
-              {"value", m.value},
-              {"unit", unit_of(m.value).si},
-              {"cases", m.cases},
-              {"less", m.less},
-              {"more", m.more},
-              {"less_is_better", unit_of(m.value).less_is_better},
-              {"largest_change", {{"case", m.largest->id}, {"text", m.largest->text}}}};
-    };
-    studies.push_back({{"study", study.name},
-                       {"cases", comparison.cases},
-                       {"values", comparison.values},
-                       {"moved", json_array(roll_up(comparison), moved)},
-                       {"not_run", study.not_run}});
+/// What the studies' comparisons come to.
+class Report {
+ public:
+  /// `typed`: as the study was asked for.
+  void add(const std::string& typed, const BaselineStudy& study, const Comparison& comparison,
+           int code) {
+    const auto moved = std::ranges::count_if(comparison.findings, &Change::is_regression);
+    const auto mismatched = std::ranges::count_if(comparison.findings, &Change::is_mismatch);
+    cases_ += comparison.cases, values_ += comparison.values;
+    const char* verdict = moved              ? "moved"
+                          : mismatched       ? "does not match the study"
+                          : code == kPass    ? "passed"
+                          : code == kNothing ? "nothing compared"
+                                             : "not complete";
+    studies_.rows.push_back({study.name, verdict, comparison.cases, comparison.values, moved,
+                             mismatched, study.not_run.size()});
+    if (moved || mismatched)
+      accept_ += (accept_.empty() ? "" : "; ") + ("taut baseline update " + shell_word(typed)) +
+                 " --why \"...\"";
+    add_moved(study, comparison);
+    add_mismatches(study, comparison);
+    add_findings(findings_, study, comparison);
+    for (const std::string& id : study.not_run) not_run_.rows.push_back({study.name, id});
   }
-  void write(const std::string& results) const {
-    write_file(std::filesystem::path(results) / "check.json",
-               to_text(Json{{"schema", "taut-check-1"},
-                            {"program", program_digest()},
-                            {"cases", cases},
-                            {"values", values},
-                            {"findings", findings}},
-                       1) +
-                   "\n");
+  void add_nothing(const std::string& study, const std::string& why) {
+    studies_.rows.push_back({study, "nothing to compare with: " + why, 0, 0, 0, 0, 0});
   }
+  std::size_t cases() const { return cases_; }
+
+  Answer answer() {
+    Answer all{"check"};
+    all.add(Column("program").in_detail(), program_digest());
+    all.add(Column("cases").in_detail(), cases_);
+    all.add(Column("values").in_detail(), values_);
+    findings_.detail = true;
+    for (Table* table : {&studies_, &findings_, &not_run_, &mismatches_, &moved_})
+      all.add(std::move(*table));
+    if (!accept_.empty()) all.tables.back().caption = "if this was meant to change: " + accept_;
+    return all;
+  }
+
+ private:
+  void add_moved(const BaselineStudy& study, const Comparison& comparison) {
+    for (const MovedValue& m : roll_up(comparison, group_of)) {
+      const bool judged = m.group != kOthers && unit_of_value(m.largest->value).less_is_better;
+      const auto number = [&](std::size_t n) { return m.group == "status" ? Cell() : Cell(n); };
+      moved_.rows.push_back({study.name, m.solver, m.group, m.cases, number(m.less), number(m.more),
+                             largest_text(*m.largest), m.relative(), judged ? "less is better" : "",
+                             m.largest->id});
+    }
+    std::ranges::stable_sort(moved_.rows, {}, [](const std::vector<Cell>& row) {
+      const std::string group = row[2].text();
+      return group == "status" ? 0 : group == kOthers ? 2 : 1;
+    });
+    moved_.most = kMostRows;
+  }
+  /// Cases and solvers without a counterpart, a row for each kind and solver.
+  void add_mismatches(const BaselineStudy& study, const Comparison& comparison) {
+    for (const Change& c : comparison.findings) {
+      if (!c.is_mismatch()) continue;
+      const Cell kind(to_string(c.kind));
+      const auto at = std::ranges::find_if(mismatches_.rows, [&](const std::vector<Cell>& row) {
+        return row[0] == Cell(study.name) && row[1] == Cell(c.solver) && row[2] == kind;
+      });
+      if (at == mismatches_.rows.end())
+        mismatches_.rows.push_back(
+            {study.name, c.solver, kind, 1, c.id.empty() ? "solver " + c.solver : c.id, c.text});
+      else
+        (*at)[3] = Cell((*at)[3].number() + 1);
+    }
+    mismatches_.most = kMostRows / 2;
+  }
+
+  std::size_t cases_ = 0, values_ = 0;
+  std::string accept_;
+  Table studies_{"studies",
+                 "",
+                 {{"study"},
+                  {"verdict"},
+                  {"cases"},
+                  {"values"},
+                  {"moved"},
+                  {"mismatched", "not matching"},
+                  {"not_run"}}},
+      findings_ = findings_table(), not_run_{"not_run", "not run", {{"study"}, {"case"}}},
+      mismatches_{"mismatches",
+                  "the baseline does not match the study",
+                  {{"study"}, {"solver"}, {"kind"}, {"number"}, {"first"}, {"change"}}},
+      moved_{"moved",
+             "what moved",
+             {{"study"},
+              {"solver"},
+              {"value"},
+              {"cases"},
+              {"less", "less in"},
+              {"more", "more in"},
+              {"largest", "largest change"},
+              Column("relative", "relative", kShare),
+              {"judged"},
+              Column("case").in_detail()}};
 };
 
-int check_study(const std::string& name, const Options& options, std::string& xml, Notes& notes) {
+int check_study(const std::string& name, const Options& options, std::string& xml, Report& report) {
   const BaselineStudy study = baseline_study(name, options, true);
   if (study.before.empty()) {
     const std::string folder = study.folder.parent_path().string();
-    std::ostream& out = options.json ? std::cerr : std::cout;
-    out << study.name << ": nothing to compare with: ";
-    if (std::filesystem::is_directory(folder))
-      out << "no baseline in " << printable(study.folder.string()) << "; taut baseline update "
-          << study.name << " --why \"...\" makes one\n";
-    else
-      out << "no folder '" << printable(folder) << "' here; --baselines names another\n";
+    report.add_nothing(
+        study.name, std::filesystem::is_directory(folder)
+                        ? "no baseline in " + printable(study.folder.string()) +
+                              "; taut baseline update " + shell_word(name) +
+                              " --why \"...\" makes one"
+                        : "no folder '" + printable(folder) + "' here; --baselines names another");
     return kNothing;
   }
   const bool same = same_toolchain(study, options.strict);
   if (!same && options.strict) return kEnvironment;
   const Comparison comparison = study.compare();
-  notes.add(study, comparison);
-  if (!options.json) {
-    summarise(study, comparison);
-    print_roll_up(comparison);
-    print_findings(study, comparison);
-    for (const std::string& id : study.not_run)
-      std::cout << study.name << ": " << id << ": was not run\n";
-  }
+  const int code = exit_code(study, comparison);
+  report.add(name, study, comparison, code);
   xml += junit(study.name, study.now, comparison);
-  return exit_code(study, comparison);
+  return code;
 }
 
-int check(Options options) {
+/// What the studies come to, and the exit code.
+std::pair<Answer, int> compare_all(Options options) {
   if (options.studies.empty()) options.studies = studies_with_baseline(options.baselines);
-  if (options.studies.empty()) {
-    (options.json ? std::cerr : std::cout)
-        << "nothing to compare with: no baseline in " << options.baselines << '\n';
-    return kNothing;
-  }
-  int code = kPass;
+  Report report;
+  if (options.studies.empty()) report.add_nothing("-", "no baseline in " + options.baselines);
+  int code = options.studies.empty() ? kNothing : kPass;
   std::string suites;
-  Notes notes;
   for (const std::string& study : options.studies)
-    code = worse(code, check_study(study, options, suites, notes));
+    code = worse(code, check_study(study, options, suites, report));
   if (!options.junit.empty())
     write_file(options.junit, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n" +
                                   suites + "</testsuites>\n");
-  if (options.record && notes.cases > 0) notes.write(options.out);
-  if (options.json) print_json(Json{{"studies", notes.studies}, {"findings", notes.findings}});
+  const bool record = options.record && report.cases() > 0;
+  Answer answer = report.answer();
+  if (record) write_file(std::filesystem::path(options.out) / "check.json", to_json(answer));
+  return {std::move(answer), code};
+}
+
+int check(const Options& options) {
+  const auto [answer, code] = compare_all(options);
+  print(answer, options.format);
   return code;
 }
 
@@ -182,13 +237,23 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("STUDY", options.studies, "Names or paths; none: all that have a baseline");
   options.bind(app);
   app.add_option("--junit", options.junit, "Also write a JUnit file for continuous integration");
-  add_json(app, options.json, "What moved, by scene and value, and every finding,");
+  add_format(app, options.format, "Print every change with the command that runs its case");
   app.add_flag("--record", options.record, "Also keep the findings for the report");
   app.add_flag("--strict-env", options.strict,
                "Fail with 5 if the baseline was made with another toolchain");
 }
 
 }  // namespace
+
+Answer check_all(int jobs, const std::string& results) {
+  Options options;
+  options.jobs = jobs, options.out = results, options.record = true;
+  options.baselines = results_folder() / "baselines";
+  auto [answer, code] = compare_all(options);
+  if (code == kInterrupted) throw Interrupted();
+  return answer;
+}
+
 }  // namespace taut::verb::check
 
 TAUT_VERB(check) = {

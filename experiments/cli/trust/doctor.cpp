@@ -4,7 +4,6 @@
 #include <cfloat>
 #include <cstdlib>
 #include <fstream>
-#include <iomanip>
 #include <thread>
 
 #include "experiments/case/fingerprint.hpp"
@@ -20,10 +19,6 @@ namespace taut::verb::doctor {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Options {
-  bool json = false;
-};
 
 struct Check {
   std::string name, value;
@@ -95,33 +90,27 @@ std::vector<Check> examine() {
                  std::to_string(load).substr(0, 4) + " on " + std::to_string(cores) + " cores",
                  load < 0.5 * cores});
   if (!governor.empty()) all.push_back({"clock", governor, governor == "performance"});
-  all.push_back({"same code, twice", number_text(100 * spread, 2) + " % apart", spread < 0.02});
+  all.push_back({"same code, twice", number_text(spread, kShare, 2) + " apart", spread < 0.02});
   return all;
 }
 
-int run(const Options& options) {
-  const std::vector<Check> checks = examine();
+int run(const Format& format) {
+  Answer answer{"doctor"};
+  Table table{"findings", "", {{"name", "what"}, {"value", "found"}, {"good"}}};
   bool trusted = true;
-  for (const Check& f : checks)
+  for (const Check& f : examine()) {
+    table.rows.push_back({f.name, f.value, f.good});
     if (f.name == "load" || f.name == "clock" || f.name == "same code, twice")
       trusted = trusted && f.good;
-  const char* verdict = trusted ? "timing can be trusted here"
-                                : "timing is for display only here: the machine is not quiet";
-  if (options.json) {
-    const Json all = json_array(checks, [](const Check& f) -> Json {
-      return {{"name", f.name}, {"value", f.value}, {"good", f.good}};
-    });
-    print_json({{"findings", all}, {"timing_trusted", trusted}}, 2);
-    return kPass;
   }
-  for (const Check& f : checks)
-    std::cout << (f.good ? "  " : coloured("! ", Colour::yellow)) << std::left << std::setw(20)
-              << f.name << f.value << '\n';
-  std::cout << verdict << '\n';
+  answer.add({"timing_trusted", "timing can be trusted here"},
+             Cell(trusted).with(trusted ? "" : "it is for display only: the machine is not quiet"));
+  answer.add(std::move(table));
+  print(answer, format);
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& options) { add_json(app, options.json, "The findings"); }
+void add_options(CLI::App& app, Format& format) { add_format(app, format); }
 
 }  // namespace
 }  // namespace taut::verb::doctor

@@ -2,18 +2,16 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
-#include <ranges>
 #include <thread>
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/baseline/assertions_baseline.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/clock.hpp"
-#include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/text.hpp"
 #include "experiments/truths/truth.hpp"
 #include "experiments/truths/vasilovici/assertions.hpp"
 
@@ -24,7 +22,8 @@ namespace {
 struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
-  bool json = false, verbose = false, assertions = false, update = false, list = false;
+  bool assertions = false, update = false, list = false;
+  Format format;
   std::string output, baselines;
 
   /// Whether every truth that an assertion rests on is checked, for every solver.
@@ -97,49 +96,14 @@ std::vector<JudgedAssertion> judged(const std::vector<Outcome>& outcomes) {
   });
 }
 
-Json to_json(const std::vector<Outcome>& outcomes) {
-  const auto finding = [](const Finding& f) -> Json {
-    return {{"subject", f.subject},
-            {"quantity", f.quantity},
-            {"unit", f.unit},
-            {"measured", f.measured},
-            {"expected", f.expected},
-            {"tolerance", f.tolerance},
-            {"uncertainty", f.uncertainty},
-            {"verdict", to_string(f.verdict)},
-            {"why", f.why}};
-  };
-  const auto truth = [&](const Outcome& outcome) -> Json {
-    return {{"name", outcome.truth->name},
-            {"section", outcome.truth->section},
-            {"section_title", section_title(outcome.truth->section)},
-            {"row", outcome.truth->row},
-            {"statement", outcome.truth->statement},
-            {"source", outcome.truth->source},
-            {"findings", json_array(outcome.findings, finding)}};
-  };
-  const auto assertion = [](const JudgedAssertion& a) -> Json {
-    return {{"section", a.section},
-            {"assertion", a.assertion},
-            {"verdict", a.verdict},
-            {"figure", a.figure}};
-  };
-  return {{"schema", "taut-truths-2"},
-          {"program", program_digest()},
-          {"truths", json_array(outcomes, truth)},
-          {"assertions", json_array(judged(outcomes), assertion)}};
-}
-
 std::string value(double v) {
-  return formatted("%.*g", std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3, v);
+  return number_text(v, std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3);
 }
 
-std::string line(const Finding& f) {
-  static constexpr Colour kColours[] = {Colour::green, Colour::yellow, Colour::yellow, Colour::red};
-  std::string text =
-      coloured(to_string(f.verdict), kColours[static_cast<int>(f.verdict)]) + "  " + f.subject;
-  if (f.verdict == TruthVerdict::not_applicable) return text + ": " + f.why;
-  text += ": " + f.quantity + " " + value(f.measured);
+/// A number beside what it is held to.
+std::string text_of(const Finding& f) {
+  if (f.verdict == TruthVerdict::not_applicable) return f.subject + ": " + f.why;
+  std::string text = f.subject + ": " + f.quantity + " " + value(f.measured);
   if (f.uncertainty > 0) text += " +- " + value(f.uncertainty);
   if (f.unit != "1") text += " " + f.unit;
   if (f.expected == 0)
@@ -149,36 +113,90 @@ std::string line(const Finding& f) {
   return f.why.empty() ? text : text + ": " + f.why;
 }
 
-/// For each subject its worst finding only, unless `all`.
-std::vector<Finding> worst_by_subject(const std::vector<Finding>& findings) {
-  const auto badness = [](const Finding& f) {
-    const double off = std::abs(f.measured - f.expected);
-    const double share = f.tolerance > 0 ? off / f.tolerance : off;
-    return std::pair(f.verdict, std::isnan(share) ? 1e300 : share);
-  };
-  std::vector<Finding> worst;
-  for (const std::string& subject : distinct(findings, &Finding::subject)) {
-    const auto of = [&](const Finding& f) { return f.subject == subject; };
-    auto own = findings | std::views::filter(of);
-    worst.push_back(*std::ranges::max_element(own, {}, badness));
-  }
-  return worst;
+/// The worst comes last.
+std::pair<TruthVerdict, double> badness(const Finding& f) {
+  const double off = std::abs(f.measured - f.expected);
+  const double share = f.tolerance > 0 ? off / f.tolerance : off;
+  return {f.verdict, std::isnan(share) ? 1e300 : share};
 }
 
-void print_table(const std::vector<Outcome>& outcomes, bool verbose) {
-  int section = 0;
+std::string place(const TruthEntry& truth) {
+  return std::to_string(truth.section) + "." + std::to_string(truth.row);
+}
+
+/// A row a truth, with the number that is worst or comes nearest to its tolerance.
+Table table_of(const std::vector<Outcome>& outcomes) {
+  Table table{"truths",
+              "",
+              {{"verdict"},
+               {"place"},
+               {"name", "truth"},
+               {"numbers"},
+               {"nearest", "nearest to its tolerance"},
+               Column("section").in_detail(),
+               Column("section_title").in_detail(),
+               Column("statement").in_detail(),
+               Column("source").in_detail(),
+               Column("seconds", "time", kTime).in_detail()}};
   for (const auto& [truth, findings, seconds] : outcomes) {
-    if (truth->section != section) {
-      section = truth->section;
-      std::cout << '\n' << section << "  " << section_title(section) << '\n';
-    }
-    std::cout << "  " << truth->section << '.' << truth->row << ' ' << truth->name << ": "
-              << truth->statement;
-    if (verbose) std::cout << " [" << truth->source << "; " << value(seconds) << " s]";
-    std::cout << '\n';
-    for (const Finding& f : verbose ? findings : worst_by_subject(findings))
-      std::cout << "      " << line(f) << '\n';
+    const auto worst = std::ranges::max_element(findings, {}, badness);
+    const bool any = worst != findings.end();
+    table.rows.push_back({any ? to_string(worst->verdict) : "not applicable", place(*truth),
+                          truth->name, findings.size(), any ? text_of(*worst) : "", truth->section,
+                          section_title(truth->section), truth->statement, truth->source, seconds});
   }
+  return table;
+}
+
+Table findings_of(const std::vector<Outcome>& outcomes) {
+  Table table{"findings",
+              "every number",
+              {{"verdict"},
+               {"truth"},
+               {"subject"},
+               {"quantity"},
+               {"unit"},
+               {"measured", "", kNumber, 7},
+               {"expected", "", kNumber, 7},
+               {"tolerance"},
+               {"uncertainty"},
+               {"why"}}};
+  for (const Outcome& outcome : outcomes)
+    for (const Finding& f : outcome.findings)
+      table.rows.push_back({to_string(f.verdict), outcome.truth->name, f.subject, f.quantity,
+                            f.unit, f.measured, f.expected, f.tolerance, f.uncertainty, f.why});
+  table.detail = true;
+  return table;
+}
+
+Table table_of(const std::vector<JudgedAssertion>& assertions) {
+  Table table{"assertions",
+              "assertions of Vasilovici's report",
+              {{"section"}, {"verdict"}, {"assertion"}, {"figure"}}};
+  for (const auto& [section, assertion, verdict, figure] : assertions)
+    table.rows.push_back({section, verdict, assertion, figure});
+  return table;
+}
+
+/// The numbers that are not as they must be, last, where they are read.
+Table broken(const std::vector<Outcome>& outcomes) {
+  Table table{"broken", "broken", {{"truth"}, {"number"}}};
+  for (const Outcome& outcome : outcomes)
+    for (const Finding& f : outcome.findings)
+      if (f.verdict == TruthVerdict::broken)
+        table.rows.push_back({outcome.truth->name, text_of(f)});
+  return table;
+}
+
+Answer answer_of(const std::vector<Outcome>& outcomes, const Options& options) {
+  Answer answer{"verify"};
+  answer.add(Column("program").in_detail(), program_digest());
+  answer.add(table_of(outcomes));
+  answer.add(findings_of(outcomes));
+  answer.add(table_of(judged(outcomes)));
+  answer.add(broken(outcomes));
+  answer.tables[options.assertions ? 0 : 2].detail = true;
+  return answer;
 }
 
 int summary(const std::vector<Outcome>& outcomes) {
@@ -199,13 +217,6 @@ int summary(const std::vector<Outcome>& outcomes) {
   news << '\n';
   if (counts[3] > 0) return kRegression;
   return counts[0] + counts[1] > 0 ? kPass : kNothing;
-}
-
-void print_assertions(const std::vector<JudgedAssertion>& assertions) {
-  for (const auto& [section, assertion, verdict, figure] : assertions)
-    std::cout << section << "  " << assertion << "\n      "
-              << coloured(verdict, verdict == "overturned" ? Colour::red : Colour::green)
-              << (figure.empty() ? "" : ": " + figure) << '\n';
 }
 
 /// Holds the verdicts of assertions to those that were kept, or keeps them.
@@ -232,23 +243,20 @@ int compare_with_baseline(const std::vector<JudgedAssertion>& assertions, const 
 
 int run(const Options& options) {
   if (options.list) {
-    for (const TruthEntry* truth : choose({}))
-      std::cout << truth->section << '.' << truth->row << '\t' << truth->name << '\t'
-                << truth->statement << '\n';
+    Answer answer{"verify"};
+    Table& table = answer.add(Table{"truths", "", {{"place"}, {"name", "truth"}, {"statement"}}});
+    for (const TruthEntry* truth : choose(options))
+      table.rows.push_back({place(*truth), truth->name, truth->statement});
+    print(answer, options.format);
     return kPass;
   }
   if (options.update && !(options.assertions && options.of_all_assertions()))
     throw InputError(
         "--update keeps the verdicts of all assertions: taut verify --assertions --update");
   const std::vector<Outcome> outcomes = check(choose(options), options);
-  const std::string json = to_text(to_json(outcomes), 1);
-  if (!options.output.empty()) write_file(options.output, json + "\n");
-  if (options.json)
-    std::cout << json << '\n';
-  else if (options.assertions)
-    print_assertions(judged(outcomes));
-  else
-    print_table(outcomes, options.verbose);
+  const Answer answer = answer_of(outcomes, options);
+  if (!options.output.empty()) write_file(options.output, to_json(answer));
+  print(answer, options.format);
   const int code = summary(outcomes);
   if (!options.of_all_assertions()) return code;
   const int assertions = compare_with_baseline(judged(outcomes), options);
@@ -268,17 +276,23 @@ void add_options(CLI::App& app, Options& options) {
                  "Threads (default: " + std::to_string(options.jobs) + ")")
       ->check(CLI::Range(1, 64));
   add_output(app, options.output, "Also write the findings as JSON to this file");
-  app.add_flag("--json", options.json, "Findings as JSON instead of a table");
   app.add_flag("--assertions", options.assertions,
                "Only what holds the assertions of Vasilovici's report, and their verdicts");
   add_baselines(app, options.baselines);
   app.add_flag("--update", options.update,
                "With --assertions: keep their verdicts as the baseline");
-  app.add_flag("--verbose", options.verbose, "Every number, with sources and times");
+  add_format(app, options.format, "Every number, with sources and times");
   app.add_flag("--list", options.list, "Only name the truths");
 }
 
 }  // namespace
+
+Answer verify_all(int jobs) {
+  Options options;
+  options.jobs = jobs;
+  return answer_of(check(choose(options), options), options);
+}
+
 }  // namespace taut::verb::verify
 
 TAUT_VERB(verify) = {
@@ -287,7 +301,7 @@ TAUT_VERB(verify) = {
     .summary = "Holds solvers and metrics to closed forms and published numbers",
     .example =
         "taut verify --section 4 --solver jakobsen\n"
-        "  taut verify hanging-chain-sweeps --verbose\n"
+        "  taut verify hanging-chain-sweeps --all\n"
         "  taut verify --assertions\n"
         "Exit: 0 no truth is broken, no verdict of an assertion changed; 1 one is or "
         "did; 4 nothing was held to anything",

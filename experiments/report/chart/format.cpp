@@ -27,18 +27,6 @@ std::string escape_html(std::string_view text) {
   return out;
 }
 
-std::string csv_field(std::string_view text) {
-  std::string line(text);
-  std::ranges::replace_if(
-      line, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  if (!line.empty() && std::string_view("=+-@").find(line.front()) != std::string_view::npos)
-    line.insert(0, "'");
-  if (line.find_first_of(",\"") == std::string::npos) return line;
-  std::string out = "\"";
-  for (const char c : line) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
 std::string gnuplot_string(std::string_view text) {
   // gnuplot 5.4 ends '''x' after two quotes, and backquotes inside "..." run commands: whatever is
   // not plain goes in octal.

@@ -5,13 +5,13 @@
 #include <string>
 #include <string_view>
 
+#include "experiments/answer/answer.hpp"
+
 namespace taut::report {
 
 /// For a page: & < > " ' escaped; control characters become U+FFFD.
 std::string escape_html(std::string_view);
-std::string csv_field(
-    std::string_view);  ///< quoted if it must be; one line always, as gnuplot wants; what begins
-                        ///< with = + - @ gets a ' in front: a spreadsheet would run it
+using taut::csv_field;
 std::string gnuplot_string(std::string_view);  ///< a literal that no text can leave; one line
 std::string base64(std::string_view bytes);
 /// Letters, digits, '-', '_' and '.' only, '-' and '.' not first, at most 129: safe as a file name

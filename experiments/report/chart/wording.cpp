@@ -18,66 +18,6 @@
 
 namespace taut::report {
 
-namespace {
-
-constexpr std::array<const char*, 10> kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-
-/// 10 to this power.
-/// Of an exponent as typed, of any length: "-09" -> "10⁻⁹".
-std::string power_of_ten(std::string_view exponent) {
-  const auto digits = std::min(exponent.find_first_not_of("+-0"), exponent.size() - 1);
-  std::string text = exponent.front() == '-' && exponent[digits] != '0' ? "10⁻" : "10";
-  for (const char digit : exponent.substr(digits))
-    text += kRaised[static_cast<std::size_t>(digit - '0')];
-  return text;
-}
-
-/// "3.40e-13" -> "3.4×10⁻¹³", "1e+06" -> "10⁶".
-std::string powers(const std::string& scientific) {
-  const auto e = scientific.find('e');
-  std::string mantissa = scientific.substr(0, e);
-  if (mantissa.find('.') != std::string::npos) {
-    mantissa.erase(mantissa.find_last_not_of('0') + 1);
-    if (mantissa.back() == '.') mantissa.pop_back();
-  }
-  return (mantissa == "1" ? "" : mantissa + "×") +
-         power_of_ten(std::string_view(scientific).substr(e + 1));
-}
-
-}  // namespace
-
-std::string fixed(double value, int decimals) {
-  if (!std::isfinite(value)) return significant(value);
-  const std::string text = formatted("%.*f", decimals, std::abs(value));
-  const bool nothing = text.find_first_not_of("0.") == std::string::npos;
-  return (value < 0 && !nothing ? "−" : "") + text;
-}
-
-int decimals_for(double width) {
-  if (!(width > 0) || !std::isfinite(width)) return 6;
-  const double exponent = std::floor(std::log10(width));
-  const bool two = width / std::pow(10.0, exponent) < 3;
-  return std::clamp(static_cast<int>(two ? 1 - exponent : -exponent), 0, 6);
-}
-
-std::string significant(double value, int digits) {
-  if (std::isnan(value)) return "–";
-  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
-  if (value == 0) return "0";
-  const double magnitude = std::abs(value);
-  // Rounded first, so that 9.96 with two digits becomes "10" and not "10.0".
-  const std::string rounded = formatted("%.*e", digits - 1, magnitude);
-  const int exponent = std::stoi(rounded.substr(rounded.find('e') + 1));
-  std::string text;
-  if (exponent < -4 || exponent > 5)
-    text = powers(rounded);
-  else
-    text = formatted("%.*f", std::max(0, digits - 1 - exponent), magnitude);
-  return (value < 0 ? "−" : "") + text;
-}
-
-std::string exact(double value) { return std::isnan(value) ? "" : shortest(value); }
-
 std::string typeset(std::string_view plain) {
   constexpr std::pair<std::string_view, std::string_view> kSigns[] = {
       {"^2", "²"},    {"^3", "³"},    {">=", "≥"}, {"<=", "≤"}, {"+-", "±"},
@@ -209,13 +149,6 @@ double value_of(const Record& record, std::string_view name) {
     return value->second;
   const auto param = record.params.find(parameter_of(record.solver, key));
   return param == record.params.end() ? overridden(record, key) : number(param->second);
-}
-
-std::string shown(const Unit& unit, double si, int digits) {
-  const bool counted = unit.shown.empty() && si == std::round(si) && std::abs(si) < 1e7;
-  const std::string number = counted ? exact(si) : significant(si * unit.scale, digits);
-  return unit.shown.empty() || !std::isfinite(si) ? number
-                                                  : number + "\u00A0" + std::string(unit.shown);
 }
 
 std::string Quantity::label() const {

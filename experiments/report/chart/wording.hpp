@@ -11,21 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/answer/number.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut::report {
 
-/// Fewest digits that carry `digits` significant ones, no exponent between 1e-4 and 1e6:
-/// 0.01234 -> "0.012", 22.04 -> "22", 3.4e-13 -> "3.4×10⁻¹³". NaN and infinities give "–" and "∞".
-std::string significant(double value, int digits = 2);
-/// So many decimals: -0.934 -> "−0.93"; never "−0.00".
-std::string fixed(double value, int decimals);
-/// The decimals that a value deserves whose uncertainty spans `width`: one digit of it, two where
-/// the first is below 3; at most six.
-int decimals_for(double width);
-/// Every bit, shortest form: for data files. NaN gives "".
-std::string exact(double value);
+using taut::exact;
+
 /// Plain text with the signs that a keyboard lacks: "dt^2 >= 2e-5, mu x 2" ->
 /// "dt² ≥ 2×10⁻⁵, μ × 2".
 std::string typeset(std::string_view);
@@ -45,9 +38,6 @@ inline constexpr const char *kSweeps = "iterations", *kSubsteps = "substeps";
 /// NaN if it has none.
 double value_of(const Record&, std::string_view name);
 
-/// "1.2 %", "0.31 mm": for prose and tables.
-std::string shown(const Unit&, double si, int digits = 2);
-
 /// What people are told of a quantity.
 struct Quantity {
   std::string name;
@@ -58,7 +48,7 @@ struct Quantity {
 
   /// "RMS stretch [%]"
   std::string label() const;
-  std::string text(double si, int digits = 2) const { return shown(unit, si, digits); }
+  std::string text(double si, int digits = 2) const { return taut::shown(unit, si, digits); }
 };
 /// As the metric's own file declares it; unknown names are shown as they are.
 Quantity quantity(std::string_view name);

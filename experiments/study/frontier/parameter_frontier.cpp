@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
-#include "experiments/system/json.hpp"
 
 namespace taut {
 
@@ -84,16 +84,6 @@ std::optional<ParameterFrontier> search(const FrontierSetting& setting, const st
   return found;
 }
 
-constexpr const char* kSchema = "taut-frontiers-2";
-
-using F = ParameterFrontier;
-constexpr std::tuple kFields{
-    Field{"solver", &F::solver},   Field{"parameter", &F::parameter}, Field{"unit", &F::unit},
-    Field{"lacks", &F::lacks},     Field{"downwards", &F::downwards}, Field{"from", &F::from},
-    Field{"to", &F::to},           Field{"good", &F::good},           Field{"bad", &F::bad},
-    Field{"symptom", &F::symptom}, Field{"at_start", &F::at_start},   Field{"theory", &F::theory},
-    Field{"law", &F::law},         Field{"beyond", &F::beyond},       Field{"cases", &F::cases}};
-
 }  // namespace
 
 std::optional<std::vector<ParameterFrontier>> find_frontiers(
@@ -111,23 +101,70 @@ std::optional<std::vector<ParameterFrontier>> find_frontiers(
   return frontiers;
 }
 
-std::string to_json(const std::vector<ParameterFrontier>& frontiers, std::string_view program) {
-  Json all{{"schema", kSchema}, {"program", program}, {"parameters", Json::array()}};
-  for (const F& one : frontiers) all["parameters"].push_back(json_of(one, kFields));
-  return to_text(all, 1) + "\n";
+Answer answer_of(const std::vector<ParameterFrontier>& frontiers, std::string_view program) {
+  Table table{"parameters",
+              "how far every parameter goes, and what goes wrong first",
+              {{"solver"},
+               {"parameter"},
+               {"unit"},
+               {"good", "good up to"},
+               {"bad", "bad from"},
+               {"symptom", "what goes wrong"},
+               {"at_start", "wrong at the start already, not counted"},
+               {"theory"},
+               Column("law").in_detail(),
+               {"lacks", "no answer"},
+               Column("from").in_detail(),
+               Column("to").in_detail(),
+               Column("downwards", "smaller is harder").in_detail(),
+               Column("cases").in_detail(),
+               Column("beyond_scene").in_detail(),
+               Column("beyond_solver").in_detail()}},
+      beyond{"beyond", "the cases beyond", {{"solver"}, {"parameter"}, {"override", "--set"}}};
+  for (const ParameterFrontier& one : frontiers) {
+    table.rows.push_back({one.solver, one.parameter, one.unit, one.good, one.bad, one.symptom,
+                          one.at_start, one.theory, one.law, one.lacks, one.from, one.to,
+                          one.downwards, one.cases, one.beyond.scene, one.beyond.solver});
+    for (const std::string& text : one.beyond.overrides)
+      beyond.rows.push_back({one.solver, one.parameter, text});
+  }
+  beyond.detail = true;
+  Answer answer{"frontier"};
+  answer.add(Column("program").in_detail(), program);
+  answer.add(std::move(table));
+  answer.add(std::move(beyond));
+  return answer;
 }
 
-std::optional<std::vector<ParameterFrontier>> read_frontiers(const std::filesystem::path& file,
-                                                             std::string_view program) {
-  return read_json(read_text(file), file.string(), [&](const JsonReader& root) {
-    root.require_schema(kSchema);
-    std::optional<std::vector<ParameterFrontier>> found;
-    if (root.at("program").text() != program) return found;
-    found.emplace();
-    for (const JsonReader& one : root.at("parameters").items())
-      found->push_back(read_as(one, kFields));
-    return found;
-  });
+std::vector<ParameterFrontier> frontiers_of(const Answer& answer) {
+  std::vector<ParameterFrontier> all;
+  const Table &table = answer.table("parameters"), &beyond = answer.table("beyond");
+  for (const auto& row : table.rows) {
+    const auto text = [&](const char* column) { return table.at(row, column).text(); };
+    const auto number = [&](const char* column) { return table.at(row, column).number(); };
+    ParameterFrontier one{.solver = text("solver"),
+                          .parameter = text("parameter"),
+                          .unit = text("unit"),
+                          .lacks = text("lacks"),
+                          .downwards = table.at(row, "downwards").is_true(),
+                          .from = number("from"),
+                          .to = number("to"),
+                          .good = number("good"),
+                          .bad = number("bad"),
+                          .symptom = text("symptom"),
+                          .at_start = text("at_start"),
+                          .theory = number("theory"),
+                          .law = text("law"),
+                          .beyond = {text("beyond_scene"), {}, text("beyond_solver")}};
+    if (std::isnan(one.from) || std::isnan(one.to))
+      throw InputError("this is no answer of taut frontier --all: no range of " + one.parameter);
+    for (const auto& own : beyond.rows)
+      if (beyond.at(own, "solver").text() == one.solver &&
+          beyond.at(own, "parameter").text() == one.parameter)
+        one.beyond.overrides.push_back(beyond.at(own, "override").text());
+    all.push_back(std::move(one));
+  }
+  return all;
 }
 
 }  // namespace taut

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/answer/answer.hpp"
 #include "experiments/study/frontier/frontier.hpp"
 
 namespace taut {
@@ -95,12 +96,11 @@ std::optional<std::vector<ParameterFrontier>> find_frontiers(
     const std::string& solver, const Store&, const CampaignOptions&,
     const std::function<void(std::size_t done, std::size_t all)>& progress);
 
-/// One JSON text with what this program found: what `taut frontier --all` prints and leaves below
-/// kFrontiersFolder for the report.
-std::string to_json(const std::vector<ParameterFrontier>&, std::string_view program);
-/// Nothing if another program wrote the file. Throws InputError if it is damaged.
-std::optional<std::vector<ParameterFrontier>> read_frontiers(const std::filesystem::path& file,
-                                                             std::string_view program);
+/// What `taut frontier --all` answers and leaves below kFrontiersFolder for the report; `program`
+/// found it.
+Answer answer_of(const std::vector<ParameterFrontier>&, std::string_view program);
+/// What such an answer was made of. Throws InputError: it is another one.
+std::vector<ParameterFrontier> frontiers_of(const Answer&);
 
 /// Where `taut frontier --all` leaves what it found in a results folder, for the report.
 inline constexpr std::string_view kFrontiersFolder = "frontiers";

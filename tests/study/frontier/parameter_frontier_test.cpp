@@ -225,19 +225,18 @@ ParameterFrontier kept(double good, double bad, bool downwards = false) {
 
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Frontiers, AreReadBackOfTheProgramThatFoundThemAndDamageIsNamed) {
-  const Scratch scratch;
-  const auto file = scratch.path() / "frontiers.json";
-  const std::vector<ParameterFrontier> all{kept(0.1, 0.102), kept(0.1, kNone, true)};
-  write_file(file, to_json(all, "program"));
-  const auto read = read_frontiers(file, "program");
-  ASSERT_TRUE(read);
-  EXPECT_EQ(to_json(*read, "program"), read_text(file));
-  EXPECT_DOUBLE_EQ((*read)[0].headroom(), 10);
-  EXPECT_DOUBLE_EQ((*read)[1].headroom(), 10) << "downwards from 1 to 0.1";
-  EXPECT_FALSE(read_frontiers(file, "another"));
-  write_file(file, "{}\n");
-  EXPECT_THROW(read_frontiers(file, "program"), InputError);
+TEST(Frontiers, AreReadBackFromTheirAnswer) {
+  std::vector<ParameterFrontier> all{kept(0.1, 0.102), kept(0.1, kNone, true)};
+  all[1].parameter = "size, down";
+  const Answer answer = answer_of(all, "program");
+  const std::vector<ParameterFrontier> read = frontiers_of(answer);
+  EXPECT_EQ(answer_of(read, "program"), answer);
+  EXPECT_EQ(read[0].beyond.overrides, all[0].beyond.overrides);
+  EXPECT_DOUBLE_EQ(read[0].headroom(), 10);
+  EXPECT_DOUBLE_EQ(read[1].headroom(), 10) << "downwards from 1 to 0.1";
+  Answer damaged = answer;
+  damaged.tables[0].columns[0].name = "who";
+  EXPECT_THROW(frontiers_of(damaged), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "experiments/answer/number.hpp"
+
+namespace taut {
+
+/// One value of an answer: nothing (it has no meaning, or was not measured), a text, a number or an
+/// interval in SI units, yes or no.
+struct Cell {
+  std::variant<std::monostate, std::string, double, Interval, bool> value;
+  std::string note;  ///< what a reader has to know of it
+  std::string key;   ///< of the case that it comes from
+
+  Cell() = default;
+  Cell(std::string text) : value(std::move(text)) {}
+  Cell(std::string_view text) : Cell(std::string(text)) {}
+  Cell(const char* text) : Cell(std::string(text)) {}
+  Cell(bool yes) : value(yes) {}
+  Cell(double number);  ///< nothing if it is none, or not finite
+  template <std::integral Number>
+  requires(!std::same_as<Number, bool>) Cell(Number number) : Cell(static_cast<double>(number)) {}
+  Cell(const Interval&);
+  template <class Value>
+  Cell(const std::optional<Value>& one) {
+    if (one) *this = Cell(*one);
+  }
+
+  Cell with(std::string a_note) const;
+  bool empty() const { return value.index() == 0; }
+  /// The text; "" of anything else.
+  std::string text() const;
+  bool is_true() const { return value == decltype(value)(true); }
+  /// The number, or the middle of the interval; NaN of anything else.
+  double number() const;
+  bool operator==(const Cell&) const = default;
+};
+
+/// What a cell says: its name in data ("cpu"), in words, and its unit.
+struct Column {
+  std::string name;
+  std::string heading;  ///< without the unit
+  std::string unit = "1";
+  std::string shown = {};  ///< the unit that people are shown: `shown = scale * SI`
+  double scale = 1;
+  int digits = 3;       ///< significant ones that people are shown
+  bool detail = false;  ///< people see it if they ask for details; data always have it
+
+  /// Without a heading: the name, with blanks for what separates its words.
+  Column(std::string name, std::string heading = {}, const Unit& = kNumber, int digits = 3);
+  Column in_detail() const;
+  Unit as_unit() const { return {unit, shown, scale}; }
+  bool operator==(const Column&) const = default;
+};
+
+/// A single value with its name.
+struct Fact {
+  Column column;
+  Cell cell;
+  bool operator==(const Fact&) const = default;
+};
+
+struct Table {
+  std::string name;
+  std::string title;
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows = {};  ///< each has as many cells as there are columns
+  std::string caption = {};                  ///< what a reader has to know of it, below
+  bool detail = false;
+  std::size_t most = 0;  ///< rows that people see unless they ask for details; 0: all
+
+  /// Whether people see any of it.
+  bool is_shown(bool details) const {
+    return !rows.empty() &&
+           (details || (!detail && !std::ranges::all_of(columns, &Column::detail)));
+  }
+  std::size_t rows_shown(bool details) const {
+    return details || most == 0 ? rows.size() : std::min(most, rows.size());
+  }
+
+  /// The cell of that column; throws InputError: there is no such column.
+  const Cell& at(const std::vector<Cell>& row, std::string_view column) const;
+  bool operator==(const Table&) const = default;
+};
+
+/// What a verb found: a value that is printed on a terminal, written as JSON, CSV and Markdown,
+/// kept and compared, each by one piece of code. Names of facts, of tables and of a table's columns
+/// are unique.
+struct Answer {
+  std::string kind;     ///< the verb: "check", "bench kernels"
+  std::string subject;  ///< of what: "regression", "hang jakobsen:iterations=8"
+  std::vector<Fact> facts = {};
+  std::vector<Table> tables = {};
+
+  void add(Column, Cell);
+  Table& add(Table);
+  const Cell& fact(std::string_view name) const;    ///< an empty one: there is none
+  const Table& table(std::string_view name) const;  ///< one without rows: there is none
+  bool operator==(const Answer&) const = default;
+};
+
+/// The cell for people, with its unit or, as in a column whose heading has it, without:
+/// "2.3 (2.1 to 2.5) ms"; "-": nothing. A note follows.
+std::string text(const Cell&, const Column&, bool with_unit = true);
+/// The heading with the unit: "CPU time [ms]".
+std::string label(const Column&);
+
+/// For a terminal: the subject, a line for every fact, tables in columns.
+std::string to_text(const Answer&, bool details = false);
+/// Rows in columns, two blanks before each: the first `names` columns and the last are flush left,
+/// the others flush right. All rows are as long as the first. Widths count characters of UTF-8.
+std::string in_columns(const std::vector<std::vector<std::string>>& rows, std::size_t names);
+
+/// The schema of all verbs (experiments/cli/README.md): every number in SI, to the bit.
+std::string to_json(const Answer&);
+/// The answer of that text; throws InputError that names the file and the place in it.
+Answer answer_from_json(std::string_view text, const std::string& file);
+
+/// One table for spreadsheets and data frames, by name; "facts" or "": the facts, or the first
+/// table where there is one. Numbers in SI, to the bit; an interval has three columns, what has
+/// notes one more. Throws InputError: no such table.
+std::string to_csv(const Answer&, std::string_view table = "");
+/// A field of a CSV file; what a spreadsheet would take for a formula is marked as text.
+std::string csv_field(std::string_view text);
+
+/// As on a terminal, for documents.
+std::string to_markdown(const Answer&, bool details = false);
+
+}  // namespace taut
