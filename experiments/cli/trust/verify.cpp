@@ -232,7 +232,18 @@ int compare_with_baseline(const std::vector<JudgedAssertion>& assertions, const 
 
 int run(const Options& options) {
   if (options.list) {
-    for (const TruthEntry* truth : choose({}))
+    const std::vector<const TruthEntry*> chosen = choose(options);
+    if (options.json) {
+      print_json(json_array(chosen, [](const TruthEntry* truth) -> Json {
+        return {{"name", truth->name},
+                {"section", truth->section},
+                {"row", truth->row},
+                {"statement", truth->statement},
+                {"source", truth->source}};
+      }));
+      return kPass;
+    }
+    for (const TruthEntry* truth : chosen)
       std::cout << truth->section << '.' << truth->row << '\t' << truth->name << '\t'
                 << truth->statement << '\n';
     return kPass;
