@@ -25,7 +25,9 @@ constexpr ParamSpec kParams[] = {
         "stiffness", "N/m", "1000", 1e-6, 1e9,
         "spring constant of every link: the accuracy parameter, for the scene's links are rigid"),
     ParamSpec::choice("implicit", "true", "true|false",
-                      "backward Euler, or explicit springs (stable below k h^2/m of about 0.3)"),
+                      "backward Euler, which at its defaults may explode with pins, bend links and "
+                      "velocities at the start; or explicit springs (stable below k h^2/m of about "
+                      "0.3)"),
     ParamSpec::integer("newton", "1", 1, 1000,
                        "Newton steps at most per implicit substep (Bullet's default: 1)"),
     bullet_ref::kSubsteps,

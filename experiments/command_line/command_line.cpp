@@ -174,6 +174,11 @@ std::string bash_completion(const CLI::App& app) {
          "complete -o default -F _taut taut\n";
 }
 
+void flush_output() {
+  if (!(std::cout << std::flush) || std::fflush(stdout) != 0)
+    throw InputError("standard output cannot be written");
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("taut: runs cloth solvers side by side on identical scenes and measures them");
   app.require_subcommand(1);
@@ -186,21 +191,22 @@ int parse_and_run(int argc, char** argv) {
   app.footer("`taut VERB --help` shows the options and an example of each verb.");
   const std::vector<Verb> all = add_verbs(app);
   const std::string first = argc == 2 ? argv[1] : "";  // for `cmake --install`
-  if (first == "--man") return std::cout << man_page(app, TAUT_VERSION), kPass;
-  if (first == "--bash-completion") return std::cout << bash_completion(app), kPass;
+  if (first == "--man") return std::cout << man_page(app, TAUT_VERSION), flush_output(), kPass;
+  if (first == "--bash-completion") return std::cout << bash_completion(app), flush_output(), kPass;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     std::ostringstream complaint;
     const int code = app.exit(error, std::cout, complaint);
     std::cerr << printable(complaint.str());
-    return code == 0 ? kPass : kUsage;
+    if (code != 0) return kUsage;
+    flush_output();
+    return kPass;
   }
   const auto chosen = std::find_if(all.rbegin(), all.rend(),  // a verb of a verb is the last
                                    [](const Verb& verb) { return verb.app->parsed(); });
   const int code = chosen->run();
-  if (!(std::cout << std::flush) || std::fflush(stdout) != 0)
-    throw InputError("standard output cannot be written");
+  flush_output();
   return code;
 }
 

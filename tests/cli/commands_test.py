@@ -269,6 +269,21 @@ class Verbs(CommandLine):
             process = subprocess.run([BINARIES / "taut", "list", "--json"], stdout=full, stderr=subprocess.PIPE, text=True)
         self.assertEqual((process.returncode, "cannot be written" in process.stderr), (2, True))
 
+    def test_help_on_a_full_disk_is_an_error_too(self):
+        for option in ("--help", "--help-all", "--version", "--man", "--bash-completion"):
+            with open("/dev/full", "w") as full:
+                process = subprocess.run([BINARIES / "taut", option], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+            self.assertEqual(process.returncode, 2, option)
+            self.assertIn("cannot be written", process.stderr)
+
+    def test_truths_are_listed_by_name_and_section_and_as_json(self):
+        all_of_4 = json.loads(self.taut("verify", "--list", "--section", 4, "--json").out)
+        self.assertEqual({t["section"] for t in all_of_4}, {4})
+        lines = self.taut("verify", "--list", "--section", 4).out.splitlines()
+        self.assertEqual([line.split("\t")[1] for line in lines], [t["name"] for t in all_of_4])
+        one, = json.loads(self.taut("verify", all_of_4[1]["name"], "--list", "--json").out)
+        self.assertEqual(one, all_of_4[1])
+
     def test_the_main_job_names_studies_that_exist(self):
         job = tomllib.loads((pathlib.Path(__file__).parents[2] / "experiments/main-job.toml").read_text())
         known = {study["name"]: study["presets"].split(", ") for study in rows_of(self.answer("list", "studies"), "studies")}

@@ -1,3 +1,4 @@
+#include "core/model/text.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/baseline_study.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -49,7 +50,7 @@ void note_reason(const BaselineStudy& study, const std::string& why, const Compa
                                                          " is what it is, oldest first\n\n";
   std::set<std::string> rows;
   for (const Change& finding : changes.findings) rows.insert(finding.id);
-  text += "- " + why + " (" +
+  text += "- " + printable(why) + " (" +
           std::to_string(study.before.empty() ? study.now.size() : rows.size()) + " cases)\n";
   write_durably(study.folder / kToolchainFile, std::string(toolchain()) + "\n");
   write_durably(file, text);

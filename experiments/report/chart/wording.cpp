@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <optional>
 #include <utility>
 
-#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
@@ -224,6 +224,18 @@ Work work_of(const Record& r) {
   return {sweeps >= 0 ? std::max(1, substeps) : substeps, sweeps};  // whole steps are one substep
 }
 
+namespace {
+
+std::optional<int> whole_number(const std::string& text) {
+  int value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) return {};
+  return value;
+}
+
+}  // namespace
+
 std::string brief_settings(const std::string& solver) try {
   const SolverChoice choice = parse_solver(solver);
   const std::string sweeps = parameter_of(choice.entry->name, kSweeps),
@@ -232,7 +244,8 @@ std::string brief_settings(const std::string& solver) try {
   std::string text;
   for (const ParamSpec& spec : choice.params.specs()) {
     const std::string value(choice.params.value(spec.name));
-    const std::optional<int> number = whole<int>(value);  // a solver from outside may want a text
+    const std::optional<int> number =
+        whole_number(value);  // of a solver from outside it may be none
     if (number && spec.name == sweeps)
       work.sweeps = *number;
     else if (number && spec.name == substeps)
