@@ -162,7 +162,7 @@ std::vector<KeptAnswer> default_limits(const Scene& scene) {
   for (const MetricEntry* metric : metrics()) {
     if (!metric->make(scene)) continue;
     for (const ValueSpec& value : metric->values) {
-      const bool depth = value.kept && value.role == Role::vertex_depth;
+      const bool depth = value.role == Role::vertex_depth;
       if (depth || value.role == Role::passages || (value.kept && is_count(value.unit)))
         all.push_back({std::string(value.name), depth ? 0.001 * extent(scene) : 0});
     }

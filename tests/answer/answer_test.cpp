@@ -47,8 +47,8 @@ class MadeUp {
   bool maybe() { return up_to(1) == 0; }
   std::string word() {
     static const std::vector<std::string> kWords{
-        "hang", "a|b",  "x, y",      "\"quoted\"", "=1+1", "-3",        "two words",
-        "<b>",  "käse", "_a*`\\end", "1e3",        "null", "line\nfeed"};
+        "hang", "a | b", "x, y",      "\"quoted\"", "=1+1", "-3",        "two words",
+        "<b>",  "käse",  "_a*`\\end", "1e3",        "null", "line\nfeed"};
     return kWords[static_cast<std::size_t>(up_to(static_cast<int>(kWords.size()) - 1))];
   }
   double number() {
@@ -70,6 +70,7 @@ class MadeUp {
     static constexpr Unit kUnits[] = {kNumber, kShare, kLength, kMilliseconds, kBytes, kMegabytes};
     Column made(name, maybe() ? word() : "", kUnits[up_to(5)], 1 + up_to(16));
     made.detail = up_to(4) == 0;
+    if (made.detail) made.heading = "detail of " + name;
     return made;
   }
   std::mt19937 random_;
@@ -166,6 +167,7 @@ void expect_people_see(const Answer& answer, bool details) {
     if (column.detail && !details) continue;
     EXPECT_NE(terminal.find("  " + line + "\n"), std::string::npos) << line << "\n" << terminal;
   }
+  if (!details) EXPECT_EQ((terminal + document).find("detail of"), std::string::npos);
   const std::vector<Rows> written = markdown_tables(document);
   auto at = written.begin();
   for (const Table& table : answer.tables) {

@@ -285,7 +285,7 @@ class Everywhere(Programs):
         self.assertIn("largest stable dt", frontier)
         advise = self.taut("advise", "./small.toml", "--error", "1%", "--solver", toy, "--patience", 20, "--rounds", 2).out
         self.assertIn("toy-cpp-", advise)
-        reproduce, = [line.split(None, 1)[1] for line in advise.splitlines() if line.strip().startswith("reproduce")]
+        reproduce, = [line.split("compare again", 1)[1] for line in advise.splitlines() if "compare again" in line]
         self.assertIn("'\\''", reproduce, "quotes for a shell")
         verify = self.taut("verify", "--solver", toy)
         self.assertIn("any-solver", verify.out)

@@ -287,8 +287,8 @@ class Advisor {
 };
 
 std::string command(const Options& options, const Result& result) {
-  std::string text = "taut bench " + options.scene;
-  for (const std::string& value : options.settings) text += " --set '" + value + "'";
+  std::string text = "taut bench " + shell_word(options.scene);
+  for (const std::string& value : options.settings) text += " --set " + shell_word(value);
   const auto solver = [&](std::size_t i) {
     text +=
         " --solver " + shell_word(parse_solver(result.bench.cases[i].record.spec.solver).brief());
@@ -377,9 +377,11 @@ Table limits_of(const Result& result) {
   Table table{"kept", "kept beside the error", {{"value"}, {"limit", "at most"}, {"best"}}};
   const bool any = result.recommendation.best.has_value();
   for (const KeptAnswer& limit : result.limits) {
-    const double value = any ? std::abs(result.best().record.value(limit.name)) : std::nan("");
-    table.rows.push_back({limit.name, Cell(limit.tolerance).with(text(limit, limit.tolerance)),
-                          any ? Cell(value).with(text(limit, value)) : Cell()});
+    const auto said = [&](double value) {
+      return unit_of(limit).shown.empty() ? Cell(value) : Cell(value).with(text(limit, value));
+    };
+    table.rows.push_back({limit.name, said(limit.tolerance),
+                          any ? said(std::abs(result.best().record.value(limit.name))) : Cell()});
   }
   return table;
 }
@@ -394,6 +396,7 @@ Table without_of(const Result& result) {
   for (const auto& [effect, cost] : result.without)
     table.rows.push_back(
         {effect, 1 - cost / result.too_dear->cost.mid, cost, cost <= *result.target.budget});
+  table.most = kMostRefused;
   return table;
 }
 

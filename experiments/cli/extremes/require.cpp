@@ -63,7 +63,9 @@ Table answers_of(const Requirement& found) {
   for (std::size_t i = 0; i < found.answers.size(); ++i) {
     const KeptAnswer& answer = found.answers[i];
     const Unit unit = unit_of(answer);
-    const auto said = [&](double value) { return Cell(value).with(text(answer, value)); };
+    const auto said = [&](double value) {
+      return unit.shown.empty() ? Cell(value) : Cell(value).with(text(answer, value));
+    };
     table.rows.push_back({answer.name, unit.shown.empty() ? "1" : unit.shown,
                           answer.is_shape() ? Cell() : said(found.values[i]),
                           said(answer.tolerance),
