@@ -123,8 +123,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                   {"work unit", "vertices, not projections"}});
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"beta", "10|1000|100000"},
-                                                        {"k-min", "1|100|1000"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"beta", "10|100|1000"},
+                                                        {"k-min", "1|10|100"}};
 
 }  // namespace
 }  // namespace taut::solver::avbd
