@@ -35,13 +35,6 @@ std::string csv_line(const Values& values) {
   return join(values, ",", field) + '\n';
 }
 
-std::string_view take(std::string_view& text, char separator) {
-  const auto end = std::min(text.find(separator), text.size());
-  const std::string_view head = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return head;
-}
-
 }  // namespace
 
 void read_into(const JsonReader& j, CaseSpec& spec) {
@@ -51,6 +44,29 @@ void read_into(const JsonReader& j, CaseSpec& spec) {
 Status::Kind status_of(const JsonReader& j) {
   if (!is_status(j.text())) j.fail("unknown status '" + j.text() + "'");
   return status_kind(j.text());
+}
+
+std::map<std::string, std::string> parameters_of(const JsonReader& j) {
+  std::map<std::string, std::string> parameters;
+  for (const auto& [name, value] : j.members()) parameters[name] = value.text();
+  return parameters;
+}
+
+std::vector<PassCost> step_cost_of(const JsonReader& j) {
+  std::vector<PassCost> all;
+  for (const JsonReader& p : j.items())
+    all.push_back({p.at("pass").text(), p.at("items").count(), p.at("repeats").count(),
+                   p.at("bytes").count(), p.at("projections").flag()});
+  return all;
+}
+
+ResolvedSettings resolved_settings_of(const JsonReader& j) {
+  ResolvedSettings all;
+  for (const JsonReader& e : j.items()) {
+    const std::vector<JsonReader> pair = e.items(2);
+    all.emplace_back(pair[0].text(), pair[1].text());
+  }
+  return all;
 }
 
 Record record_of(const JsonReader& j) {
@@ -63,7 +79,7 @@ Record record_of(const JsonReader& j) {
   read_into(j.at("spec"), r.spec);
   r.scene = j.at("scene").text();
   r.solver = j.at("solver").text();
-  for (const auto& [name, value] : j.at("params").members()) r.params[name] = value.text();
+  r.params = parameters_of(j.at("params"));
   r.dt = j.at("dt").number();
   if (!(r.dt > 0)) j.at("dt").fail("expected a time step greater than 0");
   r.steps = j.at("steps").integer(0);
@@ -75,13 +91,8 @@ Record record_of(const JsonReader& j) {
   for (const auto& [name, value] : j.at("values").members())
     r.values[name] = value.number_or_null();
   r.projections = j.at("projections").count();
-  for (const JsonReader& p : j.at("step_cost").items())
-    r.step_cost.push_back({p.at("pass").text(), p.at("items").count(), p.at("repeats").count(),
-                           p.at("bytes").count(), p.at("projections").flag()});
-  for (const JsonReader& e : j.at("resolved_settings").items()) {
-    const std::vector<JsonReader> pair = e.items(2);
-    r.resolved_settings.emplace_back(pair[0].text(), pair[1].text());
-  }
+  r.step_cost = step_cost_of(j.at("step_cost"));
+  r.resolved_settings = resolved_settings_of(j.at("resolved_settings"));
   r.digest = j.at("digest").text();
   if (const auto log = j.find("log")) r.log = log->text();
   return r;
@@ -132,18 +143,27 @@ std::string to_csv(const Series& series) {
   return text;
 }
 
-Series series_from_csv(std::string_view text) {
-  Series series;
-  for (std::string_view header = take(text, '\n'); !header.empty();)
-    series.columns.emplace_back(take(header, ','));
-  while (!text.empty()) {
-    std::string_view line = take(text, '\n');
-    std::vector<double> row;
-    for (std::size_t i = 0; i < series.columns.size(); ++i)
-      row.push_back(whole<double>(take(line, ',')).value_or(std::nan("")));
-    series.rows.push_back(std::move(row));
-  }
-  return series;
+std::string to_json(const Series& series) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < series.columns.size(); ++i)
+    json[series.columns[i]] =
+        json_array(series.rows, [i](const auto& row) { return json_number(row[i]); });
+  return to_text(json);
+}
+
+Series series_from_json(std::string_view text, const std::string& where) {
+  return read_json(text, where, [](const JsonReader& j) {
+    Series series;
+    for (const auto& [name, values] : j.members()) {
+      const std::vector<JsonReader> column = values.items();
+      if (series.columns.empty()) series.rows.resize(column.size());
+      if (column.size() != series.rows.size()) values.fail("is not as long as the first");
+      for (std::size_t k = 0; k < column.size(); ++k)
+        series.rows[k].push_back(column[k].number_or_null());
+      series.columns.push_back(name);
+    }
+    return series;
+  });
 }
 
 std::string to_csv(const State& state) {

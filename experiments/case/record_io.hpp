@@ -39,8 +39,11 @@ Status::Kind status_of(const JsonReader&);     ///< throws InputError
 std::string to_json(const Record&, int indent = -1);
 /// Throws InputError that names `where` (a file) if the text is not a record of this schema.
 Record record_from_json(std::string_view text, const std::string& where);
-/// The same of a part of another JSON text.
+/// The same of a part of another JSON text, and of parts of it.
 Record record_of(const JsonReader&);
+std::map<std::string, std::string> parameters_of(const JsonReader&);
+std::vector<PassCost> step_cost_of(const JsonReader&);
+ResolvedSettings resolved_settings_of(const JsonReader&);
 
 /// Whether the text is a case's address, 64 hexadecimal digits: no other becomes part of a path.
 bool is_key(std::string_view);
@@ -51,7 +54,10 @@ std::string result_digest(const Record&);
 
 /// CSV with a header line; doubles in shortest exact form, NaN as an empty field.
 std::string to_csv(const Series&);
-Series series_from_csv(std::string_view text);
+/// An object of columns: {"step": [0, 1], "t": [0, 0.1]}; NaN as null.
+std::string to_json(const Series&);
+/// Throws InputError that names `where`.
+Series series_from_json(std::string_view text, const std::string& where);
 
 /// "vertex,x,y,z,vx,vy,vz" and a line per vertex [m, m/s]; shortest exact form.
 std::string to_csv(const State&);

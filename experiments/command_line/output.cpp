@@ -160,7 +160,7 @@ CampaignProgress run_missing(const std::vector<Case>& cases, const Store& store,
 int exit_code(const CampaignProgress& campaign, const Store& store) {
   if (campaign.conflicts > 0)
     std::cerr << campaign.conflicts << " cases gave another result than the one stored: see "
-              << (store.root() / "conflicts").string() << '\n';
+              << "table conflicts of " << store.file().string() << '\n';
   if (campaign.interrupted) return kInterrupted;
   if (campaign.conflicts > 0) return kConflict;
   return campaign.ended_from_outside > 0 ? kIncomplete : kPass;

@@ -62,8 +62,8 @@ class Search {
     found_.interrupted = found_.interrupted || campaign.interrupted;
     found_.cases += campaign.cases, found_.ran += campaign.ran;
     if (campaign.conflicts > 0)
-      throw InputError("another result than the one stored; see " +
-                       (store_.root() / "conflicts").string());
+      throw InputError("another result than the one stored; see table conflicts of " +
+                       store_.file().string());
     std::vector<std::optional<Observation>> seen;
     for (const Case& one : cases) {
       const std::optional<Record> record = store_.find(one);

@@ -142,8 +142,8 @@ std::optional<Record> run_stored(const Case& one, const Store& store, const Limi
   if (!record)
     std::filesystem::remove_all(folder);
   else if (store.commit(folder, *record) == Store::Commit::conflict)
-    throw InputError(one.id + ": another result than the one stored; see " +
-                     (store.root() / "conflicts").string());
+    throw InputError(one.id + ": another result than the one stored; see table conflicts of " +
+                     store.file().string());
   return record;
 }
 

@@ -100,7 +100,7 @@ Record IsolatedCase::wait() {
   fs::remove(folder_ / "heartbeat", ignored);
   if (fs::file_size(folder_ / "stderr.txt", ignored) == 0)
     fs::remove(folder_ / "stderr.txt", ignored);
-  if (!record.status.is_result()) fs::remove(folder_ / "series.csv", ignored);
+  if (!record.status.is_result()) fs::remove(folder_ / kSeriesFile, ignored);
   return record;
 }
 
@@ -175,8 +175,8 @@ int run_into(const Case& one, const fs::path& folder, int frames) try {
                                      }});
   motion.reset();
   const bool written = write([&] {
-    write_durably(folder / "series.csv", to_csv(run.series));
-    write_durably(folder / "case.json", to_json(run.record, 1) + "\n");
+    write_file(folder / kSeriesFile, to_json(run.series));
+    write_file(folder / "case.json", to_json(run.record, 1) + "\n");
   });
   if (!written) heartbeat->beat(Heartbeat::kCannotWrite);
   return written ? 0 : kCannotWrite;

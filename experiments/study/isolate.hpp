@@ -76,7 +76,7 @@ class IsolatedCase {
 /// What a recording of the case says about itself.
 TrajectoryHeader trajectory_header(const Case&);
 
-/// The child's side: runs the case in this process and leaves case.json, series.csv, its heartbeat
+/// The child's side: runs the case in this process and leaves case.json, series.json, its heartbeat
 /// and, if asked for, so many moments of its motion in `folder`. Gives the exit code.
 int run_into(const Case&, const std::filesystem::path& folder, int frames = 0);
 

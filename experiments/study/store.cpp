@@ -1,18 +1,18 @@
 #include "experiments/study/store.hpp"
 
-#include <signal.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <fstream>
 #include <iostream>
 
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/metrics/metric.hpp"
+#include "experiments/study/database.hpp"
+#include "experiments/study/schema.hpp"
+#include "experiments/study/writer_mark.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -23,47 +23,54 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array kParts{"case.json", "series.csv", kFramesFile, "stderr.txt"};
+constexpr std::size_t kMostErrors = std::size_t{64} << 10;  ///< bytes that are kept of stderr
 
-EntryParts parts_in(const fs::path& folder) {
-  EntryParts parts;
-  for (const char* part : kParts)
-    if (fs::exists(folder / part)) parts[part] = read_text(folder / part);
-  return parts;
+/// The end of a file, "" if there is none.
+std::string end_of(const fs::path& file, std::size_t most) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) return {};
+  const auto size = static_cast<std::size_t>(in.tellg());
+  std::string text(std::min(size, most), '\0');
+  in.seekg(static_cast<std::streamoff>(size - text.size()));
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  return text;
 }
 
-EntryParts parts_of(const StoredEntry& entry) {
-  EntryParts parts;
-  for (const char* name : kParts)
-    if (entry.has(name)) parts[name] = entry.part(name);
-  return parts;
+std::string text_if_there(const fs::path& file) {
+  return fs::exists(file) ? read_text(file) : std::string();
 }
 
-std::string entry_text(const EntryParts& parts, const Record& record) {
-  Json seal{{"schema", kRecordSchema},
-            {"key", record.key},
-            {"status", to_string(record.status.kind)},
-            {"result", result_digest(record)}};
-  for (const auto& [part, text] : parts) seal["files"][part] = sha256(text);
-  for (const auto& [part, text] : parts) seal["sizes"][part] = text.size();
-  std::string entry = to_text(seal) + '\n';
-  for (const auto& [part, text] : parts) entry += text;
-  return entry;
+constexpr const char* kCaseColumns =
+    "key, id, scene, scene_file, settings, solver, solver_text, parameters, dt, steps, vertices, "
+    "links, status, reason, step, vertex, projections, passes, resolved_settings, state_digest, "
+    "result_digest, log";
+
+/// -1 where the column is NULL.
+int place(const Database::Rows& row, int column) {
+  return row.null(column) ? -1 : static_cast<int>(row.integer(column));
 }
 
-/// The record of an entry; throws if a part is not what its seal says.
-Record open_entry(const StoredEntry& entry, const std::string& key) {
-  read_json(entry.seal(), "its seal", [&](const JsonReader& seal) {
-    for (const auto& [part, digest] : seal.at("files").members()) {
-      if (std::ranges::find(kParts, part) == kParts.end()) digest.fail("is no part of an entry");
-      if (sha256(entry.part(part)) != digest.text())
-        throw InputError(part + " does not match its digest");
-    }
-    if (seal.at("key").text() != key) throw InputError("it belongs to another key");
-  });
-  Record record = record_from_json(entry.part("case.json"), "case.json");
-  if (record.key != key) throw InputError("it belongs to another key");
-  return record;
+/// All but the values, of kCaseColumns. Throws InputError where a text is not what it has to be.
+Record record_in(const Database::Rows& row) {
+  const auto parsed = [&](int column, auto read) {
+    return read_json(row.text(column), "column " + std::to_string(column + 1), read);
+  };
+  Record r;
+  r.key = row.text(0), r.id = row.text(1), r.scene = row.text(2);
+  r.spec = {row.text(3), parsed(4, [](const JsonReader& j) { return j.texts(); }), row.text(6)};
+  r.solver = row.text(5);
+  r.params = parsed(7, parameters_of);
+  r.dt = row.number(8);
+  r.steps = place(row, 9), r.vertices = place(row, 10), r.links = place(row, 11);
+  r.status = {status_kind(row.text(12)), row.text(13), place(row, 14), place(row, 15)};
+  r.projections = static_cast<std::size_t>(row.integer(16));
+  r.step_cost = parsed(17, step_cost_of);
+  r.resolved_settings = parsed(18, resolved_settings_of);
+  r.digest = row.text(19);
+  r.log = row.text(21);
+  if (!(r.dt > 0) || r.steps < 0 || r.vertices < 0 || r.links < 0)
+    throw InputError("its sizes are none");
+  return r;
 }
 
 /// What becomes of a record beside the one that is there, if any.
@@ -76,85 +83,120 @@ Store::Commit beside(const std::optional<Record>& old, const Record& record, boo
   return record.status.is_result() ? Commit::conflict : Commit::same;
 }
 
-/// A leftover of a process of this host that no longer exists: "<key>.<host>.<pid>.<rand>".
-bool abandoned(const std::string& name) {
-  const std::string mine = unique_suffix();
-  const std::string host = mine.substr(0, mine.rfind('.', mine.rfind('.') - 1) + 1);
-  const auto at = name.find("." + host);
-  if (at == std::string::npos) return false;
-  const int pid = std::atoi(name.c_str() + at + 1 + host.size());
-  return pid > 0 && kill(pid, 0) != 0 && errno == ESRCH;
-}
-
-/// Whether entries are folders, as those of an earlier taut. Looks at one: all are alike.
-bool holds_folders(const fs::path& store) {
-  std::error_code none;
-  for (const auto& shelf : fs::directory_iterator(store, none))
-    for (const auto& entry : fs::directory_iterator(shelf.path(), none))
-      return entry.is_directory();
-  return false;
+void require_version(const fs::path& file, std::int64_t version) {
+  if (version != kSchemaVersion)
+    throw InputError(file.string() + ": of another taut (version " + std::to_string(version) +
+                     "; this one reads " + std::to_string(kSchemaVersion) +
+                     "); name another results folder");
 }
 
 }  // namespace
 
+struct Store::State {
+  std::unique_ptr<WriterMark> mark;
+  std::unique_ptr<Database> database;
+  bool writable = false;
+  std::map<std::string, std::int64_t, std::less<>> metrics;  ///< metric_id by name
+  std::optional<Scratch> scratch;                            ///< where cases write
+};
+
 fs::path default_results() { return results_folder() / "runs"; }
 
-Store::Store(fs::path root, Notice notice) : root_(std::move(root)), notice_(std::move(notice)) {
+Store::Store(fs::path root, Notice notice)
+    : root_(std::move(root)), notice_(std::move(notice)), state_(std::make_shared<State>()) {
   if (!notice_) notice_ = [](const std::string& text) { std::cerr << text << '\n'; };
 }
 
-fs::path Store::file(const std::string& key) const {
-  return root_ / "store" / key.substr(0, 2) / key;
+void Store::say_earlier_results() const {
+  for (const char* name : {"store", "packs"})
+    if (fs::is_directory(root_ / name))
+      notice_((root_ / name).string() +
+              ": results of an earlier taut; they stay there and are not read");
 }
 
-struct Store::Packs {
-  PackIndex index;
-  std::optional<PackWriter> writer;
-  std::optional<Scratch> scratch;  ///< of a store that packs: where its cases write
-};
-
-Store::Packs& Store::packs() const {
-  if (!packs_) {
-    if (holds_folders(root_ / "store"))
-      throw InputError((root_ / "store").string() +
-                       ": entries of an earlier taut, folders; name another results folder");
-    packs_ = std::make_shared<Packs>();
-    packs_->index = PackIndex::of(root_);
-    for (const std::string& sentence : packs_->index.damaged) notice_(sentence);
+Database* Store::reading() const {
+  if (state_->database) return state_->database.get();
+  std::error_code none;
+  if (!fs::exists(file(), none)) {
+    say_earlier_results();
+    return nullptr;
   }
-  return *packs_;
+  auto database = std::make_unique<Database>(file(), Database::Access::read);
+  const std::int64_t version = database->number_of("PRAGMA user_version");
+  if (version == 0) return nullptr;  // being made
+  require_version(file(), version);
+  state_->database = std::move(database);
+  return state_->database.get();
 }
 
-void Store::pack_into(const std::string& name, std::size_t batch) {
-  flush();
-  packs().writer.emplace(root_ / "packs" / (name + ".pack"), batch);
-  packs().index.packs.push_back(packs().writer->file());
-  if (!packs().scratch) packs().scratch.emplace();
+Database& Store::writing() const {
+  if (state_->writable) return *state_->database;
+  state_->database.reset();
+  std::error_code none;
+  if (!fs::exists(file(), none)) say_earlier_results();
+  make_folder(root_);
+  state_->mark = std::make_unique<WriterMark>(file());
+  auto database = std::make_unique<Database>(file(), Database::Access::write);
+  database->transaction([&] {  // which shows that the disk takes it
+    if (const std::int64_t version = database->number_of("PRAGMA user_version"); version == 0)
+      database->script(kTables);
+    else
+      require_version(file(), version);
+    database->script("PRAGMA user_version = " + std::to_string(kSchemaVersion));
+  });
+  state_->database = std::move(database);
+  state_->writable = true;
+  return *state_->database;
 }
 
-void Store::flush() const {
-  if (packs().writer) packs().writer->flush();
+void Store::prepare() const {
+  std::error_code none;
+  if (!state_->database && fs::is_regular_file(file(), none) && damaged(file())) {
+    const fs::path aside = file().string() + ".damaged-" + unique_suffix();
+    std::error_code error;
+    fs::rename(file(), aside, error);
+    if (error)
+      throw InputError(file().string() + ": damaged, and cannot be set aside: " + error.message());
+    fs::remove(file().string() + "-journal", none);  // of the damaged one
+    notice_(file().string() + ": damaged, set aside as " + aside.string() + "; begun anew");
+  }
+  writing();
 }
 
-const PackIndex::Place* Store::packed(const std::string& key) const {
-  const auto at = packs().index.places.find(key);
-  if (at == packs().index.places.end()) return nullptr;
-  return at->second.result || !fs::exists(file(key)) ? &at->second : nullptr;
-}
-
-std::optional<StoredEntry> Store::entry(const std::string& key) const {
-  if (const PackIndex::Place* place = packed(key))
-    return StoredEntry(packs().index.packs[place->pack], place->offset);
-  return StoredEntry::in(file(key));
+std::optional<Record> Store::sound_record(Database& database, const std::string& key,
+                                          std::string& why) const {
+  std::optional<Record> record;
+  std::string result;
+  {
+    Database::Rows row =
+        database.rows(std::string("SELECT ") + kCaseColumns + " FROM cases WHERE key = ?", key);
+    if (!row.next()) return {};
+    try {
+      record = record_in(row);
+      result = row.text(20);
+    } catch (const InputError& error) {
+      why = error.what();
+      return {};
+    }
+  }
+  Database::Rows values = database.rows(
+      "SELECT name, value FROM cases JOIN numbers USING (case_id) JOIN metrics USING (metric_id) "
+      "WHERE key = ?",
+      key);
+  while (values.next()) record->values[values.text(0)] = values.number(1);
+  if (result_digest(*record) == result) return record;
+  why = "it does not match its digest";
+  return {};
 }
 
 std::optional<Record> Store::find(const std::string& key) const {
-  for (;;) try {
-      const std::optional<StoredEntry> found = entry(key);
-      return found ? std::optional(open_entry(*found, key)) : std::nullopt;
-    } catch (const std::exception& error) {
-      if (!set_aside(key, error.what())) return {};
-    }
+  Database* database = reading();
+  if (!database) return {};
+  std::string why;
+  std::optional<Record> record = sound_record(*database, key, why);
+  if (!why.empty())
+    notice_(file().string() + ": damaged case " + key + " (" + why + "), counts as none");
+  return record;
 }
 
 std::optional<Record> Store::find(const Case& one) const {
@@ -163,164 +205,178 @@ std::optional<Record> Store::find(const Case& one) const {
   return record;
 }
 
-bool Store::set_aside(const std::string& key, const std::string& why) const {
-  if (const PackIndex::Place* place = packed(key)) {
-    notice_(packs().index.packs[place->pack].string() + ": corrupt entry at byte " +
-            std::to_string(place->offset) + " (" + why + "), ignored");
-    packs().index.places.erase(key);
-    return true;
-  }
-  const fs::path place = root_ / "corrupt" / (key + "." + unique_suffix());
-  std::error_code error;
-  fs::create_directories(place.parent_path(), error);
-  if (!error) {
-    fs::rename(file(key), place, error);
-    if (error == std::errc::no_such_file_or_directory) return true;  // another process took it
-  }
-  std::optional<Record> sound;  // that another process put there meanwhile
-  EntryParts parts;
-  if (!error) try {
-      const StoredEntry entry(place);
-      parts = parts_of(entry);
-      sound = open_entry(entry, key);
-    } catch (const std::exception&) {  // it is damaged indeed
-    }
-  if (sound) {
-    commit(std::move(parts), *sound);
-    flush();
-    fs::remove(place);
-    return true;
-  }
-  notice_(file(key).string() + ": corrupt entry (" + why + "), " +
-          (error ? "ignored: " + error.message() : "set aside as " + place.string()));
-  return !error;
-}
-
 Series Store::series(const std::string& key) const {
-  const std::optional<StoredEntry> found = entry(key);
-  const std::string text = found ? found->part("series.csv") : "";
-  return text.empty() ? Series{} : series_from_csv(text);
-}
-
-EntryParts Store::parts(const std::string& key) const {
-  const std::optional<StoredEntry> found = entry(key);
-  return found ? parts_of(*found) : EntryParts{};
+  Database* database = reading();
+  if (!database) return {};
+  Database::Rows row =
+      database->rows("SELECT columns FROM series JOIN cases USING (case_id) WHERE key = ?", key);
+  return row.next() ? series_from_json(row.text(0), file().string() + ": series of " + key)
+                    : Series{};
 }
 
 bool Store::has_frames(const std::string& key) const {
-  const std::optional<StoredEntry> found = entry(key);
-  return found && found->has(kFramesFile);
+  Database* database = reading();
+  return database &&
+         database->rows("SELECT 1 FROM frames JOIN cases USING (case_id) WHERE key = ?", key)
+             .next();
 }
 
 Trajectory Store::motion(const std::string& key) const {
+  Database::Rows row =
+      reading()->rows("SELECT motion FROM frames JOIN cases USING (case_id) WHERE key = ?", key);
+  row.next();
   const Scratch scratch;
-  write_file(scratch.path() / kFramesFile, entry(key).value().part(kFramesFile));
+  write_file(scratch.path() / kFramesFile, row.text(0));
   return read_trajectory(scratch.path() / kFramesFile);
 }
 
-void Store::prepare() const {
-  if (const fs::path store = root_ / "store", aside = root_ / "store.earlier";
-      holds_folders(store)) {
-    std::error_code error;  // it is there already, or another process was faster
-    fs::rename(store, aside, error);
-    if (!error)
-      notice_(store.string() + ": entries of an earlier taut, set aside in " + aside.string());
-  }
-  make_folder(root_ / "store");
-  make_folder(root_ / "tmp");
-  const fs::path probe = root_ / "tmp" / ("probe." + unique_suffix());
-  write_durably(probe, "can this folder be written?\n");
-  fs::remove(probe);
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(root_ / "tmp"))
-    if (abandoned(entry.path().filename())) fs::remove_all(entry.path(), ignored);
-}
-
 fs::path Store::stage(const std::string& key) const {
-  const fs::path place = packs().scratch ? packs().scratch->path() : root_ / "tmp";
-  const fs::path staged = place / (key + "." + unique_suffix());
-  std::error_code error;  // not its parents: should the results be moved away, nothing goes on
+  if (!state_->scratch) state_->scratch.emplace();
+  const fs::path staged = state_->scratch->path() / (key + "." + unique_suffix());
+  std::error_code error;
   if (!fs::create_directory(staged, error))
     throw InputError(staged.string() + ": cannot create: " + error.message());
   return staged;
 }
 
-Store::Commit Store::commit(EntryParts parts, const Record& record) const {
-  parts["case.json"] = to_json(record, 1) + "\n";
-  const std::string entry = entry_text(parts, record);
-  // Another process may commit the same case at any moment: then this one looks again.
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    const std::optional<Record> old = find(record.key);
-    const bool adds_frames = parts.contains(kFramesFile) && !has_frames(record.key);
-    const Commit done = beside(old, record, adds_frames);
-    if (done == Commit::same) return done;
-    if (done == Commit::stored && packs().writer) {
-      PackIndex& index = packs().index;
-      const auto pack = static_cast<std::uint32_t>(index.packs.size() - 1);
-      const std::uint64_t offset = packs().writer->append(entry);
-      index.places[record.key] = {pack, record.status.is_result(), offset};
-      return done;
+void Store::insert(Database& database, const Record& r, const CaseFiles& files) const {
+  const auto or_null = [](int place) { return place < 0 ? std::nan("") : place; };
+  database.run("DELETE FROM cases WHERE key = ?", r.key);
+  database.run(std::string("INSERT INTO cases (") + kCaseColumns +
+                   ", is_result, errors) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+                   "?, ?, ?, ?, ?, ?, ?, ?)",
+               r.key, r.id, r.scene, r.spec.scene, to_text(Json(r.spec.overrides)), r.solver,
+               r.spec.solver, to_text(Json(r.params)), r.dt, r.steps, r.vertices, r.links,
+               std::string(to_string(r.status.kind)), r.status.reason, or_null(r.status.step),
+               or_null(r.status.vertex), r.projections, to_text(Json(r.step_cost)),
+               to_text(Json(r.resolved_settings)), r.digest, result_digest(r), r.log,
+               static_cast<int>(r.status.is_result()), files.errors);
+  const std::int64_t id = database.number_of("SELECT last_insert_rowid()");
+  for (const auto& [name, value] : r.values) {
+    std::int64_t& metric = state_->metrics[name];
+    if (metric == 0) {
+      const ValueSpec* spec = find_value(name).second;
+      database.run("INSERT OR IGNORE INTO metrics (name, unit, definition) VALUES (?, ?, ?)", name,
+                   std::string(spec ? spec->unit.si : ""), std::string(spec ? spec->help : ""));
+      Database::Rows row = database.rows("SELECT metric_id FROM metrics WHERE name = ?", name);
+      row.next();
+      metric = row.integer(0);
     }
-    const fs::path place = done == Commit::conflict
-                               ? root_ / "conflicts" / (record.key + "." + unique_suffix())
-                               : file(record.key);
-    make_folder(place.parent_path());
-    if (done == Commit::conflict) make_folder(root_ / "tmp");        // all may be in pack files
-    if (done == Commit::stored && old && old->status.is_result()) {  // the same one, with frames
-      replace_durably(place, entry, root_ / "tmp");
-      return done;
-    }
-    if (create_durably(place, entry, root_ / "tmp")) return done;
-    if (old) take_failure_away(record.key);
+    database.run("INSERT INTO numbers VALUES (?, ?, ?)", id, metric, value);
   }
-  throw InputError(file(record.key).string() + ": cannot create");
+  if (!files.series.empty()) database.run("INSERT INTO series VALUES (?, ?)", id, files.series);
+  if (!files.motion.empty())
+    database.run("INSERT INTO frames VALUES (?, ?)", id, Database::Bytes{files.motion});
 }
 
-void Store::take_failure_away(const std::string& key) const {
-  const fs::path taken = root_ / "tmp" / (key + "." + unique_suffix());
-  if (std::rename(file(key).c_str(), taken.c_str()) != 0) {
-    if (errno == ENOENT) return;
-    throw InputError(file(key).string() + ": cannot replace: " + std::strerror(errno));
+Store::Commit Store::commit(const Record& record, const CaseFiles& files) const {
+  Database& database = writing();
+  Commit done = Commit::same;
+  try {
+    database.transaction([&] {
+      std::string damage;
+      const std::optional<Record> old = sound_record(database, record.key, damage);
+      done = beside(old, record, !files.motion.empty() && !has_frames(record.key));
+      if (done == Commit::stored) insert(database, record, files);
+      if (done == Commit::conflict)
+        database.run("INSERT OR IGNORE INTO conflicts VALUES (?, ?, ?, ?)", record.key,
+                     result_digest(record), utc_stamp(), to_json(record));
+    });
+  } catch (const InputError&) {
+    state_->metrics.clear();  // may be of rows that are not there
+    throw;
   }
-  const StoredEntry entry(taken);
-  if (const Record record = open_entry(entry, key); record.status.is_result())
-    commit(parts_of(entry), record), flush();  // of a process that took the failure away before
-  fs::remove(taken);
+  return done;
 }
 
 Store::Commit Store::commit(const fs::path& staged, const Record& record) const {
-  const Commit done = commit(parts_in(staged), record);
+  const Commit done =
+      commit(record, {text_if_there(staged / kSeriesFile), text_if_there(staged / kFramesFile),
+                      end_of(staged / "stderr.txt", kMostErrors)});
   std::error_code ignored;
   fs::remove_all(staged, ignored);
   return done;
 }
 
+void Store::together(const std::function<void()>& work) const {
+  try {
+    writing().transaction(work);
+  } catch (...) {
+    state_->metrics.clear();
+    throw;
+  }
+}
+
+std::vector<Store::Entry> Store::entries() const {
+  std::vector<Entry> all;
+  Database* database = reading();
+  if (!database) return all;
+  Database::Rows row =
+      database->rows("SELECT key, id, result_digest, is_result FROM cases ORDER BY key");
+  while (row.next()) all.push_back({row.text(0), row.text(1), row.text(2), row.integer(3) != 0});
+  return all;
+}
+
 std::vector<std::string> Store::keys() const {
   std::vector<std::string> keys;
-  std::error_code none;
-  for (const auto& shelf : fs::directory_iterator(root_ / "store", none))
-    for (const auto& entry : fs::directory_iterator(shelf.path(), none))
-      keys.push_back(entry.path().filename());
-  for (const auto& [key, place] : packs().index.places) keys.push_back(key);
-  std::ranges::sort(keys);
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  for (Entry& one : entries()) keys.push_back(std::move(one.key));
   return keys;
 }
 
 std::string Store::digest() const {
   std::string all;
-  for (const std::string& key : keys())
-    if (const std::optional<Record> record = find(key); record && record->status.is_result())
-      all += key + ' ' + result_digest(*record) + '\n';
+  for (const Entry& one : entries())
+    if (one.is_result) all += one.key + ' ' + one.result + '\n';
   return sha256(all);
 }
 
 std::vector<std::string> Store::conflicts() const {
-  std::vector<std::string> keys = packs().index.conflicts;
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(root_ / "conflicts", none))
-    keys.push_back(entry.path().filename().string().substr(0, 64));
+  std::vector<std::string> keys;
+  Database* database = reading();
+  if (!database) return keys;
+  Database::Rows row = database->rows("SELECT key FROM conflicts ORDER BY key");
+  while (row.next()) keys.push_back(row.text(0));
   return keys;
+}
+
+void Store::take(const Store& other) const {
+  if (!other.reading()) return;
+  Database& database = writing();
+  const std::string columns = std::string(kCaseColumns) + ", is_result, errors";
+  database.run("ATTACH ? AS other", fs::absolute(other.file()).string());
+  try {
+    database.transaction([&] {
+      database.script(
+          "INSERT OR IGNORE INTO metrics (name, unit, definition) "
+          "SELECT name, unit, definition FROM other.metrics;"
+          "DELETE FROM cases WHERE NOT is_result AND key IN "
+          "(SELECT key FROM other.cases WHERE is_result)");
+      const std::int64_t last =
+          database.number_of("SELECT coalesce(max(case_id), 0) FROM main.cases");
+      const std::string taken =
+          " FROM main.cases AS mine JOIN other.cases AS theirs USING (key) WHERE mine.case_id > " +
+          std::to_string(last);
+      database.script("INSERT OR IGNORE INTO main.cases (" + columns + ") SELECT " + columns +
+                      " FROM other.cases ORDER BY case_id;"
+                      "CREATE TEMP TABLE taken AS SELECT mine.case_id AS mine, theirs.case_id AS "
+                      "theirs" +
+                      taken +
+                      " ORDER BY mine.case_id;"
+                      "INSERT INTO main.numbers SELECT mine, n.metric_id, value FROM taken JOIN "
+                      "(SELECT n.case_id, m.metric_id, n.value FROM other.numbers AS n JOIN "
+                      "other.metrics AS o USING (metric_id) JOIN main.metrics AS m USING (name)) "
+                      "AS n ON n.case_id = theirs;"
+                      "INSERT INTO main.series SELECT mine, columns FROM taken JOIN other.series "
+                      "ON case_id = theirs;"
+                      "INSERT INTO main.frames SELECT mine, motion FROM taken JOIN other.frames "
+                      "ON case_id = theirs;"
+                      "DROP TABLE taken");
+    });
+  } catch (...) {
+    database.run("DETACH other");
+    throw;
+  }
+  database.run("DETACH other");
 }
 
 }  // namespace taut

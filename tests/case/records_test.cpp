@@ -185,10 +185,8 @@ TEST(RecordLine, IsThisOneLine) {
 TEST(CsvText, OfSeriesAndStatesAreTheseLines) {
   const Series series{{"step", "t", "a"}, {{0, 0, std::nan("")}, {7, 0.1, -2}}};
   EXPECT_EQ(to_csv(series), "step,t,a\n0,0,\n7,0.1,-2\n");
-  const Series back = series_from_csv("step,t,a\n0,0,\n7,0.1,-2");
-  EXPECT_EQ(back.columns, series.columns);
-  ASSERT_EQ(back.rows.size(), 2u);
-  EXPECT_EQ(back.rows[1], series.rows[1]);
+  EXPECT_THROW(series_from_json(R"({"t":[1,2],"a":[1]})", "x"), InputError);
+  EXPECT_THROW(series_from_json(R"({"t":[1,"2"]})", "x"), InputError);
   EXPECT_EQ(to_csv(State{{Vec3(1, 2, 3), Vec3(0.5, 0, -1)}, {Vec3(4, 5, 6), Vec3(0, 0, 7)}}),
             "vertex,x,y,z,vx,vy,vz\n0,1,2,3,4,5,6\n1,0.5,0,-1,0,0,7\n");
 }

@@ -8,7 +8,7 @@ import sys
 import tempfile
 import unittest
 
-from parts import parts_of
+import stored
 
 BINARIES = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/default").resolve()
 
@@ -68,10 +68,11 @@ class CommandLine(unittest.TestCase):
         return lines[-1]
 
     def records(self, results="results/runs"):
-        return [json.loads(parts_of(entry)[1]["case.json"]) for entry in self.entries(results)]
+        return stored.records(self.folder / results)
 
-    def entries(self, results="results/runs"):
-        return sorted((self.folder / results / "store").glob("*/*"))
+    def keys(self, results="results/runs"):
+        """Of the cases that are stored."""
+        return stored.keys(self.folder / results)
 
 
 def main():

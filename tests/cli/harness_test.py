@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Faulty solvers cost one case each; stores survive kill -9, corruption, shards and conflicts."""
+"""Faulty solvers cost one case each; results files survive kill -9, damage, shards and conflicts."""
 
 import csv
-import hashlib
 import json
 import os
 import pathlib
@@ -13,7 +12,8 @@ import signal
 import subprocess
 import time
 
-from command_line import BINARIES, CommandLine, main, parts_of
+import stored
+from command_line import BINARIES, CommandLine, main
 
 KILLS = int(os.environ.get("TAUT_KILLS", 12))  # 200 in the target harness_kills
 SANITIZED = "asan" in BINARIES.name  # its allocator knows no limit on address space
@@ -215,15 +215,15 @@ class Input(CommandLine):
             self.refuse("./mesh.toml", says)
 
     def test_a_pipe_is_never_waited_for(self):
-        self.taut("run", self.study())
-        (self.folder / "results/runs/packs").mkdir()
-        for pipe in ("pipe.traj", "pipe.pc2", "pipe.npy", "pipe.toml", "results/runs/packs/pipe.pack"):
+        (self.folder / "results/runs").mkdir(parents=True)
+        for pipe in ("pipe.traj", "pipe.pc2", "pipe.npy", "pipe.toml", "results/runs/results.db"):
             os.mkfifo(self.folder / pipe)
+        study = self.study()
         for words in (["render", "./small.toml", "--trajectory", "pipe.traj", "-o", "x.png"], ["external", "score", "./small.toml", "pipe.traj"],
                       ["external", "score", "./small.toml", "pipe.pc2"], ["external", "score", "./small.toml", "pipe.npy"],
-                      ["run", "./pipe.toml"], ["case", "./small.toml", "jakobsen", "--set", 'cloth.mesh="pipe.npy"']):
+                      ["run", "./pipe.toml"], ["case", "./small.toml", "jakobsen", "--set", 'cloth.mesh="pipe.npy"'],
+                      ["run", study], ["export", study], ["report", study], ["cluster", "merge", "results/runs"]):
             self.assertRegex(self.taut(*words, expect=2).err, "is no regular file|no such study file", words)
-        self.taut("export", "./study.toml")
 
     def test_documents_without_bottom(self):
         for name, text in [("keys", ".".join(["a"] * 60_000) + " = 1\n"), ("tables", "[" + ".".join(["a"] * 60_000) + "]\n"),
@@ -261,39 +261,52 @@ class Store(CommandLine):
             hits += process.poll() is None
             process.kill()
             process.communicate()
-            for entry in self.entries():
-                seal, parts = parts_of(entry)
-                self.assertEqual({name: sha256(part) for name, part in parts.items()}, seal["files"], "an entry is there whole or not at all")
+            self.assertEqual([tuple(row) for row in stored.query(self.folder / "results/runs", "PRAGMA integrity_check")] or [("ok",)], [("ok",)])
         self.assertGreater(hits, KILLS // 2, "most kills have to hit a run that has not ended")
         resumed = self.taut("run", study, program="taut-faulty")
         self.assertEqual(self.store_digest(resumed), whole)
-        self.assertEqual(list((self.folder / "results/runs/tmp").iterdir()), [], "leftovers are swept up")
+        self.assertEqual(len(self.keys()), 3 * KILLS, "none lost, none counted twice")
+        self.assertEqual([file.name for file in (self.folder / "results/runs").glob("results.db*")], ["results.db"])
 
     def test_ctrl_c_then_resume(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
         process = self.start("run", study, "-j", 1, program="taut-faulty")
-        while not self.entries():
+        while not self.keys():
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130, said)
         self.assertIn("goes on where this one stopped", said)
-        self.assertLess(len(self.entries()), 4)
-        self.assertEqual(list((self.folder / "results/runs/tmp").iterdir()), [])
+        self.assertLess(len(self.keys()), 4)
         self.taut("run", study, program="taut-faulty")
-        self.assertEqual(len(self.entries()), 4)
+        self.assertEqual(len(self.keys()), 4)
 
     def test_two_runs_share_a_folder(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
-        both = [self.start("run", study, "-j", 3, program="taut-faulty")]
-        while not [*(self.folder / "results/runs/tmp").glob("*.*/heartbeat")]:  # a case is running: it is no leftover
+        scratch = self.folder / "scratch"
+        scratch.mkdir()
+        both = [self.start("run", study, "-j", 3, program="taut-faulty", env={**os.environ, "TMPDIR": str(scratch)})]
+        while not [*scratch.glob("*/*/heartbeat")]:
             time.sleep(0.01)
         both.append(self.start("run", study, "-j", 3, program="taut-faulty"))
         for process in both:
             _, said = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 0, said)
-        self.assertEqual(len(self.entries()), 6)
-        self.assertFalse((self.folder / "results/runs/conflicts").exists())
+        self.assertEqual(len(self.keys()), 6)
+        self.assertEqual(stored.query(self.folder / "results/runs", "SELECT * FROM conflicts"), [])
+        self.assertEqual([*scratch.iterdir()], [])
+
+    def test_a_run_that_is_stopped_for_a_while_goes_on(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
+        process = self.start("run", study, "-j", 2, program="taut-faulty")
+        for _ in range(3):
+            time.sleep(0.3)
+            process.send_signal(signal.SIGSTOP)
+            self.keys()  # others can read meanwhile
+            process.send_signal(signal.SIGCONT)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, said)
+        self.assertEqual(len(self.keys()), 6)
 
     def test_an_interrupted_bench_keeps_the_stored_one(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1]\n")
@@ -313,7 +326,7 @@ class Store(CommandLine):
     def test_a_bench_interrupted_before_it_times_stores_nothing(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5, 6, 7]\n")
         process = self.start("bench", study, program="taut-faulty")
-        while not self.entries():
+        while not self.keys():
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=30)
@@ -348,18 +361,46 @@ class Store(CommandLine):
         self.taut("run", study, "--timeout", 1e6)
         self.assertEqual([r["status"]["kind"] for r in self.records()], ["ok"])
 
-    def test_a_corrupt_entry_is_reported_set_aside_and_run_again(self):
+    def test_damaged_cases_are_reported_and_run_again(self):
         study = self.study(rest=self.MANY)
         digest = self.store_digest(self.taut("run", study))
-        first, second, third = self.entries()[:3]
-        first.write_text(first.read_text().replace('"vertices": 16', '"vertices": 17'))
-        second.write_bytes(second.read_bytes()[:-100])
-        third.write_text("{")
+        results = self.folder / "results/runs"
+        first, second, third = self.keys()[:3]
+        stored.change(results, "UPDATE numbers SET value = 1e9 WHERE case_id = (SELECT case_id FROM cases WHERE key = ?)", first)
+        stored.change(results, "DELETE FROM numbers WHERE case_id = (SELECT case_id FROM cases WHERE key = ?)", second)
+        stored.change(results, "UPDATE cases SET passes = '{' WHERE key = ?", third)
         again = self.taut("run", study)
-        self.assertEqual(again.err.count("corrupt entry"), 3, again.err)
+        self.assertEqual(again.err.count("damaged case"), 3, again.err)
         self.assertIn("(9 were stored already)", again.err)
         self.assertEqual(self.store_digest(again), digest)
-        self.assertEqual(len(list((self.folder / "results/runs/corrupt").iterdir())), 3)
+        self.assertEqual(len(self.keys()), 12)
+
+    def test_a_damaged_file_is_reported_set_aside_and_begun_anew(self):
+        study = self.study(rest=self.MANY)
+        digest = self.store_digest(self.taut("run", study))
+        file = self.folder / "results/runs/results.db"
+        whole = file.read_bytes()
+        for damaged in (b"no database" + whole[11:], whole[:4096] + b"\x55" * (len(whole) - 4096), whole[:len(whole) // 2]):
+            with self.subTest(damaged[:4]):
+                file.write_bytes(damaged)
+                self.assertIn("results.db: damaged", self.taut("export", study, expect=2).err)
+                self.assertEqual(file.read_bytes(), damaged, "who reads leaves it alone")
+                again = self.taut("run", study)
+                self.assertRegex(again.err, "results/runs/results.db: damaged, set aside as .*; begun anew")
+                self.assertEqual(self.store_digest(again), digest)
+                aside, = file.parent.glob("results.db.damaged-*")
+                self.assertEqual(aside.read_bytes(), damaged)
+                aside.unlink()
+
+    def test_a_file_that_vanishes_or_is_locked_is_said(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        process = self.start("run", study, "-j", 1, program="taut-faulty")
+        while not self.keys():
+            time.sleep(0.02)
+        (self.folder / "results/runs/results.db").unlink()
+        _, said = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 2, said)
+        self.assertRegex(said.splitlines()[-1], "^results/runs/results.db: cannot (write|open): ")
 
     def test_shards_merge_and_a_missing_one_is_named(self):
         study = self.study(rest=self.MANY)
@@ -367,7 +408,7 @@ class Store(CommandLine):
         for i in (1, 2, 3):
             self.taut("run", study, "--shard", f"{i}/3", "--out", f"shard{i}")
         # Keys depend on the build: with twelve cases one in 43 builds leaves a shard empty, which is no loss.
-        absent = max((1, 2, 3), key=lambda i: len(self.entries(f"shard{i}")))
+        absent = max((1, 2, 3), key=lambda i: len(self.keys(f"shard{i}")))
         others = [f"shard{i}" for i in (1, 2, 3) if i != absent]
         partial = self.taut("cluster", "merge", *others, "--out", "partial", expect=3)
         self.assertIn(f"(shard {absent})", partial.err)
@@ -381,7 +422,7 @@ class Store(CommandLine):
         for task in (0, 1):
             self.taut("run", study, env={**os.environ, "SLURM_ARRAY_TASK_ID": str(task), "SLURM_ARRAY_TASK_MIN": "0",
                                          "SLURM_ARRAY_TASK_COUNT": "2"})
-        self.assertEqual(len(self.entries()), 12)
+        self.assertEqual(len(self.keys()), 12)
 
     def test_another_result_under_the_same_key_is_an_alarm(self):
         study = self.study(solvers=["faulty:mode=random,at=3"])
@@ -400,30 +441,28 @@ class Store(CommandLine):
             (self.folder / "locked").mkdir(mode=0o500)
             self.assertIn("Permission denied", self.taut("run", study, "--out", "locked", expect=2).err)
 
-    MANIFEST_BYTES = 4000  # a limit on files that the probe and session.json keep, and the manifest of 60 cases does not
+    FILE_BYTES = 100_000  # a limit on files that an empty results file keeps, and the manifest of 1000 cases does not
 
     def test_a_session_that_cannot_be_recorded_leaves_nothing(self):
-        study = self.study(rest="axes.iterations = { from = 1, to = 60, steps = 60 }\n")
+        study = self.study(rest="axes.iterations = { from = 1, to = 1000, steps = 1000 }\n")
 
         def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (self.MANIFEST_BYTES, self.MANIFEST_BYTES))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (self.FILE_BYTES, self.FILE_BYTES))
         full = self.taut("run", study, expect=2, preexec_fn=limit)
         self.assertRegex(full.err, "^results/runs/sessions/.*/manifest.jsonl: cannot write: File too large\n$")
-        self.assertEqual([*(self.folder / "results/runs/sessions").iterdir(), *self.entries()], [])
-        self.taut("run", study)
-        self.assertIn("60/60 cases", self.taut("cluster", "merge", "results/runs", "--out", "merged").out)
+        self.assertEqual([*(self.folder / "results/runs/sessions").iterdir(), *self.keys()], [])
 
     def test_a_results_folder_that_is_moved_away_loses_nothing_finished(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
         whole = self.store_digest(self.taut("run", study, "--out", "whole", "-j", 4, program="taut-faulty"))
         process = self.start("run", study, "-j", 1, program="taut-faulty")
-        while not self.entries():
+        while not self.keys():
             time.sleep(0.02)
         (self.folder / "results/runs").rename(self.folder / "moved")
         _, said = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 2, said)
         self.assertIn("results/runs/", said.splitlines()[-1])
-        kept = len(self.entries("moved"))
+        kept = len(self.keys("moved"))
         self.assertGreater(kept, 0)
         again = self.taut("run", study, "--out", "moved", program="taut-faulty")
         self.assertIn(f"({kept} were stored already)", again.err)
@@ -466,12 +505,36 @@ class Store(CommandLine):
         self.assertIn("(2 were stored already)", self.taut("run", study, program="taut-faulty", env=jumping).err)
         self.assertIn("2/2 cases", self.taut("cluster", "merge", "results/runs", "--out", "merged", env=jumping).out)
 
+    def test_two_hosts_that_write_one_file_on_a_network_file_system_are_refused(self):
+        if SANITIZED:
+            self.skipTest("the sanitizer wants to be the first that is preloaded")
+        disk = self.folder / "network.so"  # a path in LD_PRELOAD ends at a space
+        disk.symlink_to(BINARIES / "libnetwork_disk.so")
+        zeus, ares = ({**os.environ, "LD_PRELOAD": str(disk), "HOST_NAME": name} for name in ("zeus", "ares"))
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
+        mark = self.folder / "results/runs/results.db.writer"
+        process = self.start("run", study, "-j", 1, program="taut-faulty", env=zeus)
+        while not self.keys():
+            time.sleep(0.02)
+        self.assertEqual(mark.read_text(), f"zeus {process.pid}\n")
+        refused = self.taut("run", study, program="taut-faulty", env=ares, expect=2)
+        self.assertIn("results.db: host zeus writes it too, and between hosts the locks of NFS are not reliable", refused.err)
+        self.taut("export", study, program="taut-faulty", env=ares, expect=3)  # reading is no harm
+        self.taut("run", study, program="taut-faulty", env=zeus)  # nor is a second process of the host
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0)
+        self.assertFalse(mark.exists())
+        mark.write_text("zeus 999999999\n")  # of a process that was killed
+        self.taut("run", study, program="taut-faulty", env=ares, expect=2)
+        self.assertIn("(6 were stored already)", self.taut("run", study, program="taut-faulty", env=zeus).err)
+        self.taut("run", study, program="taut-faulty", env=ares)
+
     def test_a_program_that_vanishes_is_no_result(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
         mine = self.folder / "taut-faulty"
         shutil.copy(BINARIES / "taut-faulty", mine)
         process = self.start("run", study, "-j", 1, program=mine)  # an absolute path stays what it is
-        while not self.entries():
+        while not self.keys():
             time.sleep(0.05)
         mine.unlink()
         _, said = process.communicate(timeout=30)
@@ -493,7 +556,7 @@ class Store(CommandLine):
             self.assertIn("No space left", run.err)
             self.assertEqual({record["status"]["kind"] for record in self.records("disk/results")}, {"ok"},
                              "a full disk is no property of a case")
-            kept = len(self.entries("disk/results"))
+            kept = len(self.keys("disk/results"))
             self.assertGreater(kept, 0)
             shutil.copytree(place / "results", self.folder / "moved")
             moved = self.taut("run", study, "--out", "moved")
@@ -501,22 +564,6 @@ class Store(CommandLine):
             self.assertEqual(self.store_digest(moved), whole)
             shutil.rmtree(self.folder / "moved")
             shutil.rmtree(place / "results")
-
-
-def sha256(data: bytes):
-    return hashlib.sha256(data).hexdigest()
-
-
-class Format(CommandLine):
-    def test_an_entry_seals_its_files(self):
-        self.taut("run", self.study())
-        entry, = self.entries()
-        seal, parts = parts_of(entry)
-        self.assertEqual(seal["key"], entry.name)
-        self.assertEqual({name: sha256(part) for name, part in parts.items()}, seal["files"])
-        rows = parts["series.csv"].decode().splitlines()
-        self.assertTrue(rows[0].startswith("step,t,"))
-        self.assertEqual(len(rows), 1 + 33, "0.5 s at 1/64 s: every boundary")
 
 
 if __name__ == "__main__":

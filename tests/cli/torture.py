@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """The torture suite, in under five minutes: ours survives or says why it will not start, every other ends with a verdict."""
 
-import json
 import pathlib
 import subprocess
 import sys
@@ -9,6 +8,7 @@ import tempfile
 import time
 
 import command_line
+import stored
 
 LIMIT = 300  # s
 
@@ -19,7 +19,7 @@ def main():
         subprocess.run([command_line.BINARIES / "taut", "run", "torture", "--no-report", "--timeout", "10", "--out", folder], check=True,
                        stdout=subprocess.DEVNULL)
         took = time.monotonic() - began
-        records = [json.loads(command_line.parts_of(file)[1]["case.json"]) for file in pathlib.Path(folder).glob("store/*/*")]
+        records = stored.records(pathlib.Path(folder))
     wrong, counts = [], {}
     for record in records:
         status = record["status"]

@@ -6,7 +6,6 @@ have, a refusal without a word, a run without end, output that is no strict JSON
 of an input made. It prints the folder, which stays, and the command; `--seed S --only KIND:NUMBER` makes the same attempt again."""
 
 import argparse
-import hashlib
 import json
 import os
 import pathlib
@@ -15,6 +14,7 @@ import resource
 import shlex
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -23,7 +23,7 @@ import time
 from generate import NASTY, Maker, mutate, toml
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / 'cli'))
-from parts import parts_of  # noqa: E402
+import stored  # noqa: E402
 
 CODES = {0, 1, 2, 3, 4, 5, 6, 130}  # experiments/command_line/verb.hpp
 STATUSES = {'ok', 'exploded', 'unsettled', 'extreme', 'unsupported', 'timeout', 'oom', 'crash', 'protocol', 'error'}
@@ -109,8 +109,9 @@ class Attempt:
         said = self.taut('run', *words, '--timeout', 2, '--memory', 500, '-j', 1, '--json')
         if self.codes[-1] == 0:
             strict(said)
-        for file in self.folder.glob('results/runs/store/*/*'):
-            judge_record(strict(parts_of(file)[1]['case.json'].decode()))
+        if self.codes[-1] == 0:
+            for record in stored.records(self.folder / 'results/runs'):
+                judge_record(record)
 
     def solver(self):
         return self.make.solver(SOLVERS)
@@ -229,17 +230,24 @@ def damage(attempt, pattern):
 
 
 def record(attempt):
-    """The seal is made to fit, so that the damage is not found by its digest."""
-    if attempt.make.maybe(0.2):
-        damage(attempt, 'results/runs/store/*/*')
+    """Bytes of the file, or a cell of a table, which SQLite takes for sound."""
+    if attempt.make.maybe(0.4):
+        damage(attempt, 'results/runs/results.db')
     else:
         attempt.stored()
-        file = attempt.random.choice(sorted(attempt.folder.glob('results/runs/store/*/*')))
-        seal, parts = parts_of(file)
-        name = attempt.random.choice(sorted(parts))
-        parts[name] = mutate(attempt.random, parts[name], 4)
-        seal['files'][name], seal['sizes'][name] = hashlib.sha256(parts[name]).hexdigest(), len(parts[name])
-        file.write_bytes(json.dumps(seal).encode() + b'\n' + b''.join(parts[name] for name in seal['sizes']))
+        results = attempt.folder / 'results/runs'
+        table = attempt.random.choice(['cases', 'cases', 'cases', 'numbers', 'series', 'metrics'])
+        column = attempt.random.choice([row['name'] for row in stored.query(results, f'PRAGMA table_info({table})')])
+        old = stored.query(results, f'SELECT {column} FROM {table} LIMIT 1')[0][0]
+        new = old
+        if isinstance(old, str):
+            new = mutate(attempt.random, old.encode(), 4).decode('utf-8', 'replace')
+        elif not column.endswith('_id'):
+            new = attempt.random.choice([None, -1, 2**62, 1e308, 0.5, 'x', b'\xff', '', 0])
+        try:
+            stored.change(results, f'UPDATE {table} SET {column} = ? WHERE {column} IS ?', new, old)
+        except sqlite3.IntegrityError:
+            pass
     attempt.look()
 
 

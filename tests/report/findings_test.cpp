@@ -13,6 +13,7 @@
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "tests/support/damaged_results.hpp"
 
 namespace taut::report::findings_test {
 namespace {
@@ -257,7 +258,7 @@ TEST_F(StoredStudy, IsReadWithItsPlanItsSlopeAndTheMotionsOfTheQuotedCases) {
     }
   }
   EXPECT_EQ(shown, quoted);
-  std::filesystem::remove_all(store_.file(cases_[3].key));
+  forget(store_, cases_[3].key);
   const ReportInput less = stored_results({study_}, store_);
   EXPECT_EQ(less.studies[0].planned, 8u);
   EXPECT_EQ(less.studies[0].records.size(), 7u);
@@ -300,7 +301,7 @@ TEST_F(StoredStudy, IsComparedWithAnotherFolderCaseByCase) {
   other.prepare();
   const auto put = [&](Record r, const std::string& key) {
     r.key = std::string(62, 'b') + key;
-    other.commit(other.stage(r.key), r);
+    other.commit(r);
   };
   std::vector<Record> all;
   for (const Case& one : cases_) all.push_back(*store_.find(one));

@@ -8,6 +8,7 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/require/require.hpp"
 #include "experiments/system/files.hpp"
+#include "tests/support/damaged_results.hpp"
 
 namespace taut::require_search_test {
 namespace {
@@ -28,9 +29,7 @@ class Requirements : public testing::Test {
     const Case one = make_case(spec);
     return {one, *store_.find(one), store_.motion(one.key).frames};
   }
-  void forget(const CaseSpec& spec) const {
-    std::filesystem::remove_all(store_.file(make_case(spec).key));
-  }
+  void forget(const CaseSpec& spec) const { taut::forget(store_, make_case(spec).key); }
   /// What a scene file's comment says goes, in its order: "wind: gone".
   static std::vector<std::string> said_to_go(const Requirement& found) {
     std::vector<std::string> all;

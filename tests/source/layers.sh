@@ -21,7 +21,7 @@ experiments/metrics      | core/model/(crossings|index|scene|triangle)\.hpp|expe
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp)
-experiments/study        | (core/(model|io|reference)|experiments/(answer|system|case|study))/
+experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/study/[a-z_]+.hpp
 experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/study/[a-z_]+.hpp
 experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|timing))/
@@ -45,6 +45,7 @@ BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/
 toml\+\+                | ^core/io/document\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/(reference|solver)/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
+SQLiteCpp/|sqlite3      | ^experiments/study/database\.[ch]pp
 openssl/                | ^experiments/(case|report/chart)/.*\.cpp
 core/model/(solver|params)\.hpp | ^(core|bullet_ref|tests|experiments/[^m])
 '

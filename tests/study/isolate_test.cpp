@@ -130,9 +130,9 @@ TEST_F(Isolated, OnlyItsOwnRecordIsTaken) {
 
 TEST_F(Isolated, WhatStaysOfItIsWhatSaysSomething) {
   const auto left = [&](const std::string& script) {
-    record_of("echo 1 >$5/heartbeat; echo 1 >$5/series.csv\n" + script);
+    record_of("echo 1 >$5/heartbeat; echo 1 >$5/series.json\n" + script);
     std::string names;
-    for (const char* name : {"case.json", "heartbeat", "series.csv", "stderr.txt"})
+    for (const char* name : {"case.json", "heartbeat", "series.json", "stderr.txt"})
       names += fs::exists(folder_ / name) ? std::string(name) + " " : "";
     fs::remove_all(folder_);
     return names;
@@ -141,8 +141,8 @@ TEST_F(Isolated, WhatStaysOfItIsWhatSaysSomething) {
       run_case(make_case({kSmall.scene, kSmall.overrides, "jakobsen:iterations=2"})).record;
   its.key = one_.key;
   write_file(scripted_.folder() / "its", to_json(its));
-  EXPECT_EQ(left("cp $folder/its $5/case.json"), "case.json series.csv ");
-  EXPECT_EQ(left("cp $folder/its $5/case.json; echo why >&2"), "case.json series.csv stderr.txt ");
+  EXPECT_EQ(left("cp $folder/its $5/case.json"), "case.json series.json ");
+  EXPECT_EQ(left("cp $folder/its $5/case.json; echo why >&2"), "case.json series.json stderr.txt ");
   EXPECT_EQ(left("exit 1"), "");
 }
 
@@ -194,7 +194,7 @@ TEST(IsolatedRun, GivesWhatTheCaseGivesInsideAndTheMotionThatWasAskedFor) {
   EXPECT_EQ(motion.header.solver, one.choice.canonical());
   EXPECT_EQ(motion.header.frame_dt, one.scene->dt);
   EXPECT_EQ(motion.header.vertices, 12);
-  EXPECT_EQ(series_from_csv(read_text(scratch.path() / "series.csv")).rows.size(), 19u);
+  EXPECT_EQ(series_from_json(read_text(scratch.path() / kSeriesFile), "series").rows.size(), 19u);
   EXPECT_FALSE(fs::exists(scratch.path() / "heartbeat"));
 }
 
@@ -203,7 +203,7 @@ TEST(IsolatedRun, OfALongRunItKeepsAHundredAndTwentyRows) {
   const Case one = make_case({"hang", {"cloth.grid=[2, 2]", "time.duration=7.5"}, "jakobsen"});
   ASSERT_EQ(one.scene->steps, 480);
   EXPECT_EQ(run_into(one, scratch.path(), 7), 0);
-  EXPECT_EQ(series_from_csv(read_text(scratch.path() / "series.csv")).rows.size(), 121u);
+  EXPECT_EQ(series_from_json(read_text(scratch.path() / kSeriesFile), "series").rows.size(), 121u);
   const Trajectory motion = read_trajectory(scratch.path() / kFramesFile);
   EXPECT_EQ(motion.frames.size(), 9u) << "every 68th of 480 steps, the first and the last";
   EXPECT_EQ(Heartbeat::last(scratch.path() / "heartbeat"), 480);

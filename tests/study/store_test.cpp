@@ -1,4 +1,5 @@
-// The store: whole entries or none, results that nothing replaces, texts that keep every bit.
+// The results file: whole cases or none, results that nothing replaces, numbers that keep every
+// bit.
 #include "experiments/study/store.hpp"
 
 #include <gtest/gtest.h>
@@ -7,15 +8,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <barrier>
 #include <cmath>
 #include <csignal>
 #include <limits>
 #include <thread>
 
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/files.hpp"
+#include "tests/support/damaged_results.hpp"
 
 namespace taut::store_test {
 namespace {
@@ -38,7 +40,9 @@ Record some_record() {
   r.values = {{"a", 0.1 + 0.2},
               {"b", std::numeric_limits<double>::quiet_NaN()},
               {"c", std::numeric_limits<double>::denorm_min()},
-              {"d", -1.7976931348623157e308}};
+              {"d", -1.7976931348623157e308},
+              {"e", -0.0},
+              {"f", 7}};
   r.projections = 6080;
   r.step_cost = {{"structural", 760, 8, 12160, true}};
   r.resolved_settings = {{"time step", "1/60 s"}};
@@ -51,13 +55,7 @@ class StoreTest : public testing::Test {
   void TearDown() override { fs::remove_all(root_); }
   Store::Commit put(const Record& record) {
     store_.prepare();
-    return store_.commit(store_.stage(record.key), record);
-  }
-  /// Adds to the last digit of the entry, a part of its record.
-  void damage(const std::string& key) {
-    std::string text = read_text(store_.file(key));
-    text[text.find_last_of("0123456789")] ^= 1;
-    write_file(store_.file(key), text);
+    return store_.commit(record);
   }
   fs::path root_ = fs::path(testing::TempDir()) / unique_suffix();
   std::vector<std::string> said_;
@@ -86,7 +84,8 @@ TEST(RecordText, RefusesOtherSchemasAndNonsense) {
 
 TEST(RecordText, SeriesKeepGapsAndBits) {
   const Series series{{"step", "y"}, {{0, 1e-300}, {1, std::nan("")}, {2, 0.1}}};
-  const Series back = series_from_csv(to_csv(series));
+  EXPECT_EQ(to_json(series), R"({"step":[0.0,1.0,2.0],"y":[1e-300,null,0.1]})");
+  const Series back = series_from_json(to_json(series), "x");
   EXPECT_EQ(back.columns, series.columns);
   ASSERT_EQ(back.rows.size(), 3u);
   EXPECT_EQ(back.rows[0], series.rows[0]);
@@ -102,14 +101,47 @@ TEST(RecordText, TheResultIsNotHowItWasCalled) {
   EXPECT_NE(result_digest(a), result_digest(b));
 }
 
-TEST_F(StoreTest, AnEntryIsThereAfterItsCommit) {
+TEST_F(StoreTest, ACaseIsThereAfterItsCommit) {
   const Record r = some_record();
   EXPECT_FALSE(store_.find(r.key));
   EXPECT_EQ(put(r), Store::Commit::stored);
   ASSERT_TRUE(store_.find(r.key));
-  EXPECT_EQ(to_json(*store_.find(r.key)), to_json(r));
+  const Record back = *Store(root_).find(r.key);
+  EXPECT_EQ(to_json(back), to_json(r));
+  EXPECT_TRUE(std::signbit(back.values.at("e"))) << "a zero keeps its sign";
+  EXPECT_EQ(back.values.at("c"), std::numeric_limits<double>::denorm_min());
   EXPECT_EQ(store_.keys(), std::vector<std::string>{r.key});
-  EXPECT_TRUE(fs::is_empty(root_ / "tmp"));
+  std::vector<std::string> names;
+  for (const auto& one : fs::directory_iterator(root_)) names.push_back(one.path().filename());
+  EXPECT_EQ(names, std::vector<std::string>{"results.db"}) << "one file, and no journal stays";
+}
+
+TEST_F(StoreTest, OfWhatACaseLeavesSeriesAndMotionAreKept) {
+  const Record r = some_record();
+  store_.prepare();
+  const fs::path staged = store_.stage(r.key);
+  const Series series{{"step", "t"}, {{0, 0}, {1, 0.5}}};
+  write_file(staged / kSeriesFile, to_json(series));
+  write_file(staged / "stderr.txt", std::string(70000, 'a') + "the end");
+  TrajectoryWriter(staged / kFramesFile, {"hang", "xpbd", 0.1, 1, {}})
+      .append(0.25, {{Vec3(1, 2, 3)}, {Vec3(0, 0, 0)}});
+  EXPECT_EQ(store_.commit(staged, r), Store::Commit::stored);
+  EXPECT_FALSE(fs::exists(staged));
+  const Store other(root_);
+  EXPECT_EQ(other.series(r.key).columns, series.columns);
+  EXPECT_EQ(other.series(r.key).rows, series.rows);
+  ASSERT_TRUE(other.has_frames(r.key));
+  const Trajectory motion = other.motion(r.key);
+  EXPECT_EQ(motion.header.scene, "hang");
+  EXPECT_EQ(motion.frames.at(0).t, 0.25);
+  EXPECT_EQ(motion.frames[0].state.x[0], Vec3(1, 2, 3));
+  Database file(store_.file(), Database::Access::read);
+  Database::Rows row = file.rows("SELECT errors FROM cases");
+  ASSERT_TRUE(row.next());
+  EXPECT_EQ(row.text(0).size(), 65536u);
+  EXPECT_TRUE(row.text(0).ends_with("the end"));
+  EXPECT_TRUE(other.series("none").columns.empty());
+  EXPECT_FALSE(other.has_frames("none"));
 }
 
 TEST_F(StoreTest, AResultIsNeverReplaced) {
@@ -117,12 +149,29 @@ TEST_F(StoreTest, AResultIsNeverReplaced) {
   put(r);
   const std::string digest = store_.digest();
   EXPECT_EQ(put(r), Store::Commit::same);
+  EXPECT_TRUE(store_.conflicts().empty());
   r.values["a"] = 7;
   EXPECT_EQ(put(r), Store::Commit::conflict);
+  EXPECT_EQ(put(r), Store::Commit::conflict);
+  EXPECT_EQ(store_.conflicts(), std::vector{r.key}) << "the same other result counts once";
+  r.values["a"] = 8;
+  EXPECT_EQ(put(r), Store::Commit::conflict);
+  EXPECT_EQ(store_.conflicts(), (std::vector{r.key, r.key}));
   EXPECT_EQ(store_.digest(), digest);
-  EXPECT_FALSE(fs::is_empty(root_ / "conflicts"));
   r.status = {Status::Kind::timeout, "wall time", 5, -1};
   EXPECT_EQ(put(r), Store::Commit::same) << "a failure says nothing against a result";
+  EXPECT_EQ(store_.digest(), digest);
+}
+
+TEST_F(StoreTest, TheSameResultWithItsMotionTakesThePlaceOfOneWithout) {
+  const Record r = some_record();
+  put(r);
+  const std::string digest = store_.digest();
+  EXPECT_EQ(store_.commit(r, {.motion = "a motion"}), Store::Commit::stored);
+  EXPECT_TRUE(store_.has_frames(r.key));
+  EXPECT_EQ(store_.commit(r, {.motion = "a motion"}), Store::Commit::same);
+  EXPECT_EQ(put(r), Store::Commit::same);
+  EXPECT_TRUE(store_.has_frames(r.key));
   EXPECT_EQ(store_.digest(), digest);
 }
 
@@ -134,111 +183,197 @@ TEST_F(StoreTest, AFailureGivesWayToAResult) {
   EXPECT_EQ(put(some_record()), Store::Commit::stored);
   EXPECT_EQ(store_.find(failure.key)->status.kind, Status::Kind::exploded);
   EXPECT_NE(store_.digest(), nothing) << "failures do not count, results do";
-  EXPECT_TRUE(fs::is_empty(root_ / "tmp"));
 }
 
-TEST_F(StoreTest, ADamagedEntryIsSetAsideAndSaidSo) {
+TEST_F(StoreTest, ACaseThatDoesNotMatchItsDigestIsSaidAndCountsAsNone) {
   const Record r = some_record();
   put(r);
-  damage(r.key);
-  EXPECT_FALSE(store_.find(r.key));
-  ASSERT_EQ(said_.size(), 1u);
-  EXPECT_NE(said_[0].find("corrupt entry (case.json does not match its digest)"),
-            std::string::npos);
-  EXPECT_EQ(put(r), Store::Commit::stored);
+  const std::string digest = store_.digest();
+  for (const char* damage :
+       {"UPDATE numbers SET value = 8 WHERE value = 7", "DELETE FROM numbers WHERE value = 7",
+        "UPDATE cases SET projections = 1", "UPDATE cases SET passes = '[1'",
+        "UPDATE cases SET status = 'well'", "UPDATE cases SET parameters = x'00ff'"}) {
+    said_.clear();
+    change(store_, damage);
+    EXPECT_FALSE(store_.find(r.key)) << damage;
+    ASSERT_EQ(said_.size(), 1u) << damage;
+    EXPECT_NE(said_[0].find("results.db: damaged case " + r.key), std::string::npos) << said_[0];
+    EXPECT_EQ(put(r), Store::Commit::stored) << damage;
+    EXPECT_EQ(to_json(*store_.find(r.key)), to_json(r));
+    EXPECT_EQ(store_.digest(), digest);
+  }
+}
+
+TEST_F(StoreTest, ADamagedFileIsRefusedToReadersAndSetAsideByWriters) {
+  const Record r = some_record();
+  for (const bool header : {true, false}) {
+    fs::remove_all(root_);
+    said_.clear();
+    std::optional<Store> first(std::in_place, root_);
+    first->commit(r);
+    first.reset();
+    std::string bytes = read_text(root_ / "results.db");
+    if (header)
+      bytes.replace(0, 100, std::string(100, 'x'));
+    else  // everything but the schema
+      bytes.replace(4096, bytes.size() - 4096, std::string(bytes.size() - 4096, '\x7f'));
+    write_file(root_ / "results.db", bytes);
+    const auto note = [this](const std::string& text) { said_.push_back(text); };
+    try {
+      Store(root_, note).find(r.key);
+      ADD_FAILURE() << header;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("results.db: damaged: "), std::string::npos)
+          << error.what();
+    }
+    EXPECT_EQ(read_text(root_ / "results.db"), bytes) << "reading changes nothing";
+    const Store again(root_, note);
+    again.prepare();
+    ASSERT_EQ(said_.size(), 1u);
+    EXPECT_NE(said_[0].find("begun anew"), std::string::npos);
+    EXPECT_TRUE(again.keys().empty());
+    EXPECT_EQ(again.commit(r), Store::Commit::stored);
+    int aside = 0;
+    for (const auto& one : fs::directory_iterator(root_))
+      if (one.path().string().find(".damaged-") != std::string::npos) {
+        EXPECT_EQ(read_text(one.path()), bytes);
+        ++aside;
+      }
+    EXPECT_EQ(aside, 1);
+  }
 }
 
 TEST_F(StoreTest, WhereNoFileCanBeMadeIsSaidBeforeACaseRuns) {
-  fs::create_directories(root_ / "store");
-  fs::create_directory_symlink("/proc/self", root_ / "tmp");  // there, and nobody can write in it
+  fs::create_directory_symlink("/proc/self", root_);  // there, and nobody can write in it
   EXPECT_THROW(store_.prepare(), InputError);
+  fs::remove(root_);
 }
 
-TEST_F(StoreTest, WhoLosesTheRenameLooksAgain) {
-  const Record r = some_record();
-  put(r);
-  damage(r.key);
-  // The notice of the damaged entry comes between this commit's look and its rename.
-  Store::Commit others = Store::Commit::conflict;
-  const Store racing(root_, [&](const std::string&) {
-    const Store other(root_);
-    others = other.commit(other.stage(r.key), r);
-  });
-  EXPECT_EQ(racing.commit(racing.stage(r.key), r), Store::Commit::same);
-  EXPECT_EQ(others, Store::Commit::stored);
-  EXPECT_EQ(to_json(*store_.find(r.key)), to_json(r));
-  EXPECT_TRUE(fs::is_empty(root_ / "tmp"));
-}
-
-TEST_F(StoreTest, WhoIsKilledWhileWritingLeavesSomethingInTmpAlone) {
-  Record failure = some_record(), other = some_record(), framed = some_record(), conflict;
+TEST_F(StoreTest, OfAProcessThatIsKilledWhileWritingNothingStays) {
+  Record failure = some_record(), other = some_record();
   failure.key[0] = 'b', failure.status = {Status::Kind::timeout, "wall time", 5, -1};
   other.key = failure.key;
-  conflict = framed;
-  conflict.values["a"] = 7;
-  put(failure), put(framed);
-  const std::vector<std::pair<EntryParts, Record>> all{
-      {{}, other}, {{{kFramesFile, "a motion"}}, framed}, {{}, conflict}};
-  for (const auto& [parts, record] : all) {
+  put(failure);
+  const std::string digest = store_.digest();
+  const auto size = fs::file_size(store_.file());
+  for (const rlim_t most : {rlim_t{10}, rlim_t{size}, rlim_t{size + 4096}}) {
     const pid_t child = fork();
     if (child == 0) {  // ends by a signal within the write, which is larger than a file may be
-      const rlimit no_core{0, 0}, ten{10, 10};
+      const rlimit no_core{0, 0}, limit{most, most};
       setrlimit(RLIMIT_CORE, &no_core);
-      setrlimit(RLIMIT_FSIZE, &ten);
+      setrlimit(RLIMIT_FSIZE, &limit);
       std::signal(SIGXFSZ, SIG_DFL);
-      store_.commit(parts, record);
+      Store(root_).commit(other, {.motion = std::string(100000, 'm')});
       _exit(0);
     }
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFSIGNALED(status));
-    EXPECT_FALSE(fs::is_empty(root_ / "tmp"));
-    EXPECT_EQ(store_.keys().size(), 2u);
-    EXPECT_TRUE(store_.conflicts().empty());
-    store_.prepare();
-    EXPECT_TRUE(fs::is_empty(root_ / "tmp")) << "the next one cleans up";
+    const Store next(root_);
+    next.prepare();
+    EXPECT_EQ(next.keys(), std::vector{other.key}) << most;
+    EXPECT_EQ(next.find(other.key)->status.kind, Status::Kind::timeout);
+    EXPECT_EQ(next.digest(), digest);
   }
   EXPECT_TRUE(said_.empty());
 }
 
 TEST_F(StoreTest, OfResultsThatComeAtOnceOneStaysAndTheOthersAreConflicts) {
-  constexpr int kRounds = 40, kWriters = 3;
+  constexpr int kCases = 30, kWriters = 3;
   store_.prepare();
-  for (int round = 0; round < kRounds; ++round) {
-    Record failure = some_record();
-    failure.key = std::string(60, 'a') + std::to_string(1000 + round);
-    failure.status = {Status::Kind::timeout, "wall time", 5, -1};
-    put(failure);
-    std::barrier begin(kWriters);
-    std::vector<std::thread> writers;
-    for (int i = 0; i < kWriters; ++i)
-      writers.emplace_back([&, i] {
-        Record record = some_record();
-        record.key = failure.key;
-        record.values["a"] = i;
-        const Store own(root_);
-        begin.arrive_and_wait();
-        own.commit(EntryParts{}, record);
-      });
-    for (std::thread& writer : writers) writer.join();
-    ASSERT_TRUE(store_.find(failure.key)->status.is_result());
-    ASSERT_EQ(std::ranges::count(store_.conflicts(), failure.key), kWriters - 1);
-    ASSERT_TRUE(fs::is_empty(root_ / "tmp"));
+  std::vector<pid_t> writers;
+  for (int i = 0; i < kWriters; ++i) {
+    writers.push_back(fork());
+    if (writers.back() != 0) continue;
+    const Store own(root_);
+    for (int n = 0; n < kCases; ++n) {
+      Record record = some_record();
+      record.key = std::string(60, 'a') + std::to_string(1000 + n);
+      record.values["a"] = i;
+      own.commit(record);
+    }
+    _exit(0);
   }
+  for (const pid_t writer : writers) {
+    int status = 0;
+    ASSERT_EQ(waitpid(writer, &status, 0), writer);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(store_.keys().size(), static_cast<std::size_t>(kCases));
+  EXPECT_EQ(store_.conflicts().size(), static_cast<std::size_t>(kCases * (kWriters - 1)));
 }
 
-TEST_F(StoreTest, EntriesOfAnEarlierTautAreRefusedToReadersAndSetAsideByWriters) {
-  const std::string key = some_record().key;
-  fs::create_directories(store_.file(key));
-  write_file(store_.file(key) / "case.json", "{}");
-  EXPECT_THROW(store_.keys(), InputError);
-  EXPECT_EQ(put(some_record()), Store::Commit::stored);
-  EXPECT_EQ(store_.keys(), std::vector{key});
-  EXPECT_EQ(read_text(root_ / "store.earlier" / key.substr(0, 2) / key / "case.json"), "{}");
-  ASSERT_EQ(said_.size(), 1u);
-  EXPECT_NE(said_[0].find("set aside"), std::string::npos) << said_[0];
+TEST_F(StoreTest, ManyCommitsTogetherAreAllOrNone) {
   store_.prepare();
-  EXPECT_EQ(said_.size(), 1u) << "once";
+  Record a = some_record(), b = some_record();
+  b.key[0] = 'b', b.values["only here"] = 1;
+  EXPECT_THROW(store_.together([&] {
+    store_.commit(a), store_.commit(b);
+    throw InputError("no");
+  }),
+               InputError);
+  EXPECT_TRUE(store_.keys().empty());
+  store_.together([&] { store_.commit(a), store_.commit(b); });
+  EXPECT_EQ(store_.keys(), (std::vector{a.key, b.key}));
+  EXPECT_EQ(to_json(*store_.find(b.key)), to_json(b));
+}
+
+TEST_F(StoreTest, TakesOverWhatAnotherHas) {
+  const fs::path place = root_ / "other";
+  const Store other(place);
+  Record failed = some_record(), better = some_record(), fresh = some_record();
+  failed.key[0] = better.key[0] = 'b', fresh.key[0] = 'c', fresh.values["new"] = -0.0;
+  failed.status = {Status::Kind::timeout, "wall time", 5, -1};
+  put(some_record()), put(failed);
+  other.commit(better, {.series = "{\"t\":[1]}"}), other.commit(fresh, {.motion = "m"});
+  Record late = some_record();
+  late.key[0] = 'd', late.status = failed.status;
+  other.commit(late), put([&] {
+    Record sound = some_record();
+    sound.key = late.key;
+    return sound;
+  }());
+  store_.take(other);
+  EXPECT_EQ(store_.keys().size(), 4u);
+  EXPECT_EQ(to_json(*store_.find(better.key)), to_json(better));
+  EXPECT_EQ(store_.series(better.key).rows.size(), 1u);
+  EXPECT_EQ(to_json(*store_.find(fresh.key)), to_json(fresh));
+  EXPECT_TRUE(store_.has_frames(fresh.key));
+  EXPECT_TRUE(store_.find(late.key)->status.is_result()) << "a failure replaces nothing";
+  const std::string digest = store_.digest();
+  store_.take(other);
+  EXPECT_EQ(store_.digest(), digest);
+  store_.take(Store(root_ / "none"));
+  EXPECT_EQ(store_.digest(), digest);
+}
+
+TEST_F(StoreTest, ResultsOfAnEarlierTautAreSaidAndLeftAlone) {
+  fs::create_directories(root_ / "store" / "aa");
+  write_file(root_ / "store" / "aa" / "entry", "{}");
+  EXPECT_TRUE(store_.keys().empty());
+  ASSERT_EQ(said_.size(), 1u);
+  EXPECT_NE(said_[0].find("/store: results of an earlier taut"), std::string::npos) << said_[0];
+  put(some_record());
+  EXPECT_EQ(said_.size(), 2u);
+  store_.prepare();
+  EXPECT_EQ(store_.keys().size(), 1u);
+  EXPECT_EQ(said_.size(), 2u) << "not again";
+  EXPECT_EQ(read_text(root_ / "store" / "aa" / "entry"), "{}");
+}
+
+TEST_F(StoreTest, AFileOfAnotherVersionIsNeitherReadNorWritten) {
+  put(some_record());
+  change(store_, "PRAGMA user_version = 99");
+  const Store other(root_);
+  for (const auto& use :
+       {std::function([&] { other.keys(); }), std::function([&] { other.prepare(); })})
+    try {
+      use();
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("(version 99; this one reads 1)"), std::string::npos)
+          << error.what();
+    }
 }
 
 TEST_F(StoreTest, ReadingCreatesNothing) {

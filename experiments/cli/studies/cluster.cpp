@@ -6,6 +6,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/session.hpp"
+#include "experiments/study/writer_mark.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
@@ -141,11 +142,11 @@ int run(const Run& o) {
   const Manifest manifest = read_manifest(o.folder);
   const std::vector<Case> cases = taut::cluster::cases_of(manifest, o.shard, o.folder);
   Store store(shard_folder(o.folder, o.shard));
-  store.prepare();
   const fs::path session =
       begin_session(store, "taut cluster run --shard " + std::to_string(o.shard), cases);
   Attempt attempt(store.root(), session);
-  store.pack_into(session.filename().string());
+  WriterMark::remove(store.file());  // whoever began this shard is gone
+  store.prepare();
   Progress progress;
   const CampaignProgress campaign =
       run_cases(cases, store,

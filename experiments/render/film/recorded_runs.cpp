@@ -77,8 +77,9 @@ RunSet record_runs(const RunRequest& request, const std::function<void(const std
   }
   for (IsolatedCase& process : processes) {
     set.runs.push_back(finished_run(process));
-    const fs::path series = process.folder() / "series.csv";
-    set.series.push_back(fs::exists(series) ? series_from_csv(read_text(series)) : Series{});
+    const fs::path series = process.folder() / kSeriesFile;
+    set.series.push_back(fs::exists(series) ? series_from_json(read_text(series), series.string())
+                                            : Series{});
   }
   for (const std::string& file : request.files) set.runs.push_back(stored_run(set.scene, file));
   return set;

@@ -191,10 +191,9 @@ class Merge {
   explicit Merge(const std::vector<std::filesystem::path>& folders);
   /// Compares them with each other and with what is in `into`. Changes nothing.
   MergePlan look(const Store& into) const;
-  /// Copies the planned records, and who computed them, into a pack file for each store that they
-  /// come from; `progress` counts cases. Throws InputError if the disk refuses: the same merge
-  /// again goes on.
-  void copy(const MergePlan&, Store& into,
+  /// Copies the planned records, and who computed them, one store after the other; `progress`
+  /// counts cases. Throws InputError if the disk refuses: the same merge again goes on.
+  void copy(const MergePlan&, const Store& into,
             const std::function<void(std::size_t done, std::size_t all)>& progress) const;
 
  private:

@@ -68,7 +68,7 @@ Merge::Merge(const std::vector<fs::path>& folders) {
     } else {
       throw InputError(folder.string() +
                        ": neither a cluster folder (no 'manifest.jsonl' in it) nor results (no "
-                       "'store')");
+                       "'results.db')");
     }
     std::ranges::sort(source.cases, {}, &ManifestEntry::key);
     sources_.push_back(std::move(source));
@@ -89,61 +89,44 @@ MergePlan Merge::look(const Store& into) const {
     for (const Store& store : source.stores) {
       for (const std::string& key : store.conflicts())
         plan.conflicts.push_back(ids[key] + ": two results in " + store.root().string());
-      for (const std::string& key : store.keys()) {
-        const std::optional<Record> record = store.find(key);
-        if (!record) continue;
-        if (!std::ranges::binary_search(source.cases, key, {}, &ManifestEntry::key)) {
-          plan.foreign.push_back(record->id + ": in " + store.root().string() +
+      for (const Store::Entry& entry : store.entries()) {
+        if (!std::ranges::binary_search(source.cases, entry.key, {}, &ManifestEntry::key)) {
+          plan.foreign.push_back(entry.id + ": in " + store.root().string() +
                                  ", but not planned (another study or build)");
           continue;
         }
-        const Found mine{result_digest(*record), record->status.is_result(), &store};
-        auto [at, fresh] = found.try_emplace(key, mine);
+        const Found mine{entry.result, entry.is_result, &store};
+        auto [at, fresh] = found.try_emplace(entry.key, mine);
         if (!fresh && mine.is_result && at->second.is_result && mine.result != at->second.result)
-          plan.conflicts.push_back(ids[key] + ": " + at->second.store->root().string() + " and " +
-                                   store.root().string() + " have different results");
+          plan.conflicts.push_back(ids[entry.key] + ": " + at->second.store->root().string() +
+                                   " and " + store.root().string() + " have different results");
         if (!at->second.is_result) at->second = mine;
       }
     }
+  const std::vector<Store::Entry> all = into.entries();
   for (const ManifestEntry& one : plan.cases) {
     const auto at = found.find(one.key);
-    const std::optional<Record> there = into.find(one.key);
-    if (at == found.end() && !there) plan.missing.push_back(one);
-    if (at != found.end() && there && at->second.is_result && there->status.is_result() &&
-        result_digest(*there) != at->second.result)
+    const auto there = std::ranges::lower_bound(all, one.key, {}, &Store::Entry::key);
+    const bool is_there = there != all.end() && there->key == one.key;
+    if (at == found.end() && !is_there) plan.missing.push_back(one);
+    if (at != found.end() && is_there && at->second.is_result && there->is_result &&
+        there->result != at->second.result)
       plan.conflicts.push_back(one.id + ": " + at->second.store->root().string() + " and " +
                                into.root().string() + " have different results");
   }
   return plan;
 }
 
-void Merge::copy(const MergePlan& plan, Store& into,
+void Merge::copy(const MergePlan& plan, const Store& into,
                  const std::function<void(std::size_t, std::size_t)>& progress) const {
-  constexpr std::size_t kBatch = std::size_t{4} << 20;
   const std::size_t all = plan.cases.size() - plan.missing.size();
-  std::unordered_set<std::string> copied;
-  std::vector<std::pair<const Store*, std::string>> failures;
-  const auto add = [&](const Store& store, const Record& record) {
-    if (!copied.insert(record.key).second) return;
-    into.commit(store.parts(record.key), record);
-    progress(std::min(copied.size(), all), all);
-  };
-  int number = 0;
   for (const Source& source : sources_)
     for (const Store& store : source.stores) {
       if (fs::weakly_canonical(store.root()) == fs::weakly_canonical(into.root())) continue;
-      into.pack_into(plan.name + "-" + std::to_string(++number) + "." + unique_suffix(), kBatch);
-      for (const std::string& key : store.keys())
-        if (const std::optional<Record> record = store.find(key); record) {
-          if (record->status.is_result())
-            add(store, *record);
-          else
-            failures.emplace_back(&store, key);
-        }
+      into.take(store);
       copy_sessions(store.root(), into.root());
+      progress(std::min(into.keys().size(), all), all);
     }
-  for (const auto& [store, key] : failures) add(*store, *store->find(key));
-  into.flush();
 }
 
 }  // namespace taut::cluster

@@ -11,6 +11,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
+import stored  # noqa: E402
 from command_line import BINARIES, CommandLine, main  # noqa: E402
 
 QUICK = {**os.environ, "TAUT_CLUSTER_PATIENCE": "3"}
@@ -154,8 +155,7 @@ class Shards(Cluster):
         self.assertEqual((merged["merged"], merged["store"]), (True, self.whole()))
         again = self.merge("c", "--out", "m")
         self.assertEqual(again["store"], merged["store"])
-        self.assertLessEqual(len(list((self.folder / "m/packs").iterdir())), 3, "a pack file per shard, and none twice")
-        self.assertEqual(list((self.folder / "m/store").iterdir()), [])
+        self.assertEqual(len(self.keys("m")), 12, "none twice")
         table = self.taut("run", "./study.toml", "--out", "m", "--table", "stretch.rms")
         self.assertIn("(12 were stored already)", table.err)
 
@@ -213,12 +213,13 @@ class Shards(Cluster):
         other = self.study("other.toml", rest="axes.iterations = [20, 21]\n")
         self.submit("--shards", 1, study=other, folder="d")
         self.shard(1, folder="d")
-        shutil.copy(next((self.folder / "d/shards/0001/packs").iterdir()), self.folder / "c/shards/0001/packs/stray.pack")
+        mine = (self.folder / "c/shards/0001/results.db").read_bytes()
+        shutil.copy(self.folder / "d/shards/0001/results.db", self.folder / "c/shards/0001/results.db")
         merged = self.merge("c", "--out", "m", expect=2)
         self.assertEqual(len(merged["foreign"]), 2)
         self.assertIn("iterations=20", merged["foreign"][0] + merged["foreign"][1])
         self.assertIn("not planned (another study or build)", merged["foreign"][0])
-        (self.folder / "c/shards/0001/packs/stray.pack").unlink()
+        (self.folder / "c/shards/0001/results.db").write_bytes(mine)
         merged = self.merge("c", "d", "--out", "m", expect=2)
         self.assertEqual(len(merged["foreign"]), 14, "each planned by one folder alone")
         self.assertFalse((self.folder / "m").exists())
@@ -232,9 +233,9 @@ class Shards(Cluster):
         self.assertEqual(len(merged["conflicts"]), 3)
         self.assertIn("c/shards/0001 and d/shards/0001 have different results", merged["conflicts"][0])
         self.assertFalse((self.folder / "m").exists())
-        # The same within one shard: two starts that did not see each other.
-        pack = next((self.folder / "d/shards/0001/packs").iterdir())
-        shutil.copy(pack, self.folder / "c/shards/0001/packs" / ("x" + pack.name))
+        # The same within one shard: what a start found that another one had found otherwise.
+        for key in self.keys("c/shards/0001"):
+            stored.change(self.folder / "c/shards/0001", "INSERT INTO conflicts VALUES (?, 'another', '', '')", key)
         merged = self.merge("c", "--out", "m", expect=6)
         self.assertEqual(len(merged["conflicts"]), 3)
         self.assertIn("two results in c/shards/0001", merged["conflicts"][0])
@@ -292,7 +293,7 @@ class Starts(Cluster):
         return process
 
     def packed(self):
-        return sum(len(file.read_bytes()) for file in (self.folder / "c/shards").glob("*/packs/*"))
+        return sum(len(stored.keys(shard)) for shard in (self.folder / "c/shards").glob("*"))
 
     def wait_for(self, what):
         for _ in range(300):
@@ -332,9 +333,6 @@ class Starts(Cluster):
         self.wait_for(self.packed)
         first.send_signal(signal.SIGKILL)
         first.communicate()
-        pack = next((self.folder / "c/shards/0001/packs").iterdir())
-        with pack.open("ab") as file:
-            file.write(b'{"schema":1,"key":"')  # the entry that it was about to write
         status = self.status(expect=3, program="taut-faulty")
         self.assertEqual((status["shards"][0]["state"], status["start"]), ("lost", [1]))
         again = self.shard(1, program="taut-faulty")
@@ -376,15 +374,12 @@ class Starts(Cluster):
         self.slow(cases=2)
         scratch = self.folder / "scratch"
         scratch.mkdir()
-        with self.subTest("in packs"):
-            said = self.vanished(["cluster", "run", "c", "--shard", 1], scratch, env={**QUICK, "TMPDIR": str(scratch)}, inner="*/")
+        for words in (["cluster", "run", "c", "--shard", 1], ["run", "./study.toml", "--out", "whole", "-j", 1]):
+            said = self.vanished(words, scratch, env={**QUICK, "TMPDIR": str(scratch)}, inner="*/")
             self.assertIn("vanished while its case was running", said)
-            status = self.status(expect=3, program="taut-faulty")
-            self.assertEqual((status["done"], status["failed"]), (0, []), "what nobody saw end is stored as nothing")
-        with self.subTest("in folders"):
-            said = self.vanished(["run", "./study.toml", "--out", "whole", "-j", 1], self.folder / "whole/tmp")
-            self.assertIn("vanished while its case was running", said)
-            self.assertEqual(self.entries("whole"), [])
+        status = self.status(expect=3, program="taut-faulty")
+        self.assertEqual((status["done"], status["failed"]), (0, []), "what nobody saw end is stored as nothing")
+        self.assertEqual(self.keys("whole"), [])
         self.shard(1, program="taut-faulty")
         self.assertEqual(self.merge("c", "--out", "m")["store"], self.single())
 

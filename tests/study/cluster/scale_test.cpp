@@ -1,4 +1,4 @@
-// A study of many cheap cases: planned, packed by shards, merged, read back, reported. Prints what
+// A study of many cheap cases: planned, kept by shards, merged, read back, reported. Prints what
 // each part costs; TAUT_SCALE_CASES=100000 makes the table of results/benchmarks/cluster.md.
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -64,19 +64,19 @@ class Copies {
  public:
   explicit Copies(const Study& study)
       : run_(run_case(make_case({"hang", study.settings, "jakobsen"}), {.series_rows = 120})),
-        parts_{{"series.csv", to_csv(run_.series)}} {}
+        files_{.series = to_json(run_.series)} {}
   void put(Store& into, const std::string& key, const std::string& id, const CaseSpec& spec) {
     Record& record = run_.record;
     record.key = key, record.id = id, record.spec = spec;
     const SolverChoice choice = parse_solver(spec.solver);
     for (const std::string name : {"iterations", "seed"})
       record.params[name] = choice.params.value(name);
-    into.commit(parts_, record);
+    into.commit(record, files_);
   }
 
  private:
   CaseRun run_;
-  EntryParts parts_;
+  CaseFiles files_;
 };
 
 /// What a report of the study holds at most beside what was held before [bytes].
@@ -91,10 +91,9 @@ TEST(StoreScale, AReportHoldsFewBytesOfACase) {
   const Scratch root;
   const Study few = many(4200, root.path() / "few"), all = many(8400, root.path() / "all");
   Store store(root.path() / "results");
-  store.pack_into("a", 1 << 20);
   Copies copies(all);
-  each_case(all, [&](Case&& one) { copies.put(store, one.key, one.id, one.spec); });
-  store.flush();
+  store.together(
+      [&] { each_case(all, [&](Case&& one) { copies.put(store, one.key, one.id, one.spec); }); });
   // What a page holds of some cases it holds of the first 4000: beyond them only records grow.
   const double first = peak_of_report(few, store), both = peak_of_report(all, store);
   ASSERT_GT(first, 1e6) << "the peak was not measured";
@@ -128,13 +127,13 @@ TEST(StoreScale, ManyCheapCases) {
     watch.lap("read the manifest");
     for (int shard = 1; shard <= manifest.shards; ++shard) {
       Store store(shard_folder(folder, shard));
-      store.pack_into("a", 1 << 20);
-      for (const PlannedCase& one : manifest.cases)
-        if (one.shard == shard) copies.put(store, one.key, one.id, one.spec);
-      store.flush();
+      store.together([&] {
+        for (const PlannedCase& one : manifest.cases)
+          if (one.shard == shard) copies.put(store, one.key, one.id, one.spec);
+      });
     }
   }
-  watch.lap("write eight pack files");
+  watch.lap("write eight files");
   Store merged(root / "merged");
   {
     const Merge merge({folder});

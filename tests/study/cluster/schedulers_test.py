@@ -17,6 +17,7 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
+import stored  # noqa: E402
 from command_line import BINARIES, CommandLine  # noqa: E402
 
 SLURM = ("slurmctld", "slurmd", "sbatch", "munged")
@@ -93,8 +94,9 @@ class Schedulers(CommandLine):
         logs = [*self.folder.glob("*.log"), *self.folder.glob("c/log/*"), *self.folder.glob("*.out")]
         return "".join(f"\n== {file.name}\n{file.read_text()[-1500:]}" for file in logs)
 
-    def packs(self):
-        return sorted((self.folder / "c/shards").glob("*/packs/*.pack"))
+    def sessions(self):
+        """Starts of shards of which something is stored."""
+        return sorted(session for shard in (self.folder / "c/shards").glob("*") if stored.keys(shard) for session in shard.glob("sessions/*"))
 
     def tasks(self, node=None):
         """The processes of `taut cluster run` of this test, by number."""
@@ -208,7 +210,7 @@ class Slurm(Schedulers):
     def test_a_node_and_a_task_die_in_the_middle(self):
         out = self.taut("cluster", "submit", "./study.toml", "--on", "slurm", "--shards", 8, "--folder", "c").out
         self.assertIn("200 cases in 8 shards", out)
-        self.wait_for(lambda: len(self.packs()) >= 3 and self.tasks("n1") and self.tasks("n2"))
+        self.wait_for(lambda: len(self.sessions()) >= 3 and self.tasks("n1") and self.tasks("n2"))
         job = self.ask("squeue", "-h", "-t", "R", "-w", "n2", "-o", "%F_%a").split()[0]
         self.ask("scontrol", "requeue", job)  # what a preemption does: SIGTERM, and back into the queue
         self.wait_for(lambda: self.tasks("n1") and self.tasks("n2"))
@@ -227,10 +229,10 @@ class Slurm(Schedulers):
 
     def test_the_signal_before_a_time_limit_queues_the_shard_again(self):
         self.taut("cluster", "submit", "./study.toml", "--on", "slurm", "--shards", 1, "--folder", "c")
-        self.wait_for(lambda: self.packs() and self.tasks())
+        self.wait_for(lambda: self.sessions() and self.tasks())
         self.ask("scancel", "--batch", "--signal=USR1", "1_1")  # as --signal=B:USR1@60 does
         self.wait_for(lambda: not self.ask("squeue", "-h").strip())
-        self.assertEqual(len(self.packs()), 2, "it was queued again and went on: " + self.said())
+        self.assertEqual(len(self.sessions()), 2, "it was queued again and went on: " + self.said())
         self.merged_equals_a_single_run()
 
 
@@ -258,16 +260,16 @@ class Parallel(Schedulers):
         job = self.start("cluster", "submit", "./study.toml", "--on", "parallel", "--shards", 8, "--folder", "c",
                          "--sshlogin", "1/near,1/far", env=environment)
         self.addCleanup(self.end, job)
-        victim = self.wait_for(lambda: len(self.packs()) >= 2 and self.tasks())[0]
+        victim = self.wait_for(lambda: len(self.sessions()) >= 2 and self.tasks())[0]
         os.kill(victim, signal.SIGKILL)
         out, err = job.communicate()
         self.assertNotEqual(job.returncode, 0, "a shard that died is a failed job")
         self.assertEqual(set((self.folder / "hosts.log").read_text().split()), {"near", "far"})
         self.assertEqual(len(self.status()["start"]), 1, f"{out}\n{err}")
-        before = len(self.packs())
+        before = len(self.sessions())
         subprocess.run(["./job.sh"], cwd=self.folder / "c", env=environment, check=True, capture_output=True)
         self.assertEqual(self.status()["start"], [])
-        self.assertEqual(len(self.packs()), before + 1, "only the shard that died was run again")
+        self.assertEqual(len(self.sessions()), before + 1, "only the shard that died was run again")
         self.merged_equals_a_single_run()
 
 

@@ -1,0 +1,112 @@
+#include "experiments/study/database.hpp"
+
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/model/input_error.hpp"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail_with(const fs::path& file, int code, int system, const std::string& text) {
+  const auto cannot = [&](const std::string& what, const std::string& why) {
+    throw InputError(file.string() + ": cannot " + what + ": " + why);
+  };
+  if (code == SQLITE_FULL) cannot("write", std::strerror(system > 0 ? system : ENOSPC));
+  if (code == SQLITE_READONLY) {
+    errno = 0;
+    const bool gone = access(file.c_str(), F_OK) != 0;
+    const bool refused =
+        gone || access(file.c_str(), W_OK) != 0 || access(file.parent_path().c_str(), W_OK) != 0;
+    cannot("write", refused ? std::strerror(errno) : text);
+  }
+  if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
+    throw InputError(file.string() + ": another process has it locked for more than " +
+                     std::to_string(Database::kPatience / 1000) + " s");
+  if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB)
+    throw InputError(file.string() + ": damaged: " + text +
+                     "; what writes results there sets it aside and begins anew");
+  if (code == SQLITE_IOERR || code == SQLITE_CANTOPEN)
+    cannot(code == SQLITE_IOERR ? "write" : "open", system > 0 ? std::strerror(system) : text);
+  throw InputError(file.string() + ": " + text);
+}
+
+}  // namespace
+
+Database::Database(fs::path file, Access access) : file_(std::move(file)) {
+  std::error_code none;
+  if (fs::exists(file_, none) && !fs::is_regular_file(file_, none))
+    throw InputError(file_.string() + ": is no regular file");  // opening a pipe would wait
+  errno = 0;
+  try {
+    db_ = std::make_unique<SQLite::Database>(fs::absolute(file_),
+                                             access == Access::read
+                                                 ? SQLite::OPEN_READWRITE
+                                                 : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
+                                             kPatience);
+  } catch (const SQLite::Exception& error) {
+    fail_with(file_, error.getErrorCode() & 0xff, errno, error.what());
+  }
+  // What the file says of itself is not trusted: others may have written it.
+  script("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA foreign_keys = ON");
+}
+
+void Database::fail(const SQLite::Exception& error) const {
+  fail_with(file_, error.getErrorCode() & 0xff, sqlite3_system_errno(db_->getHandle()),
+            error.what());
+}
+
+bool Database::Rows::next() {
+  return of_.guarded([&] { return statement_.executeStep(); });
+}
+
+SQLite::Statement& Database::prepared(const std::string& sql) {
+  auto at = statements_.find(sql);
+  if (at == statements_.end())
+    at = guarded([&] { return statements_.try_emplace(sql, *db_, sql).first; });
+  return at->second;
+}
+
+void Database::script(const std::string& sql) {
+  guarded([&] { db_->exec(sql); });
+}
+
+std::int64_t Database::number_of(const std::string& sql) {
+  Rows row = rows(sql);
+  row.next();
+  return row.integer(0);
+}
+
+void Database::transaction(const std::function<void()>& work) {
+  if (within_) return work();
+  run("BEGIN IMMEDIATE");
+  within_ = true;
+  try {
+    work();
+    within_ = false;
+    run("COMMIT");
+  } catch (...) {
+    within_ = false;
+    sqlite3_exec(db_->getHandle(), "ROLLBACK", nullptr, nullptr, nullptr);  // unless it has already
+    throw;
+  }
+}
+
+bool damaged(const fs::path& file) {
+  try {
+    SQLite::Database db(fs::absolute(file), SQLite::OPEN_READWRITE, Database::kPatience);
+    SQLite::Statement check(db, "PRAGMA quick_check(1)");
+    return check.executeStep() && check.getColumn(0).getString() != "ok";
+  } catch (const SQLite::Exception& error) {
+    const int code = error.getErrorCode() & 0xff;
+    return code == SQLITE_CORRUPT || code == SQLITE_NOTADB;
+  }
+}
+
+}  // namespace taut

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace taut {
+
+/// An SQLite file. Whatever it refuses is an InputError that names the file and the reason: no
+/// space, read-only, locked for longer than kPatience, damaged.
+class Database {
+ public:
+  enum class Access { read, write };
+  /// Milliseconds that a lock of another process is waited for.
+  static constexpr int kPatience = 60000;
+
+  /// `write` creates the file if it is not there. Who reads takes back what a process that was
+  /// killed had begun to write, if the file system lets it.
+  Database(std::filesystem::path file, Access);
+  const std::filesystem::path& file() const { return file_; }
+
+  /// The rows of a query, one after the other; its locks end with this object.
+  class Rows {
+   public:
+    Rows(Database& of, SQLite::Statement& statement) : of_(of), statement_(statement) {}
+    ~Rows() { statement_.tryReset(); }
+    Rows(const Rows&) = delete;
+    Rows& operator=(const Rows&) = delete;
+    bool next();
+    bool null(int column) const { return statement_.getColumn(column).isNull(); }
+    std::string text(int column) const { return statement_.getColumn(column).getString(); }
+    std::int64_t integer(int column) const { return statement_.getColumn(column).getInt64(); }
+    double number(int column) const {  ///< NaN: NULL, or no finite number
+      const double value = null(column) ? std::nan("") : statement_.getColumn(column).getDouble();
+      return std::isfinite(value) ? value : std::nan("");
+    }
+
+   private:
+    Database& of_;
+    SQLite::Statement& statement_;
+  };
+
+  /// Bound to the query's "?" in order: texts, whole numbers, doubles (what is not finite is NULL),
+  /// nullptr (NULL), Bytes. One query's rows are read before the same one begins again.
+  template <class... Values>
+  Rows rows(const std::string& sql, const Values&... values) {
+    SQLite::Statement& statement = prepared(sql);
+    int place = 0;
+    guarded([&] { (bind(statement, ++place, values), ...); });
+    return Rows(*this, statement);
+  }
+  /// Runs one statement that has no rows, or whose rows do not matter.
+  template <class... Values>
+  void run(const std::string& sql, const Values&... values) {
+    Rows all = rows(sql, values...);
+    while (all.next()) {
+    }
+  }
+  /// Several statements, separated by semicolons.
+  void script(const std::string& sql);
+  /// The first column of the first row of a query that has one.
+  std::int64_t number_of(const std::string& sql);
+  /// All of what `work` writes or, if it throws, nothing. Within another one: part of that.
+  void transaction(const std::function<void()>& work);
+
+  struct Bytes {
+    const std::string& bytes;
+  };
+
+ private:
+  SQLite::Statement& prepared(const std::string& sql);
+  [[noreturn]] void fail(const SQLite::Exception&) const;
+  template <class Work>
+  auto guarded(const Work& work) const {
+    try {
+      return work();
+    } catch (const SQLite::Exception& error) {
+      fail(error);
+    }
+  }
+  static void bind(SQLite::Statement& s, int at, const std::string& text) { s.bind(at, text); }
+  static void bind(SQLite::Statement& s, int at, std::nullptr_t) { s.bind(at); }
+  static void bind(SQLite::Statement& s, int at, int number) { s.bind(at, number); }
+  static void bind(SQLite::Statement& s, int at, std::size_t number) {
+    s.bind(at, static_cast<std::int64_t>(number));
+  }
+  static void bind(SQLite::Statement& s, int at, std::int64_t number) { s.bind(at, number); }
+  static void bind(SQLite::Statement& s, int at, double number) {
+    std::isfinite(number) ? s.bind(at, number) : s.bind(at);
+  }
+  static void bind(SQLite::Statement& s, int at, const Bytes& b) {
+    s.bind(at, b.bytes.data(), static_cast<int>(b.bytes.size()));
+  }
+
+  std::filesystem::path file_;
+  std::unique_ptr<SQLite::Database> db_;
+  std::map<std::string, SQLite::Statement> statements_;  ///< by their text
+  bool within_ = false;                                  ///< a transaction
+};
+
+/// The file is no SQLite file, or not a whole one.
+bool damaged(const std::filesystem::path& file);
+
+}  // namespace taut

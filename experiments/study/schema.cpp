@@ -1,0 +1,62 @@
+#include "experiments/study/schema.hpp"
+
+namespace taut {
+
+const char* const kTables = R"SQL(
+CREATE TABLE cases (
+  case_id INTEGER PRIMARY KEY,
+  key TEXT NOT NULL UNIQUE,
+  id TEXT NOT NULL,
+  scene TEXT NOT NULL,
+  scene_file TEXT NOT NULL,
+  settings TEXT NOT NULL,
+  solver TEXT NOT NULL,
+  solver_text TEXT NOT NULL,
+  parameters TEXT NOT NULL,
+  dt REAL NOT NULL,
+  steps INTEGER NOT NULL,
+  vertices INTEGER NOT NULL,
+  links INTEGER NOT NULL,
+  status TEXT NOT NULL,
+  is_result INTEGER NOT NULL,
+  reason TEXT NOT NULL,
+  step INTEGER,
+  vertex INTEGER,
+  projections INTEGER NOT NULL,
+  passes TEXT NOT NULL,
+  resolved_settings TEXT NOT NULL,
+  state_digest TEXT NOT NULL,
+  result_digest TEXT NOT NULL,
+  log TEXT NOT NULL,
+  errors TEXT NOT NULL);
+
+CREATE TABLE metrics (
+  metric_id INTEGER PRIMARY KEY,
+  name TEXT NOT NULL UNIQUE,
+  unit TEXT,
+  definition TEXT);
+
+-- A value without a type keeps the sign of a zero.
+CREATE TABLE numbers (
+  case_id INTEGER NOT NULL REFERENCES cases ON DELETE CASCADE,
+  metric_id INTEGER NOT NULL REFERENCES metrics,
+  value,
+  PRIMARY KEY (case_id, metric_id)) WITHOUT ROWID;
+
+CREATE TABLE series (
+  case_id INTEGER PRIMARY KEY REFERENCES cases ON DELETE CASCADE,
+  columns TEXT NOT NULL);
+
+CREATE TABLE frames (
+  case_id INTEGER PRIMARY KEY REFERENCES cases ON DELETE CASCADE,
+  motion BLOB NOT NULL);
+
+CREATE TABLE conflicts (
+  key TEXT NOT NULL,
+  result_digest TEXT NOT NULL,
+  found TEXT NOT NULL,
+  record TEXT NOT NULL,
+  PRIMARY KEY (key, result_digest)) WITHOUT ROWID;
+)SQL";
+
+}  // namespace taut

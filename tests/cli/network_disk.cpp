@@ -1,0 +1,16 @@
+// Preloaded into a program: every file system is NFS, and the host is called $HOST_NAME.
+#include <sys/vfs.h>
+
+#include <cstdlib>
+#include <cstring>
+
+extern "C" int statfs(const char*, struct statfs* about) {
+  std::memset(about, 0, sizeof *about);
+  about->f_type = 0x6969;
+  return 0;
+}
+
+extern "C" int gethostname(char* name, std::size_t size) {
+  std::strncpy(name, std::getenv("HOST_NAME"), size);
+  return 0;
+}
