@@ -11,6 +11,7 @@
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 
 #include <cmath>
+#include <optional>
 
 #include "bullet_ref/bullet_solver.hpp"
 #include "core/model/index.hpp"
@@ -23,7 +24,7 @@ namespace {
 constexpr ParamSpec kParams[] = {
     ParamSpec::real(
         "stiffness", "N/m", "1000", 1e-6, 1e9,
-        "spring constant of every link: the accuracy parameter, for the scene's links are rigid"),
+        "spring constant of every link: the accuracy parameter where the scene's links are rigid"),
     ParamSpec::choice("implicit", "true", "true|false",
                       "backward Euler, which at its defaults may explode with pins, bend links and "
                       "velocities at the start; or explicit springs (stable below k h^2/m of about "
@@ -36,7 +37,20 @@ constexpr ParamSpec kParams[] = {
                     "damping along every link, on top of the scene's (Bullet's default: 0.05)"),
     bullet_ref::kMargin,
     bullet_ref::kVoxel,
+    kMaterial,
 };
+
+/// Of every link [N/m]; nothing if the scene's links differ: Bullet has one for all.
+std::optional<double> stiffness(const Scene& scene, const Params& params) {
+  if (!takes_stiffness(scene, params)) return params.real("stiffness");
+  std::optional<double> one;
+  for (const Link& link : scene.links) {
+    const double k = scene.stiffness[static_cast<std::size_t>(link.family)];
+    if (one.value_or(k) != k || std::isinf(k)) return {};
+    one = k;
+  }
+  return one;
+}
 
 /// Bullet has no setter for its number of Newton steps.
 struct DeformableSolver : btDeformableBodySolver {
@@ -68,7 +82,7 @@ class BulletDeformable final : World, public BulletSolver {
         BulletSolver(scene, params, world, world.getWorldInfo(), {.margin = params.real("margin")}),
         newton_(newton_steps(params)),
         loss_(static_cast<btScalar>(-std::expm1(-scene.damping * static_cast<double>(h_)))),
-        springs_(static_cast<btScalar>(params.real("stiffness")),
+        springs_(static_cast<btScalar>(stiffness(scene, params).value()),
                  static_cast<btScalar>(params.real("spring-damping"))),
         gravity_(to_bullet(scene.gravity)) {
     world.setImplicit(params.is("implicit", "true"));
@@ -198,6 +212,8 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = bullet_ref::unsupported(scene, params);
+  if (!stiffness(scene, params))
+    reasons.push_back("links of different stiffness: btDeformableMassSpringForce has one for all");
   if (scene.self_collision)
     reasons.push_back(
         "self-collision: Bullet shuffles its contacts by a generator that the whole process "
@@ -214,8 +230,9 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
       {{"integration", implicit ? "backward Euler, " + std::string(params.value("newton")) +
                                       " Newton step(s), conjugate gradients"
                                 : "symplectic Euler, explicit springs"},
-       {"links", "springs of " + bullet_ref::short_text(params.real("stiffness")) +
-                     " N/m, all families; the scene's are rigid"},
+       {"links", "springs of " + bullet_ref::short_text(stiffness(scene, params).value_or(0)) +
+                     " N/m, all families" +
+                     (scene.stiffness == kRigid ? "; the scene's are rigid" : "")},
        {"spring damping",
         bullet_ref::short_text(params.real("spring-damping")) + " N s/m (default 0.05)"},
        {"gravity", "the scene's, by btDeformableGravityForce (default: none)"},

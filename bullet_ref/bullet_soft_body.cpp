@@ -204,6 +204,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = bullet_ref::unsupported(scene, params);
+  for (std::string& reason : elastic_links(scene)) reasons.push_back(std::move(reason));
   if (scene.self_collision)
     reasons.push_back(
         "self-collision: btSoftBody leaves itself out of its vertex-face test (VF_SS)");

@@ -153,11 +153,23 @@ const Value& part(Section& root, const std::string& key) {
   return table ? *table : kAbsent;
 }
 
-LinkChoice read_links(Section& links) {
+/// Of each family [N/m]; those that are not named are rigid.
+void read_stiffness(Section& links, Scene& scene) {
+  const Value* table = links.table("stiffness");
+  if (!table) return;
+  Section stiffness(links.diagnostics(), *table, "[links] stiffness");
+  for (const Family family : kFamilies)
+    if (const auto k = stiffness.number(std::string(to_string(family)), Range::positive(1e12)))
+      scene.stiffness[static_cast<std::size_t>(family)] = *k;
+  stiffness.finish();
+}
+
+LinkChoice read_links(Section& links, Scene& scene) {
   LinkChoice choice;
   choice.structural = links.boolean("structural", true);
   choice.shear = links.boolean("shear", true);
   choice.bend = links.boolean("bend", false);
+  read_stiffness(links, scene);
   links.finish();
   return choice;
 }
@@ -321,7 +333,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
 
   root.need({"cloth"});
   Section links(diagnostics, part(root, "links"), "[links]");
-  const LinkChoice choice = read_links(links);
+  const LinkChoice choice = read_links(links, scene);
   Section cloth(diagnostics, part(root, "cloth"), "[cloth]");
   const bool built = root.table("cloth") && read_cloth(cloth, path.parent_path(), choice, scene);
   ContactRules rules;

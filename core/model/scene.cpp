@@ -1,8 +1,11 @@
 #include "core/model/scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <type_traits>
+
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -77,6 +80,14 @@ std::vector<double> inverse_masses(const Scene& scene) {
   for (const double mass : scene.mesh.mass) w.push_back(1 / mass);
   for (const int pin : scene.pins) w[static_cast<std::size_t>(pin)] = 0;
   return w;
+}
+
+std::vector<std::string> elastic_links(const Scene& scene) {
+  double softest = std::numeric_limits<double>::infinity();
+  for (const Link& link : scene.links)
+    softest = std::min(softest, scene.stiffness[static_cast<std::size_t>(link.family)]);
+  if (std::isinf(softest)) return {};
+  return {"links of " + shortest(softest) + " N/m"};
 }
 
 double extent(const Scene& scene) {

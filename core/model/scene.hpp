@@ -76,6 +76,10 @@ bool is_pinned(const Scene&, int vertex);
 /// Inverse masses [n] in 1/kg; 0 for pinned vertices.
 std::vector<double> inverse_masses(const Scene&);
 
+/// What a solver whose links are rigid says of a scene whose links are not: "links of 500 N/m", the
+/// softest; nothing if they are rigid.
+std::vector<std::string> elastic_links(const Scene&);
+
 /// A unit of length for the scene [m]: the diagonal of the rest shape's bounding box.
 double extent(const Scene&);
 

@@ -136,6 +136,16 @@ struct SolverEntry {
   std::string_view implementation = "";
 };
 
+/// A parameter of solvers whose links may comply.
+inline constexpr ParamSpec kMaterial = ParamSpec::choice(
+    "material", "scene", "scene|own",
+    "links as stiff as the scene says, if it does; or, for a study, as the solver's parameters "
+    "say");
+/// Whether the links' stiffness is the scene's.
+inline bool takes_stiffness(const Scene& scene, const Params& params) {
+  return scene.stiffness != kRigid && params.is("material", "scene");
+}
+
 /// Constraint projections in one step: sum of items x repeats over the passes that project.
 std::size_t projections_per_step(const Solver&);
 

@@ -18,9 +18,7 @@ constexpr ParamSpec kParams[] = {
                       "gauss-seidel|jacobi|jacobi-averaged|jacobi-underrelaxed",
                       "links one after the other, or all at once: summed, averaged, or divided by "
                       "the largest number of links at a vertex"),
-    ParamSpec::choice("order", "coloured", "mesh|coloured|reversed|random|jolt",
-                      "in which Gauss-Seidel visits the links; mesh is the scene's own order, as "
-                      "published; jolt is Jolt Physics' order"),
+    kOrderParam,
     ParamSpec::integer("seed", "1", 0, 2147483647, "of order=random"),
     ParamSpec::real("omega", "", "1", 0, 2,
                     "relaxation factor: below 1 under-, above 1 over-relaxed"),
@@ -32,9 +30,7 @@ constexpr ParamSpec kParams[] = {
         "levels", "1", 1, 20,
         "of a hierarchy, each with half the vertices of the finer one; 1: the cloth alone"),
     loop::kPrecision,
-    ParamSpec::choice("layout", "auto", "auto|interleaved|batches",
-                      "of the links under order=coloured: interleaved (AoSoA) for a regular sheet, "
-                      "or colour batches for any mesh"),
+    kLayoutParam,
     loop::kSimd,
     loop::kThreads,
 };
@@ -49,14 +45,6 @@ constexpr Choice<std::optional<Jacobi>> kMethods[] = {
     {"jacobi", Jacobi::plain},
     {"jacobi-averaged", Jacobi::averaged},
     {"jacobi-underrelaxed", Jacobi::underrelaxed}};
-constexpr Choice<Order> kOrders[] = {{"mesh", Order::mesh},
-                                     {"coloured", Order::coloured},
-                                     {"reversed", Order::reversed},
-                                     {"random", Order::random},
-                                     {"jolt", Order::jolt}};
-constexpr Choice<LinkLayout> kLayouts[] = {{"auto", LinkLayout::automatic},
-                                           {"interleaved", LinkLayout::interleaved},
-                                           {"batches", LinkLayout::batches}};
 RelaxationSettings relaxation_settings(const loop::Setup& setup) {
   const Params& params = setup.params;
   return {.projection = params.one_of("projection", kProjections),
@@ -82,6 +70,12 @@ loop::Links<Real> make_links(const loop::Setup& setup) {
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return loop::make(scene, params, make_links<float>, make_links<double>);
+}
+
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
+  std::vector<std::string> reasons = loop::unsupported(scene, params);
+  for (std::string& reason : elastic_links(scene)) reasons.push_back(std::move(reason));
+  return reasons;
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
@@ -120,7 +114,7 @@ TAUT_SOLVER(jakobsen) = {
     .source = "Jakobsen, Advanced Character Physics, GDC 2001",
     .params = taut::solver::jakobsen::kParams,
     .make = taut::solver::jakobsen::make,
-    .unsupported = taut::loop::unsupported,
+    .unsupported = taut::solver::jakobsen::unsupported,
     .resolved_settings = taut::solver::jakobsen::resolved_settings,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",

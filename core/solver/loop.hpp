@@ -121,6 +121,11 @@ inline constexpr ParamSpec kThreads = ParamSpec::integer(
     "threads", "1", 1, 64,
     "that divide the sweeps of order=coloured; any number computes the same bits");
 
+/// What a scene may not need of the common parameters (SolverEntry::optional_effects).
+inline constexpr OptionalEffect kOptionalEffects[] = {
+    {"contact of faces", "faces", "on", "off", true},
+    {"continuous detection", "contact", "continuous", "discrete", true}};
+
 /// A solver's own parameters, then those that every solver of the loop has.
 template <std::size_t n>
 constexpr auto with_common(const ParamSpec (&own)[n]) {

@@ -64,6 +64,7 @@ Json json_of(const Wind& wind) {
 }
 
 constexpr std::string_view kProtocol = "taut-solver/1";
+constexpr std::string_view kWithStiffness = "taut-solver/2";  ///< "stiffness" of a scene is read
 constexpr double kLargestInteger = 2147483647;
 
 /// Calls `read`; whatever it finds wrong in an answer breaks the protocol.
@@ -151,6 +152,16 @@ Json typed(const ParamSpec& spec, std::string_view value) {
   }
 }
 
+/// By family [N/m]; null: rigid.
+Json stiffness(const Scene& scene) {
+  Json all;
+  for (const Family family : kFamilies) {
+    const double k = scene.stiffness[static_cast<std::size_t>(family)];
+    all[std::string(to_string(family))] = std::isinf(k) ? Json() : Json(k);
+  }
+  return all;
+}
+
 }  // namespace
 
 std::string scene_file(const Scene& scene) {
@@ -161,30 +172,31 @@ std::string scene_file(const Scene& scene) {
     motions.push_back({{"vertices", group.vertices}, {"motion", json_of(group.motion)}});
   for (const Collider& collider : scene.colliders) colliders.push_back(json_of(collider));
   const auto& grid = scene.mesh.grid;
-  return to_text(
-             {{"format", "taut-scene/1"},
-              {"name", scene.name},
-              {"vertices", scene.mesh.size()},
-              {"grid", grid ? Json{grid->nu, grid->nv} : Json()},
-              {"dt", scene.dt},
-              {"steps", scene.steps},
-              {"gravity", json_of(scene.gravity)},
-              {"damping", scene.damping},
-              {"thickness", scene.thickness},
-              {"x", json_of(scene.start.x)},
-              {"v", json_of(scene.start.v)},
-              {"rest", json_of(scene.mesh.rest)},
-              {"mass", scene.mesh.mass},
-              {"inverse_mass", inverse_masses(scene)},
-              {"pins", scene.pins},
-              {"pin_motions", motions},
-              {"links", links},
-              {"triangles", scene.mesh.triangles},
-              {"colliders", colliders},
-              {"wind", scene.wind ? json_of(*scene.wind) : Json()},
-              {"self_collision",
-               scene.self_collision ? Json{{"radius", scene.self_collision->radius}} : Json()}}) +
-         "\n";
+  Json file{{"format", "taut-scene/1"},
+            {"name", scene.name},
+            {"vertices", scene.mesh.size()},
+            {"grid", grid ? Json{grid->nu, grid->nv} : Json()},
+            {"dt", scene.dt},
+            {"steps", scene.steps},
+            {"gravity", json_of(scene.gravity)},
+            {"damping", scene.damping},
+            {"thickness", scene.thickness},
+            {"x", json_of(scene.start.x)},
+            {"v", json_of(scene.start.v)},
+            {"rest", json_of(scene.mesh.rest)},
+            {"mass", scene.mesh.mass},
+            {"inverse_mass", inverse_masses(scene)},
+            {"pins", scene.pins},
+            {"pin_motions", motions},
+            {"links", links},
+            {"triangles", scene.mesh.triangles},
+            {"colliders", colliders},
+            {"wind", scene.wind ? json_of(*scene.wind) : Json()},
+            {"self_collision",
+             scene.self_collision ? Json{{"radius", scene.self_collision->radius}} : Json()}};
+  if (!elastic_links(scene).empty())
+    file["format"] = "taut-scene/2", file["stiffness"] = stiffness(scene);
+  return to_text(file) + "\n";
 }
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "states are sent as they lie in memory");
@@ -192,9 +204,11 @@ static_assert(std::endian::native == std::endian::little, "states are little-end
 
 std::unique_ptr<const Hello> read_hello(const Json& answer) {
   const JsonReader j = reader(answer, "hello");
-  if (const std::string protocol = j.at("protocol").text(); protocol != kProtocol)
+  const std::string protocol = j.at("protocol").text();
+  if (protocol != kProtocol && protocol != kWithStiffness)
     j.at("protocol").fail("'" + protocol + "' is not '" + std::string(kProtocol) + "'");
   auto hello = std::make_unique<Hello>();
+  hello->reads_stiffness = protocol == kWithStiffness;
   hello->name = j.at("name").text();
   hello->version = j.at("version").text();
   hello->summary = text_or(j, "summary", hello->name);

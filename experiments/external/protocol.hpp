@@ -14,7 +14,8 @@ namespace taut::external {
 /// What a program answers to "hello".
 struct Hello {
   std::string name, version, summary, source;
-  std::string unmeasurable;  ///< why its time says nothing; "": it does
+  bool reads_stiffness = false;  ///< it speaks taut-solver/2
+  std::string unmeasurable;      ///< why its time says nothing; "": it does
   std::vector<ParamSpec> params;
   std::deque<std::string> texts;  ///< what the views of `params` see
 };

@@ -46,7 +46,7 @@ TAUT_TRUTH(plane_rest, 7, 1,
                  5e-7);
   for (const std::string& solver :
        {jakobsen(3), jakobsen(3, "exact", "contact=before"), jakobsen(3, "exact", "contact=after"),
-        jakobsen(3, "exact", "contact=discrete"), xpbd(1), bullet(3)}) {
+        jakobsen(3, "exact", "contact=discrete"), xpbd(1), mass_spring("verlet", 1), bullet(3)}) {
     Scene s = above_plane(0, Vec3::UnitY(), 0);
     s.start.v = {Vec3(0, -1, 0), Vec3(0, -1, 0)};
     if (!can_run(findings, solver, s)) continue;
@@ -71,7 +71,7 @@ TAUT_TRUTH(incline_friction, 7, 2,
   const Vec3 downhill(std::cos(slope), -std::sin(slope), 0);
   for (const std::string& solver :
        {jakobsen(3), jakobsen(3, "exact", "contact=before"), jakobsen(3, "exact", "contact=after"),
-        xpbd(1), with(bullet(3), "friction=refuse")}) {
+        xpbd(1), mass_spring("verlet", 1), with(bullet(3), "friction=refuse")}) {
     const Scene s = above_plane(0, normal, mu);
     if (!can_run(findings, solver, s)) continue;
     Simulation sim(s, solver);
@@ -108,7 +108,8 @@ TAUT_TRUTH(tunnelling, 7, 3, "tests at step boundaries miss max(0, 1 - D/s) of t
   Scene s = above_plane(1, Vec3::UnitY(), 0);
   s.colliders = {plate};
   for (const std::string& solver :
-       {jakobsen(1, "exact", "contact=discrete"), jakobsen(1, "exact", "contact=after"), xpbd(1)}) {
+       {jakobsen(1, "exact", "contact=discrete"), jakobsen(1, "exact", "contact=after"),
+        xpbd(1, "contact=discrete"), with(mass_spring("verlet", 1), "contact=discrete")}) {
     if (!can_run(findings, solver, s)) continue;
     findings.equal(solver, "share that misses a plate of 0.4 travels, max(0, 1 - D/s)", "1",
                    missed(solver, plate, travel), 1 - thickness / travel, 0.006);

@@ -39,7 +39,7 @@ TAUT_TRUTH(small_steps, 8, 1,
     findings.equal(substeps, "the same, as reproduced here", "1", measured, kHere, 0.15);
   };
   ratio(jakobsen(100), jakobsen(1, "exact", "substeps=100"));
-  ratio("xpbd:iterations=100,substeps=1,precision=double", xpbd(100));
+  ratio("xpbd:order=mesh,iterations=100,substeps=1,precision=double", xpbd(100));
   const std::string theirs = bullet(100);
   if (can_run(findings, theirs, s)) {
     const double measured =
@@ -82,7 +82,7 @@ TAUT_TRUTH(xpbd_chain_force, 8, 3,
   // What can be held: at rest the corrections carry the exact weight, for any number of sweeps.
   for (const int k : {1, 50}) {
     const std::string solver =
-        "xpbd:iterations=" + std::to_string(k) + ",substeps=1,precision=double";
+        "xpbd:order=mesh,iterations=" + std::to_string(k) + ",substeps=1,precision=double";
     Scene s = under_gravity(bare::chain(20, 20, 1));
     if (!can_run(findings, solver, s)) continue;
     Simulation sim(s, solver, 12000 / k);

@@ -139,7 +139,9 @@ std::string bullet(int iterations) {
 }
 
 std::string xpbd(int substeps, std::string_view more) {
-  return with("xpbd:iterations=1,substeps=" + std::to_string(substeps) + ",precision=double", more);
+  return with(
+      "xpbd:iterations=1,order=mesh,substeps=" + std::to_string(substeps) + ",precision=double",
+      more);
 }
 
 std::string mass_spring(std::string_view integrator, double stiffness, double drag) {

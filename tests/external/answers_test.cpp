@@ -201,7 +201,13 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
                     {"spin", {4, 5, 6}},
                     {"pivot", {7, 8, 9}},
                     {"path", {{{"t", 0.5}, {"displacement", {1, 0, 2}}}}}};
+  scene.stiffness[1] = 500;
   Json file = parse_json(scene_file(scene));
+  EXPECT_EQ(file["format"], "taut-scene/2");
+  EXPECT_EQ(file["stiffness"],
+            (Json{{"structural", nullptr}, {"shear", 500.0}, {"bend", nullptr}}));
+  scene.stiffness = kRigid;
+  file = parse_json(scene_file(scene));
   const auto expect = [&](const char* key, const Json& value) {
     EXPECT_EQ(file[key], value) << key;
     file.erase(key);

@@ -298,6 +298,21 @@ TEST(SceneFiles, WhatMakesContactMeaninglessIsRefused) {
           "the cloth starts through itself");
 }
 
+TEST(SceneFiles, StiffnessIsOfTheFamiliesThatAreNamedAndTheOthersAreRigid) {
+  const Scene rigid = shipped("hang"),
+              elastic = shipped("hang", {"links.stiffness.shear=50", "links.stiffness.bend=0.25"});
+  EXPECT_EQ(rigid.stiffness, kRigid);
+  EXPECT_EQ(elastic.stiffness, (std::array{kRigid[0], 50.0, 0.25}));
+  EXPECT_EQ(elastic_links(rigid), std::vector<std::string>{});
+  EXPECT_EQ(elastic_links(elastic), std::vector<std::string>{"links of 50 N/m"}) << "none is bend";
+  EXPECT_EQ(content(elastic).substr(0, content(rigid).size()), content(rigid));
+  const std::string start = "cloth = { grid = [2, 2], size = [1, 1] }\n[links]\n";
+  EXPECT_NE(errors_of(start + "stiffness = { shear = 0, sheer = 1 }").find("sheer"),
+            std::string::npos);
+  EXPECT_NE(errors_of(start + "stiffness = { shear = 0 }").find("x:3"), std::string::npos);
+  EXPECT_NE(errors_of(start + "stiffness = 500").find("stiffness"), std::string::npos);
+}
+
 TEST(SceneFiles, AClothThatStartsInsideIsMovedOutIfItIsWished) {
   const Scene scene =
       shipped("ball", {"cloth.origin=[-0.5, 0.1, 0.5]", "cloth.start_inside=\"resolve\""});

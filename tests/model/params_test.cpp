@@ -115,7 +115,9 @@ TEST(SolverTexts, AreReadAndTheirErrorsCountFromTheFirstCharacter) {
   const SolverChoice choice = parse_solver("xpbd:iterations=3,bend=0.5");
   EXPECT_EQ(choice.entry->name, "xpbd");
   EXPECT_EQ(choice.canonical(),
-            "xpbd:substeps=8,iterations=3,structural=0,shear=0,bend=0.5,precision=float");
+            "xpbd:substeps=8,iterations=3,structural=0,shear=0,bend=0.5,precision=float"
+            ",material=scene,multipliers=keep,order=coloured,seed=1,layout=auto,tethers=off,"
+            "contact=continuous,faces=off,self=grid,simd=auto,threads=1");
   EXPECT_EQ(choice.brief(), "xpbd:iterations=3,bend=0.5");
   EXPECT_EQ(parse_solver("xpbd:substeps=8").brief(), "xpbd");
   EXPECT_EQ(&find_solver("bullet"), parse_solver("bullet").entry);

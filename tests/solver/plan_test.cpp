@@ -97,8 +97,10 @@ TEST(Plan, EveryPassVisitsWhatTheSceneHasAsOftenAsItIsAskedTo) {
   }
   auto lines = plan(scene, "xpbd:iterations=4,substeps=3");
   expect(lines, "wind", faces, 3);
-  expect(lines, "predict", 140, 3);
-  expect(lines, "links", all, 12, true);
+  expect(lines, "verlet", 140, 3);
+  expect(lines, "structural", links[Family::structural], 12, true);
+  expect(lines, "shear", links[Family::shear], 12, true);
+  expect(lines, "bend", links[Family::bend], 12, true);
   expect(lines, "collide ball", 140, 12);
   lines = plan(scene, "bullet:iterations=4,substeps=3");
   expect(lines, "wind", faces, 3);
@@ -106,14 +108,14 @@ TEST(Plan, EveryPassVisitsWhatTheSceneHasAsOftenAsItIsAskedTo) {
   expect(lines, "detect contacts", 140, 3);
   expect(lines, "links", all, 12, true);
   expect(lines, "normals", faces, 3);
-  scene.colliders.clear();
   lines = plan(scene, "mass-spring:substeps=3,shear=0");
   expect(lines, "wind", faces, 3);
-  expect(lines, "integrate", 140, 3);
+  expect(lines, "verlet", 140, 3);
+  expect(lines, "collide ball", 140, 3);
   expect(lines, "structural springs", links[Family::structural], 3);
   expect(lines, "bend springs", links[Family::bend], 3);
   EXPECT_FALSE(lines.contains("shear springs"));
-  scene.links.clear(), scene.wind.reset(), scene.pins.clear();
+  scene.links.clear(), scene.wind.reset(), scene.pins.clear(), scene.colliders.clear();
   for (const char* solver : {"jakobsen", "xpbd", "mass-spring", "bullet:faces=off"})
     EXPECT_EQ(plan(scene, solver).size(), 1u) << solver << ": there is nothing but motion";
 }
@@ -214,16 +216,23 @@ TEST(Plan, MemoryOfBulletIsMostlyWhatItsPassesReport) {
       EXPECT_NEAR(held_by_reported(solver, 24, windy, windy), 1.13, 0.1) << solver;
 }
 
-// Positions now and before, velocities and accelerations, and a weight each; springs need no
-// position before.
-TEST(Plan, MemoryOfPlainSolversIsThatOfTheirArrays) {
-  const Scene scene = hanging_sheet(11, 13);
-  for (const auto& [precision, real] : {std::pair{"float", 4u}, {"double", 8u}}) {
-    EXPECT_EQ(plan(scene, std::string("xpbd:precision=") + precision)["predict"].bytes,
-              143 * (4 * 3 + 1) * real);
-    EXPECT_EQ(plan(scene, std::string("mass-spring:precision=") + precision)["integrate"].bytes,
-              143 * (3 * 3 + 1) * real);
-  }
+// Each link of a compliant family has a multiplier more, and a share of it.
+TEST(Plan, MultipliersAreThereForLinksThatComply) {
+  const Scene scene = hanging_sheet(64, 64);
+  for (const auto& [precision, real] : {std::pair{"float", 4.0}, {"double", 8.0}})
+    for (const char* layout : {",order=coloured", ",order=coloured,layout=batches"}) {
+      const std::string solver = std::string("xpbd:precision=") + precision + layout;
+      const auto bytes = [&](const std::string& more) {
+        double all = 0;
+        for (const auto& [pass, line] : plan(scene, solver + more))
+          all += static_cast<double>(line.bytes);
+        return all;
+      };
+      std::size_t compliant = 0;
+      for (const Link& l : scene.links) compliant += l.family == Family::shear;
+      const double more = bytes(",shear=0.01") - bytes("");
+      EXPECT_NEAR(more / (static_cast<double>(compliant) * real), 1, 0.2) << solver;
+    }
 }
 
 }  // namespace

@@ -318,6 +318,57 @@ TEST(SameBits, NarrowAndIncompleteSheetsAreNotInterleaved) {
   EXPECT_FALSE(regular_links(cut.mesh, cut.links));
 }
 
+// Multipliers of links that hardly comply are lost beside the lengths that they are added to, so
+// that the kernels that keep them compute the bits of those that have none; and with them, all
+// instruction sets, layouts and numbers of threads agree.
+TEST(SameBits, XpbdIsTheExactProjectionWithoutCompliance) {
+  for (const Scene& scene : scenes())
+    for (const char* precision : {",precision=float", ",precision=double"})
+      for (const char* order : {",order=mesh", ",order=jolt", ",order=coloured",
+                                ",order=coloured,layout=batches", ",order=coloured,threads=2"}) {
+        const std::string common = std::string("substeps=2,iterations=3") + precision + order;
+        const State want = simulate(scene, "jakobsen:projection=exact," + common, 8);
+        EXPECT_TRUE(same_bits(simulate(scene, "xpbd:" + common, 8), want)) << common;
+        EXPECT_TRUE(same_bits(
+            simulate(scene, "xpbd:structural=1e-25,shear=1e-25,bend=1e-25," + common, 8), want))
+            << common;
+      }
+}
+
+TEST(SameBits, OfCompliantLinksForEveryInstructionSetLayoutAndNumberOfThreads) {
+  std::vector<Scene> all = scenes();
+  all.push_back(crumpled(hanging_sheet(92, 90), 0.005));
+  for (const Scene& scene : all)
+    for (const char* precision : {"float", "double"})
+      for (const char* more : {"", ",layout=batches", ",multipliers=reset"}) {
+        const std::string method = std::string("xpbd:structural=1e-4,bend=0.01,substeps=2,") +
+                                   "iterations=3,precision=" + precision + more;
+        const State want = simulate(scene, method + ",simd=scalar", 4);
+        for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+          if (available(simd)) {
+            const std::string with = method + ",simd=" + std::string(to_string(simd));
+            EXPECT_TRUE(same_bits(simulate(scene, with, 4), want)) << with;
+          }
+        EXPECT_TRUE(same_bits(simulate(scene, method + ",threads=3", 4), want)) << method;
+      }
+}
+
+/// The links of a sheet as its sweep visits them, one by one, comply as in mesh order.
+TEST(SameBits, CompliantSheetsAreTheGenericPathInTheirOrder) {
+  for (const auto& [nu, nv] : {std::pair{31, 33}, {65, 7}, {24, 9}, {9, 24}}) {
+    const Scene scene = crumpled(hanging_sheet(nu, nv, {true, true, true}), 0.3 / nu);
+    const auto links = regular_links(scene.mesh, scene.links);
+    ASSERT_TRUE(links);
+    Scene in_order = scene;
+    in_order.links = order_of(*links, InterleavedSheet<double>(*links, inverse_masses(scene), 1));
+    const std::string method =
+        "xpbd:structural=1e-4,shear=1e-3,bend=0.01,iterations=4,precision=double,order=";
+    EXPECT_TRUE(same_bits(simulate(in_order, method + "mesh", 20),
+                          simulate(scene, method + "coloured", 20)))
+        << nu;
+  }
+}
+
 /// FNV-1a of the positions' bits.
 std::uint64_t hash(const State& state) {
   std::uint64_t value = 14695981039346656037u;

@@ -113,7 +113,6 @@ struct Settings {
   int levels = 1;
   double omega = 1;
   bool contact_in_sweeps = true;
-  bool friction = true;
   bool octree = false;
   std::map<Family, double> compliance;  ///< m/N
 };
@@ -190,7 +189,6 @@ class Relaxing : public Cloth {
         const double depth = scene.thickness - hit.distance;
         if (depth <= 0) continue;
         x[i] += depth * hit.normal;
-        if (!set_.friction) continue;
         Vec3 slip = x[i] - moved(c.motion, started(c.motion, before_[i], end - h_), end);
         slip -= slip.dot(hit.normal) * hit.normal;
         const double most = c.friction * depth;

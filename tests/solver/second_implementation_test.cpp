@@ -74,12 +74,9 @@ TEST(SecondImplementation, OfHeavyCloth) {
   for (const double w : inverse_masses(scene)) ASSERT_LT(w, 1);
   expect_same_path(scene, in_double("iterations=2,substeps=2,levels=3,tethers=on"),
                    Relaxing(scene, {.iterations = 2, .substeps = 2, .tethers = true, .levels = 3}));
-  scene.colliders[0].friction = 0;
-  expect_same_path(scene, "xpbd:precision=double,iterations=3,substeps=2,shear=1e-5",
-                   Relaxing(scene, {.iterations = 3,
-                                    .substeps = 2,
-                                    .friction = false,
-                                    .compliance = {{Family::shear, 1e-5}}}));
+  expect_same_path(
+      scene, "xpbd:precision=double,order=mesh,iterations=3,substeps=2,shear=1e-5",
+      Relaxing(scene, {.iterations = 3, .substeps = 2, .compliance = {{Family::shear, 1e-5}}}));
 }
 
 TEST(SecondImplementation, OfTethersAndLevels) {
@@ -154,18 +151,17 @@ TEST(SecondImplementation, OfXpbd) {
     Scene scene = busy_sheet(true, true);
     scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.2};
     scene.thickness = 0.02;
-    scene.colliders = moving_colliders(0);
-    expect_same_path(
-        scene,
-        "xpbd:precision=double,iterations=3,structural=0.0001,shear=0.002,bend=0.05,substeps=" +
-            std::to_string(substeps),
-        Relaxing(scene, {.iterations = 3,
-                         .substeps = substeps,
-                         .friction = false,
-                         .compliance = {{Family::structural, 0.0001},
-                                        {Family::shear, 0.002},
-                                        {Family::bend, 0.05}}}),
-        30);
+    scene.colliders = moving_colliders(0.4);
+    expect_same_path(scene,
+                     "xpbd:precision=double,order=mesh,contact=discrete,iterations=3,structural=0."
+                     "0001,shear=0.002,bend=0.05,substeps=" +
+                         std::to_string(substeps),
+                     Relaxing(scene, {.iterations = 3,
+                                      .substeps = substeps,
+                                      .compliance = {{Family::structural, 0.0001},
+                                                     {Family::shear, 0.002},
+                                                     {Family::bend, 0.05}}}),
+                     30);
   }
 }
 
@@ -219,7 +215,7 @@ void expect_springs(const std::string& integrator, double heavier) {
     }
     first->step(n * scene.dt, scene.dt), first->store(state);
     ASSERT_LT(largest_distance(state.x, second.x), 1e-10) << integrator << " step " << n;
-    ASSERT_LT(largest_distance(state.v, second.v), 1e-8) << integrator << " step " << n;
+    ASSERT_LT(largest_distance(state.v, second.v), 1e-7) << integrator << " step " << n;
   }
   EXPECT_GT(largest_distance(state.x, scene.start.x), 0.1);
 }

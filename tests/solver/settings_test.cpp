@@ -54,35 +54,41 @@ TEST(SolverSettings, OfJakobsenAreTheseLines) {
 }
 
 TEST(SolverSettings, OfTheOthersAreTheseLines) {
-  EXPECT_EQ(settings(with_contact(), "mass-spring:structural=7,bend=0.5"),
-            (Lines{{"precision", "float"},
+  EXPECT_EQ(settings(hanging_sheet(3, 3), "mass-spring:structural=7,bend=0.5"),
+            (Lines{{"time step", "0.00048828125 s x 32"},
+                   {"integration", "Verlet"},
                    {"links", "Hooke springs: structural 7 N/m, shear 50 N/m, bend 0.5 N/m"},
-                   {"work unit", "spring evaluations, not projections"}}));
-  EXPECT_EQ(settings(hanging_sheet(3, 3), "xpbd:precision=double"),
-            (Lines{{"precision", "double"}, {"link order", "the scene's, mesh order"}}));
-  EXPECT_EQ(settings(with_contact(), "xpbd"), (Lines{{"precision", "float"},
-                                                     {"link order", "the scene's, mesh order"},
-                                                     {"order of passes", "links, then contacts"}}));
+                   {"work unit", "spring evaluations, not projections"},
+                   {"gravity", "the scene's"},
+                   {"precision", "float"}}));
+  Scene elastic = hanging_sheet(3, 3);
+  EXPECT_EQ(settings(elastic, "xpbd:precision=double,shear=0.5,order=mesh"),
+            (Lines{{"time step", "0.001953125 s x 8"},
+                   {"integration", "Verlet"},
+                   {"projection", "exact, multipliers keep"},
+                   {"links", "compliance in m/N: structural 0, shear 0.5, bend 0"},
+                   {"link order", "the scene's"},
+                   {"gravity", "the scene's"},
+                   {"precision", "double"}}));
+  const auto links = [&](const std::string& solver) {
+    for (const auto& [name, text] : settings(elastic, solver))
+      if (name == "links") return text;
+    return std::string();
+  };
+  elastic.stiffness = {500, 50, kRigid[2]};
+  EXPECT_EQ(links("xpbd:shear=0.5"), "compliance in m/N: structural 0.002, shear 0.02, bend 0");
+  EXPECT_EQ(links("xpbd:shear=0.5,material=own"),
+            "compliance in m/N: structural 0, shear 0.5, bend 0");
+  elastic.stiffness[2] = 5;
+  EXPECT_EQ(links("mass-spring"), "Hooke springs: structural 500 N/m, shear 50 N/m, bend 5 N/m");
+  EXPECT_EQ(links("mass-spring:material=own"),
+            "Hooke springs: structural 50 N/m, shear 50 N/m, bend 5 N/m");
 }
 
 TEST(SolverRefusals, AreSaidForEachThingThatASolverWouldMisread) {
   Scene scene = with_contact();
-  EXPECT_TRUE(refused(scene, "jakobsen").empty());
-  EXPECT_EQ(refused(scene, "xpbd"), (std::vector<std::string>{"self-collision is not modelled",
-                                                              "friction is not modelled"}));
-  scene.colliders.push_back(scene.colliders[0]);
-  EXPECT_EQ(refused(scene, "xpbd").size(), 2u) << "once";
-  scene.colliders = {{.shape = Plane{}}};
-  EXPECT_EQ(refused(scene, "xpbd").size(), 1u);
-  scene.self_collision.reset();
-  EXPECT_TRUE(refused(scene, "xpbd").empty());
-  EXPECT_EQ(refused(scene, "mass-spring"),
-            std::vector<std::string>{"springs alone do not model contact"});
-  scene.colliders.clear(), scene.self_collision = SelfCollision{0.01};
-  EXPECT_EQ(refused(scene, "mass-spring"),
-            std::vector<std::string>{"self-collision is not modelled"});
-  scene.self_collision.reset();
-  EXPECT_TRUE(refused(scene, "mass-spring:drag-at=central").empty());
+  for (const char* solver : {"jakobsen", "xpbd", "mass-spring", "mass-spring:drag-at=central"})
+    EXPECT_TRUE(refused(scene, solver).empty()) << solver;
   EXPECT_EQ(refused(scene, "mass-spring:drag-at=central,integrator=symplectic-euler"),
             std::vector<std::string>{"drag-at=central needs integrator=verlet"});
 }
@@ -137,21 +143,22 @@ TEST(LinearTheory, HoldsForSweepsInTheScenesOrderWhateverSolverMakesThem) {
   const Scene scene = chain(9);
   const double three = growth(scene, listing("iterations=3"));
   EXPECT_NEAR(three, std::pow(std::cos(std::acos(-1.0) / 18), 3), 1e-6) << "rho^(k/2)";
-  EXPECT_NEAR(growth(scene, "xpbd:iterations=3,substeps=1"), three, 1e-12);
+  EXPECT_NEAR(growth(scene, "xpbd:order=mesh,iterations=3,substeps=1"), three, 1e-12);
   EXPECT_NEAR(growth(scene, "bullet:iterations=3"), three, 1e-12);
   const double relaxed = growth(scene, listing("iterations=2,omega=1.2"));
   EXPECT_GT(std::abs(relaxed - growth(scene, listing("iterations=2"))), 1e-3);
   EXPECT_NEAR(growth(scene, "bullet:iterations=2,stiffness=1.2"), relaxed, 1e-12);
   Scene damped = scene, fine = scene;
   damped.damping = fine.damping = 3, fine.dt = scene.dt / 4;
-  for (const std::string solver : {"jakobsen:order=mesh,iterations=2", "xpbd:iterations=2"}) {
+  for (const std::string solver :
+       {"jakobsen:order=mesh,iterations=2", "xpbd:order=mesh,iterations=2"}) {
     EXPECT_NEAR(growth(damped, solver + ",substeps=4"), growth(fine, solver + ",substeps=1"),
                 1e-12);
     EXPECT_LT(growth(damped, solver + ",substeps=1"), growth(damped, solver + ",substeps=4"));
   }
   EXPECT_GT(growth(scene, listing("iterations=1,method=jacobi")), 2);
   for (const char* unknown :
-       {"jakobsen", "jakobsen:order=reversed", "xpbd:bend=1", "xpbd:structural=0.1",
+       {"jakobsen", "jakobsen:order=reversed", "xpbd", "xpbd:order=mesh,bend=1",
         "bullet:reorder=on", "bullet-deformable", "jakobsen:order=mesh,method=jacobi-averaged"})
     EXPECT_EQ(growth(scene, unknown), -1) << unknown;
   EXPECT_EQ(growth(damped, "bullet"), -1);

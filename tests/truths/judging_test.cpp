@@ -205,7 +205,7 @@ TEST(TruthSolvers, AreThePublishedOnesUnlessSaid) {
   EXPECT_EQ(jakobsen(1, "sqrt-free", "substeps=2,order=jolt"),
             "jakobsen:iterations=1,projection=sqrt-free,precision=double,substeps=2,order=jolt");
   EXPECT_EQ(bullet(3), "bullet:iterations=3,precision=double");
-  EXPECT_EQ(xpbd(2, "bend=1"), "xpbd:iterations=1,substeps=2,precision=double,bend=1");
+  EXPECT_EQ(xpbd(2, "bend=1"), "xpbd:iterations=1,order=mesh,substeps=2,precision=double,bend=1");
   EXPECT_EQ(
       mass_spring("verlet", 0.1, 2),
       "mass-spring:integrator=verlet,structural=0.10000000000000001,shear=0.10000000000000001,"

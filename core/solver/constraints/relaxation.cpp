@@ -55,6 +55,45 @@ class GaussSeidelPass final : public Pass<Real> {
   std::vector<PassCost> costs_;
 };
 
+/// The same with multipliers: XPBD's Algorithm 1.
+template <class Real>
+class CompliantGaussSeidelPass final : public Pass<Real> {
+ public:
+  CompliantGaussSeidelPass(std::vector<CompliantConstraint<Real>> constraints,
+                           std::vector<PassCost> costs, bool kept)
+      : constraints_(std::move(constraints)),
+        multipliers_(constraints_.size()),
+        costs_(std::move(costs)),
+        kept_(kept) {}
+
+  void begin(Particles<Real>&, double, double) override {
+    std::ranges::fill(multipliers_, Real(0));
+  }
+  void apply(Particles<Real>& p, double t, double dt) override {
+    if (!kept_) begin(p, t, dt);
+    Real* const x = p.x.data();
+    for (std::size_t i = 0; i < constraints_.size(); ++i) {
+      const CompliantConstraint<Real>& c = constraints_[i];
+      Real* const a = x + 4 * c.a;
+      Real* const b = x + 4 * c.b;
+      Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
+      move_ends(x1, x2, c.share_a, c.share_b, [&](Real length2) {
+        return compliant_excess(length2, c.rest, c.share, multipliers_[i]);
+      });
+      a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
+      b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
+    }
+  }
+
+  std::vector<PassCost> cost() const override { return costs_; }
+
+ private:
+  std::vector<CompliantConstraint<Real>> constraints_;
+  std::vector<Real> multipliers_;  ///< m; compliance / h^2 times XPBD's lambda
+  std::vector<PassCost> costs_;
+  bool kept_;
+};
+
 /// One Jacobi sweep: every link sees the particles as they were when the sweep began.
 template <class Real, Projection kind>
 class JacobiPass final : public Pass<Real> {
@@ -105,31 +144,50 @@ class JacobiPass final : public Pass<Real> {
 template <class Real, template <class> class Links>
 class ColouredPass final : public Pass<Real> {
  public:
-  ColouredPass(Links<Real> links, std::vector<PassCost> costs, Projection projection, Simd simd,
+  ColouredPass(Links<Real> links, std::vector<PassCost> costs, const RelaxationSettings& settings,
                ThreadPool& pool)
       : links_(std::move(links)),
         costs_(std::move(costs)),
-        projection_(projection),
-        kernels_(kernels<Real>(simd)),
+        projection_(settings.projection),
+        compliant_(settings.multipliers.has_value()),
+        kept_(compliant_ && settings.multipliers->kept),
+        kernels_(kernels<Real>(settings.simd)),
         pool_(pool) {}
 
-  void apply(Particles<Real>& p, double, double) override { sweep(links_, p); }
+  void restart() override { links_.clear_multipliers(); }
+  void begin(Particles<Real>&, double, double) override { keep_ = Real(0); }
+  void apply(Particles<Real>& p, double, double) override {
+    sweep(links_, p);
+    if (kept_) keep_ = Real(1);
+  }
   bool queues() const override { return std::is_same_v<Links<Real>, InterleavedSheet<Real>>; }
 
   std::vector<PassCost> cost() const override { return costs_; }
 
  private:
   void sweep(const InterleavedSheet<Real>& links, Particles<Real>& p) {
-    const SheetSweep<Real>& sheet = links.sweep();
-    const auto& kernels = sheet.lanes == kWide ? kernels_.wide_sheet : kernels_.narrow_sheet;
-    const auto project = kernels[static_cast<int>(projection_)];
-    pool_.queue_pairs(
-        p.layout->blocks(),
-        [&links, project, x = p.x.data()](std::size_t block) {
-          const auto [begin, end] = rows_of_block(block, links.rows());
-          project(links.sweep(), x, begin, end);
-        },
-        p.size() >= ThreadPool::kWorthSharing);
+    const bool wide = links.sweep().lanes == kWide, shared = p.size() >= ThreadPool::kWorthSharing;
+    const auto of_block = [&links, x = p.x.data()](std::size_t block, const auto& project) {
+      const auto [begin, end] = rows_of_block(block, links.rows());
+      project(links.sweep(), x, begin, end);
+    };
+    if (compliant_) {
+      const auto project = wide ? kernels_.compliant_wide_sheet : kernels_.compliant_narrow_sheet;
+      pool_.queue_pairs(
+          p.layout->blocks(),
+          [of_block, project, keep = keep_](std::size_t block) {
+            of_block(block, [&](const auto& sweep, Real* x, int begin, int end) {
+              project(sweep, x, keep, begin, end);
+            });
+          },
+          shared);
+    } else {
+      const auto& kernels = wide ? kernels_.wide_sheet : kernels_.narrow_sheet;
+      const auto project = kernels[static_cast<int>(projection_)];
+      pool_.queue_pairs(
+          p.layout->blocks(), [of_block, project](std::size_t block) { of_block(block, project); },
+          shared);
+    }
   }
 
   void sweep(const ColourBatches<Real>& links, Particles<Real>& p) {
@@ -139,7 +197,9 @@ class ColouredPass final : public Pass<Real> {
           links.parts(phase),
           [&](std::size_t begin, std::size_t end) {
             for (std::size_t tile = begin; tile < end; ++tile)
-              for (const BatchRun<Real>& run : links.runs(phase, tile)) project(run, p.x.data());
+              for (const BatchRun<Real>& run : links.runs(phase, tile))
+                compliant_ ? kernels_.compliant_batches(run, p.x.data(), keep_)
+                           : project(run, p.x.data());
           },
           p.size() >= ThreadPool::kWorthSharing);
   }
@@ -147,6 +207,8 @@ class ColouredPass final : public Pass<Real> {
   Links<Real> links_;
   std::vector<PassCost> costs_;
   Projection projection_;
+  bool compliant_, kept_;
+  Real keep_ = 0;  ///< what the next sweep multiplies the multipliers by
   const Kernels<Real>& kernels_;
   ThreadPool& pool_;
 };
@@ -157,7 +219,7 @@ std::optional<RegularLinks> regular(const Scene& scene, LinkLayout layout) {
   auto links = regular_links(scene.mesh, scene.links);
   if (!links && layout == LinkLayout::interleaved)
     throw InputError(
-        "jakobsen: layout=interleaved needs a regular sheet of at least 17 columns or rows with "
+        "layout=interleaved needs a regular sheet of at least 17 columns or rows with "
         "all links "
         "of a direction present and of one length; layout=batches takes any mesh");
   return links;
@@ -167,6 +229,13 @@ template <class Real, Projection kind>
 std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const double> w,
                                             const RelaxationSettings& settings) {
   const std::vector<Link> links = ordered(scene, settings.order, settings.seed);
+  if (settings.multipliers) {
+    auto compliant = make_compliant_constraints<Real>(links, w, settings.omega,
+                                                      settings.multipliers->compliances);
+    auto costs = family_costs(links, w, compliant.size() * (sizeof compliant[0] + sizeof(Real)));
+    return std::make_unique<CompliantGaussSeidelPass<Real>>(std::move(compliant), std::move(costs),
+                                                            settings.multipliers->kept);
+  }
   auto constraints = make_distance_constraints<Real>(links, w, settings.omega);
   auto costs = family_costs(links, w, constraints.size() * sizeof constraints[0]);
   if (settings.jacobi)
@@ -189,17 +258,20 @@ Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
                     : make_sequential<Real, Projection::sqrt_free>(scene, w, settings);
     return {Layout::packed(n), std::move(pass)};
   }
+  const Compliances compliances =
+      settings.multipliers ? settings.multipliers->compliances : Compliances{};
   const auto coloured = [&]<template <class> class Links>(Layout layout, Links<Real> sweep) {
     auto costs = family_costs(scene.links, w, sweep.bytes());
-    return Relaxation<Real>{std::move(layout), std::make_unique<ColouredPass<Real, Links>>(
-                                                   std::move(sweep), std::move(costs), projection,
-                                                   settings.simd, pool)};
+    return Relaxation<Real>{std::move(layout),
+                            std::make_unique<ColouredPass<Real, Links>>(
+                                std::move(sweep), std::move(costs), settings, pool)};
   };
   if (const auto links = regular(scene, settings.layout))
     return coloured(interleaved_layout(links->grid),
-                    InterleavedSheet<Real>(*links, w, settings.omega));
+                    InterleavedSheet<Real>(*links, w, settings.omega, compliances));
   Layout layout = Layout::packed(n, tile_ranks(scene.mesh));
-  ColourBatches<Real> batches(colour(scene.links, scene.mesh), w, settings.omega, layout);
+  ColourBatches<Real> batches(colour(scene.links, scene.mesh), w, settings.omega, layout,
+                              compliances);
   return coloured(std::move(layout), std::move(batches));
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/model/params.hpp"
 #include "core/model/scene.hpp"
 #include "core/solver/layout/order.hpp"
 #include "core/solver/layout/particles.hpp"
@@ -29,6 +30,25 @@ enum class LinkLayout {
   batches       ///< any mesh
 };
 
+// How solvers let their links be ordered and laid out.
+inline constexpr ParamSpec kOrderParam =
+    ParamSpec::choice("order", "coloured", "mesh|coloured|reversed|random|jolt",
+                      "in which Gauss-Seidel visits the links; mesh is the scene's own order, as "
+                      "published; jolt is Jolt Physics' order");
+inline constexpr std::pair<std::string_view, Order> kOrders[] = {{"mesh", Order::mesh},
+                                                                 {"coloured", Order::coloured},
+                                                                 {"reversed", Order::reversed},
+                                                                 {"random", Order::random},
+                                                                 {"jolt", Order::jolt}};
+inline constexpr ParamSpec kLayoutParam =
+    ParamSpec::choice("layout", "auto", "auto|interleaved|batches",
+                      "of the links under order=coloured: interleaved (AoSoA) for a regular sheet, "
+                      "or colour batches for any mesh");
+inline constexpr std::pair<std::string_view, LinkLayout> kLayouts[] = {
+    {"auto", LinkLayout::automatic},
+    {"interleaved", LinkLayout::interleaved},
+    {"batches", LinkLayout::batches}};
+
 struct RelaxationSettings {
   Projection projection = Projection::sqrt_free;
   std::optional<Jacobi> jacobi;  ///< empty: Gauss-Seidel
@@ -37,6 +57,12 @@ struct RelaxationSettings {
   LinkLayout layout = LinkLayout::automatic;
   double omega = 1;  ///< relaxation factor: the share of a correction that is made
   int levels = 1;    ///< of the hierarchy; 1: the cloth alone
+  /// XPBD: links with multipliers, projected exactly; not with `jacobi`.
+  struct Multipliers {
+    Compliances compliances;
+    bool kept = true;  ///< within a substep; else each sweep begins with 0
+  };
+  std::optional<Multipliers> multipliers;
   Simd simd = Simd::scalar;
 };
 

@@ -21,17 +21,18 @@ std::size_t place(const Layout& layout, int v) { return layout.slot(to_index(v))
 
 template <class Real>
 ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<const double> w,
-                                   double omega, const Layout& layout) {
+                                   double omega, const Layout& layout,
+                                   const Compliances& compliances) {
   phase_.push_back(0), tile_.push_back(0);
   for (const Phase& phase : phases) {
     for (const Tile& tile : phase) {
-      add_tile(tile, w, omega, layout);
+      add_tile(tile, w, omega, layout, compliances);
       tile_.push_back(runs_.size());
     }
     phase_.push_back(tile_.size() - 1);
   }
   // Only now do the arrays stay where they are.
-  std::size_t near = 0, far = 0, share = 0;
+  std::size_t near = 0, far = 0, share = 0, multiplier = 0;
   for (BatchRun<Real>& run : runs_) {
     if (run.near)
       run.near = near_.data() + near, near += run.count;
@@ -39,7 +40,11 @@ ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<c
       run.far = far_.data() + far, far += run.count;
     if (run.shares) {
       run.shares = shares_.data() + share;
-      share += 2 * kLanes * run.count;
+      share += (run.multipliers ? 3 : 2) * kLanes * run.count;
+    }
+    if (run.multipliers) {
+      run.multipliers = multipliers_.data() + multiplier;
+      multiplier += kLanes * run.count;
     }
   }
   look_ahead();
@@ -47,7 +52,7 @@ ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<c
 
 template <class Real>
 void ColourBatches<Real>::add_tile(const Tile& tile, std::span<const double> w, double omega,
-                                   const Layout& layout) {
+                                   const Layout& layout, const Compliances& compliances) {
   Extent extent{layout.size(), 0};
   for (const Colour& colour : tile)
     for (const Link& link : colour) {
@@ -56,16 +61,17 @@ void ColourBatches<Real>::add_tile(const Tile& tile, std::span<const double> w, 
     }
   extents_.push_back(extent);
   for (const Colour& colour : tile)
-    add_colour(make_distance_constraints<Real>(colour, w, omega),
+    add_colour(make_compliant_constraints<Real>(colour, w, omega, compliances),
                extent.first - std::min(extent.first, kBefore), layout);
 }
 
 template <class Real>
 void ColourBatches<Real>::add_colour(Constraints constraints, std::size_t first,
                                      const Layout& layout) {
-  std::map<Real, int> votes;  // equal shares, by how many links have them
-  for (const DistanceConstraint<Real>& c : constraints)
-    if (c.share_a == c.share_b) ++votes[c.share_a];
+  // Equal shares, and their multipliers', by how many links have them.
+  std::map<std::pair<Real, Real>, int> votes;
+  for (const CompliantConstraint<Real>& c : constraints)
+    if (c.share_a == c.share_b) ++votes[{c.share_a, c.share}];
   const auto most = std::max_element(
       votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   const auto near = [&](int v) {
@@ -76,7 +82,8 @@ void ColourBatches<Real>::add_colour(Constraints constraints, std::size_t first,
   const auto far =
       std::stable_partition(begin, end, [&](const auto& c) { return near(c.a) && near(c.b); });
   const auto unequal = std::stable_partition(begin, far, [&](const auto& c) {
-    return most != votes.end() && c.share_a == most->first && c.share_b == most->first;
+    return most != votes.end() && c.share_a == c.share_b &&
+           std::pair(c.share_a, c.share) == most->first;
   });
   const auto equal_end = whole(begin, unequal), near_end = whole(equal_end, far);
   add_run({begin, equal_end}, true, first, layout, near_);
@@ -86,23 +93,29 @@ void ColourBatches<Real>::add_colour(Constraints constraints, std::size_t first,
 
 template <class Real>
 template <class Number>
-void ColourBatches<Real>::add_run(std::span<const DistanceConstraint<Real>> constraints, bool equal,
-                                  std::size_t first, const Layout& layout,
+void ColourBatches<Real>::add_run(std::span<const CompliantConstraint<Real>> constraints,
+                                  bool equal, std::size_t first, const Layout& layout,
                                   std::vector<Batch<Real, Number>>& to) {
   if (constraints.empty()) return;
   BatchRun<Real> run{};
   run.first = first, run.equal_share = equal ? constraints.front().share_a : Real(0);
+  run.multiplier_share = equal ? constraints.front().share : Real(0);
+  const bool compliant = constraints.front().share > 0;  // a colour is of one family
+  const std::size_t ends = compliant ? 3 : 2;
   for (std::size_t next = 0; next < constraints.size(); next += kLanes, ++run.count) {
     Batch<Real, Number>& batch = to.emplace_back();
     const std::size_t base = shares_.size();
-    if (!equal) shares_.resize(base + 2 * kLanes);
+    if (!equal) shares_.resize(base + ends * kLanes);
+    if (compliant) multipliers_.resize(multipliers_.size() + kLanes);
     for (std::size_t l = 0; l < kLanes; ++l) {
       const bool real = next + l < constraints.size();
-      const DistanceConstraint<Real> c = real ? constraints[next + l] : DistanceConstraint<Real>{};
+      const CompliantConstraint<Real> c =
+          real ? constraints[next + l] : CompliantConstraint<Real>{};
       batch.a[l] = static_cast<Number>((real ? place(layout, c.a) : layout.size()) - first);
       batch.b[l] = static_cast<Number>((real ? place(layout, c.b) : layout.size() + 1) - first);
       batch.rest[l] = real ? c.rest : static_cast<Real>(kTinyLength);
       if (!equal) shares_[base + l] = c.share_a, shares_[base + kLanes + l] = c.share_b;
+      if (!equal && compliant) shares_[base + 2 * kLanes + l] = c.share;
     }
   }
   // Not yet where they will stay, but whether there are any.
@@ -111,6 +124,7 @@ void ColourBatches<Real>::add_run(std::span<const DistanceConstraint<Real>> cons
   else
     run.far = to.data();
   run.shares = equal ? nullptr : shares_.data();
+  run.multipliers = compliant ? multipliers_.data() : nullptr;
   runs_.push_back(run);
 }
 
@@ -136,7 +150,8 @@ std::vector<DistanceConstraint<Real>> ColourBatches<Real>::order(const Layout& l
   for (const BatchRun<Real>& run : runs_)
     for (std::size_t n = 0; n < run.count; ++n)
       for (std::size_t l = 0; l < kLanes; ++l) {
-        const Real* const shares = run.shares ? run.shares + 2 * kLanes * n + l : nullptr;
+        const Real* const shares =
+            run.shares ? run.shares + (run.multipliers ? 3 : 2) * kLanes * n + l : nullptr;
         const auto link = [&](const auto& batch) -> DistanceConstraint<Real> {
           return {vertex[run.first + batch.a[l]], vertex[run.first + batch.b[l]], batch.rest[l],
                   shares ? shares[0] : run.equal_share, shares ? shares[kLanes] : run.equal_share};
@@ -150,8 +165,9 @@ std::vector<DistanceConstraint<Real>> ColourBatches<Real>::order(const Layout& l
 template <class Real>
 std::size_t ColourBatches<Real>::bytes() const {
   return sizeof *this + near_.size() * sizeof near_[0] + far_.size() * sizeof far_[0] +
-         extents_.size() * sizeof extents_[0] + shares_.size() * sizeof(Real) +
-         runs_.size() * sizeof runs_[0] + (tile_.size() + phase_.size()) * sizeof tile_[0];
+         extents_.size() * sizeof extents_[0] +
+         (shares_.size() + multipliers_.size()) * sizeof(Real) + runs_.size() * sizeof runs_[0] +
+         (tile_.size() + phase_.size()) * sizeof tile_[0];
 }
 
 template class ColourBatches<float>;

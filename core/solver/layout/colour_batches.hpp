@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,7 @@ class ColourBatches {
  public:
   /// layout: packed.
   ColourBatches(const std::vector<Phase>&, std::span<const double> w, double omega,
-                const Layout& layout);
+                const Layout& layout, const Compliances& = {});
   ColourBatches(ColourBatches&&) = default;
   ColourBatches(const ColourBatches&) = delete;  // it points into itself
 
@@ -32,25 +33,28 @@ class ColourBatches {
 
   /// The links in the order in which the sweep visits them.
   std::vector<DistanceConstraint<Real>> order(const Layout&) const;
+  /// Sets all multipliers to 0.
+  void clear_multipliers() { std::ranges::fill(multipliers_, Real(0)); }
   std::size_t bytes() const;
 
  private:
-  using Constraints = std::vector<DistanceConstraint<Real>>;
+  using Constraints = std::vector<CompliantConstraint<Real>>;
   /// Places of particles in memory, first and last.
   struct Extent {
     std::size_t first, last;
   };
-  void add_tile(const Tile&, std::span<const double> w, double omega, const Layout&);
+  void add_tile(const Tile&, std::span<const double> w, double omega, const Layout&,
+                const Compliances&);
   void add_colour(Constraints, std::size_t first, const Layout&);
   template <class Number>
-  void add_run(std::span<const DistanceConstraint<Real>>, bool equal, std::size_t first,
+  void add_run(std::span<const CompliantConstraint<Real>>, bool equal, std::size_t first,
                const Layout&, std::vector<Batch<Real, Number>>& to);
   void look_ahead();
 
   std::vector<NearBatch<Real>> near_;
   std::vector<FarBatch<Real>> far_;
   std::vector<Extent> extents_;  ///< of each tile
-  std::vector<Real> shares_;
+  std::vector<Real> shares_, multipliers_;
   std::vector<BatchRun<Real>> runs_;
   std::vector<std::size_t> tile_, phase_;  ///< where each begins, and the end
 };

@@ -91,7 +91,7 @@ Layout interleaved_layout(const SheetSides& grid) {
 
 template <class Real>
 InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<const double> w,
-                                         double omega)
+                                         double omega, const Compliances& compliances)
     : row_count_(links.grid.rows) {
   const SheetSides& grid = links.grid;
   const SheetRows in_memory = rows_of(grid);
@@ -104,28 +104,37 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
   for (std::size_t d = 0; d < links.directions.size(); ++d) {
     const auto& [columns, rows, family, rest] = links.directions[d];
     SheetDirection<Real>& to = sweep_.direction[d];
+    const double soft = compliances[static_cast<std::size_t>(family)];
+    auto& multipliers = multipliers_.emplace_back();
+    if (soft > 0) multipliers.resize(to_index(grid.rows - rows) * to_index(sweep_.vectors * lanes));
     to = {.left = columns < 0 ? rows : 0,
           .right = columns < 0 ? 0 : rows,
           .columns = std::abs(columns),
           .rows = grid.rows - rows,
           .rest = static_cast<Real>(std::max(rest, kTinyLength)),
           .equal_share = 0,
+          .multiplier_share = 0,
+          .multipliers = soft > 0 ? multipliers.data() : nullptr,
           .row = nullptr};
-    std::map<Real, int> votes;  // equal shares, by how many links have them
-    const auto shares = [&](int i, int j, bool left) {
+    // Equal shares, and their multipliers', by how many links have them.
+    std::map<std::pair<Real, Real>, int> votes;
+    const auto shares = [&](int i, int j) -> std::array<Real, 3> {
       const double wl = w[to_index(grid.index(i, j + to.left))],
                    wr = w[to_index(grid.index(i + to.columns, j + to.right))];
-      if (wl + wr == 0) return Real(0);
-      return static_cast<Real>(omega * ((left ? wl : wr) / (wl + wr)));
+      if (wl + wr == 0) return {};
+      const double all = wl + wr + soft;
+      return {static_cast<Real>(omega * (wl / all)), static_cast<Real>(omega * (wr / all)),
+              static_cast<Real>(soft / all)};
     };
+    const int ends = soft > 0 ? 3 : 2;
     for (int j = 0; j < to.rows; ++j) {
-      std::vector<Real> row(to_index(2 * lanes * sweep_.vectors), Real(0));
+      std::vector<Real> row(to_index(ends * lanes * sweep_.vectors), Real(0));
       for (int i = 0; i + to.columns < grid.columns; ++i) {
         const int k = i % sweep_.vectors, lane = i / sweep_.vectors;
-        const Real left = shares(i, j, true), right = shares(i, j, false);
-        row[to_index(2 * lanes * k + lane)] = left;
-        row[to_index(2 * lanes * k + lanes + lane)] = right;
-        if (left == right) ++votes[left];
+        const auto of_link = shares(i, j);
+        for (int e = 0; e < ends; ++e)
+          row[to_index((ends * k + e) * lanes + lane)] = of_link[to_index(e)];
+        if (of_link[0] == of_link[1]) ++votes[{of_link[0], of_link[2]}];
       }
       const auto [place, is_new] = known.try_emplace(std::move(row), shares_.size());
       if (is_new) shares_.push_back(place->first);
@@ -134,7 +143,8 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
     const auto most =
         std::max_element(votes.begin(), votes.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most != votes.end()) to.equal_share = most->first;
+    if (most != votes.end())
+      to.equal_share = most->first.first, to.multiplier_share = most->first.second;
   }
   std::size_t next = 0;
   for (std::size_t d = 0; d < links.directions.size(); ++d)
@@ -143,9 +153,15 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
       const auto equal = [&](int k) {
         // Padding alone is at one place for ever, and nobody looks at it.
         const int real = std::min(lanes, (grid.columns - k + sweep_.vectors - 1) / sweep_.vectors);
-        const auto* s = shares.data() + 2 * lanes * k;
-        const auto has = [&](Real share) { return share == sweep_.direction[d].equal_share; };
-        return std::all_of(s, s + real, has) && std::all_of(s + lanes, s + lanes + real, has);
+        const SheetDirection<Real>& of = sweep_.direction[d];
+        const int ends = of.multipliers ? 3 : 2;
+        const auto* s = shares.data() + ends * lanes * k;
+        for (int e = 0; e < ends; ++e, s += lanes)
+          if (!std::all_of(s, s + real, [&](Real share) {
+                return share == (e < 2 ? of.equal_share : of.multiplier_share);
+              }))
+            return false;
+        return true;
       };
       int k = 0;
       const int inner = sweep_.vectors - sweep_.direction[d].columns;
@@ -161,6 +177,7 @@ template <class Real>
 std::size_t InterleavedSheet<Real>::bytes() const {
   std::size_t bytes = sizeof *this + rows_.size() * sizeof rows_[0];
   for (const auto& table : shares_) bytes += table.size() * sizeof(Real);
+  for (const auto& table : multipliers_) bytes += table.size() * sizeof(Real);
   return bytes;
 }
 

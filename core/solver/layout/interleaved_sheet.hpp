@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/mesh.hpp"
+#include "core/solver/layout/order.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/simd/kernels.hpp"
 
@@ -55,12 +56,17 @@ Layout interleaved_layout(const SheetSides&);
 template <class Real>
 class InterleavedSheet {
  public:
-  InterleavedSheet(const RegularLinks&, std::span<const double> w, double omega);
+  InterleavedSheet(const RegularLinks&, std::span<const double> w, double omega,
+                   const Compliances& = {});
   InterleavedSheet(InterleavedSheet&&) = default;
   InterleavedSheet(const InterleavedSheet&) = delete;  // it points into itself
 
   const SheetSweep<Real>& sweep() const { return sweep_; }
   int rows() const { return row_count_; }
+  /// Sets all multipliers to 0.
+  void clear_multipliers() {
+    for (auto& of_direction : multipliers_) std::ranges::fill(of_direction, Real(0));
+  }
   std::size_t bytes() const;
 
  private:
@@ -68,6 +74,7 @@ class InterleavedSheet {
   SheetSweep<Real> sweep_{};
   std::vector<SheetRow<Real>> rows_;
   std::vector<std::vector<Real>> shares_;  ///< different rows' tables, each kept once
+  std::vector<std::vector<Real, CacheLineAllocator<Real>>> multipliers_;  ///< by direction
 };
 
 }  // namespace taut

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,6 +19,15 @@ struct DistanceConstraint {
   Real share_a = 0, share_b = 0;  ///< of the correction; see project_distance
 };
 
+/// A link that may comply: share, of its multiplier; see compliant_excess.
+template <class Real>
+struct CompliantConstraint : DistanceConstraint<Real> {
+  Real share = 0;
+};
+
+/// Compliance over the square of a substep [1/kg], by family; 0: rigid.
+using Compliances = std::array<double, kFamilies.size()>;
+
 /// Whether the link has two ends and at least one of them can move. w: inverse masses [1/kg].
 inline bool moves(const Link& link, std::span<const double> w) {
   const auto inverse = [&](int v) { return w[static_cast<std::size_t>(v)]; };
@@ -26,19 +36,29 @@ inline bool moves(const Link& link, std::span<const double> w) {
 
 /// Those of `links` that move, in the given order. omega: relaxation factor.
 template <class Real>
-std::vector<DistanceConstraint<Real>> make_distance_constraints(std::span<const Link> links,
-                                                                std::span<const double> w,
-                                                                double omega) {
-  std::vector<DistanceConstraint<Real>> constraints;
+std::vector<CompliantConstraint<Real>> make_compliant_constraints(std::span<const Link> links,
+                                                                  std::span<const double> w,
+                                                                  double omega,
+                                                                  const Compliances& compliances) {
+  std::vector<CompliantConstraint<Real>> constraints;
   constraints.reserve(links.size());
   for (const Link& link : links) {
     const double wa = w[static_cast<std::size_t>(link.a)], wb = w[static_cast<std::size_t>(link.b)];
     if (!moves(link, w)) continue;
-    constraints.push_back({link.a, link.b, static_cast<Real>(std::max(link.rest, kTinyLength)),
-                           static_cast<Real>(omega * (wa / (wa + wb))),
-                           static_cast<Real>(omega * (wb / (wa + wb)))});
+    const double soft = compliances[static_cast<std::size_t>(link.family)], all = wa + wb + soft;
+    constraints.push_back(
+        {{link.a, link.b, static_cast<Real>(std::max(link.rest, kTinyLength)),
+          static_cast<Real>(omega * (wa / all)), static_cast<Real>(omega * (wb / all))},
+         static_cast<Real>(soft / all)});
   }
   return constraints;
+}
+template <class Real>
+std::vector<DistanceConstraint<Real>> make_distance_constraints(std::span<const Link> links,
+                                                                std::span<const double> w,
+                                                                double omega) {
+  const auto all = make_compliant_constraints<Real>(links, w, omega, {});
+  return {all.begin(), all.end()};
 }
 
 /// Whether no two vertices can be farther apart than they are in the flat sheet: a regular sheet

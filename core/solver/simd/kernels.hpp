@@ -37,9 +37,11 @@ struct SheetRows {
 /// Links of one direction that start in one row.
 template <class Real>
 struct SheetRow {
-  const Real* shares;  ///< [K][2][lanes] of the left and of the right end; 0: no link
-  bool all_equal;      ///< all links have SheetDirection::equal_share, but for those at the end of
-                       ///< the strips and those between padding, which may have any
+  /// [K][2][lanes] of the left and of the right end; 0: no link. [K][3][lanes] of compliant links:
+  /// the last of the multiplier (compliant_excess).
+  const Real* shares;
+  bool all_equal;  ///< all links have SheetDirection::equal_share, but for those at the end of
+                   ///< the strips and those between padding, which may have any
 };
 
 /// Links (i, j) - (i + columns, j + ..) of one direction; `left` is the end in the lesser column.
@@ -50,6 +52,8 @@ struct SheetDirection {
   int rows;                   ///< so many rows own links
   Real rest;                  ///< m
   Real equal_share;           ///< of each end between equal masses
+  Real multiplier_share;      ///< of compliant links between them
+  Real* multipliers;          ///< m: [rows][K][lanes] of compliant links; null: rigid
   const SheetRow<Real>* row;  ///< [rows]
 };
 
@@ -83,8 +87,10 @@ struct BatchRun {
   std::size_t first;   ///< particle from which near ends count
   std::size_t ahead;   ///< number of x that will be needed in the next tile
   std::size_t stride;  ///< of such numbers from one batch to the next: a cache line, or 0
-  Real equal_share;
-  const Real* shares;  ///< [count][2][kLanes], or null: all are `equal_share`
+  Real equal_share, multiplier_share;
+  /// [count][2][kLanes], of compliant links [count][3][kLanes], or null: all are equal.
+  const Real* shares;
+  Real* multipliers;  ///< m: [count][kLanes] of compliant links; null: rigid
 };
 
 /// x, previous, a: [length] numbers, length a multiple of kGrain. Adds keep (x - previous) + g
@@ -218,6 +224,11 @@ struct Kernels {
   void (*narrow_sheet[2])(const SheetSweep<Real>&, Real* x, int begin, int end);
   void (*wide_sheet[2])(const SheetSweep<Real>&, Real* x, int begin, int end);
   void (*batches[2])(const BatchRun<Real>&, Real* x);
+  /// The same with links that may comply, rigid ones exactly. keep: 1; or 0, multipliers begin at
+  /// 0.
+  void (*compliant_narrow_sheet)(const SheetSweep<Real>&, Real* x, Real keep, int begin, int end);
+  void (*compliant_wide_sheet)(const SheetSweep<Real>&, Real* x, Real keep, int begin, int end);
+  void (*compliant_batches)(const BatchRun<Real>&, Real* x, Real keep);
   CollideKernels<Real> collide;
   /// Rows [begin, end) of quads; they touch one row of particles more.
   void (*narrow_wind)(const WindStep<Real>&, const SheetFaces<Real>&, int begin, int end);

@@ -39,28 +39,66 @@ void verlet(const VerletStep<Real>& s, std::size_t begin, std::size_t end) {
   s.a ? integrate<T, true>(s, begin, end) : integrate<T, false>(s, begin, end);
 }
 
+/// Rigid links, all alike: at(row, vector)(l) says of the lanes from l on what move_ends() asks.
+template <class T, Projection kind>
+struct RigidLinks {
+  T rest;
+  template <class Shares>
+  [[gnu::always_inline]] auto at(int, int, const Shares&) const {
+    return [r = rest](int) __attribute__((always_inline)) {
+      return [r](T length2) __attribute__((always_inline)) { return excess<kind>(length2, r); };
+    };
+  }
+};
+
+/// Compliant ones, each with a multiplier.
+template <class T, int lanes, class Real>
+struct CompliantLinks {
+  T rest, keep;
+  Real* multipliers;
+  int vectors;
+  template <class Shares>
+  [[gnu::always_inline]] auto at(int row, int vector, const Shares& shares) const {
+    Real* const of_vector =
+        multipliers + (static_cast<std::size_t>(row) * static_cast<std::size_t>(vectors) +
+                       static_cast<std::size_t>(vector)) *
+                          lanes;
+    return [ r = rest, k = keep, of_vector, shares ](int l) __attribute__((always_inline)) {
+      return [ r, k, at = of_vector + l, share = shares(2 * lanes + l) ](T length2)
+          __attribute__((always_inline)) {
+        T multiplier = load<T>(at) * k;
+        const T f = compliant_excess(length2, r, share, multiplier);
+        store(at, multiplier);
+        return f;
+      };
+    };
+  }
+};
+
 /// All links between two vectors of an interleaved sheet.
-template <class T, int lanes, Projection kind, class Real, class Shares>
-[[gnu::always_inline]] inline void project_vectors(Real* a, Real* b, T rest, const Shares& shares) {
+template <class T, int lanes, class Real, class Shares, class Excess>
+[[gnu::always_inline]] inline void project_vectors(Real* a, Real* b, const Shares& shares,
+                                                   const Excess& excess_of) {
   for (int l = 0; l < lanes; l += kWidth<T>) {
     Vec3T<T> x1 = load_vec3<T, lanes>(a + l), x2 = load_vec3<T, lanes>(b + l);
-    project_distance<kind>(x1, x2, rest, shares(l), shares(lanes + l));
+    move_ends(x1, x2, T(shares(l)), T(shares(lanes + l)), excess_of(l));
     // b first: shifted by a lane it ends one number inside the next vector, which may be a's
     store_vec3<T, lanes>(b + l, x2), store_vec3<T, lanes>(a + l, x1);
   }
 }
 
 /// The same at the end of the lanes' strips: lane l of a is linked with lane l + 1 of b.
-template <class T, int lanes, Projection kind, class Real, class Shares>
-[[gnu::always_inline]] inline void project_shifted(Real* a, Real* b, T rest, const Shares& shares) {
+template <class T, int lanes, class Real, class Shares, class Excess>
+[[gnu::always_inline]] inline void project_shifted(Real* a, Real* b, const Shares& shares,
+                                                   const Excess& excess_of) {
   if constexpr (kWidth<T> != lanes) {
-    project_vectors<T, lanes, kind>(a, b + 1, rest, shares);
+    project_vectors<T, lanes>(a, b + 1, shares, excess_of);
   } else {
     // Rotated in registers: an unaligned load would wait for the stores before it.
     const Vec3T<T> b0 = load_vec3<T, lanes>(b);
     Vec3T<T> x1 = load_vec3<T, lanes>(a);
     Vec3T<T> x2{b0.x.template rotated<1>(), b0.y.template rotated<1>(), b0.z.template rotated<1>()};
-    project_distance<kind>(x1, x2, rest, shares(0), shares(lanes));
+    move_ends(x1, x2, T(shares(0)), T(shares(lanes)), excess_of(0));
     store_vec3<T, lanes>(b, Vec3T<T>{x2.x.template rotated<-1>(), x2.y.template rotated<-1>(),
                                      x2.z.template rotated<-1>()});
     store_vec3<T, lanes>(a, x1);
@@ -121,13 +159,14 @@ template <class Real, class F>
   }
 }
 
-/// Rows [begin, end) of the links of one direction. By itself, so that what it needs stays in
-/// registers.
-template <class T, int lanes, Projection kind, int columns, int rows, class Real>
-[[gnu::noinline]] void sweep_direction(const SheetDirection<Real> d, Real* const x, int vectors,
-                                       std::size_t stride, int begin, int end) {
+/// Rows [begin, end) of the links of one direction; ends: shares of a link. By itself, so that what
+/// it needs stays in registers.
+template <class T, int lanes, int ends, int columns, int rows, class Links, class Real>
+[[gnu::noinline]] void sweep_direction(const SheetDirection<Real> d, const Links links,
+                                       Real* const x, int vectors, std::size_t stride, int begin,
+                                       int end) {
   constexpr int vector = 3 * lanes;
-  const T rest(d.rest), equal_share(d.equal_share);
+  const T equal_share(d.equal_share), multiplier_share(d.multiplier_share);
   visit_direction<columns, rows>(
       vectors, begin, end < d.rows ? end : d.rows,
       [&](int j, auto at_end, const auto& some) __attribute__((always_inline)) {
@@ -135,23 +174,27 @@ template <class T, int lanes, Projection kind, int columns, int rows, class Real
         Real* const right = x + static_cast<std::size_t>(j + d.right) * stride + columns * vector;
         const Real* const shares = d.row[j].shares;
         const auto own = [&](int k) __attribute__((always_inline)) {
-          return [from = shares + 2 * lanes * k](int l) __attribute__((always_inline)) {
+          return [from = shares + ends * lanes * k](int l) __attribute__((always_inline)) {
             return load<T>(from + l);
           };
         };
-        const auto equal = [&](int) __attribute__((always_inline)) { return equal_share; };
+        const auto equal = [ equal_share, multiplier_share ](int l) __attribute__((always_inline)) {
+          return ends == 2 || l < 2 * lanes ? equal_share : multiplier_share;
+        };
         if constexpr (at_end)
           some([&](int k) __attribute__((always_inline)) {
-            project_shifted<T, lanes, kind>(left + k * vector, right + (k - vectors) * vector, rest,
-                                            own(k));
+            project_shifted<T, lanes>(left + k * vector, right + (k - vectors) * vector, own(k),
+                                      links.at(j, k, own(k)));
           });
         else if (d.row[j].all_equal)
           some([&](int k) __attribute__((always_inline)) {
-            project_vectors<T, lanes, kind>(left + k * vector, right + k * vector, rest, equal);
+            project_vectors<T, lanes>(left + k * vector, right + k * vector, equal,
+                                      links.at(j, k, equal));
           });
         else
           some([&](int k) __attribute__((always_inline)) {
-            project_vectors<T, lanes, kind>(left + k * vector, right + k * vector, rest, own(k));
+            project_vectors<T, lanes>(left + k * vector, right + k * vector, own(k),
+                                      links.at(j, k, own(k)));
           });
       });
 }
@@ -160,7 +203,20 @@ template <class T, int lanes, Projection kind, int columns, int rows, class Real
 template <class T, int lanes, Projection kind, class Real>
 void sweep_sheet(const SheetSweep<Real>& sweep, Real* x, int begin, int end) {
   visit_directions(sweep, [&](auto columns, auto rows, const SheetDirection<Real>& d) {
-    sweep_direction<T, lanes, kind, columns, rows>(d, x, sweep.vectors, sweep.stride, begin, end);
+    sweep_direction<T, lanes, 2, columns, rows>(d, RigidLinks<T, kind>{T(d.rest)}, x, sweep.vectors,
+                                                sweep.stride, begin, end);
+  });
+}
+template <class T, int lanes, class Real>
+void sweep_compliant_sheet(const SheetSweep<Real>& sweep, Real* x, Real keep, int begin, int end) {
+  visit_directions(sweep, [&](auto columns, auto rows, const SheetDirection<Real>& d) {
+    if (d.multipliers)
+      sweep_direction<T, lanes, 3, columns, rows>(
+          d, CompliantLinks<T, lanes, Real>{T(d.rest), T(keep), d.multipliers, sweep.vectors}, x,
+          sweep.vectors, sweep.stride, begin, end);
+    else
+      sweep_direction<T, lanes, 2, columns, rows>(d, RigidLinks<T, Projection::exact>{T(d.rest)}, x,
+                                                  sweep.vectors, sweep.stride, begin, end);
   });
 }
 
@@ -180,15 +236,14 @@ template <int l, class T>
     return T::template shuffle<l, l, l, l, l + 4, l + 4, l + 4, l + 4>(t, t);
 }
 
-/// Links g .. g + kWidth<T> - 1 of a batch; shares null: all are equal_share.
-template <class T, Projection kind, bool equal, class Real, class Number>
-[[gnu::always_inline]] inline void project_batch(const Batch<Real, Number>& batch, int g,
-                                                 const Real* shares, T equal_share, Real* x) {
+/// Links g .. g + kWidth<T> - 1 of a batch. equal: shares(0) is that of both ends of all of them.
+template <class T, bool equal, class Real, class Number, class Shares, class Excess>
+[[gnu::always_inline]] inline void project_batch(const Batch<Real, Number>& batch, int g, Real* x,
+                                                 const Shares& shares, const Excess& excess_of) {
   if constexpr (kWidth<T> == 1) {
     Real *a = particle(x, batch.a[g]), *b = particle(x, batch.b[g]);
     Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
-    project_distance<kind>(x1, x2, batch.rest[g], equal ? equal_share : shares[g],
-                           equal ? equal_share : shares[kLanes + g]);
+    move_ends(x1, x2, shares(g), shares(kLanes + g), excess_of);
     a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
     b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
     return;
@@ -200,16 +255,16 @@ template <class T, Projection kind, bool equal, class Real, class Number>
       delta[l] = x2[l] - x1[l];
       squared[l] = delta[l] * delta[l];
     });
-    const T f = excess<kind>(sums(squared), load<T>(batch.rest + g));
+    const T f = excess_of(sums(squared));
     if constexpr (equal) {
-      const T share = equal_share * f;
+      const T share = shares(0) * f;
       four_times([&](auto l) {
         const T moved = spread<l>(share) * delta[l];
         store_particles(x, batch.a + g + l, x1[l] + moved);
         store_particles(x, batch.b + g + l, x2[l] - moved);
       });
     } else {
-      const T share1 = load<T>(shares + g) * f, share2 = load<T>(shares + kLanes + g) * f;
+      const T share1 = shares(g) * f, share2 = shares(kLanes + g) * f;
       four_times([&](auto l) {
         store_particles(x, batch.a + g + l, x1[l] + spread<l>(share1) * delta[l]);
         store_particles(x, batch.b + g + l, x2[l] - spread<l>(share2) * delta[l]);
@@ -234,24 +289,65 @@ template <class Real, class F>
   run.near ? visit(run.near, particle(x, run.first)) : visit(run.far, x);
 }
 
+/// Calls f(batch, n, x, g, equal, shares) for all links g .. g + kWidth<T> - 1 of each; `equal` is
+/// a constant, ends: shares of a link.
+template <class T, int ends, class Real, class F>
+[[gnu::always_inline]] inline void visit_links(const BatchRun<Real>& run, Real* x, const F& f) {
+  const Real* const all_shares = run.shares;
+  const T equal_share(run.equal_share), multiplier_share(run.multiplier_share);
+  if (all_shares)
+    visit_batches(
+        run, x, [&](const auto& batch, std::size_t n, Real* first) __attribute__((always_inline)) {
+          const auto own = [from = all_shares + ends * kLanes * n](int l)
+              __attribute__((always_inline)) {
+            return load<T>(from + l);
+          };
+          for (int g = 0; g < kLanes; g += kWidth<T>) f(batch, n, first, g, std::false_type{}, own);
+        });
+  else
+    visit_batches(
+        run, x, [&](const auto& batch, std::size_t n, Real* first) __attribute__((always_inline)) {
+          const auto equal =
+              [ equal_share, multiplier_share ](int l) __attribute__((always_inline)) {
+            return ends == 2 || l < 2 * kLanes ? equal_share : multiplier_share;
+          };
+          for (int g = 0; g < kLanes; g += kWidth<T>)
+            f(batch, n, first, g, std::true_type{}, equal);
+        });
+}
+
 /// Batches with T holding a particle (4 lanes) or two (8): a whole particle is one load. On a
 /// machine without lanes one link after the other.
 template <class T, Projection kind, class Real>
 void batches(const BatchRun<Real>& run, Real* x) {
-  const Real* const all_shares = run.shares;
-  const T equal_share(run.equal_share);
-  if (all_shares)
-    visit_batches(
-        run, x, [&](const auto& batch, std::size_t n, Real* first) __attribute__((always_inline)) {
-          for (int g = 0; g < kLanes; g += kWidth<T>)
-            project_batch<T, kind, false>(batch, g, all_shares + 2 * kLanes * n, T(0), first);
-        });
-  else
-    visit_batches(
-        run, x, [&](const auto& batch, std::size_t, Real* first) __attribute__((always_inline)) {
-          for (int g = 0; g < kLanes; g += kWidth<T>)
-            project_batch<T, kind, true, Real>(batch, g, nullptr, equal_share, first);
-        });
+  visit_links<T, 2>(
+      run, x,
+      [](const auto& batch, std::size_t, Real* first, int g, auto equal, const auto& shares)
+          __attribute__((always_inline)) {
+            const T rest = load<T>(batch.rest + g);
+            project_batch<T, equal>(
+                batch, g, first, shares, [rest](T length2) __attribute__((always_inline)) {
+                  return excess<kind>(length2, rest);
+                });
+          });
+}
+template <class T, class Real>
+void compliant_batches(const BatchRun<Real>& run, Real* x, Real keep) {
+  if (!run.multipliers) return batches<T, Projection::exact>(run, x);
+  visit_links<T, 3>(
+      run, x,
+      [ multipliers = run.multipliers, k = T(keep) ](
+          const auto& batch, std::size_t n, Real* first, int g, auto equal,
+          const auto& shares) __attribute__((always_inline)) {
+        const T rest = load<T>(batch.rest + g);
+        project_batch<T, equal>(
+            batch, g, first, shares, [&](T length2) __attribute__((always_inline)) {
+              T multiplier = load<T>(multipliers + kLanes * n + g) * k;
+              const T f = compliant_excess(length2, rest, T(shares(2 * kLanes + g)), multiplier);
+              store(multipliers + kLanes * n + g, multiplier);
+              return f;
+            });
+      });
 }
 
 /// What batches() loads and stores, with nothing but an addition in between.
@@ -432,6 +528,9 @@ constexpr Kernels<Real> make_kernels() {
       .wide_sheet = {sweep_sheet<Wide, kWide, exact, Real>,
                      sweep_sheet<Wide, kWide, sqrt_free, Real>},
       .batches = {batches<P, exact, Real>, batches<P, sqrt_free, Real>},
+      .compliant_narrow_sheet = sweep_compliant_sheet<Narrow, kNarrow, Real>,
+      .compliant_wide_sheet = sweep_compliant_sheet<Wide, kWide, Real>,
+      .compliant_batches = compliant_batches<P, Real>,
       .collide =
           {.plane = collide_aligned_or_not<Narrow, Wide, P, false, Real, PlaneSurface,
                                            LevelPlaneSurface>,
