@@ -96,7 +96,7 @@ References known_references(const Scene& scene) {
   References known = find_references(scene, references_folder());
   const References own = find_references(scene, results_folder() / "references");
   if (!known.rest) known.rest = own.rest;
-  if (!known.motion) known.motion = own.motion;
+  if (known.motion.empty()) known.motion = own.motion;
   return known;
 }
 
