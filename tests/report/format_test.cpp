@@ -149,7 +149,8 @@ TEST(Palette, ColoursDifferAndReadOnTheirBackgrounds) {
     return std::max(luminance(a) / luminance(b), luminance(b) / luminance(a));
   };
   std::set<std::string> looks;
-  for (const char* solver : {"jakobsen", "bullet", "mass-spring", "xpbd", "bullet-deformable"}) {
+  for (const char* solver : {"jakobsen", "bullet", "mass-spring", "xpbd", "bullet-deformable",
+                             "implicit", "pd", "admm", "vbd", "avbd"}) {
     const SolverStyle style = solver_style(solver);
     EXPECT_GE(contrast(style.colour.light, "#FFFFFF"), 4.5) << solver;
     EXPECT_GE(contrast(style.colour.dark, "#14171C"), 4.5) << solver;

@@ -42,7 +42,7 @@ experiments/report/model | (core/model|experiments/(system|metrics|case|timing|b
 owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/(.*\.cpp|bullet_solver\.hpp)
 toml\+\+                | ^core/io/document\.cpp
-Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/reference/.*\.cpp
+Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/(reference|solver)/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
 openssl/                | ^experiments/(case|report/chart)/.*\.cpp
 core/model/(solver|params)\.hpp | ^(core|bullet_ref|tests|experiments/[^m])
@@ -137,7 +137,7 @@ experiments/render/opengl/planted.cpp|"experiments/render/picture/figure.hpp"
 core/solver/planted.cpp|<BulletSoftBody/btSoftBody.h>
 bullet_ref/planted.hpp|<BulletSoftBody/btSoftBody.h>
 core/model/planted.hpp|<toml++/toml.h>
-core/solver/planted.cpp|<Eigen/Sparse>
+core/solver/planted.hpp|<Eigen/Sparse>
 core/model/planted.cpp|<nlohmann/json.hpp>
 experiments/case/planted.hpp|namespace taut {;struct Scene {
 experiments/report/planted.cpp|namespace taut {;enum class TruthVerdict {

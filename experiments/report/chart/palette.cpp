@@ -4,8 +4,6 @@
 #include <array>
 #include <iterator>
 
-#include "core/model/solver.hpp"
-
 namespace taut::report {
 
 namespace {
@@ -13,17 +11,27 @@ namespace {
 // Text in these colours keeps a contrast of 4.5 on its theme's background. Hues follow Wong (2011),
 // darkened for text on white and lightened for text on #14171C.
 
-/// By the solver's place among those of this program. Most lines are dashed because a correct pair
-/// coincides: the lower one must show through.
-constexpr std::array kSolvers{
-    SolverStyle{{"#C8470C", "#FF8A54"}, "square", 5, "9 4"},              // orange
-    SolverStyle{{"#B52C77", "#F284BB"}, "diamond", 13, "9 3 2 3"},        // magenta
-    SolverStyle{{"#0B6BCB", "#5AA9F5"}, "circle", 7, ""},                 // blue
-    SolverStyle{{"#8250C4", "#B791F2"}, "triangle", 9, "3 3"},            // purple
-    SolverStyle{{"#0F7B5D", "#3CCB9F"}, "triangle-down", 11, "9 3 2 3"},  // green
-    SolverStyle{{"#0C7680", "#4CC8D4"}, "pentagon", 15, "12 3"},          // teal
-    SolverStyle{{"#866000", "#E0B040"}, "triangle", 9, "5 3"},            // brown
-    SolverStyle{{"#56606F", "#A9B4C2"}, "square", 5, "6 2"},              // slate
+struct Named {
+  std::string_view solver;
+  SolverStyle style;
+};
+/// Most lines are dashed because a correct pair coincides: the lower one must show through.
+constexpr Named kSolvers[] = {
+    {"bullet", {{"#C8470C", "#FF8A54"}, "square", 5, "9 4"}},                   // orange
+    {"bullet-deformable", {{"#B52C77", "#F284BB"}, "diamond", 13, "9 3 2 3"}},  // magenta
+    {"jakobsen", {{"#0B6BCB", "#5AA9F5"}, "circle", 7, ""}},                    // blue
+    {"mass-spring", {{"#8250C4", "#B791F2"}, "triangle", 9, "3 3"}},            // purple
+    {"xpbd", {{"#0F7B5D", "#3CCB9F"}, "triangle-down", 11, "9 3 2 3"}},         // green
+    {"implicit", {{"#2B2F36", "#D5DBE3"}, "circle", 7, "2 3"}},                 // black
+    {"pd", {{"#B3261E", "#F2827A"}, "square", 5, "12 3"}},                      // red
+    {"admm", {{"#3B4CC0", "#98A5F5"}, "diamond", 13, "5 3"}},                   // indigo
+    {"vbd", {{"#5B6B00", "#B5C94A"}, "triangle-down", 11, "6 2"}},              // olive
+    {"avbd", {{"#9C2FA8", "#E08CEB"}, "pentagon", 15, "9 4"}},                  // violet
+};
+constexpr std::array kOthers{
+    SolverStyle{{"#0C7680", "#4CC8D4"}, "pentagon", 15, "12 3"},  // teal
+    SolverStyle{{"#866000", "#E0B040"}, "triangle", 9, "5 3"},    // brown
+    SolverStyle{{"#56606F", "#A9B4C2"}, "square", 5, "6 2"},      // slate
 };
 
 constexpr Colour kWhite{"#FFFFFE", "#FFFFFE"}, kBlack{"#1A1A19", "#1A1A19"};
@@ -47,15 +55,12 @@ static_assert(std::size(kStatuses) == static_cast<std::size_t>(Status::Kind::int
 }  // namespace
 
 SolverStyle solver_style(std::string_view solver) {
-  const auto known = solvers();
-  auto place = static_cast<std::size_t>(std::ranges::find(known, solver, &SolverEntry::name) -
-                                        known.begin());
-  if (place == known.size()) {
-    std::size_t hash = 0;
-    for (const char c : solver) hash = 31 * hash + static_cast<unsigned char>(c);
-    place += hash % (kSolvers.size() - std::min(place, kSolvers.size() - 1));
-  }
-  return kSolvers[place % kSolvers.size()];
+  if (const auto* const named = std::ranges::find(kSolvers, solver, &Named::solver);
+      named != std::end(kSolvers))
+    return named->style;
+  std::size_t hash = 0;
+  for (const char c : solver) hash = 31 * hash + static_cast<unsigned char>(c);
+  return kOthers[hash % kOthers.size()];
 }
 
 StatusStyle status_style(Status::Kind kind) {

@@ -22,8 +22,7 @@ struct SolverStyle {
   std::string_view dash = "";  ///< lengths of strokes and gaps: "9 4"; "": solid
 };
 
-/// By its place among the solvers of this program, of others by its name: the same in every figure,
-/// whatever else is drawn beside it.
+/// By its name: the same in every figure, whatever else is drawn beside it.
 SolverStyle solver_style(std::string_view solver);
 
 /// How a status is drawn in maps, and the glyph that stands for it everywhere.

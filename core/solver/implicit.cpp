@@ -1,0 +1,363 @@
+// Implicit Euler by Newton's method. A step from x_t, v_t with y = x_t + h v_t + h^2 a is the
+// minimum of
+//
+//     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 C^2,     C = |d| - r,  d = x_b - x_a,  u = d/|d|
+//
+// and each iteration solves H p = -g for the gradient g [N] and the Hessian of the springs
+//
+//     K [ u u^T + c (I - u u^T) ],     c = 1 - r/|d|
+//
+// with c clamped to at least 0, which keeps H positive definite (Choi, Ko: Stable but Responsive
+// Cloth, SIGGRAPH 2002). Where full steps no longer bring the gradient down fast, the Hessian is
+// taken as it is, if it is positive definite. The step is halved until G falls (Armijo). From x_t,
+// one iteration without line search is the linearised step of Baraff, Witkin: Large Steps in Cloth
+// Simulation (SIGGRAPH 1998), with pins already at their new places.
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/solver/loop.hpp"
+#include "core/solver/springs.hpp"
+
+namespace taut::solver::implicit {
+
+namespace {
+
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::SparseMatrix<double>;
+using Eigen::Matrix3d;
+
+constexpr double kTolerance = 1e-9;  ///< N, of |g|
+/// Beyond so many vertices that move, conjugate gradients take less time than a factor.
+constexpr std::size_t kFactorPays = 20000;
+
+constexpr ParamSpec kOwn[] = {
+    loop::iterations("50", "Newton iterations, at most; they end at a gradient of 1e-9 N"),
+    loop::substeps("1", "each step is this many steps of dt / substeps"),
+    kStiffness[0],
+    kStiffness[1],
+    kStiffness[2],
+    ParamSpec::choice("line-search", "on", "on|off",
+                      "halve steps until the energy falls; iterations=1,line-search=off is Baraff "
+                      "and Witkin's step"),
+    ParamSpec::choice("linear", "auto", "auto|ldlt|cg",
+                      "the linear systems by a sparse LDLT, by conjugate gradients with a block "
+                      "Jacobi preconditioner, or by the number of vertices"),
+};
+constexpr auto kParams = loop::with_common(kOwn);
+
+bool factors(const Params& params, std::size_t moving) {
+  return params.is("linear", "auto") ? moving <= kFactorPays : params.is("linear", "ldlt");
+}
+
+/// A spring's part of the Hessian: isotropic I + axial u u^T [N/m].
+struct SpringHessian {
+  double isotropic = 0, axial = 0;
+  Vec3 u = Vec3::UnitX();
+  Matrix3d matrix() const { return isotropic * Matrix3d::Identity() + axial * u * u.transpose(); }
+  Vec3 times(const Vec3& v) const { return isotropic * v + axial * u.dot(v) * u; }
+};
+
+/// M/h^2 + the springs, over the vertices that move.
+class Hessian {
+ public:
+  Hessian(const std::vector<Spring>& springs, std::span<const double> w, bool factored)
+      : springs_(springs), column_(w.size(), kPinned), blocks_(springs.size()) {
+    for (std::size_t i = 0; i < w.size(); ++i)
+      if (w[i] > 0) column_[i] = 3 * static_cast<int>(mass_.size()), mass_.push_back(1 / w[i]);
+    if (factored) analyse();
+  }
+
+  int size() const { return 3 * static_cast<int>(mass_.size()); }
+  /// Where the vertex is in vectors; kPinned: it does not move.
+  int column(std::size_t vertex) const { return column_[vertex]; }
+  double mass(std::size_t vertex) const { return mass_[to_index(column_[vertex]) / 3]; }
+  SpringHessian& block(std::size_t spring) { return blocks_[spring]; }
+  bool factored() const { return !diagonal_.empty(); }
+  static constexpr int kPinned = -1;
+
+  /// p of H p = right, by the factor; false: H is not positive definite.
+  bool solve(double h, const Vector& right, Vector& p) {
+    if (!factored()) return conjugate_gradients(h, right, p);
+    fill(h);
+    ldlt_.factorize(matrix_);
+    if (ldlt_.info() != Eigen::Success || !(ldlt_.vectorD().minCoeff() > 0)) return false;
+    p = ldlt_.solve(right);
+    return true;
+  }
+
+  std::size_t factor_entries() const {
+    return factored() ? static_cast<std::size_t>(ldlt_.matrixL().nestedExpression().nonZeros()) : 0;
+  }
+  std::size_t bytes() const {
+    constexpr std::size_t kEntry = sizeof(double) + sizeof(int);
+    return factor_entries() * kEntry + static_cast<std::size_t>(matrix_.nonZeros()) * kEntry +
+           blocks_.size() * sizeof blocks_[0] + diagonal_.size() * sizeof diagonal_[0] +
+           beside_.size() * sizeof beside_[0];
+  }
+
+ private:
+  void analyse() {
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add = [&](int row, int column) {
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+          if (row + r >= column + c) entries.emplace_back(row + r, column + c, 1.0);
+    };
+    for (int i = 0; i < size(); i += 3) add(i, i);
+    for (const Spring& s : springs_)
+      if (const auto [low, high] = std::minmax(column_[s.a], column_[s.b]); low >= 0)
+        add(high, low);
+    matrix_.resize(size(), size());
+    matrix_.setFromTriplets(entries.begin(), entries.end());
+    const auto place = [&](int row, int column) { return &matrix_.coeffRef(row, column); };
+    for (int i = 0; i < size(); ++i) diagonal_.push_back(place(i, i));
+    for (const Spring& s : springs_) {
+      const auto [low, high] = std::minmax(column_[s.a], column_[s.b]);
+      for (int c = 0; c < 3; ++c) beside_.push_back(low < 0 ? nullptr : place(high, low + c));
+    }
+    fill(1);
+    ldlt_.analyzePattern(matrix_);
+    ldlt_.factorize(matrix_);  // allocates: set-up, not the first step
+  }
+
+  /// Entries below each other in a column lie one after the other.
+  void add_diagonal(int column, const Matrix3d& block) {
+    for (int c = 0; c < 3; ++c)
+      for (int r = c; r < 3; ++r) diagonal_[to_index(column + c)][r - c] += block(r, c);
+  }
+  void fill(double h) {
+    std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+    for (std::size_t i = 0; i < mass_.size(); ++i)
+      add_diagonal(3 * static_cast<int>(i), mass_[i] / (h * h) * Matrix3d::Identity());
+    for (std::size_t j = 0; j < springs_.size(); ++j) {
+      const Matrix3d block = blocks_[j].matrix();
+      for (const std::size_t v : {springs_[j].a, springs_[j].b})
+        if (column_[v] >= 0) add_diagonal(column_[v], block);
+      if (beside_[3 * j])
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) beside_[3 * j + to_index(c)][r] -= block(r, c);
+    }
+  }
+
+  Vector times(double h, const Vector& v) const {
+    Vector out(v.size());
+    for (std::size_t i = 0; i < mass_.size(); ++i)
+      out.segment<3>(3 * static_cast<int>(i)) =
+          mass_[i] / (h * h) * v.segment<3>(3 * static_cast<int>(i));
+    const auto at = [&](std::size_t vertex) -> Vec3 {
+      return column_[vertex] < 0 ? Vec3(Vec3::Zero()) : Vec3(v.segment<3>(column_[vertex]));
+    };
+    for (std::size_t j = 0; j < springs_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const Vec3 pull = blocks_[j].times(at(b) - at(a));
+      if (column_[a] >= 0) out.segment<3>(column_[a]) -= pull;
+      if (column_[b] >= 0) out.segment<3>(column_[b]) += pull;
+    }
+    return out;
+  }
+
+  /// To a residual of 1e-6 of the right-hand side; blocks of vertices inverted as preconditioner.
+  /// False: a direction along which the energy curves down was met.
+  bool conjugate_gradients(double h, const Vector& right, Vector& p) const {
+    std::vector<Matrix3d> inverse(mass_.size());
+    for (std::size_t i = 0; i < mass_.size(); ++i)
+      inverse[i] = mass_[i] / (h * h) * Matrix3d::Identity();
+    for (std::size_t j = 0; j < springs_.size(); ++j)
+      for (const std::size_t v : {springs_[j].a, springs_[j].b})
+        if (column_[v] >= 0) inverse[to_index(column_[v]) / 3] += blocks_[j].matrix();
+    for (Matrix3d& m : inverse) m = Matrix3d(m.inverse());
+    const auto preconditioned = [&](const Vector& r) {
+      Vector z(r.size());
+      for (std::size_t i = 0; i < inverse.size(); ++i)
+        z.segment<3>(3 * static_cast<int>(i)) = inverse[i] * r.segment<3>(3 * static_cast<int>(i));
+      return z;
+    };
+    p = Vector::Zero(right.size());
+    Vector r = right, z = preconditioned(r), d = z;
+    double rz = r.dot(z);
+    const double enough = 1e-6 * right.norm();
+    for (Eigen::Index k = 0; k < 2 * right.size() && r.norm() > enough; ++k) {
+      const Vector hd = times(h, d);
+      const double curvature = d.dot(hd);
+      if (!(curvature > 0) || !(rz > 0)) return false;
+      const double step = rz / curvature;
+      p += step * d, r -= step * hd;
+      z = preconditioned(r);
+      const double before = rz;
+      rz = r.dot(z);
+      d = z + rz / before * d;
+    }
+    return true;
+  }
+
+  const std::vector<Spring>& springs_;
+  std::vector<int> column_;
+  std::vector<double> mass_;  ///< kg, of those that move
+  std::vector<SpringHessian> blocks_;
+  Matrix matrix_;                  ///< lower triangle; empty: conjugate gradients
+  std::vector<double*> diagonal_;  ///< [columns] into the matrix
+  std::vector<double*> beside_;    ///< [springs * 3] columns of blocks; null: an end is pinned
+  Eigen::SimplicialLDLT<Matrix> ldlt_;
+};
+
+class NewtonPass final : public Pass<double> {
+ public:
+  explicit NewtonPass(const loop::Setup& s)
+      : springs_(make_springs(s.scene, s.w, stiffnesses(s.params))),
+        line_search_(s.params.is("line-search", "on")),
+        hessian_(springs_, s.w,
+                 factors(s.params, to_index(static_cast<int>(std::ranges::count_if(
+                                       s.w, [](double w) { return w > 0; }))))) {}
+
+  void begin(Particles<double>& p, double, double) override {
+    y_.resize(p.size());
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      y_[i] = p.x[i];
+      if (p.w[i] > 0) p.x.set(i, p.previous[i]);
+    }
+    clamped_ = true, ended_at_.clear();
+  }
+
+  void apply(Particles<double>& p, double, double h) override {
+    std::vector<Vec3> x(p.size());
+    for (std::size_t i = 0; i < p.size(); ++i) x[i] = p.x[i];
+    if (x == ended_at_) return;
+    const Vector g = gradient(x, h);
+    if (g.norm() < kTolerance || !iterate(x, g, h)) {
+      ended_at_ = std::move(x);
+      return;
+    }
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (p.w[i] > 0) p.x.set(i, x[i]);
+  }
+
+  std::vector<PassCost> cost() const override {
+    const std::size_t bytes = y_.size() * sizeof(Vec3) + springs_.size() * sizeof(Spring);
+    return {{.pass = "spring Hessians", .items = springs_.size(), .bytes = bytes},
+            {.pass = hessian_.factored() ? "LDLT" : "conjugate gradients",
+             .items = hessian_.factored() ? hessian_.factor_entries() : to_index(hessian_.size()),
+             .bytes = hessian_.bytes()}};
+  }
+
+ private:
+  /// One Newton step; false: rounding does not let the energy fall any further.
+  bool iterate(std::vector<Vec3>& x, const Vector& g, double h) {
+    linearise(x, clamped_);
+    Vector direction;
+    if (!hessian_.solve(h, -g, direction)) {
+      linearise(x, clamped_ = true);
+      if (!hessian_.solve(h, -g, direction)) return false;
+    }
+    if (!line_search_) return x = moved(x, direction, 1), true;
+    const double energy_before = energy(x, h), slope = g.dot(direction);
+    double step = 1;
+    for (int halvings = 0; halvings < 50; ++halvings, step /= 2) {
+      std::vector<Vec3> trial = moved(x, direction, step);
+      const double now = energy(trial, h);
+      const Vector g_now = gradient(trial, h);
+      const bool falls = now <= energy_before + 1e-4 * step * slope;
+      // near the minimum, differences of the energy are rounding: the gradient decides
+      const bool rounds = now <= energy_before * (1 + 1e-12) && g_now.norm() < g.norm();
+      if (!falls && !rounds) continue;
+      clamped_ = clamped_ && (step < 1 || g_now.norm() < 0.25 * g.norm());
+      x = std::move(trial);
+      return true;
+    }
+    return false;
+  }
+
+  void linearise(const std::vector<Vec3>& x, bool clamped) {
+    for (std::size_t j = 0; j < springs_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const Vec3 d = x[b] - x[a];
+      const double length = d.norm();
+      if (length == 0) {
+        hessian_.block(j) = {stiffness, 0, Vec3::UnitX()};
+        continue;
+      }
+      const double across = 1 - rest / length;
+      const double c = clamped ? std::max(0.0, across) : across;
+      hessian_.block(j) = {stiffness * c, stiffness * (1 - c), d / length};
+    }
+  }
+
+  double energy(const std::vector<Vec3>& x, double h) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (hessian_.column(i) >= 0)
+        sum += hessian_.mass(i) / (2 * h * h) * (x[i] - y_[i]).squaredNorm();
+    for (const auto& [a, b, rest, stiffness] : springs_) {
+      const double c = (x[b] - x[a]).norm() - rest;
+      sum += stiffness / 2 * c * c;
+    }
+    return sum;
+  }
+
+  Vector gradient(const std::vector<Vec3>& x, double h) const {
+    Vector g(hessian_.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (const int c = hessian_.column(i); c >= 0)
+        g.segment<3>(c) = hessian_.mass(i) / (h * h) * (x[i] - y_[i]);
+    for (const auto& [a, b, rest, stiffness] : springs_) {
+      const Vec3 d = x[b] - x[a];
+      const double length = d.norm();
+      if (length == 0) continue;  // no direction to push in
+      const Vec3 pull = stiffness * (length - rest) / length * d;
+      if (hessian_.column(a) >= 0) g.segment<3>(hessian_.column(a)) -= pull;
+      if (hessian_.column(b) >= 0) g.segment<3>(hessian_.column(b)) += pull;
+    }
+    return g;
+  }
+
+  std::vector<Vec3> moved(std::vector<Vec3> x, const Vector& direction, double step) const {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (const int c = hessian_.column(i); c >= 0) x[i] += step * direction.segment<3>(c);
+    return x;
+  }
+
+  std::vector<Spring> springs_;
+  bool line_search_;
+  Hessian hessian_;
+  bool clamped_ = true;
+  std::vector<Vec3> y_;         ///< m, where they would go without links
+  std::vector<Vec3> ended_at_;  ///< m, where nothing was left to do in this substep; empty: nowhere
+};
+
+loop::Links<double> links(const loop::Setup& s) {
+  return {.layout = Layout::packed(s.w.size()), .pass = std::make_unique<NewtonPass>(s)};
+}
+
+std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
+  return loop::make<double>(scene, params, links);
+}
+
+ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
+  const std::size_t moving = to_index(scene.mesh.size()) - scene.pins.size();
+  ResolvedSettings own{
+      {"links", describe_springs(params)},
+      {"links solved", std::string("implicit Euler by Newton's method, ") +
+                           (factors(params, moving) ? "sparse LDLT, analysed once as set-up"
+                                                    : "conjugate gradients")},
+      {"work unit", "Newton iterations, not projections"}};
+  if (!scene.colliders.empty()) own.emplace_back("order of passes", kLaggedContact);
+  return loop::resolved_settings(scene, params, own);
+}
+
+}  // namespace
+}  // namespace taut::solver::implicit
+
+TAUT_SOLVER(implicit) = {
+    .name = "implicit",
+    .title = "implicit Euler (Newton)",
+    .summary = "Implicit Euler of springs, each step solved by Newton's method",
+    .source = "Baraff, Witkin 1998; Choi, Ko 2002",
+    .params = taut::solver::implicit::kParams,
+    .make = taut::solver::implicit::make,
+    .unsupported = taut::loop::unsupported,
+    .resolved_settings = taut::solver::implicit::resolved_settings,
+    .accuracy = {
+        .substeps = "substeps", .sweeps = "iterations", .labelled = "substeps|iterations"}};

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/model/index.hpp"
+#include "core/model/scene.hpp"
+#include "core/model/solver.hpp"
+#include "core/model/text.hpp"
+#include "core/solver/layout/order.hpp"
+
+namespace taut {
+
+/// A link as elastic solvers see it: energy K/2 C^2 with C = |x_b - x_a| - rest.
+struct Spring {
+  std::size_t a = 0, b = 0;  ///< vertices
+  double rest = 0;           ///< m
+  double stiffness = 0;      ///< K, N/m
+};
+
+/// Parameters of solvers of springs, one for each family.
+inline constexpr std::array kStiffness{
+    ParamSpec::real("structural", "N/m", "10000", 0, 1e12,
+                    "spring constant of structural links; 0: no spring"),
+    ParamSpec::real("shear", "N/m", "10000", 0, 1e12,
+                    "spring constant of shear links; 0: no spring"),
+    ParamSpec::real("bend", "N/m", "100", 0, 1e12, "spring constant of bend links; 0: no spring")};
+
+inline std::array<double, kFamilies.size()> stiffnesses(const Params& params) {
+  std::array<double, kFamilies.size()> all{};
+  for (const Family family : kFamilies)
+    all[static_cast<std::size_t>(family)] = params.real(to_string(family));
+  return all;
+}
+
+/// The links of the scene that have a stiffness and an end that moves, in the scene's order.
+/// w: inverse masses [1/kg]; stiffness [N/m] by family.
+inline std::vector<Spring> make_springs(const Scene& scene, std::span<const double> w,
+                                        const std::array<double, kFamilies.size()>& stiffness) {
+  std::vector<Spring> springs;
+  for (const Link& l : scene.links)
+    if (const double k = stiffness[static_cast<std::size_t>(l.family)]; k > 0 && moves(l, w))
+      springs.push_back({to_index(l.a), to_index(l.b), l.rest, k});
+  return springs;
+}
+
+/// For the resolved settings.
+inline std::string describe_springs(const Params& params) {
+  return "Hooke springs: " + join(kFamilies, ", ", [&](Family family) {
+           const std::string name(to_string(family));
+           return name + " " + std::string(params.value(name)) + " N/m";
+         });
+}
+
+/// What is said of contact by every solver that solves all links at once.
+inline constexpr std::string_view kLaggedContact =
+    "projected after each iteration, outside the links' system: a lagged projection";
+
+}  // namespace taut
