@@ -1,0 +1,122 @@
+// ADMM: Narain, Overby, Brown: ADMM >= Projective Dynamics (SCA 2016); Overby et al. (TVCG 2017).
+// Each link has a wanted vector z and a scaled multiplier u; an iteration is, with d = x_b - x_a,
+//
+//     p = d + u                             links:  z = r p/|p|                          (rigid)
+//     u = p - z                                     z = (K r + k |p|)/(K + k) p/|p|      (spring K)
+//     x from the factored system of weights k [N/m] with z - u in the place of d
+//
+// so the matrix is that of Projective Dynamics (pd.cpp) with k in the place of K. k is a
+// parameter of the method alone: it decides how fast, not where to, the iterations go.
+#include "core/solver/global_system.hpp"
+#include "core/solver/loop.hpp"
+
+namespace taut::solver::admm {
+
+namespace {
+
+constexpr ParamSpec kOwn[] = {
+    loop::iterations("15", "solutions of the system per substep"),
+    loop::substeps("1", "each step is this many steps of dt / substeps"),
+    ParamSpec::choice("links", "rigid", "rigid|elastic",
+                      "links keep their length, or are springs of the stiffness below"),
+    kStiffness[0],
+    kStiffness[1],
+    kStiffness[2],
+    ParamSpec::real("penalty", "N/m", "100", 1e-6, 1e12,
+                    "k, the weight of rigid links; of springs it is their stiffness times "
+                    "penalty-ratio"),
+    ParamSpec::real("penalty-ratio", "", "1", 1e-6, 1e6, "k / K of springs"),
+    ParamSpec::choice("multipliers", "reset", "reset|keep", "at the beginning of a substep"),
+};
+constexpr auto kParams = loop::with_common(kOwn);
+
+class AdmmPass final : public Pass<double> {
+ public:
+  explicit AdmmPass(const loop::Setup& s)
+      : rigid_(s.params.is("links", "rigid")),
+        keep_(s.params.is("multipliers", "keep")),
+        ratio_(s.params.real("penalty-ratio")),
+        system_(weights(s), s.w, s.scene.dt / s.params.integer("substeps")),
+        u_(system_.springs().size(), Vec3::Zero()),
+        wanted_(u_.size()) {}
+
+  void restart() override { u_.assign(u_.size(), Vec3::Zero()); }
+
+  void begin(Particles<double>& p, double, double h) override {
+    system_.begin(p, h);
+    if (!keep_) restart();
+  }
+
+  void apply(Particles<double>& p, double, double) override {
+    for (std::size_t j = 0; j < u_.size(); ++j) {
+      const auto& [a, b, rest, k] = system_.springs()[j];
+      const Vec3 sum = p.x[b] - p.x[a] + u_[j];
+      const double length = sum.norm();
+      // K = k / ratio: (K r + k |p|)/(K + k)
+      const double to = rigid_ ? rest : (rest + ratio_ * length) / (1 + ratio_);
+      const Vec3 z = length > 0 ? Vec3(to / length * sum) : Vec3(Vec3::Zero());
+      u_[j] = sum - z;
+      wanted_[j] = z - u_[j];
+    }
+    system_.solve(wanted_, p);
+  }
+
+  std::vector<PassCost> cost() const override {
+    return system_.cost("links", 2 * u_.size() * sizeof(Vec3));
+  }
+
+ private:
+  static std::vector<Spring> weights(const loop::Setup& s) {
+    if (s.params.is("links", "rigid")) {
+      const double k = s.params.real("penalty");
+      return make_springs(s.scene, s.w, {k, k, k});
+    }
+    std::vector<Spring> springs = make_springs(s.scene, s.w, stiffnesses(s.params));
+    for (Spring& spring : springs) spring.stiffness *= s.params.real("penalty-ratio");
+    return springs;
+  }
+
+  bool rigid_, keep_;
+  double ratio_;
+  GlobalSystem system_;
+  std::vector<Vec3> u_;       ///< m, scaled multipliers
+  std::vector<Vec3> wanted_;  ///< m, z - u
+};
+
+loop::Links<double> links(const loop::Setup& s) {
+  return {.layout = Layout::packed(s.w.size()), .pass = std::make_unique<AdmmPass>(s)};
+}
+
+std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
+  return loop::make<double>(scene, params, links);
+}
+
+ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
+  ResolvedSettings own{
+      {"links", params.is("links", "rigid") ? "rigid" : describe_springs(params)},
+      {"links solved",
+       "all at once by a sparse LLT, factored as set-up; other pins or links factor again"},
+      {"work unit", "solutions of the whole system, not projections"}};
+  if (!scene.colliders.empty()) own.emplace_back("order of passes", kLaggedContact);
+  return loop::resolved_settings(scene, params, own);
+}
+
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"penalty", "30|100|300"},
+                                                        {"multipliers", "reset|keep"}};
+
+}  // namespace
+}  // namespace taut::solver::admm
+
+TAUT_SOLVER(admm) = {
+    .name = "admm",
+    .title = "ADMM",
+    .summary = "Alternating directions: rigid or elastic links on one factored system",
+    .source = "Narain, Overby, Brown 2016; Overby et al. 2017",
+    .params = taut::solver::admm::kParams,
+    .make = taut::solver::admm::make,
+    .unsupported = taut::loop::unsupported,
+    .resolved_settings = taut::solver::admm::resolved_settings,
+    .accuracy = {.substeps = "substeps",
+                 .sweeps = "iterations",
+                 .alternatives = taut::solver::admm::kAlternatives,
+                 .labelled = "substeps|iterations|penalty|multipliers"}};

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/solver/layout/particles.hpp"
+#include "core/solver/springs.hpp"
+
+namespace taut {
+
+/// The linear system of solvers that place all vertices at once from a wanted vector q [m] for each
+/// link, with weights k [N/m]: x minimises
+///
+///     sum m/(2 h^2) |x - y|^2 + sum k/2 |(x_b - x_a) - q|^2,     pins where they are.
+///
+/// Its matrix, M/h^2 + sum k (e_b - e_a)(e_b - e_a)^T over the vertices that move, is the same for
+/// the three coordinates and from step to step: a sparse LLT, factored when made and again only if
+/// h changes. Other pins, masses, links or weights are another system.
+class GlobalSystem {
+ public:
+  /// w: inverse masses [1/kg]; the springs' stiffness is the weight; h [s].
+  GlobalSystem(std::vector<Spring>, std::span<const double> w, double h);
+  ~GlobalSystem();
+
+  const std::vector<Spring>& springs() const { return springs_; }
+  /// A substep of h [s] begins: p.x is y, pins are where they have to be.
+  void begin(const Particles<double>& p, double h);
+  /// Moves the vertices that are no pins. q: [springs] m.
+  void solve(std::span<const Vec3> q, Particles<double>& p);
+
+  std::size_t factor_entries() const;
+  /// One application: the vectors of the links, named `local`, and the solution by the factor.
+  std::vector<PassCost> cost(std::string_view local, std::size_t bytes_of_local) const;
+
+ private:
+  void factor(double h);
+  struct Factor;
+  std::vector<Spring> springs_;
+  std::vector<int> row_;      ///< of each vertex; -1: a pin
+  std::vector<double> mass_;  ///< [rows] kg
+  double factored_for_ = 0;   ///< s
+  std::unique_ptr<Factor> factor_;
+};
+
+/// Over-relaxation of an iteration whose error shrinks by rho (Wang: A Chebyshev Semi-Iterative
+/// Approach for Accelerating Projective and Position-Based Dynamics, SIGGRAPH Asia 2015, equation
+/// 9): x_k+1 = omega_k (f(x_k) - x_k-1) + x_k-1, from the third iteration of a substep on.
+class Chebyshev {
+ public:
+  /// rho in [0, 1); 0: none.
+  explicit Chebyshev(double rho) : rho_(rho) {}
+  bool on() const { return rho_ > 0; }
+  void begin() { iteration_ = 0; }
+  /// p.x is f(x_k), `from` is x_k: moves p.x to x_k+1. Pins stay.
+  void accelerate(Particles<double>& p, std::vector<Vec3> from) {
+    ++iteration_;
+    omega_ = iteration_ < kDelay    ? 1
+             : iteration_ == kDelay ? 2 / (2 - rho_ * rho_)
+                                    : 4 / (4 - rho_ * rho_ * omega_);
+    for (std::size_t i = 0; iteration_ >= kDelay && i < p.size(); ++i)
+      if (p.w[i] > 0) p.x.set(i, omega_ * (p.x[i] - before_[i]) + before_[i]);
+    before_ = std::move(from);
+  }
+  std::size_t bytes() const { return before_.size() * sizeof(Vec3); }
+
+ private:
+  static constexpr int kDelay = 3;
+  double rho_, omega_ = 1;
+  int iteration_ = 0;
+  std::vector<Vec3> before_;  ///< m, x_k-1
+};
+
+inline constexpr ParamSpec kChebyshev =
+    ParamSpec::real("chebyshev", "", "0", 0, 0.99999,
+                    "rho of Chebyshev's semi-iteration, the error's factor per iteration; 0: none");
+
+inline std::vector<Vec3> positions(const Particles<double>& p) {
+  std::vector<Vec3> x(p.size());
+  for (std::size_t i = 0; i < p.size(); ++i) x[i] = p.x[i];
+  return x;
+}
+
+}  // namespace taut

@@ -1,0 +1,191 @@
+// Projective Dynamics and ADMM: where their iterations go, and how fast.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "core/reference/dense.hpp"
+#include "tests/solver/elastic_step.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut {
+namespace {
+
+constexpr std::array kSoft{800.0, 300.0, 50.0};
+const std::string kSoftText = "structural=800,shear=300,bend=50";
+
+TEST(ProjectiveDynamics, FixedPointIsNewtonsStep) {
+  for (const unsigned seed : {1u, 2u}) {
+    const Scene scene = irregular_net(seed);
+    const std::vector<Vec3> exact = ElasticStep(scene, kSoft).minimum();
+    const State mine = after_one_step(scene, "pd:iterations=10000," + kSoftText);
+    EXPECT_LT(largest_distance(mine.x, exact), 1e-8) << "seed " << seed;
+    EXPECT_GT(largest_distance(after_one_step(scene, "pd:iterations=10," + kSoftText).x, exact),
+              1e-6);
+  }
+}
+
+TEST(ProjectiveDynamics, AcceleratedItGoesToTheSamePointFaster) {
+  const Scene scene = irregular_net(3);
+  const std::vector<Vec3> exact = ElasticStep(scene, kSoft).minimum();
+  const auto error = [&](const std::string& more) {
+    return largest_distance(after_one_step(scene, "pd:" + kSoftText + more).x, exact);
+  };
+  EXPECT_LT(error(",iterations=10000,chebyshev=0.9"), 1e-8);
+  EXPECT_LT(error(",iterations=1000,anderson=5"), 1e-8);
+  EXPECT_LT(error(",iterations=100,chebyshev=0.9"), 0.5 * error(",iterations=100"));
+  EXPECT_LT(error(",iterations=100,anderson=5"), 0.5 * error(",iterations=100"));
+}
+
+/// All directions are right from the start, and along them the energy is quadratic.
+TEST(ProjectiveDynamics, AStraightLoadedChainIsExactAfterOnePass) {
+  Scene scene = hanging_sheet(1, 12, {true, false, false});
+  for (std::size_t i = 1; i < scene.start.x.size(); ++i) scene.start.v[i] = {0, -0.3, 0};
+  const ElasticStep step(scene, {500, 1, 1});
+  const State mine = after_one_step(scene, "pd:iterations=1,structural=500");
+  EXPECT_LT(largest_distance(mine.x, step.minimum()), 1e-12);
+  EXPECT_GT(largest_distance(mine.x, step.y()), 1e-4);
+}
+
+/// A chain between two pins, stretched: motion across it in a mode with the Laplacian's eigenvalue
+/// lambda.
+TEST(ProjectiveDynamics, ContractsAcrossAStretchedChainAsItShould) {
+  constexpr int kLinks = 9;
+  constexpr double kStrain = 0.05, kMass = 0.01;
+  for (const double stiffness : {10.0, 1e3, 1e5})
+    for (const int mode : {1, 4}) {
+      Scene scene;
+      scene.dt = 1.0 / 64, scene.steps = 1, scene.gravity = Vec3::Zero();
+      for (int i = 0; i <= kLinks; ++i) {
+        const double shape = std::sin(std::numbers::pi * mode * i / kLinks);
+        scene.start.x.emplace_back(0.1 * (1 + kStrain) * i, 0, 0);
+        scene.start.v.emplace_back(0, 1e-5 * shape / scene.dt, 0);
+        scene.mesh.mass.push_back(kMass);
+        if (i > 0) scene.links.push_back({i - 1, i, 0.1, Family::structural});
+      }
+      scene.mesh.rest = scene.start.x;
+      scene.pins = {0, kLinks};
+      scene.start.v.back() = Vec3::Zero();
+      const auto after = [&](int iterations) {
+        return after_one_step(scene, "pd:iterations=" + std::to_string(iterations) +
+                                         ",structural=" + std::to_string(stiffness))
+            .x[2]
+            .y();
+      };
+      const double lambda = 2 - 2 * std::cos(std::numbers::pi * mode / kLinks);
+      const double s = scene.dt * scene.dt * stiffness / kMass, e = kStrain / (1 + kStrain);
+      const double rate = s * lambda * (1 - e) / (1 + s * lambda);
+      // differences of successive iterates shrink as their errors do
+      EXPECT_NEAR((after(3) - after(2)) / (after(2) - after(1)), rate, 0.01 * rate)
+          << stiffness << " N/m, mode " << mode;
+    }
+}
+
+TEST(Admm, FixedPointOfSpringsIsNewtonsStepWhateverThePenalty) {
+  const Scene scene = irregular_net(2);
+  const std::vector<Vec3> exact = ElasticStep(scene, kSoft).minimum();
+  for (const char* ratio : {"1", "1.5"}) {
+    const State mine = after_one_step(
+        scene, "admm:links=elastic,iterations=8000," + kSoftText + ",penalty-ratio=" + ratio);
+    EXPECT_LT(largest_distance(mine.x, exact), 1e-8) << ratio;
+  }
+}
+
+/// Rigid links: the nearest placement, in the masses' norm, that keeps all lengths. There
+/// m (x - y) is a combination of the lengths' gradients.
+TEST(Admm, RigidLinksEndAtTheConstrainedMinimum) {
+  Scene scene = hanging_sheet(1, 10, {true, false, false});
+  for (std::size_t i = 1; i < scene.start.x.size(); ++i)
+    scene.start.v[i] = {1.0 + static_cast<double>(i % 3), 0.5, -0.2 * static_cast<double>(i)};
+  const State mine = after_one_step(scene, "admm:iterations=5000,penalty=300");
+  const ElasticStep step(scene, {1, 1, 1});
+  const auto links = static_cast<Eigen::Index>(scene.links.size());
+  Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(3 * links, links);
+  Eigen::VectorXd pull(3 * links);
+  for (Eigen::Index j = 0; j < links; ++j) {  // link j ends at vertex j + 1
+    const auto i = static_cast<std::size_t>(j);
+    EXPECT_LT(std::abs(step.stretch(mine.x, i)), 1e-10);
+    const Vec3 u = (mine.x[i + 1] - mine.x[i]).normalized();
+    gradients.block<3, 1>(3 * j, j) = u;
+    if (j > 0) gradients.block<3, 1>(3 * (j - 1), j) = -u;
+    pull.segment<3>(3 * j) = scene.mesh.mass[i + 1] * (mine.x[i + 1] - step.y()[i + 1]);
+  }
+  const Eigen::VectorXd multipliers =
+      reference::solve(gradients.transpose() * gradients, gradients.transpose() * pull);
+  EXPECT_LT((pull - gradients * multipliers).norm(), 1e-9 * pull.norm());
+  EXPECT_GT(pull.norm(), 1e-4);
+}
+
+/// The first step of both, written down: factor, links, factor.
+TEST(Admm, AgreesWithADenseProgramOnAnIrregularMesh) {
+  const Scene scene = irregular_net(7);
+  const ElasticStep step(scene, {1, 1, 1});
+  const std::vector<double> w = inverse_masses(scene);
+  const auto n = static_cast<Eigen::Index>(w.size());
+  const double k = 150;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    matrix(i, i) = w[static_cast<std::size_t>(i)] > 0
+                       ? 1 / (w[static_cast<std::size_t>(i)] * scene.dt * scene.dt)
+                       : 1;
+  const Eigen::VectorXd inertia = matrix.diagonal();
+  for (const Link& l : scene.links)
+    for (const auto& [i, other] : {std::pair(l.a, l.b), std::pair(l.b, l.a)})
+      if (w[to_index(i)] > 0) matrix(i, i) += k, matrix(i, other) -= k;
+  std::vector<Vec3> x = step.y(), u(scene.links.size(), Vec3::Zero());
+  for (int iteration = 0; iteration < 7; ++iteration) {
+    Eigen::MatrixXd right(n, 3);
+    for (Eigen::Index i = 0; i < n; ++i)
+      right.row(i) = inertia[i] * step.y()[static_cast<std::size_t>(i)];
+    for (std::size_t j = 0; j < u.size(); ++j) {
+      const Link& l = scene.links[j];
+      const Vec3 p = x[to_index(l.b)] - x[to_index(l.a)] + u[j];
+      const Vec3 z = l.rest * p.normalized();
+      u[j] = p - z;
+      if (w[to_index(l.a)] > 0) right.row(l.a) -= k * (z - u[j]);
+      if (w[to_index(l.b)] > 0) right.row(l.b) += k * (z - u[j]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::VectorXd column = reference::solve(matrix, right.col(axis));
+      for (std::size_t i = 0; i < x.size(); ++i) x[i][axis] = column[static_cast<Eigen::Index>(i)];
+    }
+  }
+  EXPECT_LT(largest_distance(after_one_step(scene, "admm:iterations=7,penalty=150").x, x), 1e-9);
+}
+
+TEST(GlobalSolvers, SayThatContactIsALaggedProjectionAndKeepClothOutOfAPlane) {
+  Scene scene = hanging_sheet(6, 6);
+  scene.pins.clear();
+  scene.colliders = {{.shape = Plane{{0, 1, 0}, -1.2}}};
+  for (const char* solver : {"implicit:iterations=8", "pd", "admm"}) {
+    const SolverChoice choice = parse_solver(solver);
+    const ResolvedSettings lines = choice.entry->resolved_settings(scene, choice.params);
+    EXPECT_TRUE(std::ranges::any_of(lines, [](const auto& line) {
+      return line.second.find("a lagged projection") != std::string::npos;
+    })) << solver;
+    for (const Vec3& x : simulate(scene, solver, 40).x) EXPECT_GE(x.y(), -1.2 - 1e-12) << solver;
+  }
+}
+
+TEST(GlobalSolvers, RefuseTwoAccelerationsAtOnce) {
+  const SolverChoice both = parse_solver("pd:chebyshev=0.9,anderson=5");
+  EXPECT_EQ(both.entry->unsupported(hanging_sheet(3, 3), both.params).size(), 1u);
+  EXPECT_TRUE(both.entry->unsupported(hanging_sheet(3, 3), parse_solver("pd").params).empty());
+}
+
+TEST(GlobalSolvers, StepCostCountsTheFactor) {
+  const Scene scene = hanging_sheet(8, 8);
+  for (const char* solver : {"implicit", "pd", "admm"}) {
+    const SolverChoice choice = parse_solver(solver);
+    const auto costs = choice.entry->make(scene, choice.params)->step_cost();
+    const auto& factor = costs.back();
+    EXPECT_GT(factor.items, 62u) << solver;  // more than a diagonal of the vertices that move
+    EXPECT_GE(factor.bytes, 12 * factor.items) << solver;
+    EXPECT_EQ(projections_per_step(*choice.entry->make(scene, choice.params)), 0u) << solver;
+  }
+}
+
+}  // namespace
+}  // namespace taut
