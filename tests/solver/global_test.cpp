@@ -187,5 +187,24 @@ TEST(GlobalSolvers, StepCostCountsTheFactor) {
   }
 }
 
+/// Links are inner forces. Systems for all vertices at once keep that at any number of iterations;
+/// vbd only once it has converged: vertex after vertex is moved against its own inertia.
+TEST(GlobalSolvers, KeepTheFallOfTheCentreOfMassAndVbdOnlyIfItHasConverged) {
+  Scene scene = hanging_sheet(6, 5, {true, true, false});
+  scene.pins.clear();
+  for (Vec3& x : scene.start.x) x *= 1.02;
+  const auto fall = [&](const std::string& solver) {
+    const State end = simulate(scene, solver, 64);
+    double way = 0, mass = 0;
+    for (std::size_t i = 0; i < end.x.size(); ++i)
+      way += scene.mesh.mass[i] * (scene.start.x[i] - end.x[i]).y(), mass += scene.mesh.mass[i];
+    return way / mass / (9.81 / 2 * (1 + 1.0 / 64));  // of the steps' sum
+  };
+  for (const char* solver : {"implicit:iterations=3", "pd:iterations=2", "admm:iterations=2"})
+    EXPECT_NEAR(fall(solver), 1, 1e-9) << solver;
+  EXPECT_LT(fall("vbd:iterations=10"), 0.9);
+  EXPECT_NEAR(fall("vbd:iterations=4000"), 1, 1e-3);
+}
+
 }  // namespace
 }  // namespace taut

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/model/adjacency.hpp"
+#include "core/solver/global_system.hpp"
+#include "core/solver/loop.hpp"
+#include "core/solver/springs.hpp"
+
+namespace taut {
+
+/// Sweeps of solvers that move one vertex at a time to the minimum of a quadratic model in its own
+/// three coordinates, all others held: colour after colour, no two vertices of a colour linked, so
+/// that threads divide a colour and any number of them computes the same bits.
+class VertexBlocks {
+ public:
+  /// coloured: else the scene's order, one vertex after the other.
+  VertexBlocks(const std::vector<Spring>& springs, std::span<const double> w, bool coloured,
+               ThreadPool& pool)
+      : springs_(springs), ends_(links_of(springs), static_cast<int>(w.size())), pool_(pool) {
+    std::vector<int> colour_of(w.size(), -1);
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      if (w[i] == 0) continue;
+      std::size_t colour = 0;
+      if (coloured) {
+        const auto taken = [&](std::size_t c) {
+          return std::ranges::any_of(ends_.of(static_cast<int>(i)), [&](const Adjacency::End& e) {
+            return colour_of[to_index(e.vertex)] == static_cast<int>(c);
+          });
+        };
+        while (taken(colour)) ++colour;
+      } else {
+        colour = colours_.size();
+      }
+      colour_of[i] = static_cast<int>(colour);
+      if (colour == colours_.size()) colours_.emplace_back();
+      colours_[colour].push_back(i);
+    }
+  }
+
+  std::size_t colours() const { return colours_.size(); }
+
+  /// One sweep: solve(i, x_i, links) returns where vertex i goes, links(visit) calls visit(j, u, C)
+  /// for each of its links j, u the unit vector from i towards the other end, C [m] its stretch.
+  template <class Solve>
+  void sweep(Particles<double>& p, const Solve& solve) {
+    for (const std::vector<std::size_t>& colour : colours_)
+      pool_.run(
+          colour.size(),
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t c = begin; c < end; ++c) {
+              const std::size_t i = colour[c];
+              const Vec3 x = p.x[i];
+              p.x.set(i, solve(i, x, [&](const auto& visit) {
+                        for (const Adjacency::End& e : ends_.of(static_cast<int>(i))) {
+                          const Vec3 d = p.x[to_index(e.vertex)] - x;
+                          const double length = d.norm();
+                          if (length == 0) continue;  // no direction to pull in
+                          const std::size_t j = to_index(e.link);
+                          visit(j, Vec3(d / length), length - springs_[j].rest, length);
+                        }
+                      }));
+            }
+          },
+          colour.size() >= ThreadPool::kWorthSharing / 8);
+  }
+
+  std::size_t bytes() const {
+    return springs_.size() * (sizeof(Spring) + 2 * sizeof(Adjacency::End)) +
+           ends_.size() * (sizeof(int) + sizeof(std::size_t));
+  }
+
+ private:
+  static std::vector<Link> links_of(const std::vector<Spring>& springs) {
+    std::vector<Link> links;
+    for (const Spring& s : springs)
+      links.push_back({static_cast<int>(s.a), static_cast<int>(s.b), s.rest, Family::structural});
+    return links;
+  }
+  const std::vector<Spring>& springs_;
+  Adjacency ends_;
+  std::vector<std::vector<std::size_t>> colours_;
+  ThreadPool& pool_;
+};
+
+/// x of a x = b for a symmetric positive definite matrix, by Cramer's rule.
+inline Vec3 solve_symmetric(const Eigen::Matrix3d& a, const Vec3& b) {
+  const Vec3 r0 = a.col(0), r1 = a.col(1), r2 = a.col(2);
+  const auto cross = [](const Vec3& p, const Vec3& q) {
+    return Vec3(p.y() * q.z() - p.z() * q.y(), p.z() * q.x() - p.x() * q.z(),
+                p.x() * q.y() - p.y() * q.x());
+  };
+  const Vec3 c = cross(r1, r2);
+  const double determinant = r0.dot(c);
+  return Vec3(b.dot(c), r0.dot(cross(b, r2)), r0.dot(cross(r1, b))) / determinant;
+}
+
+/// Where a substep's iterations start (VBD, section 3.7): y without that part of gravity that did
+/// not act in the last substep because something held the vertex.
+class AdaptiveStart {
+ public:
+  AdaptiveStart(const Scene& scene, bool on)
+      : gravity_(scene.gravity), damping_(scene.damping), on_(on && gravity_.norm() > 0) {}
+  void restart() { velocity_.clear(); }
+
+  /// p.x is y, p.previous x_t.
+  void begin(Particles<double>& p, double h) {
+    if (!on_) return;
+    const double g = gravity_.norm(), keep = std::exp(-damping_ * h);
+    const Vec3 down = gravity_ / g;
+    const bool first = velocity_.empty();
+    velocity_.resize(p.size(), Vec3::Zero());
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (p.w[i] == 0) continue;
+      Vec3 way = p.x[i] - p.previous[i] - h * h * gravity_;  // damped velocity, wind
+      if (!p.a.empty()) way -= h * h * p.a[i];
+      const Vec3 before = std::exchange(velocity_[i], way / (keep * h));
+      if (first) continue;
+      const double acted = std::clamp((velocity_[i] - before).dot(down) / h, 0.0, g);
+      p.x.add(i, (acted - g) * h * h * down);
+    }
+  }
+  std::size_t bytes() const { return velocity_.size() * sizeof(Vec3); }
+
+ private:
+  Vec3 gravity_;
+  double damping_;
+  bool on_;
+  std::vector<Vec3> velocity_;  ///< m/s, at the last substep's start; empty: there was none
+};
+
+inline constexpr ParamSpec kVertexOrder =
+    ParamSpec::choice("order", "coloured", "coloured|mesh",
+                      "vertices colour after colour, which threads can divide, or in the scene's "
+                      "order");
+inline constexpr ParamSpec kAdaptiveStart =
+    ParamSpec::choice("start", "adaptive", "adaptive|inertia",
+                      "where iterations start: without the part of gravity that did not act in the "
+                      "last substep, or where the vertices would go without links");
+
+}  // namespace taut
