@@ -25,7 +25,7 @@ ASKED = {
     "plan": ["./small.toml", "bullet"], "reference": ["hang", "-o", "references"],
     "render": ["./small.toml", "--solver", "jakobsen", "--quality", "draft", "--size", "320x240"],
     "require": ["./small.toml", "jakobsen", "--patience", "20"], "frontier": ["./small.toml", "jakobsen", "--tolerance", "0.5"],
-    "advise": ADVICE[1:], "bench": ["./study.toml", *FEW], "bench kernels": ["--sizes", "8", *FEW], "bench contact": ["--sizes", "8", *FEW],
+    "converge": ["./small.toml", "--solver", "jakobsen", "--most", "8"], "advise": ADVICE[1:], "bench": ["./study.toml", *FEW], "bench kernels": ["--sizes", "8", *FEW], "bench contact": ["--sizes", "8", *FEW],
     "bench effects": ["chain", *FEW], "bench scaling": ["./sizes.toml", "--samples", "2"], "doctor": [], "verify": ["free-fall"],
     "baseline update": ["./study.toml", "--why", "a test"], "baseline diff": ["./study.toml"], "check": ["./study.toml"],
     "cluster submit": ["./study.toml", "--on", "parallel", "--dry-run", "--shards", "1", "--folder", "cN"], "cluster run": ["c0", "--shard", "1"],

@@ -1,0 +1,206 @@
+#include "core/reference/implicit_step.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/model/index.hpp"
+#include "core/model/wind.hpp"
+
+namespace taut::reference {
+
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+using Vector = Eigen::VectorXd;
+using Points = std::vector<Vec3>;
+
+}  // namespace
+
+ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, const Stiffness& k)
+    : inertia_(scene.mesh.mass), mass_(scene.mesh.mass), y_(from.x) {
+  const double h = scene.dt, keep = std::exp(-scene.damping * h);
+  for (double& m : inertia_) m /= h * h;
+  for (const int pin : scene.pins) inertia_[to_index(pin)] = 0;
+  for (const Link& l : scene.links) {
+    const double stiffness = k[static_cast<std::size_t>(l.family)];
+    const std::size_t a = to_index(l.a), b = to_index(l.b);
+    if (stiffness == 0 || (inertia_[a] == 0 && inertia_[b] == 0)) continue;
+    links_.push_back({a, b, l.rest, stiffness});
+    rigid_ = rigid_ || std::isinf(stiffness);
+  }
+  Points acceleration(y_.size(), scene.gravity);
+  if (scene.wind)
+    for (const auto& [a, b, c] : scene.mesh.triangles) {
+      const auto mean = (from.v[to_index(a)] + from.v[to_index(b)] + from.v[to_index(c)]) / 3;
+      const Vec3 corner = wind_on_corner(*scene.wind, from.x[to_index(a)], from.x[to_index(b)],
+                                         from.x[to_index(c)], mean);
+      for (const int i : {a, b, c}) acceleration[to_index(i)] += corner / mass_[to_index(i)];
+    }
+  for (std::size_t i = 0; i < y_.size(); ++i)
+    if (inertia_[i] > 0)
+      y_[i] += h * keep * from.v[i] + h * h * acceleration[i];
+    else
+      y_[i] = pin_position(scene, static_cast<int>(i), t + h);
+}
+
+/// G with rigid links as springs K that a multiplier [N] has shifted: l C + K/2 C^2.
+struct ImplicitStep::Multiplied {
+  const ImplicitStep& step;
+  std::vector<double> stiffness, multiplier;
+  std::vector<Eigen::Index> column;
+  Eigen::Index size = 0;
+
+  Multiplied(const ImplicitStep& s, double rigid) : step(s), multiplier(s.links_.size(), 0) {
+    for (const Member& l : s.links_)
+      stiffness.push_back(std::isinf(l.stiffness) ? rigid : l.stiffness);
+    for (const double m : s.inertia_) column.push_back(m > 0 ? std::exchange(size, size + 3) : -1);
+  }
+  double stretch(const Points& x, std::size_t j) const {
+    const auto& [a, b, rest, k] = step.links_[j];
+    return (x[b] - x[a]).norm() - rest;
+  }
+  double energy(const Points& x) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      sum += step.inertia_[i] / 2 * (x[i] - step.y_[i]).squaredNorm();
+    for (std::size_t j = 0; j < stiffness.size(); ++j) {
+      const double c = stretch(x, j);
+      sum += (multiplier[j] + stiffness[j] / 2 * c) * c;
+    }
+    return sum;
+  }
+  Vector gradient(const Points& x) const {
+    Vector g(size);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (column[i] >= 0) g.segment<3>(column[i]) = step.inertia_[i] * (x[i] - step.y_[i]);
+    for (std::size_t j = 0; j < stiffness.size(); ++j) {
+      const auto& [a, b, rest, k] = step.links_[j];
+      const Vec3 pull = (multiplier[j] + stiffness[j] * stretch(x, j)) * (x[b] - x[a]).normalized();
+      if (column[a] >= 0) g.segment<3>(column[a]) -= pull;
+      if (column[b] >= 0) g.segment<3>(column[b]) += pull;
+    }
+    return g;
+  }
+  Matrix hessian(const Points& x, bool clamped) const {
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add = [&](Eigen::Index row, Eigen::Index col, const Eigen::Matrix3d& m) {
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+          if (row + r >= col + c)
+            entries.emplace_back(static_cast<int>(row) + r, static_cast<int>(col) + c, m(r, c));
+    };
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (column[i] >= 0) add(column[i], column[i], step.inertia_[i] * Eigen::Matrix3d::Identity());
+    for (std::size_t j = 0; j < stiffness.size(); ++j) {
+      const auto& [a, b, rest, k] = step.links_[j];
+      const double length = (x[b] - x[a]).norm();
+      const Vec3 u = (x[b] - x[a]) / length;
+      const double pull = multiplier[j] + stiffness[j] * (length - rest);
+      const double across = clamped ? std::max(0.0, pull / length) : pull / length;
+      const Eigen::Matrix3d along = u * u.transpose();
+      const Eigen::Matrix3d part =
+          stiffness[j] * along + across * (Eigen::Matrix3d::Identity() - along);
+      for (const std::size_t v : {a, b})
+        if (column[v] >= 0) add(column[v], column[v], part);
+      if (column[a] >= 0 && column[b] >= 0)
+        add(std::max(column[a], column[b]), std::min(column[a], column[b]), -part);
+    }
+    Matrix h(size, size);
+    h.setFromTriplets(entries.begin(), entries.end());
+    return h;
+  }
+  Points moved(Points x, const Vector& p, double share) const {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (column[i] >= 0) x[i] += share * p.segment<3>(column[i]);
+    return x;
+  }
+
+  /// Down to a gradient below `enough` [N] or to rounding.
+  Points minimise(Points x, double enough) const {
+    Eigen::SimplicialLDLT<Matrix> ldlt;
+    for (int k = 0; k < 100; ++k) {
+      const Vector g = gradient(x);
+      if (g.norm() < enough || size == 0) break;
+      ldlt.compute(hessian(x, false));
+      if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0))
+        ldlt.compute(hessian(x, true));
+      const Vector p = ldlt.solve(-g);
+      const double before = energy(x), slope = g.dot(p);
+      double share = 1;
+      Points next = moved(x, p, share);
+      const auto worse = [&] {
+        return !(energy(next) <= before + 1e-4 * share * slope) &&
+               !(energy(next) <= before + 1e-12 * std::abs(before) &&
+                 gradient(next).norm() < g.norm());
+      };
+      while (worse() && share > 1e-12) next = moved(x, p, share /= 2);
+      if (share <= 1e-12) break;
+      x = std::move(next);
+    }
+    return x;
+  }
+};
+
+double ImplicitStep::energy(const Points& x) const { return Multiplied(*this, 0).energy(x); }
+double ImplicitStep::residual(const Points& x) const {
+  return Multiplied(*this, 0).gradient(x).norm();
+}
+
+double ImplicitStep::stretch(const Points& x) const {
+  double sum = 0;
+  for (const auto& [a, b, rest, k] : links_) sum += std::pow((x[b] - x[a]).norm() - rest, 2);
+  return links_.empty() ? 0 : std::sqrt(sum / static_cast<double>(links_.size()));
+}
+
+double ImplicitStep::square_distance(const Points& x, const Points& to) const {
+  double sum = 0, mass = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (inertia_[i] > 0) sum += mass_[i] * (x[i] - to[i]).squaredNorm(), mass += mass_[i];
+  return mass > 0 ? sum / mass : 0;
+}
+
+double ImplicitStep::distance(const Points& x, const Points& to) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sum += (x[i] - to[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(x.size()));
+}
+
+ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
+  Points x = start;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (inertia_[i] == 0) x[i] = y_[i];
+  double heaviest = 0;
+  for (const double m : inertia_) heaviest = std::max(heaviest, m);
+  Multiplied problem(*this, 1e4 * heaviest);
+  Minimum found;
+  double before = 1e300;
+  int stalled = 0;  // rounds that hardly helped
+  for (int round = 0; round < (rigid_ ? 60 : 1) && stalled < 3; ++round) {
+    x = problem.minimise(std::move(x), 1e-10);
+    found.stretch = 0;
+    for (std::size_t j = 0; j < links_.size(); ++j)
+      if (std::isinf(links_[j].stiffness)) {
+        const double c = problem.stretch(x, j);
+        found.stretch = std::max(found.stretch, std::abs(c));
+        problem.multiplier[j] += problem.stiffness[j] * c;
+      }
+    if (found.stretch < 1e-14 || (found.stretch < 1e-12 && found.stretch >= before)) break;
+    stalled = found.stretch > 0.8 * before ? stalled + 1 : 0;
+    before = found.stretch;
+  }
+  // with the multipliers as they were for this x
+  for (std::size_t j = 0; j < links_.size(); ++j)
+    if (std::isinf(links_[j].stiffness))
+      problem.multiplier[j] -= problem.stiffness[j] * problem.stretch(x, j);
+  found.residual = problem.gradient(x).norm();
+  found.x = std::move(x);
+  if (found.stretch > 1e-9)
+    found.problem = "the links cannot all have their length near this state, or lock";
+  else if (!(found.residual < 1e-6))
+    found.problem = "Newton's method did not converge";
+  return found;
+}
+
+}  // namespace taut::reference

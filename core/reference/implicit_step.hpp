@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/model/scene.hpp"
+
+namespace taut::reference {
+
+/// Spring constants [N/m] by family; infinite: rigid links, 0: no link.
+using Stiffness = std::array<double, kFamilies.size()>;
+
+/// One step of implicit Euler from a state, as the minimisation that it is:
+///
+///     y = x_t + h exp(-damping h) v_t + h^2 (g + wind),   G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2
+///     C^2
+///
+/// over the vertices that move, C = |x_b - x_a| - rest. With rigid links: the nearest placement to
+/// y in the norm of G's first sum with C = 0. Contact and self-collision are left out.
+class ImplicitStep {
+ public:
+  /// From `from` at time t [s] to t + scene.dt.
+  ImplicitStep(const Scene&, const State& from, double t, const Stiffness&);
+
+  bool rigid() const { return rigid_; }  ///< some links are
+  const std::vector<Vec3>& prediction() const { return y_; }
+  double energy(const std::vector<Vec3>& x) const;    ///< G [J], of elastic links alone
+  double residual(const std::vector<Vec3>& x) const;  ///< |gradient of G| [N], likewise
+  double stretch(const std::vector<Vec3>& x) const;   ///< root mean square of C [m]
+  double distance(const std::vector<Vec3>& x, const std::vector<Vec3>& to) const;  ///< RMS [m]
+  /// Mean square of the distance, weighted by mass [m^2].
+  double square_distance(const std::vector<Vec3>& x, const std::vector<Vec3>& to) const;
+
+  struct Minimum {
+    std::vector<Vec3> x;  ///< m
+    double residual = 0;  ///< N, of G and of the rigid links' multipliers
+    double stretch = 0;   ///< m, largest |C| of rigid links
+    std::string problem;  ///< why it is none; "": it is one
+  };
+  /// Newton with line search, sparse LDLT; rigid links by an augmented Lagrangian around it. The
+  /// minimum that `start` leads to: where links are compressed there may be others.
+  Minimum minimum(const std::vector<Vec3>& start) const;
+
+ private:
+  struct Multiplied;
+  struct Member {
+    std::size_t a, b;
+    double rest, stiffness;
+  };
+  std::vector<Member> links_;
+  std::vector<double> inertia_;  ///< m/h^2 [kg/s^2]; 0: a pin
+  std::vector<double> mass_;
+  std::vector<Vec3> y_;
+  bool rigid_ = false;
+};
+
+}  // namespace taut::reference

@@ -1,0 +1,171 @@
+#include "experiments/timing/convergence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "core/model/input_error.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// The text without the parameters `left_out`.
+std::string without(const SolverChoice& choice, std::initializer_list<std::string_view> left_out) {
+  std::string text;
+  for (const ParamItem& item : param_items(choice.params.brief()))
+    if (std::ranges::find(left_out, item.key) == left_out.end())
+      text +=
+          (text.empty() ? "" : ",") + item.key + '=' + std::string(choice.params.value(item.key));
+  return with(choice.entry->name, text);
+}
+
+std::vector<int> ladder(int most) {
+  std::vector<int> all;
+  for (int k = 1; k <= most; k *= 2) {
+    all.push_back(k);
+    if (k > 1 && k + k / 2 <= most) all.push_back(k + k / 2);
+  }
+  return all;
+}
+
+struct Stepped {
+  State state;
+  double milliseconds;
+};
+
+Stepped step_once(Solver& solver, const State& from, double at, double dt) {
+  Stepped result{{}, std::numeric_limits<double>::infinity()};
+  for (int sample = 0; sample < 3; ++sample) {
+    solver.load(from);
+    const double before = solver.cpu_seconds();
+    solver.step(at, dt);
+    result.milliseconds = std::min(result.milliseconds, 1e3 * (solver.cpu_seconds() - before));
+  }
+  solver.store(result.state);
+  return result;
+}
+
+/// Of exponential decay through the last third of the points above twice the floor and rounding.
+double contraction(const std::vector<ConvergencePoint>& points, double floor) {
+  std::vector<std::pair<double, double>> falling;  // k, log of the distance
+  for (const ConvergencePoint& p : points)
+    if (p.distance > std::max(2 * floor, 1e-12))
+      falling.emplace_back(p.iterations, std::log(p.distance));
+    else
+      break;
+  const std::size_t last = std::max<std::size_t>(2, falling.size() / 3);
+  if (falling.size() < last + 1) return kNone;
+  double k = 0, y = 0, kk = 0, ky = 0;
+  for (std::size_t i = falling.size() - last; i < falling.size(); ++i)
+    k += falling[i].first, y += falling[i].second, kk += falling[i].first * falling[i].first,
+        ky += falling[i].first * falling[i].second;
+  const auto n = static_cast<double>(last);
+  return std::exp((n * ky - k * y) / (n * kk - k * k));
+}
+
+/// Root mean square of the way between the iterates of two numbers of iterations [m].
+using Way = std::function<double(int, int)>;
+
+/// The distance at the end if the last third of the points is within a tenth of it and the iterates
+/// come to rest: of one that only creeps, the way grows with the iterations that it takes.
+double floor_of(const std::vector<ConvergencePoint>& points, const Way& way) {
+  const double end = points.empty() ? 0 : points.back().distance;
+  if (points.size() < 6 || !(end > 1e-12)) return 0;  // rounding
+  for (std::size_t i = points.size() - points.size() / 3; i < points.size(); ++i)
+    if (!(std::abs(points[i].distance - end) <= 0.1 * end)) return 0;
+  int last = 1;
+  while (2 * last <= points.back().iterations) last *= 2;
+  return way(last / 2, last) <= 1.2 * way(last / 4, last / 2) ? end : 0;
+}
+
+std::vector<std::string> refuse(const Scene& scene, const SolverChoice& choice) {
+  std::vector<std::string> reasons = choice.entry->unsupported(scene, choice.params);
+  if (choice.entry->accuracy.sweeps.empty()) reasons.emplace_back("it has no iterations");
+  return reasons;
+}
+
+}  // namespace
+
+reference::Stiffness stiffness_of(const SolverChoice& choice) {
+  reference::Stiffness all;
+  all.fill(std::numeric_limits<double>::infinity());
+  for (const ParamSpec& spec : choice.params.specs()) {
+    if (spec.name == "links" && choice.params.is("links", "rigid")) return stiffness_of({});
+    for (const Family family : kFamilies)
+      if (spec.name == to_string(family)) {
+        double& k = all[static_cast<std::size_t>(family)];
+        const double value = choice.params.real(spec.name);
+        if (spec.unit == "N/m") k = value;
+        if (spec.unit == "m/N" && value > 0) k = 1 / value;
+      }
+  }
+  return all;
+}
+
+State state_at(const Scene& scene, const SolverChoice& from, double at) {
+  State state = scene.start;
+  const auto steps = static_cast<int>(std::lround(at / scene.dt));
+  if (steps == 0) return state;
+  if (const auto reasons = from.entry->unsupported(scene, from.params); !reasons.empty())
+    throw InputError(from.brief() + ": " + reasons.front());
+  const std::unique_ptr<Solver> solver = from.entry->make(scene, from.params);
+  solver->load(state);
+  for (int n = 0; n < steps; ++n) solver->step(n * scene.dt, scene.dt);
+  solver->store(state);
+  for (const Vec3& x : state.x)
+    if (!x.allFinite()) throw InputError(from.brief() + ": no finite state at that time");
+  return state;
+}
+
+Convergence converge(const Scene& scene, const State& state, double at, const std::string& solver,
+                     int most) {
+  const SolverChoice choice = parse_solver(solver);
+  const std::string_view sweeps = choice.entry->accuracy.sweeps,
+                         substeps = choice.entry->accuracy.substeps;
+  Convergence all;
+  all.solver = without(choice, {sweeps, substeps});
+  all.refused = refuse(scene, choice);
+  if (!all.refused.empty()) return all;
+  all.stiffness = stiffness_of(choice);
+  const reference::ImplicitStep step(scene, state, at, all.stiffness);
+  const auto exact = step.minimum(state.x);
+  all.problem = exact.problem, all.exact_residual = exact.residual;
+  const std::string one = substeps.empty() ? "" : "," + std::string(substeps) + "=1";
+  std::map<int, std::vector<Vec3>> iterates;
+  for (const int k : ladder(most)) {
+    const SolverChoice at_k =
+        parse_solver(with(all.solver, std::string(sweeps) + '=' + std::to_string(k) + one));
+    const Stepped got = step_once(*at_k.entry->make(scene, at_k.params), state, at, scene.dt);
+    const std::vector<Vec3>& x = iterates[k] = got.state.x;
+    ConvergencePoint p{k, kNone, step.stretch(x), kNone, kNone, got.milliseconds};
+    if (!step.rigid()) p.residual = step.residual(x);
+    if (all.problem.empty()) {
+      p.distance = step.distance(x, exact.x);
+      p.gap = step.rigid() ? step.square_distance(x, exact.x) /
+                                 step.square_distance(step.prediction(), exact.x)
+                           : (step.energy(x) - step.energy(exact.x)) /
+                                 (step.energy(step.prediction()) - step.energy(exact.x));
+    }
+    all.points.push_back(p);
+  }
+  const Way way = [&](int k, int l) { return step.distance(iterates.at(k), iterates.at(l)); };
+  all.floor = all.problem.empty() ? floor_of(all.points, way) : 0;
+  all.contraction = all.problem.empty() ? contraction(all.points, all.floor) : kNone;
+  return all;
+}
+
+int reached(const Convergence& all, double gap) {
+  int first = -1;
+  for (int i = static_cast<int>(all.points.size()) - 1; i >= 0; --i) {
+    if (!(all.points[static_cast<std::size_t>(i)].gap <= gap)) break;
+    first = i;
+  }
+  return first;
+}
+
+}  // namespace taut
