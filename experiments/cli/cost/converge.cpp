@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/io/scene_io.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -15,94 +15,105 @@ struct Options {
   std::vector<std::string> solvers, settings;
   double at = 0.5;
   int most = 256;
-  bool json = false;
+  Format format;
 };
 
 constexpr double kGaps[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+constexpr Unit kForce{"N", "N"}, kStiffness{"N/m", "N/m"}, kMilliseconds{"s", "ms", 1e3};
 
-std::string number(double value, const char* format = "%.3g") {
-  if (!std::isfinite(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
+/// What the exact step is, and whether there is one.
+std::string exact_step(const Convergence& c) {
+  const std::string step =
+      std::ranges::any_of(c.stiffness, [](double k) { return std::isinf(k); })
+          ? "the nearest placement that keeps all lengths (augmented Lagrangian)"
+          : "implicit Euler's (Newton)";
+  return c.problem.empty() ? step : "none: " + c.problem;
 }
 
-bool is_rigid(const Convergence& c) {
-  return std::ranges::any_of(c.stiffness, [](double k) { return std::isinf(k); });
+/// A line for each solver that can be asked: what its links are, how its iterations end.
+Table summary(const std::vector<Convergence>& all) {
+  Table table{"solvers",
+              "",
+              {{"solver"},
+               {"structural", "structural", kStiffness},
+               {"shear", "shear", kStiffness},
+               {"bend", "bend", kStiffness},
+               {"contraction", "contraction per iteration", kNumber, 4},
+               {"floor", "floor", kLength},
+               {"exact_residual", "residual of the exact step", kForce},
+               {"exact", "exact step"}}};
+  table.caption =
+      "Stiffness of rigid links is empty. A floor is a distance from the exact step at which the "
+      "iterations end: their fixed point is another one.";
+  for (const Convergence& c : all)
+    if (c.refused.empty())
+      table.rows.push_back({c.solver, c.stiffness[0], c.stiffness[1], c.stiffness[2], c.contraction,
+                            c.floor > 0 ? Cell(c.floor) : Cell(), c.exact_residual, exact_step(c)});
+  return table;
 }
 
-/// What the exact step is, and where the iterations end.
-std::string explained(const Convergence& c) {
-  std::string text = is_rigid(c)
-                         ? "rigid links: the exact step is the nearest placement that keeps all "
-                           "lengths (augmented Lagrangian)"
-                         : "springs of " + number(c.stiffness[0]) + ", " + number(c.stiffness[1]) +
-                               ", " + number(c.stiffness[2]) +
-                               " N/m: the exact step is implicit Euler's (Newton)";
-  if (!c.problem.empty()) return text + "; there is none here: " + c.problem;
-  text += ", to " + number(c.exact_residual) + " N";
-  if (c.floor > 0)
-    text +=
-        "; its iterations end on a floor of their own, " + number(1e3 * c.floor) + " mm from it";
-  return text;
-}
-
-void print_text(const Convergence& c) {
-  std::cout << '\n' << c.solver << '\n';
-  if (!c.refused.empty()) {
-    for (const std::string& reason : c.refused) std::cout << "  unsupported: " << reason << '\n';
-    return;
+/// Iterations until the gap stays at or below each of kGaps, and the CPU time of a step of so many.
+Table iterations_to_gaps(const std::vector<Convergence>& all) {
+  Table table{"reached", "iterations to a gap, and their CPU time", {{"solver"}}};
+  for (const double gap : kGaps) {
+    const std::string text = number_text(gap);
+    table.columns.push_back({"iterations_" + text, "to " + text});
+    table.columns.push_back({"cpu_" + text, "CPU time", kMilliseconds});
   }
-  std::cout << "  " << explained(c) << "\n\n";
-  std::vector<Row> rows{
-      {"iterations", "residual [N]", "RMS of C [mm]", "gap", "distance [mm]", "CPU time [ms]"}};
-  for (const ConvergencePoint& p : c.points)
-    rows.push_back({std::to_string(p.iterations), number(p.residual), number(1e3 * p.stretch),
-                    number(p.gap), number(1e3 * p.distance), number(p.milliseconds)});
-  print_columns(rows, 1);
-  std::cout << "\n  contraction per iteration: " << number(c.contraction, "%.4f") << '\n';
-}
-
-void print_summary(const std::vector<Convergence>& all) {
-  Row head{"iterations (CPU time [ms]) to a gap of"};
-  for (const double gap : kGaps) head.push_back(number(gap));
-  std::vector<Row> rows{head};
   for (const Convergence& c : all) {
     if (!c.refused.empty() || !c.problem.empty()) continue;
-    Row row{c.solver};
+    std::vector<Cell>& row = table.rows.emplace_back();
+    row.emplace_back(c.solver);
     for (const double gap : kGaps) {
       const int i = reached(c, gap);
-      const auto at = static_cast<std::size_t>(std::max(i, 0));
-      row.push_back(i < 0 ? "-"
-                          : std::to_string(c.points[at].iterations) + " (" +
-                                number(c.points[at].milliseconds) + ")");
+      if (i < 0) {
+        row.resize(row.size() + 2);
+        continue;
+      }
+      const ConvergencePoint& p = c.points[static_cast<std::size_t>(i)];
+      row.emplace_back(p.iterations), row.emplace_back(p.milliseconds / 1e3);
     }
-    rows.push_back(std::move(row));
   }
-  if (rows.size() == 1) return;
-  std::cout << '\n';
-  print_columns(rows, 1);
+  return table;
 }
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+Table points(const std::vector<Convergence>& all) {
+  Table table{"points",
+              "",
+              {{"solver"},
+               {"iterations"},
+               {"residual", "residual", kForce},
+               {"stretch", "RMS of C", kLength},
+               {"gap"},
+               {"distance", "distance from the exact step", kLength},
+               {"cpu", "CPU time", kMilliseconds}}};
+  table.caption =
+      "gap: (G - G*)/(G_0 - G*) of springs; of rigid links the square of the distance over that of "
+      "the prediction, weighted by mass.";
+  for (const Convergence& c : all)
+    for (const ConvergencePoint& p : c.points)
+      table.rows.push_back(
+          {c.solver, p.iterations, p.residual, p.stretch, p.gap, p.distance, p.milliseconds / 1e3});
+  return table;
+}
 
-Json to_json(const Convergence& c) {
-  Json j{{"solver", c.solver}, {"unsupported", c.refused}};
-  if (!c.refused.empty()) return j;
-  for (const double k : c.stiffness) j["stiffness"].push_back(finite(k));
-  j["rigid"] = is_rigid(c);
-  j["no_exact_step"] = c.problem;
-  j["exact_residual"] = finite(c.exact_residual);
-  j["contraction"] = finite(c.contraction);
-  j["floor"] = c.floor;
-  for (const ConvergencePoint& p : c.points)
-    j["points"].push_back({{"iterations", p.iterations},
-                           {"residual", finite(p.residual)},
-                           {"stretch_rms", finite(p.stretch)},
-                           {"gap", finite(p.gap)},
-                           {"distance_rms", finite(p.distance)},
-                           {"cpu_ms", p.milliseconds}});
-  return j;
+Answer answer_of(const Scene& scene, const Options& options, double at,
+                 const std::vector<Convergence>& all) {
+  Answer answer{"converge", "one step of " + scene.name};
+  answer.add({"at", "from its state at", kTime}, at);
+  answer.add({"from", "of a run of"},
+             Cell(options.from)
+                 .with("multipliers and velocities of earlier steps are unknown to "
+                       "all"));
+  answer.add({"dt", "time step", kMilliseconds}, scene.dt);
+  answer.add(points(all));
+  answer.add(summary(all));
+  answer.add(iterations_to_gaps(all));
+  Table unsupported{"unsupported", "unsupported", {{"solver"}, {"why"}}};
+  for (const Convergence& c : all)
+    for (const std::string& reason : c.refused) unsupported.rows.push_back({c.solver, reason});
+  answer.add(std::move(unsupported));
+  return answer;
 }
 
 /// Bullet in float and in double are two programs, and all solvers start from one state in one.
@@ -131,25 +142,7 @@ int run(const Options& options) {
   std::vector<Convergence> all;
   for (const std::string& solver : options.solvers)
     all.push_back(converge(scene, state, at, solver, options.most));
-  if (options.json) {
-    Json solvers = Json::array();
-    for (const Convergence& c : all) solvers.push_back(to_json(c));
-    print_json(Json{{"scene", scene.name},
-                    {"at", at},
-                    {"dt", scene.dt},
-                    {"from", options.from},
-                    {"solvers", solvers}},
-               2);
-  } else {
-    std::cout << "One step of " << scene.name << " (" << number(scene.dt) << " s) at " << number(at)
-              << " s of " << options.from
-              << ", 1, 2, ... iterations of each, anew from that state:\n"
-              << "multipliers and velocities of earlier steps are unknown to all.\n"
-              << "gap: (G - G*)/(G_0 - G*) of springs; of rigid links the square of the distance "
-                 "over that\nof the prediction, weighted by mass.\n";
-    for (const Convergence& c : all) print_text(c);
-    print_summary(all);
-  }
+  print(answer_of(scene, options, at, all), options.format);
   return std::ranges::any_of(all, [](const Convergence& c) { return c.refused.empty(); })
              ? kPass
              : kNothing;
@@ -165,7 +158,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--from", o.from, "Solver whose run gives the state");
   app.add_option("--most", o.most, "Iterations, at most")->check(CLI::Range(1, 1 << 20));
   add_settings(app, o.settings);
-  add_json(app, o.json, "All points");
+  add_format(app, o.format);
 }
 
 }  // namespace
