@@ -77,8 +77,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
         params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))}});
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {
-    {"precision", "float|double"}, {"order", "coloured|mesh"}, {"tethers", "on"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
   for (const double compliance : compliances(scene, params))
@@ -102,7 +101,7 @@ TAUT_SOLVER(xpbd) = {.name = "xpbd",
                      .accuracy = {.substeps = "substeps",
                                   .sweeps = "iterations",
                                   .alternatives = taut::solver::xpbd::kAlternatives,
-                                  .labelled = "substeps|iterations|order|tethers|precision",
+                                  .labelled = "substeps|iterations|precision",
                                   .accelerators = "tethers|threads"},
                      .optional_effects = taut::loop::kOptionalEffects,
                      .linear_model = taut::solver::xpbd::linear_model};
