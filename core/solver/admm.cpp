@@ -22,6 +22,7 @@ constexpr ParamSpec kOwn[] = {
     kStiffness[0],
     kStiffness[1],
     kStiffness[2],
+    kMaterial,
     ParamSpec::real("penalty", "N/m", "100", 1e-6, 1e12,
                     "k, the weight of rigid links; of springs it is their stiffness times "
                     "penalty-ratio"),
@@ -30,10 +31,14 @@ constexpr ParamSpec kOwn[] = {
 };
 constexpr auto kParams = loop::with_common(kOwn);
 
+bool is_rigid(const Scene& scene, const Params& params) {
+  return params.is("links", "rigid") && !takes_stiffness(scene, params);
+}
+
 class AdmmPass final : public Pass<double> {
  public:
   explicit AdmmPass(const loop::Setup& s)
-      : rigid_(s.params.is("links", "rigid")),
+      : rigid_(is_rigid(s.scene, s.params)),
         keep_(s.params.is("multipliers", "keep")),
         ratio_(s.params.real("penalty-ratio")),
         system_(weights(s), s.w, s.scene.dt / s.params.integer("substeps")),
@@ -67,11 +72,11 @@ class AdmmPass final : public Pass<double> {
 
  private:
   static std::vector<Spring> weights(const loop::Setup& s) {
-    if (s.params.is("links", "rigid")) {
+    if (is_rigid(s.scene, s.params)) {
       const double k = s.params.real("penalty");
       return make_springs(s.scene, s.w, {k, k, k});
     }
-    std::vector<Spring> springs = make_springs(s.scene, s.w, stiffnesses(s.params));
+    std::vector<Spring> springs = make_springs(s.scene, s.w, stiffnesses(s.scene, s.params));
     for (Spring& spring : springs) spring.stiffness *= s.params.real("penalty-ratio");
     return springs;
   }
@@ -93,7 +98,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   ResolvedSettings own{
-      {"links", params.is("links", "rigid") ? "rigid" : describe_springs(params)},
+      {"links", is_rigid(scene, params) ? "rigid" : describe_springs(scene, params)},
       {"links solved",
        "all at once by a sparse LLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};

@@ -116,6 +116,12 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return loop::make<double>(scene, params, links);
 }
 
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
+  std::vector<std::string> reasons = loop::unsupported(scene, params);
+  for (std::string& reason : elastic_links(scene)) reasons.push_back(std::move(reason));
+  return reasons;
+}
+
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params,
                                  {{"links", "rigid"},
@@ -135,7 +141,7 @@ TAUT_SOLVER(avbd) = {.name = "avbd",
                      .source = "Giles, Diaz, Yuksel 2025",
                      .params = taut::solver::avbd::kParams,
                      .make = taut::solver::avbd::make,
-                     .unsupported = taut::loop::unsupported,
+                     .unsupported = taut::solver::avbd::unsupported,
                      .resolved_settings = taut::solver::avbd::resolved_settings,
                      .accuracy = {.substeps = "substeps",
                                   .sweeps = "iterations",

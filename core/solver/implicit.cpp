@@ -40,6 +40,7 @@ constexpr ParamSpec kOwn[] = {
     kStiffness[0],
     kStiffness[1],
     kStiffness[2],
+    kMaterial,
     ParamSpec::choice("line-search", "on", "on|off",
                       "halve steps until the energy falls; iterations=1,line-search=off is Baraff "
                       "and Witkin's step"),
@@ -207,7 +208,7 @@ class Hessian {
 class NewtonPass final : public Pass<double> {
  public:
   explicit NewtonPass(const loop::Setup& s)
-      : springs_(make_springs(s.scene, s.w, stiffnesses(s.params))),
+      : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
         line_search_(s.params.is("line-search", "on")),
         hessian_(springs_, s.w,
                  factors(s.params, to_index(static_cast<int>(std::ranges::count_if(
@@ -338,7 +339,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const std::size_t moving = to_index(scene.mesh.size()) - scene.pins.size();
   ResolvedSettings own{
-      {"links", describe_springs(params)},
+      {"links", describe_springs(scene, params)},
       {"links solved", std::string("implicit Euler by Newton's method, ") +
                            (factors(params, moving) ? "sparse LDLT, analysed once as set-up"
                                                     : "conjugate gradients")},

@@ -13,6 +13,7 @@
 #include "core/model/text.hpp"
 #include "core/solver/layout/order.hpp"
 #include "core/solver/loop.hpp"
+#include "core/solver/springs.hpp"
 
 namespace taut::solver::mass_spring {
 
@@ -33,15 +34,6 @@ constexpr auto kParams = loop::with_common(
      loop::substeps("32", "each step is this many steps of dt / substeps"), loop::kPrecision,
      kMaterial});
 
-/// N/m, by family; 0: no spring.
-std::array<double, kFamilies.size()> stiffness(const Scene& scene, const Params& params) {
-  std::array<double, kFamilies.size()> all = scene.stiffness;
-  for (const Family family : kFamilies)
-    if (!takes_stiffness(scene, params))
-      all[static_cast<std::size_t>(family)] = params.real(to_string(family));
-  return all;
-}
-
 template <class Real>
 class Springs final : public Pass<Real> {
  public:
@@ -53,7 +45,7 @@ class Springs final : public Pass<Real> {
         explicit_(setup.params.is("integrator", "explicit-euler")),
         damping_(setup.scene.damping),
         moved_(central_ || explicit_ ? setup.w.size() : 0) {
-    const auto k = stiffness(setup.scene, setup.params);
+    const auto k = stiffnesses(setup.scene, setup.params);
     for (const Link& l : setup.scene.links)
       if (const double of_link = k[static_cast<std::size_t>(l.family)]; of_link > 0)
         if (moves(l, setup.w)) springs_.push_back({l, static_cast<Real>(of_link)});
@@ -139,20 +131,15 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
-  const auto k = stiffness(scene, params);
-  const std::string springs = join(kFamilies, ", ", [&](Family family) {
-    return std::string(to_string(family)) + " " + shortest(k[static_cast<std::size_t>(family)]) +
-           " N/m";
-  });
   return loop::resolved_settings(scene, params,
-                                 {{"links", "Hooke springs: " + springs},
+                                 {{"links", describe_springs(scene, params)},
                                   {"work unit", "spring evaluations, not projections"}});
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
-  return LinearSprings{.stiffness = stiffness(scene, params),
+  return LinearSprings{.stiffness = stiffnesses(scene, params),
                        .drag = params.real("drag"),
                        .central_drag = params.is("drag-at", "central"),
                        .explicit_euler = params.is("integrator", "explicit-euler"),

@@ -25,6 +25,7 @@ constexpr ParamSpec kOwn[] = {
     kStiffness[0],
     kStiffness[1],
     kStiffness[2],
+    kMaterial,
     kChebyshev,
     ParamSpec::integer("anderson", "0", 0, 20,
                        "earlier iterations that Anderson acceleration combines; 0: none"),
@@ -76,7 +77,7 @@ class Anderson {
 class ProjectivePass final : public Pass<double> {
  public:
   explicit ProjectivePass(const loop::Setup& s)
-      : system_(make_springs(s.scene, s.w, stiffnesses(s.params)), s.w,
+      : system_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params)), s.w,
                 s.scene.dt / s.params.integer("substeps")),
         wanted_(system_.springs().size()),
         chebyshev_(s.params.real("chebyshev")),
@@ -163,7 +164,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   ResolvedSettings own{
-      {"links", describe_springs(params)},
+      {"links", describe_springs(scene, params)},
       {"links solved",
        "all at once by a sparse LLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};

@@ -27,7 +27,9 @@ inline constexpr std::array kStiffness{
                     "spring constant of shear links; 0: no spring"),
     ParamSpec::real("bend", "N/m", "100", 0, 1e12, "spring constant of bend links; 0: no spring")};
 
-inline std::array<double, kFamilies.size()> stiffnesses(const Params& params) {
+/// Spring constants [N/m] by family: the scene's, or the solver's parameters.
+inline std::array<double, kFamilies.size()> stiffnesses(const Scene& scene, const Params& params) {
+  if (takes_stiffness(scene, params)) return scene.stiffness;
   std::array<double, kFamilies.size()> all{};
   for (const Family family : kFamilies)
     all[static_cast<std::size_t>(family)] = params.real(to_string(family));
@@ -46,10 +48,11 @@ inline std::vector<Spring> make_springs(const Scene& scene, std::span<const doub
 }
 
 /// For the resolved settings.
-inline std::string describe_springs(const Params& params) {
+inline std::string describe_springs(const Scene& scene, const Params& params) {
+  const auto k = stiffnesses(scene, params);
   return "Hooke springs: " + join(kFamilies, ", ", [&](Family family) {
-           const std::string name(to_string(family));
-           return name + " " + std::string(params.value(name)) + " N/m";
+           return std::string(to_string(family)) + " " +
+                  shortest(k[static_cast<std::size_t>(family)]) + " N/m";
          });
 }
 

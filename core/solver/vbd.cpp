@@ -20,6 +20,7 @@ constexpr ParamSpec kOwn[] = {
     kStiffness[0],
     kStiffness[1],
     kStiffness[2],
+    kMaterial,
     kVertexOrder,
     kAdaptiveStart,
     ParamSpec::real("damping", "s", "0", 0, 1e3, "k_d, of the springs' Hessian"),
@@ -30,7 +31,7 @@ constexpr auto kParams = loop::with_common(kOwn);
 class DescentPass final : public Pass<double> {
  public:
   explicit DescentPass(const loop::Setup& s)
-      : springs_(make_springs(s.scene, s.w, stiffnesses(s.params))),
+      : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
         blocks_(springs_, s.w, s.params.is("order", "coloured"), s.pool),
         start_(s.scene, s.params.is("start", "adaptive")),
         chebyshev_(s.params.real("chebyshev")),
@@ -95,7 +96,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params,
-                                 {{"links", describe_springs(params)},
+                                 {{"links", describe_springs(scene, params)},
                                   {"vertex order", std::string(params.choice("order"))},
                                   {"work unit", "vertices, not projections"}});
 }

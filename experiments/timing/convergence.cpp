@@ -91,11 +91,14 @@ std::vector<std::string> refuse(const Scene& scene, const SolverChoice& choice) 
 
 }  // namespace
 
-reference::Stiffness stiffness_of(const SolverChoice& choice) {
+reference::Stiffness stiffness_of(const Scene& scene, const SolverChoice& choice) {
   reference::Stiffness all;
   all.fill(std::numeric_limits<double>::infinity());
+  const bool has_material = std::ranges::find(choice.params.specs(), kMaterial.name,
+                                              &ParamSpec::name) != choice.params.specs().end();
+  if (has_material && takes_stiffness(scene, choice.params)) return scene.stiffness;
   for (const ParamSpec& spec : choice.params.specs()) {
-    if (spec.name == "links" && choice.params.is("links", "rigid")) return stiffness_of({});
+    if (spec.name == "links" && choice.params.is("links", "rigid")) return all;
     for (const Family family : kFamilies)
       if (spec.name == to_string(family)) {
         double& k = all[static_cast<std::size_t>(family)];
@@ -131,7 +134,7 @@ Convergence converge(const Scene& scene, const State& state, double at, const st
   all.solver = without(choice, {sweeps, substeps});
   all.refused = refuse(scene, choice);
   if (!all.refused.empty()) return all;
-  all.stiffness = stiffness_of(choice);
+  all.stiffness = stiffness_of(scene, choice);
   const reference::ImplicitStep step(scene, state, at, all.stiffness);
   const auto exact = step.minimum(state.x);
   all.problem = exact.problem, all.exact_residual = exact.residual;

@@ -40,8 +40,9 @@ State state_at(const Scene&, const SolverChoice& from, double at);
 Convergence converge(const Scene&, const State& state, double at, const std::string& solver,
                      int most);
 
-/// The spring constants that the solver's own parameters give; infinite: rigid.
-reference::Stiffness stiffness_of(const SolverChoice&);
+/// The spring constants of the solver's links [N/m], the scene's or its own parameters'; infinite:
+/// rigid.
+reference::Stiffness stiffness_of(const Scene&, const SolverChoice&);
 
 /// Index of the first point from which on the gap stays at most `gap`; -1: it does not get there.
 int reached(const Convergence&, double gap);

@@ -10,7 +10,7 @@
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::global_test {
 namespace {
 
 constexpr std::array kSoft{800.0, 300.0, 50.0};
@@ -207,4 +207,4 @@ TEST(GlobalSolvers, KeepTheFallOfTheCentreOfMassAndVbdOnlyIfItHasConverged) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::global_test

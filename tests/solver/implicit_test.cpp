@@ -6,7 +6,7 @@
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::implicit_test {
 namespace {
 
 constexpr std::array kSoft{800.0, 300.0, 50.0};
@@ -62,4 +62,4 @@ TEST(Implicit, StrainOfAHungSheetIsInverseToItsStiffness) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::implicit_test

@@ -7,7 +7,7 @@
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
 
-namespace taut {
+namespace taut::vertex_test {
 namespace {
 
 constexpr std::array kSoft{800.0, 300.0, 50.0};
@@ -158,4 +158,4 @@ TEST(VertexBlocks, AnyNumberOfThreadsComputesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace taut
+}  // namespace taut::vertex_test
