@@ -57,6 +57,22 @@ CREATE TABLE conflicts (
   found TEXT NOT NULL,
   record TEXT NOT NULL,
   PRIMARY KEY (key, result_digest)) WITHOUT ROWID;
+
+CREATE VIEW results AS
+SELECT scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
+  parameters ->> '$.substeps' + 0 AS substeps, parameters ->> '$.iterations' + 0 AS iterations,
+  metrics.name AS metric, numbers.value, metrics.unit, status, key, parameters, settings
+FROM metrics CROSS JOIN cases LEFT JOIN numbers USING (case_id, metric_id);
+
+CREATE VIEW curves AS
+SELECT scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
+  parameters ->> '$.substeps' + 0 AS substeps, parameters ->> '$.iterations' + 0 AS iterations,
+  CAST(json_extract(columns, '$.step[' || point.key || ']') AS INTEGER) AS step,
+  json_extract(columns, '$.t[' || point.key || ']') AS t, line.key AS metric,
+  point.value, metrics.unit, status, cases.key
+FROM series JOIN cases USING (case_id), json_each(series.columns) AS line,
+  json_each(line.value) AS point LEFT JOIN metrics ON metrics.name = line.key
+WHERE line.key NOT IN ('step', 't');
 )SQL";
 
 }  // namespace taut

@@ -46,7 +46,7 @@ TEST(Findings, HaveTheirCaseTheirValueAndWhatItWas) {
       {Kind::value_new, "ball bullet", "bullet", "", "", "new has no baseline; now 2"},
       {Kind::status_changed, "hang jakobsen", "jakobsen", "hang", "status", "status ok -> timeout"},
       {Kind::value_moved, "hang jakobsen", "jakobsen", "hang", "stretch.max",
-       "stretch.max 0.5 -> 0.5000001 (by 1e-07, allowed 5e-10)", 0.5, 0.5000001}};
+       "stretch.max 0.5 -> 0.5000001 (by 1e-7, allowed 5e-10)", 0.5, 0.5000001}};
   ASSERT_EQ(found.findings.size(), std::size(all));
   for (std::size_t i = 0; i < std::size(all); ++i) {
     const Change& is = found.findings[i];

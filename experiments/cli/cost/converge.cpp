@@ -54,26 +54,15 @@ Table summary(const std::vector<Convergence>& all) {
 
 /// Iterations until the gap stays at or below each of kGaps, and the CPU time of a step of so many.
 Table iterations_to_gaps(const std::vector<Convergence>& all) {
-  Table table{"reached", "iterations to a gap, and their CPU time", {{"solver"}}};
-  for (const double gap : kGaps) {
-    const std::string text = number_text(gap);
-    table.columns.push_back({"iterations_" + text, "to " + text});
-    table.columns.push_back({"cpu_" + text, "CPU time", kMilliseconds});
-  }
-  for (const Convergence& c : all) {
-    if (!c.refused.empty() || !c.problem.empty()) continue;
-    std::vector<Cell>& row = table.rows.emplace_back();
-    row.emplace_back(c.solver);
-    for (const double gap : kGaps) {
-      const int i = reached(c, gap);
-      if (i < 0) {
-        row.resize(row.size() + 2);
-        continue;
+  Table table{"reached",
+              "iterations until the gap stays below a value",
+              {{"solver"}, {"below"}, {"iterations"}, {"cpu", "CPU time", kMilliseconds}}};
+  for (const Convergence& c : all)
+    for (const double gap : kGaps)
+      if (const int i = reached(c, gap); c.refused.empty() && c.problem.empty() && i >= 0) {
+        const ConvergencePoint& p = c.points[static_cast<std::size_t>(i)];
+        table.rows.push_back({c.solver, gap, p.iterations, p.milliseconds / 1e3});
       }
-      const ConvergencePoint& p = c.points[static_cast<std::size_t>(i)];
-      row.emplace_back(p.iterations), row.emplace_back(p.milliseconds / 1e3);
-    }
-  }
   return table;
 }
 

@@ -166,13 +166,13 @@ TEST(FrontierSettings, GoThisFar) {
     return text;
   };
   const std::string scene =
-      "mass ratio []: 1 to 1e+09\n"
+      "mass ratio []: 1 to 1e9\n"
       "resolution [vertices a side]: 9 to 97, whole\n"
-      "speed of a collider [m/s]: 0.1 to 1e+03\n"
-      "size, up [m]: 1 to 1e+05\n"
-      "size, down [m]: 1 to 1e-05\n"
-      "distance from the origin [m]: 1 to 1e+05\n"
-      "wind [N s/m^3]: 0.01 to 1e+05\n";
+      "speed of a collider [m/s]: 0.1 to 1000\n"
+      "size, up [m]: 1 to 100000\n"
+      "size, down [m]: 1 to 1e-5\n"
+      "distance from the origin [m]: 1 to 100000\n"
+      "wind [N s/m^3]: 0.01 to 100000\n";
   EXPECT_EQ(all("jakobsen"),
             "time step [s]: 0.00417 to 1\nsweeps []: 64 to 1, whole\n"
             "stiffness [omega]: 1 to 2\n" +
@@ -187,7 +187,7 @@ TEST(FrontierSettings, GoThisFar) {
                 scene);
   EXPECT_EQ(all("mass-spring"),
             "time step [s]: 0.00417 to 1\nsweeps []: it has none\n"
-            "stiffness [N/m]: 50 to 1e+08\n" +
+            "stiffness [N/m]: 50 to 1e8\n" +
                 scene);
 }
 

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""The results file for people: its document and the schema agree, README's query answers, and means take no zeros."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+
+import stored
+from command_line import CommandLine, main
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOCUMENT = (ROOT / "experiments/study/RESULTS.md").read_text()
+
+
+class ResultsFile(CommandLine):
+    def query(self, sql, *values, folder="results/runs"):
+        return [tuple(row) for row in stored.query(self.folder / folder, sql, *values)]
+
+    def columns(self, name):
+        return [name for name, in self.query("SELECT name FROM pragma_table_info(?)", name)]
+
+    def test_the_document_is_the_schema(self):
+        self.taut("run", self.study())
+        views = {name: re.findall(r"^\| (\w+) \|[^|]*\|", text, re.MULTILINE)[1:]
+                 for name, text in re.findall(r"^## (\w+)\n(.*?)(?=^## )", DOCUMENT, re.MULTILINE | re.DOTALL)}
+        self.assertEqual(sorted(views), sorted(name for name, in self.query("SELECT name FROM sqlite_master WHERE type = 'view'")))
+        for view, columns in views.items():
+            self.assertEqual(columns, self.columns(view), view)
+        tables = dict(re.findall(r"^\| (\w+) \| [^|]* \| ([\w, ]+) \|$", DOCUMENT[DOCUMENT.index("## Tables"):], re.MULTILINE))
+        tables.pop("table")
+        self.assertEqual(sorted(tables), sorted(name for name, in self.query("SELECT name FROM sqlite_master WHERE type = 'table'")))
+        for table, columns in tables.items():
+            self.assertEqual(columns.split(", "), self.columns(table), table)
+
+    def test_the_line_of_the_readme_answers_its_first_question(self):
+        line, = re.findall(r'^sqlite3 .*$', (ROOT / "README.md").read_text(), re.MULTILINE)
+        self.assertIn(line, DOCUMENT)
+        if not shutil.which("sqlite3"):
+            self.skipTest("sqlite3 is not installed")
+        study = self.study(scenes=["hang"], solvers=["jakobsen", "xpbd"], rest='set = ["cloth.grid=[4, 4]", "time.duration=0.25"]\n'
+                           "axes.iterations = [1, 4]\n")
+        self.taut("run", study)
+        said = subprocess.run(line, shell=True, cwd=self.folder, capture_output=True, text=True, check=True).stdout.splitlines()
+        self.assertEqual(said[0], "solver|iterations|value")
+        values = {(r["solver"], r["params"]["iterations"]): r["values"]["stretch.rms"] for r in self.records()}
+        found = {tuple(row.split("|")[:2]): float(row.split("|")[2]) for row in said[1:]}
+        self.assertEqual(found.keys(), values.keys())
+        for which, value in values.items():
+            self.assertAlmostEqual(found[which], value, delta=1e-14 * abs(value))
+
+    def test_what_a_case_has_not_is_null_and_its_status_says_why(self):
+        study = self.study(solvers=["faulty:mode=stable", "faulty:mode=crash", "faulty:mode=refuse"])
+        self.taut("run", study, program="taut-faulty")
+        rows = self.query("SELECT setting, value, unit, status FROM results WHERE metric = 'stretch.rms'")
+        self.assertEqual(sorted((value is None, unit, status) for _, value, unit, status in rows),
+                         [(False, "1", "ok"), (True, "1", "crash"), (True, "1", "unsupported")])
+        mean, = self.query("SELECT avg(value) FROM results WHERE metric = 'stretch.rms'")
+        alone, = self.query("SELECT value FROM results WHERE metric = 'stretch.rms' AND status = 'ok'")
+        self.assertEqual(mean, alone, "nobody averages zeros")
+
+    def test_values_keep_their_bits_and_curves_their_rows(self):
+        self.taut("run", self.study(rest="axes.iterations = [1, 2]\n"))
+        for record in self.records():
+            rows = dict(self.query("SELECT metric, value FROM results WHERE key = ?", record["key"]))
+            self.assertEqual(rows, record["values"])
+            last, = self.query("SELECT step, t, value FROM curves WHERE key = ? AND metric = 'stretch.max' ORDER BY t DESC LIMIT 1", record["key"])
+            self.assertEqual(last[:2], (32, 0.5))
+            count, = self.query("SELECT count(*) FROM curves WHERE key = ? AND metric = 'stretch.max'", record["key"])
+            self.assertEqual(count, (33,))
+
+
+if __name__ == "__main__":
+    main()
