@@ -12,7 +12,7 @@ namespace taut {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// The text without the parameters `left_out`.
 std::string without(const SolverChoice& choice, std::initializer_list<std::string_view> left_out) {
@@ -59,7 +59,7 @@ double contraction(const std::vector<ConvergencePoint>& points, double floor) {
     else
       break;
   const std::size_t last = std::max<std::size_t>(2, falling.size() / 3);
-  if (falling.size() < last + 1) return kNone;
+  if (falling.size() < last + 1) return kUnknown;
   double k = 0, y = 0, kk = 0, ky = 0;
   for (std::size_t i = falling.size() - last; i < falling.size(); ++i)
     k += falling[i].first, y += falling[i].second, kk += falling[i].first * falling[i].first,
@@ -145,7 +145,7 @@ Convergence converge(const Scene& scene, const State& state, double at, const st
         parse_solver(with(all.solver, std::string(sweeps) + '=' + std::to_string(k) + one));
     const Stepped got = step_once(*at_k.entry->make(scene, at_k.params), state, at, scene.dt);
     const std::vector<Vec3>& x = iterates[k] = got.state.x;
-    ConvergencePoint p{k, kNone, step.stretch(x), kNone, kNone, got.milliseconds};
+    ConvergencePoint p{k, kUnknown, step.stretch(x), kUnknown, kUnknown, got.milliseconds};
     if (!step.rigid()) p.residual = step.residual(x);
     if (all.problem.empty()) {
       p.distance = step.distance(x, exact.x);
@@ -158,7 +158,7 @@ Convergence converge(const Scene& scene, const State& state, double at, const st
   }
   const Way way = [&](int k, int l) { return step.distance(iterates.at(k), iterates.at(l)); };
   all.floor = all.problem.empty() ? floor_of(all.points, way) : 0;
-  all.contraction = all.problem.empty() ? contraction(all.points, all.floor) : kNone;
+  all.contraction = all.problem.empty() ? contraction(all.points, all.floor) : kUnknown;
   return all;
 }
 

@@ -167,7 +167,9 @@ void expect_people_see(const Answer& answer, bool details) {
     if (column.detail && !details) continue;
     EXPECT_NE(terminal.find("  " + line + "\n"), std::string::npos) << line << "\n" << terminal;
   }
-  if (!details) EXPECT_EQ((terminal + document).find("detail of"), std::string::npos);
+  if (!details) {
+    EXPECT_EQ((terminal + document).find("detail of"), std::string::npos);
+  }
   const std::vector<Rows> written = markdown_tables(document);
   auto at = written.begin();
   for (const Table& table : answer.tables) {

@@ -256,7 +256,7 @@ TEST(Lights, OpenGroundIsBrightAndWhatLiesBelowACanopyIsDark) {
   };
   /// Where a point of the world stands in the picture, of brightness 0 to 1.
   const auto at = [&](const Image& picture, const Vec3f& p) {
-    const Eigen::Vector4f clip = panel.camera.world_to_clip(1) * p.homogeneous();
+    const Eigen::Vector4d clip = (panel.camera.world_to_clip(1) * p.homogeneous()).cast<double>();
     return brightness(picture, 0.5 + 0.5 * clip.x() / clip.w(), 0.5 - 0.5 * clip.y() / clip.w());
   };
   const Vec3f far(1.7f, 0, 0), below(0, 0, 0.3f);

@@ -341,8 +341,8 @@ TEST(SameBits, OfCompliantLinksForEveryInstructionSetLayoutAndNumberOfThreads) {
   for (const Scene& scene : all)
     for (const char* precision : {"float", "double"})
       for (const char* more : {"", ",layout=batches", ",multipliers=reset"}) {
-        const std::string method = std::string("xpbd:structural=1e-4,bend=0.01,substeps=2,") +
-                                   "iterations=3,precision=" + precision + more;
+        std::string method = "xpbd:structural=1e-4,bend=0.01,substeps=2,iterations=3,precision=";
+        method += precision, method += more;
         const State want = simulate(scene, method + ",simd=scalar", 4);
         for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
           if (available(simd)) {
