@@ -81,22 +81,8 @@ void replace_file(const fs::path& path, std::string_view bytes, bool durable) {
     unlink(beside.c_str());
     throw;
   }
-  if (durable) sync_folder(target.has_parent_path() ? target.parent_path() : ".");
-}
-
-/// Writes a file into `staging` and has `place` give it its name; false: there is one of that name.
-template <class Place>
-bool place_durably(const fs::path& path, std::string_view bytes, const fs::path& staging,
-                   const Place& place) {
-  const fs::path staged = staging / (path.filename().string() + "." + unique_suffix());
-  write_durably(staged, bytes);
-  const bool placed = place(staged.c_str(), path.c_str());
-  const int why = errno;
-  unlink(staged.c_str());
-  errno = why;
-  if (!placed && why != EEXIST) fail(path, "create");
-  if (placed) sync_folder(path.parent_path());
-  return placed;
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  if (durable) File(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC).sync();
 }
 
 /// What processes left that were killed: a lock on a folder goes with its process.
@@ -152,19 +138,6 @@ void write_durably(const fs::path& path, std::string_view bytes) {
   replace_file(path, bytes, true);
 }
 
-bool create_durably(const fs::path& path, std::string_view bytes, const fs::path& staging) {
-  return place_durably(path, bytes, staging, [](const char* from, const char* to) {
-    return link(from, to) == 0 ||
-           (errno != EEXIST && renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) ||
-           (errno != EEXIST && std::rename(from, to) == 0);
-  });
-}
-
-void replace_durably(const fs::path& path, std::string_view bytes, const fs::path& staging) {
-  place_durably(path, bytes, staging,
-                [](const char* from, const char* to) { return std::rename(from, to) == 0; });
-}
-
 void test_writable(const fs::path& path) {
   if (fs::is_directory(path)) throw InputError(path.string() + " is a folder; name a file in it");
   if (path.has_parent_path()) make_folder(path.parent_path());
@@ -176,14 +149,6 @@ void test_writable(const fs::path& path) {
 void append_line(const fs::path& path, std::string_view line) {
   File(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC).write_all(std::string(line) + '\n');
 }
-
-void append_durably(const fs::path& path, std::string_view bytes) {
-  File file(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC);
-  file.write_all(bytes);
-  file.sync();
-}
-
-void sync_folder(const fs::path& path) { File(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC).sync(); }
 
 void make_folder(const fs::path& path) {
   std::error_code error;

@@ -17,28 +17,12 @@ void write_file(const std::filesystem::path&, std::string_view bytes);
 /// The same; returns when it is on the disk, its name included.
 void write_durably(const std::filesystem::path&, std::string_view bytes);
 
-/// A new file, as write_durably() would; false: there is one of that name. It is written into
-/// `staging`, a folder of the same file system, first. Where that has neither links nor renames
-/// that refuse to replace, the last of two that come at once stays.
-bool create_durably(const std::filesystem::path&, std::string_view bytes,
-                    const std::filesystem::path& staging);
-
-/// The same, in place of the file of that name if there is one. Throws as write_durably.
-void replace_durably(const std::filesystem::path&, std::string_view bytes,
-                     const std::filesystem::path& staging);
-
 /// Whether a file can be written there: makes its folder and tries, before anything costs time.
 /// Leaves nothing behind. Throws InputError with the reason.
 void test_writable(const std::filesystem::path&);
 
 /// Appends a line in one write. Throws as write_durably.
 void append_line(const std::filesystem::path&, std::string_view line);
-
-/// Appends bytes; returns when they are on the disk. Throws as write_durably.
-void append_durably(const std::filesystem::path&, std::string_view bytes);
-
-/// Makes the folder's entries (new names, renames) durable. Throws as write_durably.
-void sync_folder(const std::filesystem::path&);
 
 /// Creates the folder and its parents; throws InputError with the system's reason.
 void make_folder(const std::filesystem::path&);

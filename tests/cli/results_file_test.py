@@ -42,9 +42,9 @@ class ResultsFile(CommandLine):
                            "axes.iterations = [1, 4]\n")
         self.taut("run", study)
         said = subprocess.run(line, shell=True, cwd=self.folder, capture_output=True, text=True, check=True).stdout.splitlines()
-        self.assertEqual(said[0], "solver|iterations|value")
-        values = {(r["solver"], r["params"]["iterations"]): r["values"]["stretch.rms"] for r in self.records()}
-        found = {tuple(row.split("|")[:2]): float(row.split("|")[2]) for row in said[1:]}
+        self.assertEqual(said[0], "setting|value")
+        values = {r["id"].removeprefix("hang "): r["values"]["stretch.rms"] for r in self.records()}
+        found = {row.split("|")[0]: float(row.split("|")[1]) for row in said[1:]}
         self.assertEqual(found.keys(), values.keys())
         for which, value in values.items():
             self.assertAlmostEqual(found[which], value, delta=1e-14 * abs(value))

@@ -1,6 +1,7 @@
 """What notices the errors that mutate.py plants: unit tests, truths and tests of the command line, each alone or in a batch."""
 import ast
 import contextlib
+import csv
 import os
 import pathlib
 import re
@@ -43,8 +44,8 @@ def checks_of(build):
             checks.append(Check(UNIT, suite + name, took.get(suite + name, 15), file_of.get(suite[:-1].split("/")[-1])))
         elif name.endswith("."):
             suite = name
-    truths = subprocess.run([build / TAUT, "verify", "--list"], check=True, text=True, capture_output=True).stdout
-    checks += [Check(TAUT, line.split("\t")[1], 15) for line in truths.splitlines()]
+    truths = subprocess.run([build / TAUT, "verify", "--list", "--csv"], check=True, text=True, capture_output=True).stdout
+    checks += [Check(TAUT, truth["name"], 15) for truth in csv.DictReader(truths.splitlines())]
     for script in SCRIPTS:
         checks += [Check(TAUT, f"{of.name}.{test.name}", 30, script) for of in ast.parse(script.read_text()).body
                    if isinstance(of, ast.ClassDef) for test in of.body if getattr(test, "name", "").startswith("test")]

@@ -275,7 +275,7 @@ template <class T, bool equal, class Real, class Number, class Shares, class Exc
 
 /// Calls f(batch, n, x) for the n-th batch of a run; x: the particle from which its ends count.
 /// Meanwhile the batches after it and the next tile's particles come from memory: no machine sees
-/// by itself that these will be needed (results/benchmarks/effects.md).
+/// by itself that these will be needed (0.66 of the time at 1024 x 1024, nothing in cache).
 template <class Real, class F>
 [[gnu::always_inline]] inline void visit_batches(const BatchRun<Real> run, Real* x, const F& f) {
   constexpr std::size_t kBatchesAhead = 8;
