@@ -25,10 +25,15 @@ inline Scene irregular_net(unsigned seed, int vertices = 40) {
   scene.name = "net";
   scene.dt = 1.0 / 64;
   scene.steps = 1;
+  // One after the other: compilers evaluate arguments in orders of their own.
+  const auto point = [&](double side, double height, double low) {
+    const double z = uniform(-height, height), y = uniform(low, side), x = uniform(low, side);
+    return Vec3(x, y, z);
+  };
   for (int i = 0; i < vertices; ++i) {
-    scene.mesh.rest.emplace_back(uniform(0, 1), uniform(0, 1), uniform(-0.2, 0.2));
+    scene.mesh.rest.push_back(point(1, 0.2, 0));
     scene.mesh.mass.push_back(uniform(0.002, 0.02));
-    scene.start.v.emplace_back(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+    scene.start.v.push_back(point(1, 1, -1));
   }
   scene.start.x = scene.mesh.rest;
   scene.pins = {0, vertices / 2};
