@@ -1,6 +1,7 @@
 #include "bullet_ref/rigid_colliders.hpp"
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -46,6 +47,10 @@ RigidPose pose_at_start(const Shape& shape, const Vec3& above) {
   if (const auto* plane = std::get_if<Plane>(&shape)) return slab_pose(*plane, above);
   if (const auto* ball = std::get_if<Ball>(&shape))
     return {Eigen::Quaterniond::Identity(), ball->center};
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    const Vec3 along = capsule->to - capsule->from;
+    return {tilt(along.isZero(0) ? Vec3(Vec3::UnitY()) : along.normalized()), capsule->middle()};
+  }
   const Box& box = std::get<Box>(shape);
   return {box.rotation, box.center};
 }
@@ -53,6 +58,10 @@ RigidPose pose_at_start(const Shape& shape, const Vec3& above) {
 std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
   if (const auto* ball = std::get_if<Ball>(&shape))
     return std::make_unique<btSphereShape>(static_cast<btScalar>(ball->radius));
+  if (const auto* capsule = std::get_if<Capsule>(&shape))
+    return std::make_unique<btCapsuleShape>(
+        static_cast<btScalar>(capsule->radius),
+        static_cast<btScalar>((capsule->to - capsule->from).norm()));
   const auto* box = std::get_if<Box>(&shape);
   const Vec3 half = box ? box->half_extents : Vec3(kSlabWidth, kSlabDepth, kSlabWidth);
   auto made = std::make_unique<btBoxShape>(to_bullet(half));
@@ -134,6 +143,10 @@ std::vector<Collider> RigidColliders::read_back(double t) const {
                       .friction = static_cast<double>(body->rigid.getFriction())};
     if (const auto* ball = dynamic_cast<const btSphereShape*>(body->shape.get())) {
       collider.shape = Ball{origin, static_cast<double>(ball->getRadius())};
+    } else if (const auto* round = dynamic_cast<const btCapsuleShape*>(body->shape.get())) {
+      const Vec3 half = static_cast<double>(round->getHalfHeight()) * (rotation * Vec3::UnitY());
+      collider.shape =
+          Capsule{origin - half, origin + half, static_cast<double>(round->getRadius())};
     } else {
       const auto& box = dynamic_cast<const btBoxShape&>(*body->shape);
       const Vec3 half = from_bullet(box.getHalfExtentsWithoutMargin());

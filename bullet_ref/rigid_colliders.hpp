@@ -12,8 +12,9 @@ class btRigidBody;
 namespace taut {
 
 /// A scene's colliders as Bullet's rigid bodies, in the scene's order: a ball as btSphereShape, a
-/// box as btBoxShape, a plane as the top of a btBoxShape slab (btStaticPlaneShape tunnels and lets
-/// the cloth rest 0.10 m too high). All have shape margin 0. Bodies that move are kinematic.
+/// capsule as btCapsuleShape (along its own y), a box as btBoxShape, a plane as the top of a
+/// btBoxShape slab (btStaticPlaneShape tunnels and lets the cloth rest 0.10 m too high). Boxes have
+/// shape margin 0; a sphere's and a capsule's is its radius. Bodies that move are kinematic.
 class RigidColliders {
  public:
   /// Adds the bodies to the world, which must outlive this object. Slabs are centred below the

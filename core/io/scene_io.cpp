@@ -68,7 +68,7 @@ Motion read_motion(Section& section, const Vec3& pivot) {
 Collider read_collider(Section& section) {
   Collider collider;
   section.need({"type"});
-  const std::string type = section.choice("type", {"plane", "ball", "box"}, "");
+  const std::string type = section.choice("type", {"plane", "ball", "box", "capsule"}, "");
   Vec3 pivot = Vec3::Zero();
   if (type == "plane") {
     collider.shape = Plane{section.direction("normal", Vec3::UnitY()),
@@ -83,8 +83,15 @@ Collider read_collider(Section& section) {
     const auto half = section.numbers("half_extents", 3, Range::positive(kFar));
     const Vec3 extents = half ? Vec3((*half)[0], (*half)[1], (*half)[2]) : Vec3::Ones();
     collider.shape = Box{pivot, extents, read_rotation(section)};
+  } else if (type == "capsule") {
+    section.need({"from", "to", "radius"});
+    const Vec3 from = section.vec3("from", kFar, Vec3::Zero()),
+               to = section.vec3("to", kFar, Vec3::Zero());
+    const Capsule capsule{from, to, section.number("radius", Range::positive(kFar), 1)};
+    pivot = capsule.middle(), collider.shape = capsule;
   } else {  // reported; which keys belong here is not known
-    for (const char* key : {"normal", "offset", "center", "radius", "half_extents", "rotation"})
+    for (const char* key :
+         {"normal", "offset", "center", "radius", "half_extents", "rotation", "from", "to"})
       section.find(key);
   }
   collider.friction = section.number("friction", Range::non_negative(1e3), 0);

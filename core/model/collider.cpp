@@ -24,6 +24,13 @@ Surface surface_of(const Ball& ball, const Vec3& p) {
   return {distance - ball.radius, out / distance};
 }
 
+Surface surface_of(const Capsule& capsule, const Vec3& p) {
+  const Vec3 out = p - capsule.nearest_on_axis(p);
+  const double distance = out.norm();
+  if (distance == 0) return {-capsule.radius, capsule.beside()};
+  return {distance - capsule.radius, out / distance};
+}
+
 Surface surface_of(const Box& box, const Vec3& p) {
   const Vec3 local = box.rotation.conjugate() * (p - box.center);
   const Vec3 excess = local.cwiseAbs() - box.half_extents;
@@ -47,8 +54,21 @@ Surface surface_of(const Box& box, const Vec3& p) {
 std::string_view type_name(const Shape& shape) {
   return std::visit(Overload{[](const Plane&) { return std::string_view("plane"); },
                              [](const Ball&) { return std::string_view("ball"); },
-                             [](const Box&) { return std::string_view("box"); }},
+                             [](const Box&) { return std::string_view("box"); },
+                             [](const Capsule&) { return std::string_view("capsule"); }},
                     shape);
+}
+
+Vec3 Capsule::nearest_on_axis(const Vec3& p) const {
+  const Vec3 along = to - from;
+  const double length2 = along.squaredNorm();
+  if (length2 == 0) return from;
+  return from + std::clamp(along.dot(p - from) / length2, 0.0, 1.0) * along;
+}
+
+Vec3 Capsule::beside() const {
+  const Vec3 along = to - from;
+  return along.isZero(0) ? Vec3(Vec3::UnitY()) : Vec3(along.unitOrthogonal());
 }
 
 Vec3 Motion::displacement(double t) const {
@@ -90,6 +110,11 @@ Shape shape_at(const Collider& collider, double t) {
                                box.center = motion.moved(box.center, t);
                                box.rotation = motion.rotation(t) * box.rotation;
                                return box;
+                             },
+                             [&](Capsule capsule) -> Shape {
+                               capsule.from = motion.moved(capsule.from, t);
+                               capsule.to = motion.moved(capsule.to, t);
+                               return capsule;
                              }},
                     collider.shape);
 }

@@ -25,7 +25,17 @@ struct Box {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< box axes -> world
 };
 
-using Shape = std::variant<Plane, Ball, Box>;
+/// What is within the radius of an axis; one of no length is a ball.
+struct Capsule {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< m, the ends of the axis
+  double radius = 0;                            ///< m, > 0
+
+  Vec3 middle() const { return (from + to) / 2; }
+  Vec3 nearest_on_axis(const Vec3& p) const;
+  Vec3 beside() const;  ///< a unit vector across the axis; up, if it has no length
+};
+
+using Shape = std::variant<Plane, Ball, Box, Capsule>;
 std::string_view type_name(const Shape&);
 
 /// A prescribed rigid motion: known in advance, never influenced by the cloth. Displacement is
@@ -59,8 +69,8 @@ struct Collider {
 Shape shape_at(const Collider&, double t);
 
 /// Distance from p to the surface, negative inside, and its gradient: both exact, also inside a box
-/// and past its edges and corners. Where the gradient is not unique (a ball's centre, a box's
-/// medial axis) one of the valid ones is given, always the same.
+/// and past its edges and corners. Where the gradient is not unique (a ball's centre, a
+/// capsule's axis, a box's medial axis) one of the valid ones is given, always the same.
 struct Surface {
   double distance = 0;  ///< m
   Vec3 normal = Vec3::UnitY();

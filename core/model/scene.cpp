@@ -40,6 +40,7 @@ class Bytes {
     add(b.center), add(b.half_extents);
     for (const double c : b.rotation.coeffs()) add(c);
   }
+  void add(const Capsule& c) { add(c.from), add(c.to), add(c.radius); }
   void add(const Collider& c) {
     add(c.shape.index());
     std::visit([&](const auto& shape) { add(shape); }, c.shape);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace taut {
 
@@ -19,8 +20,9 @@ double nearest_share(const Vec3& a, const Vec3& b, const Vec3& p) {
   return length2 > 0 ? std::clamp(along.dot(p - a) / length2, 0.0, 1.0) : 0.0;
 }
 
-/// Distance of the segments pq and ab [m].
-double distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
+/// Where the segments pq and ab are nearest to each other, as shares of q and b.
+std::pair<double, double> nearest_shares(const Vec3& p, const Vec3& q, const Vec3& a,
+                                         const Vec3& b) {
   const Vec3 u = q - p, v = b - a, r = a - p;
   const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
   const double det = uu * vv - uv * uv;
@@ -28,7 +30,13 @@ double distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
   double on_pq = det > 0 ? std::clamp((vv * u.dot(r) - uv * v.dot(r)) / det, 0.0, 1.0) : 0;
   const double on_ab = nearest_share(a, b, p + on_pq * u);
   on_pq = nearest_share(p, q, a + on_ab * v);
-  return (p + on_pq * u - a - on_ab * v).norm();
+  return {on_pq, on_ab};
+}
+
+/// Distance of the segments pq and ab [m].
+double distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
+  const auto [on_pq, on_ab] = nearest_shares(p, q, a, b);
+  return (p + on_pq * (q - p) - a - on_ab * (b - a)).norm();
 }
 
 /// Six times the volume of the tetrahedron; positive if d lies above the triangle abc. 0 if the
@@ -48,6 +56,13 @@ bool pierces(const Vec3& p, const Vec3& q, const Corners& t) {
   const double u = orientation(p, q, t[0], t[1]), v = orientation(p, q, t[1], t[2]),
                w = orientation(p, q, t[2], t[0]);
   return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+}
+
+/// Where the line pq passes through the plane of t, which it does.
+Vec3 passage(const Vec3& p, const Vec3& q, const Corners& t) {
+  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double below = normal.dot(p - t[0]), above = normal.dot(q - t[0]);
+  return p + below / (below - above) * (q - p);
 }
 
 /// True if the plane of t has corners of s strictly on both sides.
@@ -124,6 +139,30 @@ Deepest deepest_in(const Ball& ball, const Corners& t) {
   return {ball.radius - (nearest.position - ball.center).norm(), nearest};
 }
 
+Deepest deepest_in(const Capsule& capsule, const Corners& t) {
+  const Vec3 &from = capsule.from, &to = capsule.to;
+  Deepest best{-std::numeric_limits<double>::infinity(), {t[0], Vec3::UnitX()}};
+  const auto improve = [&](const TrianglePoint& point) {
+    const double depth = -surface(capsule, point.position).distance;
+    if (depth > best.depth) best = {depth, point};
+  };
+  if (pierces(from, to, t)) {
+    improve(closest_point(t, passage(from, to, t)));
+    return best;
+  }
+  improve(closest_point(t, from)), improve(closest_point(t, to));
+  for (int a = 0; a < 3; ++a) {
+    const int b = (a + 1) % 3;
+    Vec3 weights = Vec3::Zero();
+    weights[b] =
+        nearest_shares(t[static_cast<std::size_t>(a)], t[static_cast<std::size_t>(b)], from, to)
+            .first;
+    weights[a] = 1 - weights[b];
+    improve({at(t, weights), weights});
+  }
+  return best;
+}
+
 Deepest deepest_in(const Box& box, const Corners& t, double at_least) {
   Depths depths;
   double bound = at_least;
@@ -172,9 +211,7 @@ double crossing_length(const Corners& s, const Corners& t) {
   std::size_t count = 0;
   const auto add = [&](const Vec3& p, const Vec3& q, const Corners& through) {
     if (!pierces(p, q, through)) return;
-    const Vec3 normal = (through[1] - through[0]).cross(through[2] - through[0]);
-    const double below = normal.dot(p - through[0]), above = normal.dot(q - through[0]);
-    ends[count++] = p + below / (below - above) * (q - p);
+    ends[count++] = passage(p, q, through);
   };
   for (std::size_t a = 0; a < 3; ++a) {
     add(s[a], s[(a + 1) % 3], t);

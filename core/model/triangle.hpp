@@ -28,6 +28,9 @@ struct Deepest {
 /// The deepest point of a triangle inside a ball. Exact: the point nearest to the centre.
 Deepest deepest_in(const Ball&, const Corners&);
 
+/// The same inside a capsule. Exact: the point nearest to the axis.
+Deepest deepest_in(const Capsule&, const Corners&);
+
 /// The deepest point of a triangle inside a box, exact. Depth is the least of six linear functions,
 /// so its maximum lies at a corner of the triangle, on an edge where two of them are equal, or
 /// inside where three are. A triangle that misses the box gets a depth <= 0 that says no more than

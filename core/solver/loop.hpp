@@ -103,9 +103,10 @@ inline constexpr ParamSpec kContact =
                       "response to colliders: out in every sweep, with a test against passing "
                       "through (continuous) or without (discrete); once, before or after the "
                       "sweeps; or put on the surface for good (freeze) or for a step (halt)");
-inline constexpr ParamSpec kFaces = ParamSpec::choice(
-    "faces", "off", "off|on",
-    "keep faces, not only vertices, out of balls and of the edges and corners of boxes");
+inline constexpr ParamSpec kFaces =
+    ParamSpec::choice("faces", "off", "off|on",
+                      "keep faces, not only vertices, out of balls and capsules and of the edges "
+                      "and corners of boxes");
 inline constexpr ParamSpec kSelf = ParamSpec::choice(
     "self", "grid", "grid|octree|off",
     "self-collision where the scene has it: grid, octree as published by Vasilovici, or none");

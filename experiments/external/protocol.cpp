@@ -50,6 +50,10 @@ Json json_of(const Box& box) {
           {"rotation", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
+Json json_of(const Capsule& capsule) {
+  return {{"from", json_of(capsule.from)}, {"to", json_of(capsule.to)}, {"radius", capsule.radius}};
+}
+
 Json json_of(const Collider& collider) {
   Json one{{"type", type_name(collider.shape)}};
   one.update(std::visit([](const auto& shape) { return json_of(shape); }, collider.shape));
@@ -64,7 +68,7 @@ Json json_of(const Wind& wind) {
 }
 
 constexpr std::string_view kProtocol = "taut-solver/1";
-constexpr std::string_view kWithStiffness = "taut-solver/2";  ///< "stiffness" of a scene is read
+constexpr std::string_view kSecond = "taut-solver/2";  ///< knows what beyond_first() names
 constexpr double kLargestInteger = 2147483647;
 
 /// Calls `read`; whatever it finds wrong in an answer breaks the protocol.
@@ -164,6 +168,15 @@ Json stiffness(const Scene& scene) {
 
 }  // namespace
 
+std::vector<std::string> beyond_first(const Scene& scene) {
+  std::vector<std::string> all = elastic_links(scene);
+  if (std::ranges::any_of(scene.colliders, [](const Collider& c) {
+        return std::holds_alternative<Capsule>(c.shape);
+      }))
+    all.emplace_back("a capsule");
+  return all;
+}
+
 std::string scene_file(const Scene& scene) {
   Json links = Json::array(), motions = Json::array(), colliders = Json::array();
   for (const Link& link : scene.links)
@@ -194,8 +207,8 @@ std::string scene_file(const Scene& scene) {
             {"wind", scene.wind ? json_of(*scene.wind) : Json()},
             {"self_collision",
              scene.self_collision ? Json{{"radius", scene.self_collision->radius}} : Json()}};
-  if (!elastic_links(scene).empty())
-    file["format"] = "taut-scene/2", file["stiffness"] = stiffness(scene);
+  if (!beyond_first(scene).empty()) file["format"] = "taut-scene/2";
+  if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
   return to_text(file) + "\n";
 }
 
@@ -205,10 +218,10 @@ static_assert(std::endian::native == std::endian::little, "states are little-end
 std::unique_ptr<const Hello> read_hello(const Json& answer) {
   const JsonReader j = reader(answer, "hello");
   const std::string protocol = j.at("protocol").text();
-  if (protocol != kProtocol && protocol != kWithStiffness)
+  if (protocol != kProtocol && protocol != kSecond)
     j.at("protocol").fail("'" + protocol + "' is not '" + std::string(kProtocol) + "'");
   auto hello = std::make_unique<Hello>();
-  hello->reads_stiffness = protocol == kWithStiffness;
+  hello->second = protocol == kSecond;
   hello->name = j.at("name").text();
   hello->version = j.at("version").text();
   hello->summary = text_or(j, "summary", hello->name);

@@ -14,8 +14,8 @@ namespace taut::external {
 /// What a program answers to "hello".
 struct Hello {
   std::string name, version, summary, source;
-  bool reads_stiffness = false;  ///< it speaks taut-solver/2
-  std::string unmeasurable;      ///< why its time says nothing; "": it does
+  bool second = false;       ///< it speaks taut-solver/2
+  std::string unmeasurable;  ///< why its time says nothing; "": it does
   std::vector<ParamSpec> params;
   std::deque<std::string> texts;  ///< what the views of `params` see
 };
@@ -52,6 +52,10 @@ double take_steps(Connection&, double t, double dt, int count);
 /// exchanges, what a busy machine's caches cost. [s] a step.
 bool agrees(double word, double clock, double empty);
 void store_state(Connection&, int vertices, State&);
+
+/// What of a scene came with the second version, a few words each: elastic links, capsules. A
+/// program that speaks the first is not asked for such a scene.
+std::vector<std::string> beyond_first(const Scene&);
 
 /// The scene as a program gets it: JSON, everything resolved, SI units, doubles in shortest exact
 /// form. Every key stands in experiments/external/README.md.

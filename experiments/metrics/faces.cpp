@@ -11,24 +11,25 @@ class Faces final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "face.max",
        .unit = kErrorLength,
-       .help = "largest depth of a point of a face below the surface of a ball or box, thickness "
-               "not counted, in the last second",
+       .help = "largest depth of a point of a face below the surface of a ball, box or capsule, "
+               "thickness not counted, in the last second",
        .in_series = true,
        .title = "largest penetration of faces",
        .kept = true},
       {"face.peak", kErrorLength, "the same over the run", false, Window::run,
        "peak penetration of faces", Role::face_depth},
       {"face.geometry", kLength,
-       "the part of a face's depth in a ball that is geometry: how deep it would be if its corners "
-       "lay exactly at the scene's thickness, l^2/(4R) for a right triangle with legs l; largest "
-       "in the last second",
+       "the part of a face's depth in a ball or capsule that is geometry: how deep it could be if "
+       "its corners lay exactly at the scene's thickness, in a ball l^2/(4R) for a right triangle "
+       "with legs l; largest in the last second",
        true},
       {"face.excess", kErrorLength,
-       "largest depth of a face below a ball's surface beyond its geometric part, in the last "
-       "second",
+       "largest depth of a face below a ball's or capsule's surface beyond its geometric part, in "
+       "the last second",
        true},
       {"face.ball", kErrorLength, "face.max of the balls alone"},
       {"face.box", kErrorLength, "face.max of the boxes alone"},
+      {"face.capsule", kErrorLength, "face.max of the capsules alone"},
   };
   static bool measures(const Scene& scene) {
     return !scene.mesh.triangles.empty() && has_solid(scene);
@@ -44,27 +45,28 @@ class Faces final : public Metric {
   void observe(const Snapshot& m) override {
     const bool at_end = end_.contains(m.step);
     const Depths d = measure(m);
-    any_.add(m.step, at_end, std::max(d.ball, d.box));
-    if (has<Ball>()) {
-      ball_.add(m.step, at_end, d.ball);
-      geometry_.add(m.step, at_end, d.geometry), excess_.add(m.step, at_end, d.excess);
-    }
+    any_.add(m.step, at_end, d.max());
+    if (has<Ball>()) ball_.add(m.step, at_end, d.ball);
     if (has<Box>()) box_.add(m.step, at_end, d.box);
+    if (has<Capsule>()) capsule_.add(m.step, at_end, d.capsule);
+    if (has_round())
+      geometry_.add(m.step, at_end, d.geometry), excess_.add(m.step, at_end, d.excess);
   }
   std::vector<double> finish() override {
-    return {any_.max(), any_.peak(), geometry_.max(), excess_.max(), ball_.max(), box_.max()};
+    return {any_.max(),  any_.peak(), geometry_.max(), excess_.max(),
+            ball_.max(), box_.max(),  capsule_.max()};
   }
   std::vector<double> now(const Snapshot& m) const override {
     constexpr double none = Summary::kNone;
     const Depths d = measure(m);
-    const bool ball = has<Ball>();
-    return {std::max(d.ball, d.box), none, ball ? d.geometry : none,
-            ball ? d.excess : none,  none, none};
+    const bool round = has_round();
+    return {d.max(), none, round ? d.geometry : none, round ? d.excess : none, none, none, none};
   }
 
  private:
   struct Depths {
-    double ball = 0, geometry = 0, excess = 0, box = 0;
+    double ball = 0, geometry = 0, excess = 0, box = 0, capsule = 0;
+    double max() const { return std::max({ball, box, capsule}); }
   };
 
   template <class T>
@@ -73,25 +75,33 @@ class Faces final : public Metric {
                        [](const Collider& c) { return std::holds_alternative<T>(c.shape); });
   }
 
+  bool has_round() const { return has<Ball>() || has<Capsule>(); }
+
   Depths measure(const Snapshot& m) const {
     Depths depths;
     for (const Collider& collider : colliders_) {
       const Shape shape = shape_at(collider, m.t);
-      if (const Ball* ball = std::get_if<Ball>(&shape)) add(*ball, m.state, depths);
+      if (const Ball* ball = std::get_if<Ball>(&shape)) add(*ball, m.state, depths.ball, depths);
+      if (const Capsule* capsule = std::get_if<Capsule>(&shape))
+        add(*capsule, m.state, depths.capsule, depths);
       if (const Box* box = std::get_if<Box>(&shape)) add(*box, m.state, depths);
     }
     return depths;
   }
 
-  void add(const Ball& ball, const State& state, Depths& depths) const {
-    const double hover = ball.radius + thickness_;
+  /// A point with barycentric weights b of a face whose corners are at least `hover` from it is at
+  /// least sqrt(hover^2 - r^2) from a centre, r being the face's enclosing radius: from a ball's,
+  /// and from that of an axis which is nearest to the point.
+  template <class Round>
+  void add(const Round& shape, const State& state, double& deepest, Depths& depths) const {
+    const double hover = shape.radius + thickness_;
     for (const Triangle& face : faces_) {
       const Corners t = corners(face, state);
-      const double depth = deepest_in(ball, t).depth;
+      const double depth = deepest_in(shape, t).depth;
       if (!(depth > 0)) continue;
       const double r = std::min(enclosing_radius(t), hover);
-      const double geometry = std::max(0.0, ball.radius - std::sqrt(hover * hover - r * r));
-      depths.ball = std::max(depths.ball, depth);
+      const double geometry = std::max(0.0, shape.radius - std::sqrt(hover * hover - r * r));
+      deepest = std::max(deepest, depth);
       depths.geometry = std::max(depths.geometry, std::min(depth, geometry));
       depths.excess = std::max(depths.excess, depth - geometry);
     }
@@ -106,16 +116,17 @@ class Faces final : public Metric {
     return {s.x[to_index(t[0])], s.x[to_index(t[1])], s.x[to_index(t[2])]};
   }
 
-  std::vector<Collider> colliders_;  ///< balls and boxes; faces add nothing to vertices on a plane
+  std::vector<Collider> colliders_;  ///< no planes: on those faces add nothing to vertices
   std::vector<Triangle> faces_;
   double thickness_;
   LastSecond end_;
-  Summary any_, ball_, geometry_, excess_, box_;
+  Summary any_, ball_, geometry_, excess_, box_, capsule_;
 };
 
 }  // namespace
 
-TAUT_METRIC(faces, Faces, "How deep the faces, not just the vertices, are in balls and boxes",
-            "exact depth of a triangle in a ball and in a box");
+TAUT_METRIC(faces, Faces,
+            "How deep the faces, not just the vertices, are in balls, boxes and capsules",
+            "exact depth of a triangle in a ball, in a box and in a capsule");
 
 }  // namespace taut

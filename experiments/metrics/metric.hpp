@@ -225,7 +225,7 @@ inline Vec3 mean(const std::vector<double>& mass, const std::vector<Vec3>& vecto
   return sum / total;
 }
 
-/// Whether there is a ball or a box: a plane has no other side.
+/// Whether there is a collider with another side: any but a plane.
 inline bool has_solid(const Scene& scene) {
   return std::ranges::any_of(
       scene.colliders, [](const Collider& c) { return !std::holds_alternative<Plane>(c.shape); });

@@ -45,6 +45,10 @@ class Penetration final : public Metric {
       {"penetration.box.max", kErrorLength, "penetration.max of boxes alone", true},
       {"penetration.box.peak", kErrorLength, "penetration.peak of boxes alone", false, Window::run},
       {"penetration.box.mean", kErrorLength, "penetration.mean of boxes alone"},
+      {"penetration.capsule.max", kErrorLength, "penetration.max of capsules alone", true},
+      {"penetration.capsule.peak", kErrorLength, "penetration.peak of capsules alone", false,
+       Window::run},
+      {"penetration.capsule.mean", kErrorLength, "penetration.mean of capsules alone"},
       {"penetration.share", kErrorShare,
        "share of the free vertices that are below a surface, mean over the last second", true},
       {"penetration.gap", kSignedLength,
@@ -137,6 +141,6 @@ class Penetration final : public Metric {
 
 TAUT_METRIC(penetration, Penetration,
             "How deep vertices are in colliders after the last pass of the step",
-            "max(0, -signed distance), exact for plane, ball and box");
+            "max(0, -signed distance), exact for plane, ball, box and capsule");
 
 }  // namespace taut

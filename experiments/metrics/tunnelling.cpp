@@ -14,30 +14,46 @@ struct Passage {
 
 /// A solid at the origin of its own frame, in which it does not move.
 struct Solid {
-  double radius = 0;                 ///< > 0: a ball
+  double radius = 0;                 ///< > 0: a ball, or a capsule along y
+  double half_length = 0;            ///< of the capsule's axis
   Vec3 half_extents = Vec3::Zero();  ///< else a box
 
   bool contains(const Vec3& p) const {
-    if (radius > 0) return p.squaredNorm() < radius * radius;
+    if (radius > 0) return (p - on_axis(p.y())).squaredNorm() < radius * radius;
     return (p.cwiseAbs() - half_extents).maxCoeff() < 0;
   }
   Vec3 nearest_normal(const Vec3& p) const {
-    const Shape shape =
-        radius > 0 ? Shape(Ball{.radius = radius}) : Shape(Box{.half_extents = half_extents});
+    const Shape shape = radius > 0
+                            ? Shape(Capsule{on_axis(-half_length), on_axis(half_length), radius})
+                            : Shape(Box{.half_extents = half_extents});
     return surface(shape, p).normal;
   }
-  Passage pass(const Vec3& a, const Vec3& b) const { return radius > 0 ? ball(a, b) : box(a, b); }
+  Passage pass(const Vec3& a, const Vec3& b) const { return radius > 0 ? round(a, b) : box(a, b); }
 
  private:
-  Passage ball(const Vec3& a, const Vec3& b) const {
+  /// The point of the axis at that height, or its end.
+  Vec3 on_axis(double y) const { return {0, std::clamp(y, -half_length, half_length), 0}; }
+  /// Where the line a + s d first meets the round solid: on the sphere about the point of the axis
+  /// at whose height it enters the endless cylinder, or about the end to that side. None: infinite.
+  double first(const Vec3& a, const Vec3& d) const {
+    const double across2 = d.x() * d.x() + d.z() * d.z(), toward = a.x() * d.x() + a.z() * d.z(),
+                 above = a.x() * a.x() + a.z() * a.z() - radius * radius,
+                 within = toward * toward - across2 * above;
+    double height = d.y() > 0 ? -half_length : half_length;  // of a line along the axis
+    if (across2 > 0)
+      height = a.y() + (-toward - std::sqrt(std::max(within, 0.0))) / across2 * d.y();
+    const Vec3 from = a - on_axis(height);
+    const double dd = d.squaredNorm(), ad = from.dot(d),
+                 discriminant = ad * ad - dd * (from.squaredNorm() - radius * radius);
+    if (dd == 0 || discriminant <= 0) return Summary::kInfinity;
+    return (-ad - std::sqrt(discriminant)) / dd;
+  }
+  Passage round(const Vec3& a, const Vec3& b) const {
     const Vec3 d = b - a;
-    const double dd = d.squaredNorm(), ad = a.dot(d),
-                 discriminant = ad * ad - dd * (a.squaredNorm() - radius * radius);
-    if (dd == 0 || discriminant <= 0) return {};
-    const double root = std::sqrt(discriminant);
-    Passage p{true, (-ad - root) / dd, (-ad + root) / dd, {}, {}};
-    p.in = (a + p.in_at * d) / radius, p.out = (a + p.out_at * d) / radius;
-    return p;
+    const double in = first(a, d), out = -first(a, -d);
+    if (!std::isfinite(in) || !std::isfinite(out)) return {};
+    const auto normal = [&](double s) { return nearest_normal(a + s * d); };
+    return {true, in, out, normal(in), normal(out)};
   }
   Passage box(const Vec3& a, const Vec3& b) const {
     Passage p{true, -Summary::kInfinity, Summary::kInfinity, {}, {}};
@@ -69,6 +85,11 @@ class SideTracker {
     if (const Ball* ball = std::get_if<Ball>(&collider_.shape)) solid_.radius = ball->radius;
     if (const Box* box = std::get_if<Box>(&collider_.shape))
       solid_.half_extents = box->half_extents;
+    if (const Capsule* capsule = std::get_if<Capsule>(&collider_.shape)) {
+      const Vec3 along = capsule->to - capsule->from;
+      solid_.radius = capsule->radius, solid_.half_length = along.norm() / 2;
+      along_y_ = Eigen::Quaterniond::FromTwoVectors(along, Vec3::UnitY());
+    }
   }
 
   void place(double t) {
@@ -77,6 +98,10 @@ class SideTracker {
     if (const Box* box = std::get_if<Box>(&shape)) {
       center_ = box->center;
       to_local_ = box->rotation.conjugate().toRotationMatrix();
+    }
+    if (const Capsule* capsule = std::get_if<Capsule>(&shape)) {
+      center_ = capsule->middle();
+      to_local_ = (along_y_ * collider_.motion.rotation(t).conjugate()).toRotationMatrix();
     }
   }
   void start(std::size_t k, const Vec3& world) {
@@ -108,6 +133,7 @@ class SideTracker {
   Vec3 local(const Vec3& world) const { return to_local_ * (world - center_); }
   Collider collider_;
   Solid solid_;
+  Eigen::Quaterniond along_y_ = Eigen::Quaterniond::Identity();  ///< turns a capsule's axis to y
   Vec3 center_ = Vec3::Zero();
   Eigen::Matrix3d to_local_ = Eigen::Matrix3d::Identity();
   std::vector<Vec3> last_, in_;  ///< [free vertices], in the solid's frame
@@ -119,7 +145,8 @@ class Tunnelling final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "tunnelling.count",
        .unit = kErrorCount,
-       .help = "free vertices that end on the other side of a ball or box: in through one side and "
+       .help = "free vertices that end on the other side of a ball, box or capsule: in through one "
+               "side and "
                "out through the opposite one, even within one substep; their path is straight from "
                "substep to substep",
        .in_series = true,
@@ -129,7 +156,7 @@ class Tunnelling final : public Metric {
       {"tunnelling.share", kErrorShare, "the same as a share of the free vertices", false,
        Window::end},
       {"tunnelling.events", kErrorCount,
-       "passages through a ball or box over the run, returns included", false, Window::run,
+       "passages through a ball, box or capsule over the run, returns included", false, Window::run,
        "passages through a collider", Role::passages},
   };
   static bool measures(const Scene& scene) {
@@ -176,7 +203,7 @@ class Tunnelling final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(tunnelling, Tunnelling, "Vertices that pass through a ball or box",
+TAUT_METRIC(tunnelling, Tunnelling, "Vertices that pass through a ball, box or capsule",
             "labels of sides, kept along the path in the collider's frame; a plane's solid has no "
             "other side");
 

@@ -104,6 +104,7 @@ TAUT_TRUTH(tunnelling, 7, 3, "tests at step boundaries miss max(0, 1 - D/s) of t
   const double thickness = 0.02, travel = 0.05;
   const Collider plate{Box{Vec3::Zero(), Vec3(2, thickness / 2, 2)}, {}, 0};
   const Collider ball{Ball{Vec3::Zero(), thickness / 2}, {}, 0};
+  const Collider capsule{Capsule{-Vec3::UnitZ(), Vec3::UnitZ(), thickness / 2}, {}, 0};
   const Collider thick{Box{Vec3::Zero(), Vec3(2, 0.03, 2)}, {}, 0};
   Scene s = above_plane(1, Vec3::UnitY(), 0);
   s.colliders = {plate};
@@ -115,12 +116,15 @@ TAUT_TRUTH(tunnelling, 7, 3, "tests at step boundaries miss max(0, 1 - D/s) of t
                    missed(solver, plate, travel), 1 - thickness / travel, 0.006);
     findings.equal(solver, "share that misses a ball of 2R = 0.4 s along its axis", "1",
                    missed(solver, ball, travel), 1 - thickness / travel, 0.006);
+    findings.equal(solver, "share that misses a capsule of 2R = 0.4 s across its axis", "1",
+                   missed(solver, capsule, travel), 1 - thickness / travel, 0.006);
     findings.below(solver, "share that misses a plate thicker than the travel", "1",
                    missed(solver, thick, travel), 0);
   }
   const std::string continuous = jakobsen(1, "exact", "contact=continuous");
   if (!can_run(findings, continuous, s)) return;
-  for (const auto& [what, collider] : {std::pair("plate", plate), std::pair("ball", ball)})
+  for (const auto& [what, collider] :
+       {std::pair("plate", plate), std::pair("ball", ball), std::pair("capsule", capsule)})
     findings.deviates(continuous, std::string("share that misses a ") + what + " of 0.4 travels",
                       "1", missed(continuous, collider, travel), 1 - thickness / travel, 0, 0,
                       "its contact tests the path, so that nothing is missed");
@@ -135,10 +139,11 @@ TAUT_TRUTH(capstan, 7, 4, "T2/T1 -> exp(mu phi) around a rough cylinder, order 2
   findings.slope("closed form", "order in the link angle of T2/T1 - exp(mu phi)", order, 2, 0.02);
   findings.equal("closed form", "T2/T1 for half a turn at mu = 0.3, 128 links", "1",
                  reference::capstan_ratio(mu, wrap, wrap / 128), std::exp(mu * wrap), 2e-4);
-  // Over a ball: a light rope of 24 links over its top, heavier at one end; held below the ratio.
+  // Over a ball, and over a cylinder across the rope: a light rope of 24 links over its top,
+  // heavier at one end; held below the ratio.
   const int n = 24;
   const double radius = 0.5, angle = wrap / n, l = 2 * radius * std::sin(angle / 2);
-  const auto slip = [&](const std::string& solver, double ratio) {
+  const auto slip = [&](const std::string& solver, const Shape& shape, double ratio) {
     std::vector<Vec3> x;
     std::vector<Link> rods;
     std::vector<double> mass;
@@ -150,7 +155,7 @@ TAUT_TRUTH(capstan, 7, 4, "T2/T1 -> exp(mu phi) around a rough cylinder, order 2
       if (i > -2) rods.push_back({i + 1, i + 2, l});
     }
     Scene s = under_gravity(bare::scene(x, mass, rods));
-    s.colliders.push_back({Ball{Vec3::Zero(), radius}, {}, mu});
+    s.colliders.push_back({shape, {}, mu});
     s.dt = 1.0 / 1024;
     Simulation sim(s, solver, 256);
     return (sim.x(n / 2 + 2) - s.start.x[to_index(n / 2 + 2)]).norm();
@@ -159,9 +164,13 @@ TAUT_TRUTH(capstan, 7, 4, "T2/T1 -> exp(mu phi) around a rough cylinder, order 2
   Scene rough = above_plane(1, Vec3::UnitY(), mu);
   if (!can_run(findings, solver, rough)) return;
   const double ratio = reference::capstan_ratio(mu, wrap, angle);
-  const double held = slip(solver, 0.6 * ratio), slid = slip(solver, 1.6 * ratio);
+  const Shape ball = Ball{Vec3::Zero(), radius},
+              cylinder = Capsule{-Vec3::UnitZ(), Vec3::UnitZ(), radius};
+  const double held = slip(solver, ball, 0.6 * ratio), slid = slip(solver, ball, 1.6 * ratio);
   findings.holds(solver, "the rope slides ten times further at 1.6 of the ratio than at 0.6",
                  slid > 10 * held);
+  findings.equal(solver, "over a capsule it slides as far at 1.6 of the ratio", "m",
+                 slip(solver, cylinder, 1.6 * ratio), slid, 1e-9 * radius);
 }
 
 }  // namespace taut

@@ -111,6 +111,8 @@ TAUT_TRUTH(metric_penetration, 10, 4, "penetration is max(0, -signed distance)",
                  0.03, 1e-14);
   findings.equal("metric:penetration", "3 cm inside a box", "m",
                  depth(Box{Vec3::Zero(), Vec3(1, 0.5, 1)}), 0.03, 1e-14);
+  findings.equal("metric:penetration", "3 cm inside a capsule", "m",
+                 depth(Capsule{Vec3(-1, 0, 0), Vec3(1, 0, 0), 0.5}), 0.03, 1e-14);
   findings.below("metric:penetration", "none outside", "m", depth(Ball{Vec3(0, -1, 0), 0.5}), 0);
 }
 
@@ -131,6 +133,13 @@ TAUT_TRUTH(metric_faces, 10, 5,
                  measured("face.geometry", s, resting), radius - height, 1e-12);
   findings.below("metric:faces", "face.excess of the same face", "m",
                  std::abs(measured("face.excess", s, resting)), 1e-12);
+  // On a capsule with its axis along x: corners l apart across it, the third l along it.
+  const double across = std::sqrt(radius * radius - l * l / 4);
+  s.start.x = {Vec3(0, across, l / 2), Vec3(0, across, -l / 2), Vec3(l, across, l / 2)};
+  s.mesh.rest = s.start.x;
+  s.colliders = {{Capsule{Vec3(-1, 0, 0), Vec3(1, 0, 0), radius}, {}, 0}};
+  findings.equal("metric:faces", "face.max on a capsule, R - sqrt(R^2 - l^2/4)", "m",
+                 measured("face.max", s, {s.start, s.start}), radius - across, 1e-12);
 }
 
 TAUT_TRUTH(metric_tunnelling, 10, 6,
@@ -141,6 +150,9 @@ TAUT_TRUTH(metric_tunnelling, 10, 6,
   std::vector<State> states(2, s.start);
   for (Vec3& x : states[1].x) x.y() = -1;  // one through the middle, one past it
   findings.equal("metric:tunnelling", "tunnelling.count of one vertex through and one past", "1",
+                 measured("tunnelling.count", s, states), 1, 0);
+  s.colliders = {{Capsule{Vec3(-1, 0, 0), Vec3(1, 0, 0), 0.3}, {}, 0}};
+  findings.equal("metric:tunnelling", "the same of a capsule", "1",
                  measured("tunnelling.count", s, states), 1, 0);
 }
 

@@ -193,6 +193,16 @@ TEST(BulletContact, OnAThinBoxTheClothRestsAsOnAPlane) {
   EXPECT_NEAR(d.most, kThickness + 9.81 * scene.dt * scene.dt, 1e-4);
 }
 
+// Across its axis a capsule is what a ball is; along it, the top is level.
+TEST(BulletContact, AFinerDistanceFieldLetsTheClothLessIntoACapsule) {
+  const Scene scene = sheet_above({.shape = Capsule{{0, 0, -0.5}, {0, 0, 0.5}, 0.3}, .friction = 1},
+                                  {0, 0.33, 0}, Vec3::UnitX(), Vec3::UnitZ());
+  const double coarse = settle(scene, "bullet:iterations=10,voxel=0.25").least;
+  const double fine = settle(scene, "bullet:iterations=10,voxel=0.05").least;
+  EXPECT_LT(coarse, fine - 0.01);
+  EXPECT_GT(fine, 0);
+}
+
 TEST(BulletContact, AFinerDistanceFieldLetsTheClothLessIntoABall) {
   const Scene scene = sheet_above({.shape = Ball{{0, 0, 0}, 0.3}, .friction = 1}, {0, 0.33, 0},
                                   Vec3::UnitX(), Vec3::UnitZ());

@@ -59,6 +59,10 @@ class SceneComparison {
     } else if (const auto* ball = std::get_if<Ball>(&a)) {
       vector(what + ".center", ball->center, std::get<Ball>(b).center);
       number(what + ".radius", ball->radius, std::get<Ball>(b).radius);
+    } else if (const auto* capsule = std::get_if<Capsule>(&a)) {
+      vector(what + ".from", capsule->from, std::get<Capsule>(b).from);
+      vector(what + ".to", capsule->to, std::get<Capsule>(b).to);
+      number(what + ".radius", capsule->radius, std::get<Capsule>(b).radius);
     } else {
       const Box &p = std::get<Box>(a), &q = std::get<Box>(b);
       vector(what + ".center", p.center, q.center);

@@ -41,7 +41,10 @@ Scene everything() {
       {.shape = Plane{-Vec3::UnitY(), -9}, .motion = {.velocity = {0, -0.1, 0}}},
       {.shape = Ball{{0.1, 0.2, 0.3}, 0.4},
        .motion = {.spin = {0, 1, 0}, .pivot = {1, 0, 0}, .path = {{0.5, {1, 2, 3}}}}},
-      {.shape = Box{{-3, 0, 0.3}, {0.1, 0.2, 0.3}, turned}, .motion = {.spin = {0, 0, 2}}}};
+      {.shape = Box{{-3, 0, 0.3}, {0.1, 0.2, 0.3}, turned}, .motion = {.spin = {0, 0, 2}}},
+      {.shape = Capsule{{2, -0.3, 0.1}, {2.5, 0.4, 0.9}, 0.2},
+       .motion = {.velocity = {0, 1, 0}, .spin = {1, 0, 2}}},
+      {.shape = Capsule{{-2, 5, 0}, {-2, 4, 0}, 0.3}}};
   scene.wind = Wind{.velocity = {3, 0, 1}, .strength = 0.2, .law = Wind::Law::literal};
   scene.gravity = {0.5, -3.7, 0.1};
   scene.damping = 0.3;

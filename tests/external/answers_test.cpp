@@ -194,6 +194,7 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   scene.colliders = {{Plane{Vec3(0, 0.6, 0.8), -2}, {}, 0.5},
                      {Ball{Vec3(1, 2, 3), 4}, moving, 0.25},
                      {box, {}, 0}};
+  EXPECT_TRUE(beyond_first(scene).empty());
   scene.wind = Wind{Vec3(3, 2, 1), 0.5, Wind::Law::literal};
   scene.self_collision.emplace();
   scene.self_collision->radius = 0.125;
@@ -206,7 +207,20 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   EXPECT_EQ(file["format"], "taut-scene/2");
   EXPECT_EQ(file["stiffness"],
             (Json{{"structural", nullptr}, {"shear", 500.0}, {"bend", nullptr}}));
+  EXPECT_EQ(beyond_first(scene), std::vector<std::string>{"links of 500 N/m"});
   scene.stiffness = kRigid;
+  scene.colliders.push_back({Capsule{Vec3(1, 2, 3), Vec3(4, 5, 6), 7}, moving, 0.75});
+  EXPECT_EQ(beyond_first(scene), std::vector<std::string>{"a capsule"});
+  file = parse_json(scene_file(scene));
+  EXPECT_EQ(file["format"], "taut-scene/2");
+  EXPECT_FALSE(file.contains("stiffness"));
+  EXPECT_EQ(file["colliders"][3], (Json{{"type", "capsule"},
+                                        {"from", {1, 2, 3}},
+                                        {"to", {4, 5, 6}},
+                                        {"radius", 7},
+                                        {"friction", 0.75},
+                                        {"motion", motion}}));
+  scene.colliders.pop_back();
   file = parse_json(scene_file(scene));
   const auto expect = [&](const char* key, const Json& value) {
     EXPECT_EQ(file[key], value) << key;

@@ -84,13 +84,15 @@ class Maker:
         return moved
 
     def collider(self):
-        kind = self.random.choice(['plane', 'ball', 'box'])
+        kind = self.random.choice(['plane', 'ball', 'box', 'capsule'])
         one = {'type': kind, 'friction': self.random.choice([0, 0.5, 1000]), **self.motion()}
         if kind == 'plane':
             one.update(normal=self.vector(), offset=-self.log(0.01, 100))
+        elif kind == 'capsule':
+            one.update({end: self.vector(self.log(0.1, 10)) for end in ('from', 'to')})
         else:
             one['center'] = self.vector(self.log(0.1, 10))
-        if kind == 'ball':
+        if kind in ('ball', 'capsule'):
             one['radius'] = self.log(1e-3, 10)
         if kind == 'box':
             one.update(half_extents=[self.log(1e-3, 5) for _ in range(3)], rotation={'axis': self.vector(), 'angle': self.random.uniform(-180, 180)})

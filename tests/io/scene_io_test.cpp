@@ -192,8 +192,8 @@ duration = inf
             "x:4:12: 'size' in [cloth] must be at least 0 and at most 1e+06, not -1\n"
             "x:5:8: 'mass' in [cloth] must be at least 1e-09 and at most 1e+09, not 0\n"
             "x:7:9: 'shear' in [links] must be true or false, not a whole number\n"
-            "x:9:8: 'type' in [[collider]] must be \"plane\" or \"ball\" or \"box\", not \"bal\"; "
-            "did you mean 'ball'?\n"
+            "x:9:8: 'type' in [[collider]] must be \"plane\" or \"ball\" or \"box\" or "
+            "\"capsule\", not \"bal\"; did you mean 'ball'?\n"
             "x:11:6: 'dt' in [time] must be a number or a fraction such as \"1/64\", not the "
             "string \"soon\"\n"
             "x:12:12: 'duration' in [time] must be finite\n");
@@ -250,6 +250,12 @@ TEST(SceneFiles, EachKindOfBadInputIsNamed) {
        "unknown key 'normal'"},
       {"collider=[{ type = \"box\", center = [0, 0, 0], half_extents = [1, 0, 1] }]",
        "'half_extents' in [[collider]] must be greater than 0"},
+      {"collider=[{ type = \"capsule\", from = [0, 0, 0], radius = 1 }]", "missing key 'to'"},
+      {"collider=[{ type = \"capsule\", from = [0, 0, 0], to = [0, 1, 0], radius = 0 }]",
+       "'radius' in [[collider]] must be greater than 0"},
+      {"collider=[{ type = \"capsule\", from = [0, 0, 0], to = [0, 1, 0], radius = 1, center = "
+       "[0, 0, 0] }]",
+       "unknown key 'center'"},
       {"collider=[{ type = \"plane\", normal = [0, 0, 0] }]", "must not be zero"},
       {"collider=[{ type = \"plane\", path = [{ t = 1, displacement = [0, 0, 0] }, "
        "{ t = 1, displacement = [0, 0, 0] }] }]",
@@ -373,6 +379,11 @@ radius = 1
 type = "box"
 center = [0, -9, 0]
 half_extents = [1, 1, 1]
+[[collider]]
+type = "capsule"
+from = [0, -9, 0]
+to = [0, -9, 1]
+radius = 1
 [[pin_motion]]
 vertices = ["top-right"]
 path = [{ t = 1, displacement = [0, 0, 1] }]
@@ -384,9 +395,10 @@ std::string path_to(const std::string& key, const std::string& meaning) {
   const auto about = [&](const char* type) { return meaning.rfind(type, 0) == 0; };
   if (key.rfind("collider.", 0) == 0)
     return std::string("collider.") +
-           (about("ball")  ? "1"
-            : about("box") ? "2"
-                           : "0") +
+           (about("ball")      ? "1"
+            : about("box")     ? "2"
+            : about("capsule") ? "3"
+                               : "0") +
            key.substr(dot);
   return key.rfind("pin_motion.", 0) == 0 ? "pin_motion.0" + key.substr(dot) : key;
 }

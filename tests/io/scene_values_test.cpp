@@ -71,6 +71,11 @@ center = [-10, -20, -30]
 half_extents = [1, 2, 3]
 rotation = { axis = [0, 2, 0], angle = 60 }
 friction = 1.5
+[[collider]]
+type = "capsule"
+from = [-10, -20, -30]
+to = [-10, -22, -30]
+radius = 0.5
 [[pin_motion]]
 vertices = [2]
 velocity = [0, 1, 0]
@@ -124,7 +129,7 @@ TEST(SceneValues, OfWindCollidersAndMotionsAreThoseOfTheFile) {
   EXPECT_EQ(s.wind->velocity, Vec3(3, 4, 5));
   EXPECT_EQ(s.wind->strength, 0.75);
   EXPECT_EQ(s.wind->law, Wind::Law::literal);
-  ASSERT_EQ(s.colliders.size(), 3u);
+  ASSERT_EQ(s.colliders.size(), 4u);
   const auto& plane = std::get<Plane>(s.colliders[0].shape);
   expect_near(plane.normal, Vec3(0, 0.6, 0.8));
   EXPECT_EQ(plane.offset, -50);
@@ -147,6 +152,11 @@ TEST(SceneValues, OfWindCollidersAndMotionsAreThoseOfTheFile) {
   EXPECT_EQ(s.colliders[2].motion.pivot, box.center);
   EXPECT_EQ(s.colliders[2].friction, 1.5);
   expect_near(box.rotation * Vec3::UnitX(), Vec3(0.5, 0, -std::sqrt(0.75)));
+  const auto& capsule = std::get<Capsule>(s.colliders[3].shape);
+  EXPECT_EQ(capsule.from, Vec3(-10, -20, -30));
+  EXPECT_EQ(capsule.to, Vec3(-10, -22, -30));
+  EXPECT_EQ(capsule.radius, 0.5);
+  EXPECT_EQ(s.colliders[3].motion.pivot, Vec3(-10, -21, -30));
   ASSERT_EQ(s.pin_motions.size(), 1u);
   EXPECT_EQ(s.pin_motions[0].vertices, std::vector{2});
   EXPECT_EQ(s.pin_motions[0].motion.path.size(), 3u);

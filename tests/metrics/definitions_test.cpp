@@ -34,7 +34,9 @@ Scene irregular(Draw& draw) {
       {.shape = Ball{.center = {0.52, -0.1, 0.47}, .radius = 0.25},
        .motion = {.velocity = {0.02, 0.05, 0.01}}},
       {.shape = Box{.center = {0.22, 0.013, 0.77}, .half_extents = {0.1, 0.2, 0.3}},
-       .motion = {.velocity = {0.05, 0, -0.1}, .spin = {0, 0.3, 0.1}, .pivot = {0.2, 0, 0.7}}}};
+       .motion = {.velocity = {0.05, 0, -0.1}, .spin = {0, 0.3, 0.1}, .pivot = {0.2, 0, 0.7}}},
+      {.shape = Capsule{.from = {0.7, 0, 0.1}, .to = {0.9, 0.1, 0.8}, .radius = 0.15},
+       .motion = {.velocity = {0, 0.04, 0}, .spin = {0.2, 0, 0.1}, .pivot = {0.8, 0, 0.4}}}};
   scene.self_collision = SelfCollision{.radius = 0.07};
   scene.thickness = 0.013;
   scene.steps = 140;
@@ -279,7 +281,7 @@ TEST(Definitions, Penetration) {
     std::vector<double> all;
     for (const std::size_t i : r.free) {
       double depth = 0;
-      for (int c = 0; c < 3; ++c)
+      for (int c = 0; c < 4; ++c)
         if (kind < 0 || kind == c)
           depth = std::max(depth,
                            -signed_distance(shape_at(r.scene.colliders[to_index(c)], t), s.x[i]));
@@ -288,8 +290,8 @@ TEST(Definitions, Penetration) {
     return all;
   };
   int kind = -1;
-  for (const std::string name :
-       {"penetration", "penetration.plane", "penetration.ball", "penetration.box"}) {
+  for (const std::string name : {"penetration", "penetration.plane", "penetration.ball",
+                                 "penetration.box", "penetration.capsule"}) {
     const auto deepest = [&](const State& s, double t) {
       const auto all = depths(s, t, kind);
       return all.empty() ? 0 : std::ranges::max(all);
@@ -325,30 +327,33 @@ TEST(Definitions, Penetration) {
 TEST(Definitions, Faces) {
   const Recorded r;
   struct Depths {
-    double ball = 0, box = 0, geometry = 0, excess = 0;
+    double ball = 0, box = 0, capsule = 0, geometry = 0, excess = 0;
   };
   const auto depths = [&](const State& s, double t) {
     Depths d;
     const Shape ball = shape_at(r.scene.colliders[1], t), box = shape_at(r.scene.colliders[2], t);
-    const double radius = 0.25;
+    const Shape capsule = shape_at(r.scene.colliders[3], t);
     for (const Triangle& f : r.scene.mesh.triangles) {
       if (std::ranges::all_of(f, [&](int i) { return std::ranges::count(r.scene.pins, i) > 0; }))
         continue;
       const Corners c{s.x[to_index(f[0])], s.x[to_index(f[1])], s.x[to_index(f[2])]};
       d.box = std::max(d.box, deepest_in(std::get<Box>(box), c).depth);
-      const double depth = deepest_in(std::get<Ball>(ball), c).depth;
-      if (depth <= 0) continue;
-      d.ball = std::max(d.ball, depth);
-      const double hover = radius + 0.013, wide = std::min(enclosing_radius(c), hover),
-                   geometry = std::max(0.0, radius - std::sqrt(hover * hover - wide * wide));
-      d.geometry = std::max(d.geometry, std::min(depth, geometry));
-      d.excess = std::max(d.excess, depth - geometry);
+      const auto round = [&](double depth, double radius, double& deepest) {
+        if (depth <= 0) return;
+        deepest = std::max(deepest, depth);
+        const double hover = radius + 0.013, wide = std::min(enclosing_radius(c), hover),
+                     geometry = std::max(0.0, radius - std::sqrt(hover * hover - wide * wide));
+        d.geometry = std::max(d.geometry, std::min(depth, geometry));
+        d.excess = std::max(d.excess, depth - geometry);
+      };
+      round(deepest_in(std::get<Ball>(ball), c).depth, 0.25, d.ball);
+      round(deepest_in(std::get<Capsule>(capsule), c).depth, 0.15, d.capsule);
     }
     return d;
   };
   const auto any = [&](const State& s, double t) {
     const Depths d = depths(s, t);
-    return std::max(d.ball, d.box);
+    return std::max({d.ball, d.box, d.capsule});
   };
   const auto geometry = [&](const State& s, double t) { return depths(s, t).geometry; };
   const auto excess = [&](const State& s, double t) { return depths(s, t).excess; };
@@ -356,6 +361,7 @@ TEST(Definitions, Faces) {
   r.expect("face.peak", r.peak(any));
   r.expect("face.ball", r.max([&](const State& s, double t) { return depths(s, t).ball; }));
   r.expect("face.box", r.max([&](const State& s, double t) { return depths(s, t).box; }));
+  r.expect("face.capsule", r.max([&](const State& s, double t) { return depths(s, t).capsule; }));
   r.expect("face.geometry", r.max(geometry));
   r.expect("face.excess", r.max(excess));
   r.expect_now("face.max", any);

@@ -69,6 +69,12 @@ class Draw {
 inline double signed_distance(const Shape& shape, const Vec3& p) {
   if (const auto* plane = std::get_if<Plane>(&shape)) return plane->normal.dot(p) - plane->offset;
   if (const auto* ball = std::get_if<Ball>(&shape)) return (p - ball->center).norm() - ball->radius;
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    const Vec3 along = capsule->to - capsule->from, from = p - capsule->from;
+    if (along.dot(from) < 0) return from.norm() - capsule->radius;
+    if (along.dot(p - capsule->to) > 0) return (p - capsule->to).norm() - capsule->radius;
+    return along.cross(from).norm() / along.norm() - capsule->radius;
+  }
   const Box& box = std::get<Box>(shape);
   const Vec3 q = (box.rotation.inverse() * (p - box.center)).cwiseAbs() - box.half_extents;
   return q.maxCoeff() < 0 ? q.maxCoeff() : q.cwiseMax(0).norm();

@@ -317,6 +317,8 @@ struct Rigid {
       if (auto* ball = std::get_if<Ball>(&c.shape)) ball->center = point(ball->center);
       if (auto* box = std::get_if<Box>(&c.shape))
         box->center = point(box->center), box->rotation = turn * box->rotation;
+      if (auto* capsule = std::get_if<Capsule>(&c.shape))
+        capsule->from = point(capsule->from), capsule->to = point(capsule->to);
     }
     return s;
   }
@@ -332,7 +334,8 @@ Scene busy_scene() {
       {.shape = Plane{.normal = Vec3(0.1, 1, 0).normalized(), .offset = 0.02}},
       {.shape = Ball{.center = {0.52, -0.1, 0.47}, .radius = 0.2},
        .motion = {.velocity = {0, 1, 0}}},
-      {.shape = Box{.center = {0.22, 0.013, 0.77}, .half_extents = {0.1, 0.2, 0.3}}}};
+      {.shape = Box{.center = {0.22, 0.013, 0.77}, .half_extents = {0.1, 0.2, 0.3}}},
+      {.shape = Capsule{.from = {0.7, 0.02, 0.1}, .to = {0.9, -0.1, 0.3}, .radius = 0.12}}};
   scene.self_collision = SelfCollision{.radius = 0.05};
   scene.thickness = 0.003;
   scene.steps = 12;

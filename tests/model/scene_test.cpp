@@ -122,6 +122,20 @@ TEST(Surface, OfABallAndAPlane) {
   EXPECT_EQ(type_name(Box{}), "box");
 }
 
+TEST(Surface, OfACapsuleIsThatOfABallOnItsAxis) {
+  const Capsule capsule{{0, 0, 0}, {0, 0, 4}, 0.5};
+  expect_surface(capsule, {0.9, 1.2, 1}, 1, Vec3(0.6, 0.8, 0));
+  expect_surface(capsule, {0, 0.2, 3}, -0.3, Vec3::UnitY());
+  expect_surface(capsule, {0, 3, -4}, 4.5, Vec3(0, 0.6, -0.8));
+  expect_surface(capsule, {4, 0, 7}, 4.5, Vec3(0.8, 0, 0.6));
+  EXPECT_EQ(surface(capsule, {0, 0, 1}).distance, -0.5);
+  EXPECT_NEAR(surface(capsule, {0, 0, 1}).normal.z(), 0, 1e-15) << "out of its side";
+  const Capsule ball{{1, 2, 3}, {1, 2, 3}, 5};
+  expect_surface(ball, {1, 2, 3}, -5, Vec3::UnitY());
+  expect_surface(ball, {4, 2, 7}, 0, Vec3(0.6, 0, 0.8));
+  EXPECT_EQ(type_name(capsule), "capsule");
+}
+
 TEST(Motion, AlongAPathIsLinearBetweenItsKeysAndRestsOutside) {
   Motion m;
   EXPECT_TRUE(m.at_rest());
@@ -152,6 +166,11 @@ TEST(Motion, TurnsEveryShapeAboutItsPivot) {
   const auto box = std::get<Box>(shape_at(c, 1));
   EXPECT_LT((box.center - Vec3(3, 1, 0)).norm(), 1e-15);
   EXPECT_LT((box.rotation * Vec3::UnitX() + Vec3::UnitZ()).norm(), 1e-15);
+  c.shape = Capsule{{3, 0, 0}, {1, 0, 2}, 0.5};
+  const auto capsule = std::get<Capsule>(shape_at(c, 1));
+  EXPECT_LT((capsule.from - Vec3(1, 1, -2)).norm(), 1e-15);
+  EXPECT_LT((capsule.to - Vec3(3, 1, 0)).norm(), 1e-15);
+  EXPECT_EQ(capsule.radius, 0.5);
   c.shape = Plane{Vec3::UnitX(), 3};
   const auto plane = std::get<Plane>(shape_at(c, 1));
   EXPECT_LT((plane.normal + Vec3::UnitZ()).norm(), 1e-15);
@@ -169,7 +188,8 @@ Scene everything() {
   s.links = grid_links(s.mesh, {});
   s.colliders = {{.shape = Plane{}, .friction = 0.5},
                  {.shape = Ball{{1, 2, 3}, 4}},
-                 {.shape = Box{{1, 2, 3}, {4, 5, 6}}}};
+                 {.shape = Box{{1, 2, 3}, {4, 5, 6}}},
+                 {.shape = Capsule{{1, 2, 3}, {4, 5, 6}, 7}}};
   s.wind = Wind{.velocity = {1, 2, 3}, .strength = 0.5};
   s.self_collision = SelfCollision{0.25};
   s.damping = 0.5, s.thickness = 0.125, s.dt = 0.25, s.steps = 7;
@@ -207,6 +227,9 @@ TEST(Content, DiffersWithEveryMemberButTheLabels) {
       [](Scene& s) {
         std::get<Box>(s.colliders[2].shape).rotation = {0, 1, 0, 0};
       },
+      [](Scene& s) { std::get<Capsule>(s.colliders[3].shape).from.z() = 1; },
+      [](Scene& s) { std::get<Capsule>(s.colliders[3].shape).to.z() = 1; },
+      [](Scene& s) { std::get<Capsule>(s.colliders[3].shape).radius = 1; },
       [](Scene& s) { s.colliders.pop_back(); },
       [](Scene& s) { s.wind.reset(); },
       [](Scene& s) { s.wind->velocity.x() = 5; },

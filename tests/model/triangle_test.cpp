@@ -70,6 +70,26 @@ TEST(Triangle, DepthInABallIsThatOfSubdivision) {
   }
 }
 
+TEST(Triangle, DepthInACapsuleIsThatOfSubdivision) {
+  Random random(9);
+  int pierced = 0;
+  for (int k = 0; k < 100; ++k) {
+    const Corners t = random.corners(1);
+    Capsule capsule{random.point(0.5), random.point(0.5), 0.4};
+    if (k % 5 == 0) capsule.to = capsule.from + 0.3 * (t[1] - t[0]);  // along an edge
+    const double brute =
+        brute_force_max(t, [&](const Vec3& q) { return -surface(capsule, q).distance; });
+    const Deepest exact = deepest_in(capsule, t);
+    EXPECT_GE(exact.depth, brute - 1e-12);
+    EXPECT_NEAR(exact.depth, brute, 3.5 / 120);
+    EXPECT_NEAR(-surface(capsule, exact.at.position).distance, exact.depth, 1e-12);
+    EXPECT_NEAR(exact.at.weights.sum(), 1, 1e-12);
+    EXPECT_GE(exact.at.weights.minCoeff(), 0);
+    pierced += exact.depth > 0.4 - 1e-9;
+  }
+  EXPECT_GT(pierced, 5);
+}
+
 TEST(Triangle, DepthInABoxIsThatOfSubdivision) {
   Random random(3);
   int inside = 0;

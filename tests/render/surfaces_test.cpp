@@ -145,6 +145,15 @@ TEST(DrawnColliders, HaveTheirSizesLessTheInset) {
   EXPECT_NEAR(area(ball), 4 * pi * 0.16, 0.01);
   const RenderMesh kept = collider_mesh({Ball{Vec3::Zero(), 0.5}, {}, 0}, 0, {.inset = 0.4});
   EXPECT_NEAR(kept.position.front().norm(), 0.25, 1e-6) << "half of it at least";
+  const RenderMesh capsule =
+      collider_mesh({Capsule{Vec3(1, 2, 3), Vec3(1, 4, 3), 0.5}, {}, 0}, 0, {.inset = 0.1});
+  for (std::size_t i = 0; i < capsule.position.size(); ++i) {
+    const Vec3f& p = capsule.position[i];
+    const Vec3f out = p - Vec3f(1, std::clamp(p.y(), 2.0F, 4.0F), 3);
+    EXPECT_NEAR(out.norm(), 0.4, 1e-5);
+    EXPECT_LT((out / 0.4F - capsule.normal[i]).norm(), 1e-4);
+  }
+  EXPECT_NEAR(area(capsule), 4 * pi * 0.16 + 2 * pi * 0.4 * 2, 0.02);
   Box box;
   box.center = Vec3(1, 0, 0), box.half_extents = Vec3(0.5, 0.4, 0.3);
   RenderMesh sharp = collider_mesh({box, {}, 0}, 0, {.inset = 0.1});

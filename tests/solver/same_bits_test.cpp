@@ -101,7 +101,8 @@ TEST(SameBits, OfTethersForEveryInstructionSet) {
       }
 }
 
-/// A plane, a ball and a turned box that rises and spins, where the sheet falls past them.
+/// A plane, balls, a capsule and a turned box that rises and spins, where the sheet falls past
+/// them.
 std::vector<Collider> obstacles(const Scene& scene) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& x : scene.start.x) middle += x / static_cast<double>(scene.start.x.size());
@@ -111,7 +112,9 @@ std::vector<Collider> obstacles(const Scene& scene) {
   motion.velocity = {0, 2, 0}, motion.spin = {0, 3, 1}, motion.pivot = box.center;
   return {Collider{Plane{Vec3(1, 2, 2) / 3, Vec3(1, 2, 2).dot(middle) / 3 - 0.3}, {}, 0.5},
           Collider{Ball{middle + Vec3(-0.2, 0.1, 0), 0.2}, {}, 0.3}, Collider{box, motion, 0.8},
-          Collider{Ball{middle + Vec3(0, -0.3, 0), 0.15}, motion, 0}};
+          Collider{Ball{middle + Vec3(0, -0.3, 0), 0.15}, motion, 0},
+          Collider{Capsule{middle + Vec3(-0.3, -0.2, 0.1), middle + Vec3(0.1, -0.1, -0.1), 0.1},
+                   motion, 0.2}};
 }
 
 TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {

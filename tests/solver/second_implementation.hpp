@@ -57,6 +57,13 @@ inline Hit surface_at(const Collider& c, const Vec3& p, double t) {
     normal = plane->normal, distance = normal.dot(q) - plane->offset;
   } else if (const auto* ball = std::get_if<Ball>(&c.shape)) {
     normal = (q - ball->center).normalized(), distance = (q - ball->center).norm() - ball->radius;
+  } else if (const auto* capsule = std::get_if<Capsule>(&c.shape)) {
+    const Vec3 axis = (capsule->to - capsule->from).normalized();
+    const double along = axis.dot(q - capsule->from);
+    Vec3 out = q - capsule->from - along * axis;  // from the line
+    if (along < 0) out = q - capsule->from;
+    if (along > (capsule->to - capsule->from).norm()) out = q - capsule->to;
+    normal = out.normalized(), distance = out.norm() - capsule->radius;
   } else {
     const Box& box = std::get<Box>(c.shape);
     const Eigen::Matrix3d axes = box.rotation.toRotationMatrix();

@@ -108,7 +108,10 @@ std::vector<Collider> moving_colliders(double friction) {
            .motion = {.spin = {2, 0.5, -1},
                       .pivot = {0.8, -0.2, 0},
                       .path = {{0, {0, 0, 0}}, {0.5, {0, 0.1, 0.4}}}},
-           .friction = 0.5 * friction}};
+           .friction = 0.5 * friction},
+          {.shape = Capsule{{0.1, -0.7, 0.15}, {0.5, -0.8, 0.2}, 0.1},
+           .motion = {.velocity = {0, 0.1, -0.4}, .spin = {1, -2, 0.5}, .pivot = {0.3, -0.7, 0}},
+           .friction = 0.6 * friction}};
 }
 
 TEST(SecondImplementation, OfContactWithWhatMovesTurnsAndRubs) {

@@ -6,9 +6,10 @@
 
 namespace taut {
 
-/// Keeps the faces, not just their corners, out of a ball, and box edges and corners out of the
-/// faces. Of each face that is too deep, the deepest point is moved out along the surface's normal;
-/// its corners share the correction by their barycentric weights b and inverse masses w,
+/// Keeps the faces, not just their corners, out of a ball or a capsule, and box edges and corners
+/// out of the faces. Of each face that is too deep, the deepest point is moved out along the
+/// surface's normal; its corners share the correction by their barycentric weights b and inverse
+/// masses w,
 ///
 ///     dx_i = w_i b_i s n / sum of w_j b_j^2,
 ///
@@ -16,7 +17,7 @@ namespace taut {
 template <class Real>
 class FaceContactPass final : public Pass<Real> {
  public:
-  /// The collider is a ball or a box.
+  /// The collider is no plane.
   FaceContactPass(const Collider& collider, double thickness, std::vector<Triangle> faces)
       : collider_(collider), thickness_(thickness), faces_(std::move(faces)) {}
 
@@ -30,6 +31,11 @@ class FaceContactPass final : public Pass<Real> {
     if (Box* box = std::get_if<Box>(&shape_)) {
       box->half_extents.array() += thickness_;
       center_ = box->center, reach_ = box->half_extents.norm();
+    }
+    if (Capsule* capsule = std::get_if<Capsule>(&shape_)) {
+      capsule->radius += thickness_;
+      center_ = capsule->middle();
+      reach_ = (capsule->to - capsule->from).norm() / 2 + capsule->radius;
     }
   }
 
@@ -71,17 +77,21 @@ class FaceContactPass final : public Pass<Real> {
     return {deepest.depth * sides, box.rotation * out / sides, deepest.at};
   }
 
-  /// Precondition: a ball or a box.
+  /// Precondition: no plane.
   static Separation separation_of(const Shape& shape, const Corners& t) {
-    if (const Ball* ball = std::get_if<Ball>(&shape)) {
-      const Deepest deepest = deepest_in(*ball, t);
-      if (deepest.depth <= 0) return {};
-      return {deepest.depth, surface(*ball, deepest.at.position).normal, deepest.at};
-    }
+    if (const Ball* ball = std::get_if<Ball>(&shape)) return out_of(*ball, t);
+    if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return out_of(*capsule, t);
     const Box& box = std::get<Box>(shape);
     const Deepest deepest = deepest_in(box, t);
     if (deepest.depth <= 0) return {};
     return over_edge(box, deepest);
+  }
+
+  template <class Round>
+  static Separation out_of(const Round& shape, const Corners& t) {
+    const Deepest deepest = deepest_in(shape, t);
+    if (deepest.depth <= 0) return {};
+    return {deepest.depth, surface(shape, deepest.at.position).normal, deepest.at};
   }
 
   void push(Particles<Real>& p, const Triangle& face, const Separation& out) const {

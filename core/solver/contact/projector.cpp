@@ -18,6 +18,13 @@ BoxSurface<double> surface_of(const Box& box) {
           box.half_extents.norm()};
 }
 
+CapsuleSurface<double> surface_of(const Capsule& capsule) {
+  const Vec3 along = capsule.to - capsule.from;
+  const double length2 = along.squaredNorm();
+  return {vec3t<double>(capsule.from), vec3t<double>(along), length2 > 0 ? 1 / length2 : 0,
+          capsule.radius, vec3t<double>(capsule.beside())};
+}
+
 RigidMotion<double> rigid_motion(const Motion& motion, double t, double dt) {
   if (motion.at_rest()) return {};
   const Eigen::Matrix3d turn =
@@ -74,6 +81,9 @@ std::unique_ptr<Projector<Real>> make_projector(const Collider& collider, double
   if (std::holds_alternative<Ball>(collider.shape))
     return std::make_unique<ProjectorOf<Real, BallSurface>>(
         collider, thickness, continuous ? kernel.ball_continuous : kernel.ball);
+  if (std::holds_alternative<Capsule>(collider.shape))
+    return std::make_unique<ProjectorOf<Real, CapsuleSurface>>(
+        collider, thickness, continuous ? kernel.capsule_continuous : kernel.capsule);
   return std::make_unique<ProjectorOf<Real, BoxSurface>>(
       collider, thickness, continuous ? kernel.box_continuous : kernel.box);
 }

@@ -14,6 +14,7 @@ namespace taut {
 PlaneSurface<double> surface_of(const Plane&);
 BallSurface<double> surface_of(const Ball&);
 BoxSurface<double> surface_of(const Box&);
+CapsuleSurface<double> surface_of(const Capsule&);
 
 /// From time t to t + dt [s].
 RigidMotion<double> rigid_motion(const Motion&, double t, double dt);
@@ -46,6 +47,12 @@ BoxSurface<Real> rounded(const BoxSurface<double>& box) {
           rounded<Real>(box.half),
           {rounded<Real>(box.axes[0]), rounded<Real>(box.axes[1]), rounded<Real>(box.axes[2])},
           static_cast<Real>(box.far)};
+}
+template <class Real>
+CapsuleSurface<Real> rounded(const CapsuleSurface<double>& capsule) {
+  return {rounded<Real>(capsule.start), rounded<Real>(capsule.along),
+          static_cast<Real>(capsule.per_length2), static_cast<Real>(capsule.radius),
+          rounded<Real>(capsule.beside)};
 }
 template <class Real>
 RigidMotion<Real> rounded(const RigidMotion<double>& c) {

@@ -157,6 +157,7 @@ struct CollideKernels {
   Collide<Real, PlaneSurface> plane;
   Collide<Real, BallSurface> ball, ball_continuous;
   Collide<Real, BoxSurface> box, box_continuous;
+  Collide<Real, CapsuleSurface> capsule, capsule_continuous;
 };
 
 /// One tether of each particle, in the particles' layout: its pin and, where their x are, its

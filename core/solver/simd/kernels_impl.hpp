@@ -539,7 +539,9 @@ constexpr Kernels<Real> make_kernels() {
            .box =
                collide_aligned_or_not<Narrow, Wide, P, false, Real, BoxSurface, AlignedBoxSurface>,
            .box_continuous =
-               collide_aligned_or_not<Narrow, Wide, P, true, Real, BoxSurface, AlignedBoxSurface>},
+               collide_aligned_or_not<Narrow, Wide, P, true, Real, BoxSurface, AlignedBoxSurface>,
+           .capsule = collide<Narrow, Wide, P, false, Real, CapsuleSurface>,
+           .capsule_continuous = collide<Narrow, Wide, P, true, Real, CapsuleSurface>},
       .narrow_wind = wind_on_sheet<Narrow, kNarrow, Real>,
       .wide_wind = wind_on_sheet<Wide, kWide, Real>,
       .wind_on_faces = wind_on_faces<P, Real>,

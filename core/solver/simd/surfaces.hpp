@@ -9,6 +9,7 @@ namespace taut {
 struct Plane;
 struct Ball;
 struct Box;
+struct Capsule;
 
 /// The place of a surface to which a point belongs: the half-space normal . x >= offset.
 template <class T, class Normal = Vec3T<T>>
@@ -98,6 +99,56 @@ struct PlaneSurface {
   }
 };
 
+/// The sphere of a ball, or the one of a capsule that a point or a path has to do with; one in
+/// every lane.
+template <class T>
+struct SphereSurface {
+  Vec3T<T> center;
+  T radius;         ///< m
+  Vec3T<T> beside;  ///< the normal at its centre
+
+  [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
+    const T reach = radius + thickness;
+    return squared_norm(x - center) >= reach * reach;
+  }
+  /// Farther away than reach + way, without the roots and by more than they would be rounded.
+  [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
+    const T reach = radius + thickness, reach2 = reach * reach;
+    const T more = squared_norm(x - center) - reach2 - way2;
+    return more >= T(0) && more * more >= T(4.001) * reach2 * way2;
+  }
+  /// Both ends lie beyond the plane that touches the sphere towards `from`.
+  [[gnu::always_inline]] auto misses(const Vec3T<T>& from, const Vec3T<T>& to) const {
+    const Vec3T<T> a = from - center;
+    const T aa = squared_norm(a), ab = dot(a, to - center);
+    const T r2 = radius * radius;
+    return aa > r2 && ab > T(0) && ab * ab > r2 * aa;
+  }
+  [[gnu::always_inline]] Tangent<T> nearest(const Vec3T<T>& x) const {
+    const Vec3T<T> out = x - center;
+    const T distance = norm(out);
+    const auto apart = distance > T(0);
+    return tangent_at(select(apart, out / select(apart, distance, T(1)), beside));
+  }
+  [[gnu::always_inline]] Entry<T> entry(const Vec3T<T>& from, const Vec3T<T>& to) const {
+    using std::sqrt;
+    const Vec3T<T> a = from - center, d = to - from;
+    const T dd = squared_norm(d), ad = dot(a, d), above = squared_norm(a) - radius * radius;
+    const auto inside = above <= T(0);
+    const T discriminant = ad * ad - dd * above;
+    const auto ahead = !inside && ad < T(0) && discriminant > T(0);
+    const T root = sqrt(select(ahead, discriminant, T(1)));
+    const T share = above / select(ahead, root - ad, T(1));  // the nearer root, no cancellation
+    return {inside || (ahead && share <= T(1)),
+            select(inside, nearest(from), tangent_at((a + share * d) / radius))};
+  }
+
+ private:
+  [[gnu::always_inline]] Tangent<T> tangent_at(const Vec3T<T>& normal) const {
+    return {normal, dot(normal, center) + radius};
+  }
+};
+
 template <class Real>
 struct BallSurface {
   using Shape = Ball;
@@ -106,50 +157,96 @@ struct BallSurface {
 
   template <class T>
   [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
-    const T reach = T(radius) + thickness;
-    return squared_norm(x - spread_out<T>(center)) >= reach * reach;
+    return sphere<T>().clear(x, thickness);
   }
-  /// Farther away than reach + way, without the roots and by more than they would be rounded.
   template <class T>
   [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
-    const T reach = T(radius) + thickness, reach2 = reach * reach;
-    const T more = squared_norm(x - spread_out<T>(center)) - reach2 - way2;
-    return more >= T(0) && more * more >= T(4.001) * reach2 * way2;
+    return sphere<T>().beyond(x, way2, thickness);
   }
-  /// Both ends lie beyond the plane that touches the ball towards `from`.
   template <class T>
   [[gnu::always_inline]] auto misses(const Vec3T<T>& from, const Vec3T<T>& to) const {
-    const Vec3T<T> a = from - spread_out<T>(center);
-    const T aa = squared_norm(a), ab = dot(a, to - spread_out<T>(center));
-    const T r2 = T(radius * radius);
-    return aa > r2 && ab > T(0) && ab * ab > r2 * aa;
+    return sphere<T>().misses(from, to);
   }
   template <class T>
   [[gnu::always_inline]] Tangent<T> nearest(const Vec3T<T>& x) const {
-    const Vec3T<T> out = x - spread_out<T>(center);
-    const T distance = norm(out);
-    const auto apart = distance > T(0);
-    return tangent_at(
-        select(apart, out / select(apart, distance, T(1)), Vec3T<T>{T(0), T(1), T(0)}));
+    return sphere<T>().nearest(x);
   }
   template <class T>
   [[gnu::always_inline]] Entry<T> entry(const Vec3T<T>& from, const Vec3T<T>& to) const {
-    using std::sqrt;
-    const Vec3T<T> a = from - spread_out<T>(center), d = to - from;
-    const T dd = squared_norm(d), ad = dot(a, d), above = squared_norm(a) - T(radius * radius);
-    const auto inside = above <= T(0);
-    const T discriminant = ad * ad - dd * above;
-    const auto ahead = !inside && ad < T(0) && discriminant > T(0);
-    const T root = sqrt(select(ahead, discriminant, T(1)));
-    const T share = above / select(ahead, root - ad, T(1));  // the nearer root, no cancellation
-    return {inside || (ahead && share <= T(1)),
-            select(inside, nearest(from), tangent_at((a + share * d) / T(radius)))};
+    return sphere<T>().entry(from, to);
   }
 
  private:
   template <class T>
-  [[gnu::always_inline]] Tangent<T> tangent_at(const Vec3T<T>& normal) const {
-    return {normal, dot(normal, spread_out<T>(center)) + T(radius)};
+  [[gnu::always_inline]] SphereSurface<T> sphere() const {
+    return {spread_out<T>(center), T(radius), {T(0), T(1), T(0)}};
+  }
+};
+
+/// Every place of its surface is one of a sphere about a point of its axis.
+template <class Real>
+struct CapsuleSurface {
+  using Shape = Capsule;
+  Vec3T<Real> start, along;  ///< m, one end of the axis, and from there to the other
+  Real per_length2;          ///< 1/m^2, 1 / along . along; 0 if it has no length
+  Real radius;               ///< m
+  Vec3T<Real> beside;        ///< unit, across the axis
+
+  template <class T>
+  [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
+    return nearest_sphere(x).clear(x, thickness);
+  }
+  template <class T>
+  [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
+    return nearest_sphere(x).beyond(x, way2, thickness);
+  }
+  /// The plane that touches the sphere nearest to `from` touches the whole capsule.
+  template <class T>
+  [[gnu::always_inline]] auto misses(const Vec3T<T>& from, const Vec3T<T>& to) const {
+    return nearest_sphere(from).misses(from, to);
+  }
+  template <class T>
+  [[gnu::always_inline]] Tangent<T> nearest(const Vec3T<T>& x) const {
+    return nearest_sphere(x).nearest(x);
+  }
+  template <class T>
+  [[gnu::always_inline]] Entry<T> entry(const Vec3T<T>& from, const Vec3T<T>& to) const {
+    return entered_sphere(from, to).entry(from, to);
+  }
+
+ private:
+  template <class T>
+  [[gnu::always_inline]] T share_of(const Vec3T<T>& way) const {
+    return dot(way, spread_out<T>(along)) * T(per_length2);
+  }
+  template <class T>
+  [[gnu::always_inline]] SphereSurface<T> sphere_at(T share) const {
+    return {spread_out<T>(start) + lesser(greater(share, T(0)), T(1)) * spread_out<T>(along),
+            T(radius), spread_out<T>(beside)};
+  }
+  template <class T>
+  [[gnu::always_inline]] SphereSurface<T> nearest_sphere(const Vec3T<T>& x) const {
+    return sphere_at(share_of(x - spread_out<T>(start)));
+  }
+  /// The sphere by which a straight path comes in. A path from outside the endless cylinder about
+  /// the axis enters that first: there, if it is between the ends, else by the end to that side,
+  /// for on its way to the other it would be inside. One from within the cylinder has only the
+  /// end that is nearest to it.
+  template <class T>
+  [[gnu::always_inline]] SphereSurface<T> entered_sphere(const Vec3T<T>& from,
+                                                         const Vec3T<T>& to) const {
+    using std::sqrt;
+    const Vec3T<T> a = from - spread_out<T>(start), d = to - from;
+    const T a_share = share_of(a), d_share = share_of(d);
+    const Vec3T<T> a_out = a - a_share * spread_out<T>(along),
+                   d_out = d - d_share * spread_out<T>(along);
+    const T dd = squared_norm(d_out), ad = dot(a_out, d_out);
+    const T above = squared_norm(a_out) - T(radius * radius);
+    const T discriminant = ad * ad - dd * above;
+    const auto ahead = above > T(0) && ad < T(0) && discriminant > T(0);
+    const T root = sqrt(select(ahead, discriminant, T(1)));
+    const T enters = above / select(ahead, root - ad, T(1));
+    return sphere_at(select(ahead, a_share + enters * d_share, a_share));
   }
 };
 

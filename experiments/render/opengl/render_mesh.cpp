@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/model/index.hpp"
@@ -250,9 +251,30 @@ RenderMesh plane_mesh(const Plane& plane, double inset, const Vec3& centre, doub
   return mesh;
 }
 
+/// A ball whose halves are apart.
+RenderMesh capsule_mesh(const Capsule& capsule, double inset) {
+  constexpr int kSegments = 72, kRings = kSegments / 2;
+  const double radius = std::max(capsule.radius - inset, 0.5 * capsule.radius);
+  const Vec3 side = capsule.beside(), along = capsule.to - capsule.from;
+  const Vec3 up = along.isZero(0) ? Vec3(Vec3::UnitX()) : along.normalized();
+  const Vec3 other = side.cross(up);
+  RenderMesh mesh;
+  append_surface(mesh, kRings + 1, kSegments, 0, [&](int j, int i) {
+    const bool upper = j <= kRings / 2;  // the middle ring is there twice
+    const double down = std::numbers::pi * (upper ? j : j - 1) / kRings;
+    const double turn = 2 * std::numbers::pi * i / kSegments;
+    const Vec3 out =
+        std::cos(down) * up + std::sin(down) * (std::cos(turn) * side + std::sin(turn) * other);
+    return std::pair<Vec3f, Vec3f>(
+        ((upper ? capsule.to : capsule.from) + radius * out).cast<float>(), out.cast<float>());
+  });
+  return mesh;
+}
+
 /// The depth [m] up to which it is clear on which side of the collider cloth belongs.
 double liftable(const Ball& ball, const Scene&) { return 0.2 * ball.radius; }
 double liftable(const Box& box, const Scene&) { return 0.2 * box.half_extents.minCoeff(); }
+double liftable(const Capsule& capsule, const Scene&) { return 0.2 * capsule.radius; }
 double liftable(const Plane&, const Scene& scene) { return 0.04 * extent(scene); }
 
 }  // namespace
@@ -261,6 +283,7 @@ RenderMesh collider_mesh(const Collider& collider, double t, const ColliderLook&
   const Shape shape = shape_at(collider, t);
   if (const auto* ball = std::get_if<Ball>(&shape)) return ball_mesh(*ball, look.inset);
   if (const auto* box = std::get_if<Box>(&shape)) return box_mesh(*box, look.inset, look.rounding);
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule_mesh(*capsule, look.inset);
   return plane_mesh(std::get<Plane>(shape), look.inset, look.centre, look.reach);
 }
 

@@ -64,6 +64,9 @@ std::vector<Vec3> collider_points(const Collider& collider, double t) {
         const Vec3 corner(x, y, z);
         if (const auto* ball = std::get_if<Ball>(&shape); ball && corner.norm() > 0)
           points.push_back(ball->center + ball->radius * corner.normalized());
+        if (const auto* capsule = std::get_if<Capsule>(&shape); capsule && corner.norm() > 0)
+          for (const Vec3& end : {capsule->from, capsule->to})
+            points.push_back(end + capsule->radius * corner.normalized());
         if (const auto* box = std::get_if<Box>(&shape))
           points.push_back(box->center + box->rotation * box->half_extents.cwiseProduct(corner));
       }

@@ -56,6 +56,8 @@ Scene touching_nothing(Scene scene) {
     if (auto* const plane = std::get_if<Plane>(&c.shape)) plane->offset -= kFar;
     if (auto* const ball = std::get_if<Ball>(&c.shape)) ball->center.y() -= kFar;
     if (auto* const box = std::get_if<Box>(&c.shape)) box->center.y() -= kFar;
+    if (auto* const capsule = std::get_if<Capsule>(&c.shape))
+      capsule->from.y() -= kFar, capsule->to.y() -= kFar;
   }
   return scene;
 }

@@ -88,8 +88,9 @@ TEST(Contact, AtRestAStepSinksByGDt2BeforeTheProjection) {
 TEST(Contact, ThicknessIsKept) {
   Scene scene = points({0, 0.2, 0}, 9);
   scene.thickness = 0.01;
-  for (const Shape& shape : {Shape(Plane{}), Shape(Ball{{0, -0.2, 0}, 0.3}),
-                             Shape(Box{{0, -0.2, 0}, {0.3, 0.3, 0.3}})}) {
+  for (const Shape& shape :
+       {Shape(Plane{}), Shape(Ball{{0, -0.2, 0}, 0.3}), Shape(Box{{0, -0.2, 0}, {0.3, 0.3, 0.3}}),
+        Shape(Capsule{{-0.2, -0.2, 0.1}, {0.3, -0.1, 0}, 0.25})}) {
     scene.colliders = {{.shape = shape}};
     Runner run(scene, "");
     double least = 0;
@@ -278,6 +279,37 @@ TEST(FaceContact, LiftsTheFaceToTheBallAndNoFurther) {
   EXPECT_NEAR(deepest_in(ball, {settled.x[0], settled.x[1], settled.x[2]}).depth, -0.005, 1e-9);
 }
 
+TEST(FaceContact, LiftsTheFaceOffACapsule) {
+  for (const Vec3& tip : {Vec3(0.3, -0.2, -0.1), Vec3(0.05, -0.7, 0.02)}) {  // lies; stands
+    const Capsule capsule{{0.05, -0.19, 0.02}, tip, 0.2};
+    Scene scene = one_face({.shape = capsule});
+    EXPECT_EQ(Runner(scene, "").step().x[0].y(), 0);  // no vertex is inside
+    scene.thickness = 0.005;
+    const State settled = Runner(scene, ",faces=on,iterations=40").step();
+    EXPECT_NEAR(deepest_in(capsule, {settled.x[0], settled.x[1], settled.x[2]}).depth, -0.005,
+                1e-6);
+  }
+}
+
+// Whatever it meets and does, in every response: the same path to rounding.
+TEST(Contact, ACapsuleOfNoLengthIsABall) {
+  Scene scene = points({0, 0.3, 0}, 9);
+  scene.links = grid_links(scene.mesh, {.structural = true, .shear = true});
+  scene.thickness = 0.01;
+  const Vec3 center(0.1, -0.1, 0.05);
+  const Motion motion{.velocity = {0.3, 0.5, 0}, .spin = {1, 0, 2}, .pivot = {0.2, 0, 0}};
+  for (const char* how :
+       {"continuous", "continuous,faces=on", "discrete", "before", "after", "freeze", "halt"}) {
+    const auto run = [&](const Shape& shape) {
+      scene.colliders = {{.shape = shape, .motion = motion, .friction = 0.4}};
+      return Runner(scene, ",substeps=1,iterations=6,contact=" + std::string(how)).step(20);
+    };
+    const State ball = run(Ball{center, 0.3}), capsule = run(Capsule{center, center, 0.3});
+    for (std::size_t i = 0; i < ball.x.size(); ++i)
+      ASSERT_LT((ball.x[i] - capsule.x[i]).norm(), 1e-12) << how << " vertex " << i;
+  }
+}
+
 TEST(FaceContact, ABoxCornerLeavesTheFaceOverTheCorner) {
   Box box{{0, -0.5, 0}, {0.3, 0.3, 0.3}};  // stands on one corner, the other 0.02 m above y = 0
   box.rotation.setFromTwoVectors(Vec3(1, 1, 1), Vec3::UnitY());
@@ -383,6 +415,13 @@ TEST(Contact, ClosedFormsAgreeWithTheModelAndWithMarching) {
   expect_model_surface<PlaneSurface>(Plane{Vec3(1, 2, 2) / 3, 0.2});
   expect_model_surface<BallSurface>(ball);
   expect_model_surface<BoxSurface>(box);
+  const Capsule capsule{{0.3, -0.2, 0.05}, {-0.4, 0.1, 0.2}, 0.3},
+      upright{{0.1, -0.3, 0}, {0.1, 0.5, 0}, 0.2}, point{ball.center, ball.center, ball.radius};
+  for (const Capsule& one : {capsule, upright, point}) {
+    expect_model_surface<CapsuleSurface>(one);
+    expect_beyond_is_outside<CapsuleSurface>(one);
+    expect_first_hit<CapsuleSurface>(one);
+  }
   expect_beyond_is_outside<BallSurface>(ball);
   expect_beyond_is_outside<BoxSurface>(box);
   expect_first_hit<BallSurface>(ball);

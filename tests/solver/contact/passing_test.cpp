@@ -1,4 +1,4 @@
-// Points that a ball or a box meets within a step, whatever both do, against a second
+// Points that a ball, a box or a capsule meets within a step, whatever both do, against a second
 // implementation in the solid's own frame: the side where a path enters is the side where it stays.
 #include <gtest/gtest.h>
 
@@ -17,7 +17,27 @@ struct Push {
   Vec3 normal = Vec3::Zero();
 };
 
-/// Where a path from a to b, outside, enters a ball or box at rest about the origin.
+/// Where the path enters a convex solid: by bisection from its point that is nearest to the solid
+/// or deepest in it, which a search by thirds finds.
+std::optional<Vec3> searched_normal(const Shape& shape, const Vec3& a, const Vec3& b) {
+  const auto at = [&](double s) {
+    return second::surface_at({.shape = shape}, a + s * (b - a), 0);
+  };
+  double low = 0, high = 1;
+  for (int k = 0; k < 200; ++k) {
+    const double third = (high - low) / 3;
+    if (at(low + third).distance < at(high - third).distance)
+      high -= third;
+    else
+      low += third;
+  }
+  if (at(low).distance >= 0) return {};
+  high = low, low = 0;
+  for (int k = 0; k < 100; ++k) (at((low + high) / 2).distance > 0 ? low : high) = (low + high) / 2;
+  return at(low).normal;
+}
+
+/// Where a path from a to b, outside, enters a solid at rest about the origin.
 std::optional<Vec3> entry_normal(const Shape& shape, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;
   if (const auto* ball = std::get_if<Ball>(&shape)) {
@@ -28,6 +48,7 @@ std::optional<Vec3> entry_normal(const Shape& shape, const Vec3& a, const Vec3& 
     if (s < 0 || s > 1) return {};
     return (a + s * d).normalized();
   }
+  if (std::holds_alternative<Capsule>(shape)) return searched_normal(shape, a, b);
   const Vec3 h = std::get<Box>(shape).half_extents;
   double in = -1e300, out = 1;
   Vec3 normal = Vec3::Zero();
@@ -47,8 +68,11 @@ Push out_of(const Shape& shape, double thickness, const Vec3& b, const std::opti
     const second::Hit now = second::surface_at({.shape = shape}, b, 0);
     return {thickness - now.distance, now.normal};
   }
-  const auto* box = std::get_if<Box>(&shape);
-  const double reach = box ? box->half_extents.dot(back->cwiseAbs()) : std::get<Ball>(shape).radius;
+  double reach = 0;
+  if (const auto* ball = std::get_if<Ball>(&shape)) reach = ball->radius;
+  if (const auto* box = std::get_if<Box>(&shape)) reach = box->half_extents.dot(back->cwiseAbs());
+  if (const auto* capsule = std::get_if<Capsule>(&shape))
+    reach = capsule->radius + std::max(back->dot(capsule->from), back->dot(capsule->to));
   return {reach + thickness - back->dot(b), *back};
 }
 
@@ -83,6 +107,8 @@ std::pair<int, int> thrown(const Shape& shape, const Vec3& center, const Motions
   if (auto* ball = std::get_if<Ball>(&placed.shape)) ball->center = center;
   if (auto* box = std::get_if<Box>(&placed.shape))
     box->center = center, box->rotation = motions.turn;
+  if (auto* capsule = std::get_if<Capsule>(&placed.shape))
+    capsule->from += center, capsule->to += center;
   /// In the solid's own frame, of the point of it that is at p at time t.
   const auto own = [&](const Vec3& p, double t) -> Vec3 {
     const Vec3 q = second::started(placed.motion, p, t) - center;
@@ -133,7 +159,8 @@ TEST(Passing, PointsStayOnTheSideWhereTheyCameIn) {
   const Vec3 center(0.3, -0.2, 0.1);
   const auto turn = Eigen::Quaterniond(0.8, 0.3, -0.5, 0.2).normalized();
   for (const Shape& shape :
-       {Shape(Ball{Vec3::Zero(), 0.35}), Shape(Box{Vec3::Zero(), {0.5, 0.12, 0.25}})})
+       {Shape(Ball{Vec3::Zero(), 0.35}), Shape(Box{Vec3::Zero(), {0.5, 0.12, 0.25}}),
+        Shape(Capsule{{-0.3, 0.1, 0.05}, {0.3, -0.1, -0.05}, 0.3})})
     for (const Motions& motions :
          {Motions{Eigen::Quaterniond::Identity(), {3, -2, 7}, Vec3::Zero()},
           Motions{turn, {20, -6, 9}, Vec3::Zero()}, Motions{turn, {5, 9, -7}, {9, 20, -30}}})
