@@ -9,6 +9,8 @@
 // alpha [m/N] is the inverse of a spring constant. The arithmetic is compliant_excess
 // (core/solver/simd/distance.hpp), the step core/solver/loop.cpp; with alpha = 0 every bit is that
 // of jakobsen:projection=exact.
+#include <algorithm>
+
 #include "core/model/text.hpp"
 #include "core/solver/constraints/relaxation.hpp"
 #include "core/solver/loop.hpp"
@@ -45,17 +47,19 @@ template <class Real>
 loop::Links<Real> make_links(const loop::Setup& setup) {
   const Params& params = setup.params;
   const double h = setup.scene.dt / params.integer("substeps");
-  RelaxationSettings settings{
-      .projection = Projection::exact,
-      .order = params.one_of("order", kOrders),
-      .seed = static_cast<std::uint32_t>(params.integer("seed")),
-      .layout = params.one_of("layout", kLayouts),
-      .multipliers = RelaxationSettings::Multipliers{compliances(setup.scene, params),
-                                                     params.is("multipliers", "keep")},
-      .simd = setup.simd};
-  for (double& compliance : settings.multipliers->compliances) compliance /= h * h;
-  Relaxation<Real> links = make_relaxation<Real>(setup.scene, setup.w, settings, setup.pool);
-  return {.layout = std::move(links.layout), .pass = std::move(links.pass)};
+  Compliances links{.over_h2 = compliances(setup.scene, params)};
+  for (double& compliance : links.over_h2) compliance /= h * h;
+  // One sweep finds every multiplier at 0, where it is not needed.
+  links.multipliers = params.is("multipliers", "keep") && params.integer("iterations") > 1 &&
+                      std::ranges::any_of(links.over_h2, [](double a) { return a > 0; });
+  const RelaxationSettings settings{.projection = Projection::exact,
+                                    .order = params.one_of("order", kOrders),
+                                    .seed = static_cast<std::uint32_t>(params.integer("seed")),
+                                    .layout = params.one_of("layout", kLayouts),
+                                    .compliances = links,
+                                    .simd = setup.simd};
+  Relaxation<Real> sweep = make_relaxation<Real>(setup.scene, setup.w, settings, setup.pool);
+  return {.layout = std::move(sweep.layout), .pass = std::move(sweep.pass)};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {

@@ -60,17 +60,15 @@ template <class Real>
 class CompliantGaussSeidelPass final : public Pass<Real> {
  public:
   CompliantGaussSeidelPass(std::vector<CompliantConstraint<Real>> constraints,
-                           std::vector<PassCost> costs, bool kept)
+                           std::vector<PassCost> costs)
       : constraints_(std::move(constraints)),
         multipliers_(constraints_.size()),
-        costs_(std::move(costs)),
-        kept_(kept) {}
+        costs_(std::move(costs)) {}
 
   void begin(Particles<Real>&, double, double) override {
     std::ranges::fill(multipliers_, Real(0));
   }
-  void apply(Particles<Real>& p, double t, double dt) override {
-    if (!kept_) begin(p, t, dt);
+  void apply(Particles<Real>& p, double, double) override {
     Real* const x = p.x.data();
     for (std::size_t i = 0; i < constraints_.size(); ++i) {
       const CompliantConstraint<Real>& c = constraints_[i];
@@ -91,7 +89,6 @@ class CompliantGaussSeidelPass final : public Pass<Real> {
   std::vector<CompliantConstraint<Real>> constraints_;
   std::vector<Real> multipliers_;  ///< m; compliance / h^2 times XPBD's lambda
   std::vector<PassCost> costs_;
-  bool kept_;
 };
 
 /// One Jacobi sweep: every link sees the particles as they were when the sweep began.
@@ -149,8 +146,7 @@ class ColouredPass final : public Pass<Real> {
       : links_(std::move(links)),
         costs_(std::move(costs)),
         projection_(settings.projection),
-        compliant_(settings.multipliers.has_value()),
-        kept_(compliant_ && settings.multipliers->kept),
+        compliant_(settings.compliances.multipliers),
         kernels_(kernels<Real>(settings.simd)),
         pool_(pool) {}
 
@@ -158,7 +154,7 @@ class ColouredPass final : public Pass<Real> {
   void begin(Particles<Real>&, double, double) override { keep_ = Real(0); }
   void apply(Particles<Real>& p, double, double) override {
     sweep(links_, p);
-    if (kept_) keep_ = Real(1);
+    keep_ = Real(1);
   }
   bool queues() const override { return std::is_same_v<Links<Real>, InterleavedSheet<Real>>; }
 
@@ -207,8 +203,8 @@ class ColouredPass final : public Pass<Real> {
   Links<Real> links_;
   std::vector<PassCost> costs_;
   Projection projection_;
-  bool compliant_, kept_;
-  Real keep_ = 0;  ///< what the next sweep multiplies the multipliers by
+  bool compliant_;  ///< some links have multipliers
+  Real keep_ = 0;   ///< what the next sweep multiplies the multipliers by
   const Kernels<Real>& kernels_;
   ThreadPool& pool_;
 };
@@ -229,14 +225,14 @@ template <class Real, Projection kind>
 std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const double> w,
                                             const RelaxationSettings& settings) {
   const std::vector<Link> links = ordered(scene, settings.order, settings.seed);
-  if (settings.multipliers) {
-    auto compliant = make_compliant_constraints<Real>(links, w, settings.omega,
-                                                      settings.multipliers->compliances);
+  if (settings.compliances.multipliers) {
+    auto compliant =
+        make_compliant_constraints<Real>(links, w, settings.omega, settings.compliances);
     auto costs = family_costs(links, w, compliant.size() * (sizeof compliant[0] + sizeof(Real)));
-    return std::make_unique<CompliantGaussSeidelPass<Real>>(std::move(compliant), std::move(costs),
-                                                            settings.multipliers->kept);
+    return std::make_unique<CompliantGaussSeidelPass<Real>>(std::move(compliant), std::move(costs));
   }
-  auto constraints = make_distance_constraints<Real>(links, w, settings.omega);
+  auto constraints =
+      make_distance_constraints<Real>(links, w, settings.omega, settings.compliances);
   auto costs = family_costs(links, w, constraints.size() * sizeof constraints[0]);
   if (settings.jacobi)
     return std::make_unique<JacobiPass<Real, kind>>(*settings.jacobi, std::move(constraints),
@@ -258,8 +254,6 @@ Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
                     : make_sequential<Real, Projection::sqrt_free>(scene, w, settings);
     return {Layout::packed(n), std::move(pass)};
   }
-  const Compliances compliances =
-      settings.multipliers ? settings.multipliers->compliances : Compliances{};
   const auto coloured = [&]<template <class> class Links>(Layout layout, Links<Real> sweep) {
     auto costs = family_costs(scene.links, w, sweep.bytes());
     return Relaxation<Real>{std::move(layout),
@@ -268,10 +262,10 @@ Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
   };
   if (const auto links = regular(scene, settings.layout))
     return coloured(interleaved_layout(links->grid),
-                    InterleavedSheet<Real>(*links, w, settings.omega, compliances));
+                    InterleavedSheet<Real>(*links, w, settings.omega, settings.compliances));
   Layout layout = Layout::packed(n, tile_ranks(scene.mesh));
   ColourBatches<Real> batches(colour(scene.links, scene.mesh), w, settings.omega, layout,
-                              compliances);
+                              settings.compliances);
   return coloured(std::move(layout), std::move(batches));
 }
 

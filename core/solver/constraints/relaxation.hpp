@@ -55,14 +55,9 @@ struct RelaxationSettings {
   Order order = Order::coloured;
   std::uint32_t seed = 1;  ///< of Order::random
   LinkLayout layout = LinkLayout::automatic;
-  double omega = 1;  ///< relaxation factor: the share of a correction that is made
-  int levels = 1;    ///< of the hierarchy; 1: the cloth alone
-  /// XPBD: links with multipliers, projected exactly; not with `jacobi`.
-  struct Multipliers {
-    Compliances compliances;
-    bool kept = true;  ///< within a substep; else each sweep begins with 0
-  };
-  std::optional<Multipliers> multipliers;
+  double omega = 1;         ///< relaxation factor: the share of a correction that is made
+  int levels = 1;           ///< of the hierarchy; 1: the cloth alone
+  Compliances compliances;  ///< XPBD's: projected exactly; not with `jacobi`
   Simd simd = Simd::scalar;
 };
 

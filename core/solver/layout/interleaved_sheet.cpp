@@ -104,9 +104,10 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
   for (std::size_t d = 0; d < links.directions.size(); ++d) {
     const auto& [columns, rows, family, rest] = links.directions[d];
     SheetDirection<Real>& to = sweep_.direction[d];
-    const double soft = compliances[static_cast<std::size_t>(family)];
+    const double soft = compliances.over_h2[static_cast<std::size_t>(family)];
+    const bool kept = soft > 0 && compliances.multipliers;
     auto& multipliers = multipliers_.emplace_back();
-    if (soft > 0) multipliers.resize(to_index(grid.rows - rows) * to_index(sweep_.vectors * lanes));
+    if (kept) multipliers.resize(to_index(grid.rows - rows) * to_index(sweep_.vectors * lanes));
     to = {.left = columns < 0 ? rows : 0,
           .right = columns < 0 ? 0 : rows,
           .columns = std::abs(columns),
@@ -114,7 +115,7 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
           .rest = static_cast<Real>(std::max(rest, kTinyLength)),
           .equal_share = 0,
           .multiplier_share = 0,
-          .multipliers = soft > 0 ? multipliers.data() : nullptr,
+          .multipliers = kept ? multipliers.data() : nullptr,
           .row = nullptr};
     // Equal shares, and their multipliers', by how many links have them.
     std::map<std::pair<Real, Real>, int> votes;
@@ -126,7 +127,7 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
       return {static_cast<Real>(omega * (wl / all)), static_cast<Real>(omega * (wr / all)),
               static_cast<Real>(soft / all)};
     };
-    const int ends = soft > 0 ? 3 : 2;
+    const int ends = kept ? 3 : 2;
     for (int j = 0; j < to.rows; ++j) {
       std::vector<Real> row(to_index(ends * lanes * sweep_.vectors), Real(0));
       for (int i = 0; i + to.columns < grid.columns; ++i) {

@@ -19,14 +19,18 @@ struct DistanceConstraint {
   Real share_a = 0, share_b = 0;  ///< of the correction; see project_distance
 };
 
-/// A link that may comply: share, of its multiplier; see compliant_excess.
+/// A link that may comply: share, of its multiplier, 0: it has none; see compliant_excess.
 template <class Real>
 struct CompliantConstraint : DistanceConstraint<Real> {
   Real share = 0;
 };
 
-/// Compliance over the square of a substep [1/kg], by family; 0: rigid.
-using Compliances = std::array<double, kFamilies.size()>;
+/// How links comply. Multipliers that every sweep finds at 0 need not be there: without them a link
+/// of shares w/(w1 + w2 + a) is projected as a rigid one is.
+struct Compliances {
+  std::array<double, kFamilies.size()> over_h2{};  ///< of a substep [1/kg], by family; 0: rigid
+  bool multipliers = false;                        ///< XPBD's, kept from sweep to sweep
+};
 
 /// Whether the link has two ends and at least one of them can move. w: inverse masses [1/kg].
 inline bool moves(const Link& link, std::span<const double> w) {
@@ -45,19 +49,20 @@ std::vector<CompliantConstraint<Real>> make_compliant_constraints(std::span<cons
   for (const Link& link : links) {
     const double wa = w[static_cast<std::size_t>(link.a)], wb = w[static_cast<std::size_t>(link.b)];
     if (!moves(link, w)) continue;
-    const double soft = compliances[static_cast<std::size_t>(link.family)], all = wa + wb + soft;
+    const double soft = compliances.over_h2[static_cast<std::size_t>(link.family)],
+                 all = wa + wb + soft;
     constraints.push_back(
         {{link.a, link.b, static_cast<Real>(std::max(link.rest, kTinyLength)),
           static_cast<Real>(omega * (wa / all)), static_cast<Real>(omega * (wb / all))},
-         static_cast<Real>(soft / all)});
+         static_cast<Real>(compliances.multipliers ? soft / all : 0)});
   }
   return constraints;
 }
 template <class Real>
-std::vector<DistanceConstraint<Real>> make_distance_constraints(std::span<const Link> links,
-                                                                std::span<const double> w,
-                                                                double omega) {
-  const auto all = make_compliant_constraints<Real>(links, w, omega, {});
+std::vector<DistanceConstraint<Real>> make_distance_constraints(
+    std::span<const Link> links, std::span<const double> w, double omega,
+    const Compliances& compliances = {}) {
+  const auto all = make_compliant_constraints<Real>(links, w, omega, compliances);
   return {all.begin(), all.end()};
 }
 
