@@ -137,6 +137,17 @@ TEST(Order, AtRandomIsFisherYatesWithMersennesTwister) {
   }
 }
 
+// Small sheets have as many vectors as their links need; bend links reach two columns.
+TEST(InterleavedLayout, OfASmallSheetHasAVectorMoreThanItsLinksReachColumns) {
+  for (const bool bend : {false, true})
+    for (const int columns : {8, 12, 16}) {
+      const Scene scene = hanging_sheet(columns, 5, {true, true, bend});
+      const auto regular = regular_links(scene.mesh, scene.links);
+      ASSERT_TRUE(regular);
+      EXPECT_EQ(interleaved_layout(regular->grid).sheet().vectors, bend ? 3 : 2) << columns;
+    }
+}
+
 // Sixteen columns side by side if each lane has at least four of them, else eight; a vector more
 // than a row needs where rows would be 32 vectors apart.
 TEST(InterleavedLayout, HasTheLanesThatItsColumnsFill) {
@@ -197,8 +208,12 @@ TEST(InterleavedLayout, TakesTheSideThatIsLongEnough) {
   EXPECT_EQ(sides(40, 17), "40 x 17");
   EXPECT_EQ(sides(16, 17), "17 x 16 across");
   EXPECT_EQ(sides(2, 17), "17 x 2 across");
-  EXPECT_EQ(sides(16, 16), "");
   EXPECT_EQ(sides(17, 1), "17 x 1");
+  EXPECT_EQ(sides(16, 16), "16 x 16");
+  EXPECT_EQ(sides(8, 9), "8 x 9");
+  EXPECT_EQ(sides(7, 8), "8 x 7 across");
+  EXPECT_EQ(sides(1, 16), "");
+  EXPECT_EQ(sides(7, 7), "");
 }
 
 }  // namespace

@@ -215,7 +215,7 @@ std::optional<RegularLinks> regular(const Scene& scene, LinkLayout layout) {
   auto links = regular_links(scene.mesh, scene.links);
   if (!links && layout == LinkLayout::interleaved)
     throw InputError(
-        "layout=interleaved needs a regular sheet of at least 17 columns or rows with "
+        "layout=interleaved needs a regular sheet of at least 8 columns or rows with "
         "all links "
         "of a direction present and of one length; layout=batches takes any mesh");
   return links;

@@ -12,8 +12,6 @@ namespace taut {
 
 namespace {
 
-constexpr int kFewestColumns =
-    2 * kNarrow + 1;  ///< three vectors: a bend link leaves its lane once
 /// In the order of the sweep: along u, along v, both diagonals, then every second vertex.
 constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::structural, 0},
                                                               {0, 1, Family::structural, 0},
@@ -25,15 +23,18 @@ constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::str
 /// One vector more than a row needs where neighbouring rows would share cache sets.
 SheetRows rows_of(const SheetSides& grid) {
   const int lanes = grid.columns >= 4 * kWide ? kWide : kNarrow;
-  const int vectors = (grid.columns + lanes - 1) / lanes;
+  const int vectors = std::max((grid.columns + lanes - 1) / lanes, grid.reach + 1);
   const int padding = vectors % 32 == 0 ? 1 : 0;
   return {grid.rows, grid.columns, lanes, vectors, to_index((vectors + padding) * 3 * lanes)};
 }
 
-/// A side that is long enough lies along the lanes, if there are two the first.
+/// A side that fills the lanes lies along them, or else one that is long enough; if there are two
+/// the first.
 std::optional<SheetSides> sides_of(const Grid& grid) {
-  if (grid.nu >= kFewestColumns) return SheetSides{grid.nu, grid.nv, false};
-  if (grid.nv >= kFewestColumns && grid.nu >= 2) return SheetSides{grid.nv, grid.nu, true};
+  for (const int fewest : {2 * kNarrow + 1, kFewestColumns}) {
+    if (grid.nu >= fewest) return SheetSides{grid.nu, grid.nv, false};
+    if (grid.nv >= fewest && grid.nu >= 2) return SheetSides{grid.nv, grid.nu, true};
+  }
   return {};
 }
 
@@ -72,6 +73,7 @@ std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link
         (grid.columns - std::abs(direction.columns)) * (grid.rows - direction.rows);
     if (count[d] != to_index(complete)) return {};
     direction.rest = rest[d];
+    regular.grid.reach = std::max(regular.grid.reach, direction.columns);
     regular.directions.push_back(direction);
   }
   if (regular.directions.empty()) return {};

@@ -17,6 +17,7 @@ namespace taut {
 struct SheetSides {
   int columns = 0, rows = 0;
   bool across = false;
+  int reach = 1;  ///< columns between the ends of a link, at most
   int size() const { return columns * rows; }
   /// The vertex in column i of row j, and back.
   int index(int i, int j) const { return across ? i * rows + j : j * columns + i; }
@@ -36,8 +37,9 @@ struct RegularLinks {
 };
 
 /// What `links` are if an interleaved sheet can hold them: all six directions or some, each
-/// complete, without duplicates, of one length to 1e-9; at least 17 columns, or else 17 rows and 2
-/// columns, below which lanes would overlap; and the faces are those of make_sheet.
+/// complete, without duplicates, of one length to 1e-9; at least kFewestColumns columns, or else
+/// as many rows and 2 columns; and the faces are those of make_sheet.
+inline constexpr int kFewestColumns = kNarrow;
 std::optional<RegularLinks> regular_links(const Mesh&, std::span<const Link>);
 
 /// The first row of a block of rows that own links or quads, and their end: these reach into the
@@ -48,7 +50,10 @@ inline std::pair<int, int> rows_of_block(std::size_t block, int rows) {
 }
 
 /// Where an interleaved sheet (simd/kernels.hpp) keeps each vertex. Vertices past the last column
-/// are padding that falls freely and that nobody looks at.
+/// are padding that falls freely and that nobody looks at. A link at the end of a strip pairs a
+/// vector with another one, so a row has one vector more than links reach columns: small sheets
+/// leave lanes empty, which still takes less time than colour batches
+/// (results/benchmarks/kernels.md).
 Layout interleaved_layout(const SheetSides&);
 
 /// A Gauss-Seidel sweep over an interleaved sheet, the even blocks, then the odd ones; the
