@@ -13,6 +13,7 @@
 #include "experiments/external/external.hpp"
 #include "experiments/external/probe.hpp"
 #include "experiments/external/protocol.hpp"
+#include "experiments/external/sdk/taut_solver.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/cloths.hpp"
 
@@ -94,6 +95,18 @@ TEST(Hello, RefusesWhatNoParameterCanBe) {
   Json other = hello_with("n", integer(0, 0, 1));
   other["protocol"] = "taut-solver/3";
   EXPECT_NE(refusal([&] { read_hello(other); }), "");
+}
+
+struct FromBefore {};
+struct Knowing {
+  static constexpr const char* kProtocol = "taut-solver/2";
+};
+
+TEST(Hello, SaysWhichProtocolTheProgramSpeaks) {
+  for (const auto& [protocol, second] : {std::pair{taut_solver::protocol_of<FromBefore>(), false},
+                                         {taut_solver::protocol_of<Knowing>(), true}})
+    EXPECT_EQ(read_hello({{"protocol", protocol}, {"name", "p"}, {"version", "2"}})->second,
+              second);
 }
 
 TEST(SceneAnswer, HasPassesAndSettingsUnlessTheSceneIsRefused) {

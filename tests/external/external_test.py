@@ -103,6 +103,23 @@ class Toys(Programs):
         status = self.case(f"external:cmd='{TOYS['cpp']}'", "ball")["status"]
         self.assertEqual((status["kind"], status["reason"]), ("unsupported", "gravity, links and pins at rest are all that it knows"))
 
+    def test_elastic_links_and_capsules_are_for_those_that_know_them(self):
+        shutil.copy(SDK / "taut_solver.py", self.folder)
+        (self.folder / "soft.toml").write_text((self.folder / "small.toml").read_text() + "[links]\nstiffness = { structural = 500 }\n"
+                                               '[[collider]]\ntype = "capsule"\nfrom = [0, -9, 0]\nto = [0, -9, 1]\nradius = 0.5\n')
+        toy = (SDK / "toy.py").read_text().replace('["gravity, links and pins at rest are all that it knows"]', "[]").replace(
+            '{"projection"', '{"read": f"{self.stiffness} {self.capsules}", "projection"').replace(
+            "self.sweeps = params", 'self.stiffness, self.capsules = scene.get("stiffness"), [c["to"] for c in scene["colliders"]]\n        self.sweeps = params')
+        for version, kind in (("1", "unsupported"), ("2", "ok")):
+            (self.folder / "knows.py").write_text(toy.replace("class Toy:", f'class Toy:\n    protocol = "taut-solver/{version}"'))
+            record = self.case("external:cmd='python3 knows.py'", "./soft.toml")
+            self.assertEqual(record["status"]["kind"], kind, record)
+            if kind == "ok":
+                self.assertIn(["read", "{'structural': 500.0, 'shear': None, 'bend': None} [[0.0, -9.0, 1.0]]"], record["resolved_settings"])
+            else:
+                self.assertIn("links of 500 N/m", record["status"]["reason"])
+                self.assertIn("a capsule", record["status"]["reason"])
+
     def test_a_registered_solver_is_one_like_any_other(self):
         (self.solvers / "mine.toml").write_text(f"cmd = '{TOYS['cpp']}'\n")
         listed = self.answer("list", "solvers")

@@ -6,6 +6,8 @@
 //       static constexpr const char* kAbout =
 //           R"("name": "mine", "version": "1.0", "params": {"iterations":
 //              {"type": "integer", "min": 1, "max": 1000, "default": 8, "doc": "Sweeps"}})";
+//       // Optional: scenes with elastic links and capsules are given to it, too.
+//       static constexpr const char* kProtocol = "taut-solver/2";
 //       // Why the scene would be misread; empty: it is not.
 //       static std::vector<std::string> cannot(const Json& scene, const Json& params);
 //       Mine(const Json& scene, const Json& params);  // scene["dt"].number, ...
@@ -32,6 +34,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace taut_solver {
@@ -183,6 +186,18 @@ inline std::string json_text(const std::string& text) {
   return all + '"';
 }
 
+template <class Solver, class = void>
+struct KnowsSecond : std::false_type {};
+template <class Solver>
+struct KnowsSecond<Solver, std::void_t<decltype(Solver::kProtocol)>> : std::true_type {};
+template <class Solver>
+std::string protocol_of() {
+  if constexpr (KnowsSecond<Solver>::value)
+    return Solver::kProtocol;
+  else
+    return "taut-solver/1";
+}
+
 /// Answers requests until the input ends.
 template <class Solver>
 int serve() {
@@ -197,7 +212,8 @@ int serve() {
   const auto answer_to = [&](const Json& request, bool& with_state) -> std::string {
     const std::string& op = request["op"].text;
     if (op == "hello")
-      return R"({"protocol": "taut-solver/1", )" + std::string(Solver::kAbout) + "}";
+      return R"({"protocol": ")" + std::string(protocol_of<Solver>()) + R"(", )" +
+             std::string(Solver::kAbout) + "}";
     if (op == "scene") {
       std::ifstream file(request["file"].text, std::ios::binary);
       if (!file) throw std::runtime_error("cannot read " + request["file"].text);

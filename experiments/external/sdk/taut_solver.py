@@ -10,7 +10,8 @@
 
     taut_solver.serve(Mine)
 
-Optional: summary, source; unmeasurable = "it computes on a GPU" (then no cost is published);
+Optional: protocol = "taut-solver/2", if the solver reads the scene's stiffness and knows capsules: it is then
+given scenes with elastic links and capsules, too; summary, source; unmeasurable = "it computes on a GPU" (then no cost is published);
 cannot(scene, params), a static method that gives the reasons why the scene would be misread; plan(), a
 list of {"pass", "items", "repeats", "bytes", "projections"}; settings(), a dict of texts.
 Standard output belongs to the protocol: print() goes to standard error here. MIT licence, as taut.
@@ -32,7 +33,7 @@ def serve(solver):
 
     def hello(request):
         told = {key: getattr(solver, key) for key in ("summary", "source", "unmeasurable") if hasattr(solver, key)}
-        return {"protocol": PROTOCOL, "name": solver.name, "version": solver.version, "params": getattr(solver, "params", {}), **told}
+        return {"protocol": getattr(solver, "protocol", PROTOCOL), "name": solver.name, "version": solver.version, "params": getattr(solver, "params", {}), **told}
 
     def scene(request):
         with open(request["file"], encoding="utf-8") as file:
