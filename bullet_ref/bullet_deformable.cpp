@@ -26,9 +26,10 @@ constexpr ParamSpec kParams[] = {
         "stiffness", "N/m", "1000", 1e-6, 1e9,
         "spring constant of every link: the accuracy parameter where the scene's links are rigid"),
     ParamSpec::choice("implicit", "true", "true|false",
-                      "backward Euler, which at its defaults may explode with pins, bend links and "
+                      "backward Euler, which at its defaults explodes on contact (every shipped "
+                      "scene with colliders but tunnel) and may with pins, bend links and "
                       "velocities at the start; or explicit springs (stable below k h^2/m of about "
-                      "0.3)"),
+                      "0.3: substeps=70 runs these scenes)"),
     ParamSpec::integer("newton", "1", 1, 1000,
                        "Newton steps at most per implicit substep (Bullet's default: 1)"),
     bullet_ref::kSubsteps,
@@ -244,6 +245,10 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   lines.emplace_back("contacts", "vertices only, found once per substep");
   for (auto& line : bullet_ref::contact_settings(scene, params, "0.005")) lines.push_back(line);
   lines.emplace_back("friction", "Coulomb, kDF 1");
+  if (implicit)
+    lines.emplace_back("stability",
+                       "backward Euler may explode on contact; implicit=false,substeps=70 does "
+                       "not on the shipped scenes");
   if (implicit && !scene.pins.empty())
     lines.emplace_back("contact prediction",
                        "Bullet assigns forces past a pin to the wrong vertex when it predicts "
