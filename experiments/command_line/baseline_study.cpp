@@ -20,8 +20,8 @@ namespace {
 void run_all(const std::vector<Case>& cases, const Store& store, const BaselineOptions& options,
              BaselineStudy& result) {
   store.prepare();
-  const CampaignProgress campaign =
-      run_missing(cases, store, "taut check " + result.name, {.jobs = options.jobs});
+  const CampaignProgress campaign = run_missing(
+      {{result.name, cases}}, store, "taut check " + result.name, {.jobs = options.jobs});
   result.conflict = campaign.conflicts > 0;
   result.interrupted = campaign.interrupted;
 }
@@ -45,7 +45,7 @@ void mark_flaky(const std::vector<Case>& cases, const Store& store, const Baseli
 void add_frontiers(const Store& store, const BaselineOptions& options, BaselineStudy& result) {
   const std::vector<FrontierQuestion> questions = read_frontiers(result.folder);
   if (questions.empty()) return;
-  begin_session(store, "taut check " + result.name);
+  store.begin_session("taut check " + result.name);
   for (const FrontierQuestion& question : questions) {
     const CaseFrontier found = find_frontier(question, store, {.jobs = options.jobs});
     result.interrupted = result.interrupted || found.interrupted;

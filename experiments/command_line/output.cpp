@@ -147,9 +147,14 @@ void Progress::finish(const CampaignProgress& campaign) {
             << campaign.reused << " were stored already)\n";
 }
 
-CampaignProgress run_missing(const std::vector<Case>& cases, const Store& store,
+CampaignProgress run_missing(const std::vector<StudyCases>& studies, const Store& store,
                              const std::string& command, CampaignOptions options) {
-  begin_session(store, command, cases, options.shard);
+  store.begin_session(command, studies, options.shard);
+  std::vector<Case> cases;
+  for (const StudyCases& study : studies)
+    cases.insert(cases.end(), study.cases.begin(), study.cases.end());
+  std::ranges::stable_sort(cases, {}, &Case::key);
+  cases.erase(std::ranges::unique(cases, {}, &Case::key).begin(), cases.end());
   Progress display;
   options.progress = [&](const CampaignProgress& t, const Record* r) { display.show(t, r); };
   const CampaignProgress campaign = run_cases(cases, store, options);

@@ -10,7 +10,6 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/claims/claim.hpp"
-#include "experiments/study/session.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {
@@ -285,8 +284,8 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
         input.left_out.emplace_back(file.string(), error.what());
       }
   }
-  for (const Missing& one : still_missing(store))
-    input.left_out.emplace_back(one.file.string(), one.sentence());
+  for (const Missing& one : store.still_missing())
+    input.left_out.emplace_back(store.file().string(), one.sentence());
   std::map<std::string, std::map<std::string, double>> timed;  // values of the bench, by key
   if (input.bench)
     for (const Record& r : input.bench->records()) timed[r.key] = r.values;

@@ -58,8 +58,8 @@ Database::Database(fs::path file, Access access) : file_(std::move(file)) {
 }
 
 void Database::fail(const SQLite::Exception& error) const {
-  fail_with(file_, error.getErrorCode() & 0xff, sqlite3_system_errno(db_->getHandle()),
-            error.what());
+  const int known = sqlite3_system_errno(db_->getHandle());  // 0 of a COMMIT that fails
+  fail_with(file_, error.getErrorCode() & 0xff, known > 0 ? known : errno, error.what());
 }
 
 bool Database::Rows::next() {

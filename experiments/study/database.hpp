@@ -2,6 +2,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -77,6 +78,7 @@ class Database {
   [[noreturn]] void fail(const SQLite::Exception&) const;
   template <class Work>
   auto guarded(const Work& work) const {
+    errno = 0;
     try {
       return work();
     } catch (const SQLite::Exception& error) {

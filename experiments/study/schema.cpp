@@ -58,11 +58,32 @@ CREATE TABLE conflicts (
   record TEXT NOT NULL,
   PRIMARY KEY (key, result_digest)) WITHOUT ROWID;
 
+CREATE TABLE sessions (
+  session TEXT PRIMARY KEY,
+  command TEXT NOT NULL,
+  started TEXT NOT NULL,
+  host TEXT NOT NULL,
+  toolchain TEXT NOT NULL,
+  shard INTEGER NOT NULL,
+  shards INTEGER NOT NULL,
+  cases INTEGER NOT NULL);
+
+CREATE TABLE planned (
+  study TEXT NOT NULL,
+  key TEXT NOT NULL,
+  id TEXT NOT NULL,
+  shard INTEGER NOT NULL,
+  shards INTEGER NOT NULL,
+  missing INTEGER NOT NULL DEFAULT 0,
+  PRIMARY KEY (study, key)) WITHOUT ROWID;
+CREATE INDEX planned_key ON planned (key);
+
 CREATE VIEW results AS
-SELECT scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
+SELECT study, scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
   parameters ->> '$.substeps' + 0 AS substeps, parameters ->> '$.iterations' + 0 AS iterations,
-  metrics.name AS metric, numbers.value, metrics.unit, status, key, parameters, settings
-FROM metrics CROSS JOIN cases LEFT JOIN numbers USING (case_id, metric_id);
+  metrics.name AS metric, numbers.value, metrics.unit, status, cases.key, parameters, settings
+FROM metrics CROSS JOIN cases LEFT JOIN numbers USING (case_id, metric_id)
+  LEFT JOIN planned ON planned.key = cases.key;
 
 CREATE VIEW curves AS
 SELECT scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,

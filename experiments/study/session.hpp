@@ -1,11 +1,10 @@
 #pragma once
 
-#include <filesystem>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "experiments/case/case.hpp"
-#include "experiments/study/store.hpp"
 
 namespace taut {
 
@@ -13,47 +12,32 @@ namespace taut {
 struct Shard {
   int index = 1;  ///< 1 to count
   int count = 1;
-  bool has(const std::string& key) const;
+  bool has(const std::string& key) const { return of(key, count) == index; }
+  /// The part of `count` that a case is in, by the first eight digits of its key.
+  static int of(const std::string& key, int count);
   /// "i/n"; empty: what a Slurm array says ($SLURM_ARRAY_TASK_ID, _MIN, _COUNT), else the whole.
   /// Throws InputError.
   static Shard parse(const std::string&);
 };
 
-/// Who ran what: makes a folder of the store that only this process writes, and gives it. Throws
-/// InputError if it cannot be written.
-///     session.json     command, time, host, versions, shard
-///     manifest.jsonl   every case, of all shards: {"key", "id", "shard", "shards"}
-std::filesystem::path begin_session(const Store&, const std::string& command,
-                                    const std::vector<Case>& = {}, const Shard& = {});
+/// What a study plans.
+struct StudyCases {
+  std::string study;  ///< its name
+  std::vector<Case> cases;
+};
 
-/// A line of a manifest.
-struct ManifestEntry {
-  std::string key, id;
+/// A case that a session was to run.
+struct PlannedKey {
+  std::string study, key, id;
   int shard = 1, shards = 1;
 };
 
-std::string to_text(const ManifestEntry&);  ///< a line
-
-/// Throws InputError with file and line.
-std::vector<ManifestEntry> read_manifest_lines(const std::filesystem::path& file);
-
-/// What the sessions of a results folder were to run, each key once. Throws InputError with file
-/// and line.
-std::vector<ManifestEntry> read_manifests(const std::filesystem::path& root);
-
-/// Marks a results folder: these cases were planned and are not there. The mark stands in
-/// <root>/missing/<name>.jsonl; reports show it until the cases come. Throws InputError.
-void mark_missing(const std::filesystem::path& root, const std::string& name,
-                  const std::vector<ManifestEntry>&);
-
-/// A mark that still holds.
+/// Of a study that was merged although cases were missing, those that still are.
 struct Missing {
-  std::filesystem::path file;
+  std::string study;
   std::vector<std::string> ids;  ///< of cases that the store still lacks
-  std::size_t cases = 0;         ///< that lacked when it was marked
+  std::size_t cases = 0;         ///< that lacked when it was merged
   std::string sentence() const;
 };
-/// Throws InputError with file and line.
-std::vector<Missing> still_missing(const Store&);
 
 }  // namespace taut

@@ -368,6 +368,8 @@ void Store::take(const Store& other) const {
                       "AS n ON n.case_id = theirs;"
                       "INSERT INTO main.series SELECT mine, columns FROM taken JOIN other.series "
                       "ON case_id = theirs;"
+                      "INSERT OR IGNORE INTO main.sessions SELECT * FROM other.sessions;"
+                      "INSERT OR IGNORE INTO main.planned SELECT * FROM other.planned;"
                       "INSERT INTO main.frames SELECT mine, motion FROM taken JOIN other.frames "
                       "ON case_id = theirs;"
                       "DROP TABLE taken");

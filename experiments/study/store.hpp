@@ -10,6 +10,7 @@
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/case/trajectory.hpp"
+#include "experiments/study/session.hpp"
 
 namespace taut {
 
@@ -89,8 +90,18 @@ class Store {
   /// Keys of which this store was given another result, too; one for each such result.
   std::vector<std::string> conflicts() const;
 
-  /// Takes over the cases of another store: results before failures, nothing twice. Throws
-  /// InputError; then nothing of it was taken.
+  /// Notes who runs what: command, host and time, and every case that is planned, of all shards.
+  /// Throws InputError; then nothing is noted.
+  void begin_session(const std::string& command, const std::vector<StudyCases>& = {},
+                     const Shard& = {}) const;
+  /// What the sessions were to run, each key once, sorted by key.
+  std::vector<PlannedKey> planned() const;
+  /// Marks cases that a merge went without: reports say so until they come. Throws InputError.
+  void mark_missing(const std::vector<PlannedKey>&) const;
+  std::vector<Missing> still_missing() const;  ///< by study
+
+  /// Takes over the cases and sessions of another store: results before failures, nothing twice.
+  /// Throws InputError; then nothing of it was taken.
   void take(const Store& other) const;
 
  private:

@@ -449,8 +449,8 @@ class Store(CommandLine):
         def limit():
             resource.setrlimit(resource.RLIMIT_FSIZE, (self.FILE_BYTES, self.FILE_BYTES))
         full = self.taut("run", study, expect=2, preexec_fn=limit)
-        self.assertRegex(full.err, "^results/runs/sessions/.*/manifest.jsonl: cannot write: File too large\n$")
-        self.assertEqual([*(self.folder / "results/runs/sessions").iterdir(), *self.keys()], [])
+        self.assertRegex(full.err, "^results/runs/results.db: cannot write: File too large\n$")
+        self.assertEqual(stored.query(self.folder / "results/runs", "SELECT session FROM sessions UNION SELECT key FROM planned"), [])
 
     def test_a_results_folder_that_is_moved_away_loses_nothing_finished(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")

@@ -4,6 +4,7 @@
 import pathlib
 import re
 import shutil
+import sqlite3
 import subprocess
 
 import stored
@@ -11,6 +12,7 @@ from command_line import CommandLine, main
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT = (ROOT / "experiments/study/RESULTS.md").read_text()
+HOW_FAR, = re.findall("How far the studies are: `(.*)`", DOCUMENT)
 
 
 class ResultsFile(CommandLine):
@@ -52,7 +54,7 @@ class ResultsFile(CommandLine):
     def test_what_a_case_has_not_is_null_and_its_status_says_why(self):
         study = self.study(solvers=["faulty:mode=stable", "faulty:mode=crash", "faulty:mode=refuse"])
         self.taut("run", study, program="taut-faulty")
-        rows = self.query("SELECT setting, value, unit, status FROM results WHERE metric = 'stretch.rms'")
+        rows = self.query("SELECT setting, value, unit, status FROM results WHERE metric = 'stretch.rms' AND study = 'study'")
         self.assertEqual(sorted((value is None, unit, status) for _, value, unit, status in rows),
                          [(False, "1", "ok"), (True, "1", "crash"), (True, "1", "unsupported")])
         mean, = self.query("SELECT avg(value) FROM results WHERE metric = 'stretch.rms'")
@@ -68,6 +70,18 @@ class ResultsFile(CommandLine):
             self.assertEqual(last[:2], (32, 0.5))
             count, = self.query("SELECT count(*) FROM curves WHERE key = ? AND metric = 'stretch.max'", record["key"])
             self.assertEqual(count, (33,))
+
+    def test_others_read_it_while_it_is_written(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        process = self.start("run", study, "-j", 1, program="taut-faulty")
+        while not self.keys():
+            pass
+        reader = sqlite3.connect(self.folder / "results/runs/results.db")
+        self.assertGreater(reader.execute(HOW_FAR).fetchall()[0][1], 0)
+        reader.close()
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, said)
+        self.assertEqual(self.query(HOW_FAR), [("study", 0, 4)])
 
 
 if __name__ == "__main__":

@@ -5,11 +5,10 @@
 
 #include <cstdlib>
 
-#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
+#include "tests/support/damaged_results.hpp"
 
 namespace taut::session_test {
 namespace {
@@ -50,11 +49,12 @@ TEST(Shards, OfACaseFollowFromTheFirstEightDigitsOfItsKey) {
 }
 
 /// Cases that nobody runs.
-std::vector<Case> cases(std::initializer_list<const char*> keys) {
-  std::vector<Case> all;
+StudyCases planned(const std::string& study, std::initializer_list<const char*> keys) {
+  StudyCases all{study, {}};
+  const Case one = make_case({"hang", {"cloth.grid=[2, 2]"}, "jakobsen"});
   for (const char* begin : keys) {
-    all.emplace_back();
-    all.back().key = key(begin), all.back().id = "case " + std::string(begin);
+    all.cases.push_back(one);
+    all.cases.back().key = key(begin), all.cases.back().id = "case " + std::string(begin);
   }
   return all;
 }
@@ -62,77 +62,68 @@ std::vector<Case> cases(std::initializer_list<const char*> keys) {
 TEST(Sessions, LeaveWhoRanWhat) {
   const Scratch scratch;
   const Store store(scratch.path() / "results");
-  const fs::path session =
-      begin_session(store, "taut run x", cases({"00000003", "00000004"}), {2, 3});
-  EXPECT_EQ(session.parent_path(), store.root() / "sessions");
-  const Json about = parse_json(read_text(session / "session.json"));
-  EXPECT_EQ(about["schema"], 1);
-  EXPECT_EQ(about["command"], "taut run x");
-  EXPECT_EQ(about["host"], host_name());
-  EXPECT_EQ(about["toolchain"], toolchain());
-  EXPECT_EQ((std::tuple{about["shard"], about["shards"], about["cases"]}),
-            (std::tuple{Json(2), Json(3), Json(2)}));
-  EXPECT_LE(about["started"], utc_stamp());
-  EXPECT_TRUE(
-      session.filename().string().starts_with(about["started"].get<std::string>().substr(0, 13)));
-  EXPECT_EQ(read_text(session / "manifest.jsonl"),
-            R"({"key":")" + key("00000003") + R"(","id":"case 00000003","shard":1,"shards":3})" +
-                "\n" + R"({"key":")" + key("00000004") +
-                R"(","id":"case 00000004","shard":2,"shards":3})" + "\n");
+  store.begin_session("taut run x", {planned("x", {"00000003", "00000004"})}, {2, 3});
+  Database file(store.file(), Database::Access::read);
+  Database::Rows row = file.rows(
+      "SELECT command, host, toolchain, shard, shards, cases, started, session FROM sessions");
+  ASSERT_TRUE(row.next());
+  EXPECT_EQ(row.text(0), "taut run x");
+  EXPECT_EQ(row.text(1), host_name());
+  EXPECT_EQ(row.text(2), toolchain());
+  EXPECT_EQ((std::tuple{row.integer(3), row.integer(4), row.integer(5)}), (std::tuple{2, 3, 2}));
+  EXPECT_LE(row.text(6), utc_stamp());
+  EXPECT_TRUE(row.text(7).starts_with(row.text(6).substr(0, 13)));
+  EXPECT_FALSE(row.next());
 }
 
-TEST(Sessions, TheirManifestsAreReadAsOneWithoutRepetitions) {
+TEST(Sessions, WhatTheyPlanIsThereOnceWithItsShard) {
   const Scratch scratch;
   const Store store(scratch.path());
-  EXPECT_TRUE(read_manifests(store.root()).empty());
-  const fs::path one = begin_session(store, "", cases({"3", "1"}), {1, 4});
-  begin_session(store, "", cases({"2", "1"}), {2, 4});
-  make_folder(store.root() / "sessions/of another kind");
-  std::string ids;
-  for (const ManifestEntry& entry : read_manifests(store.root())) ids += entry.id + ", ";
-  EXPECT_EQ(ids, "case 1, case 2, case 3, ");
-  const fs::path file = one / "manifest.jsonl";
-  const std::string good = read_text(file);
-  for (const auto& [from, to] :
-       {std::pair<std::string, std::string>{"\"shard\":", "\"shard\":0, \"x\":"},
-        {"\"shards\":4", "\"shards\":0"},
-        {key("1"), "not a key"}}) {
-    std::string text = good;
-    write_file(file, text.replace(text.rfind(from), from.size(), to));
-    try {
-      read_manifests(store.root());
-      ADD_FAILURE() << to;
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.diagnostics().front().line, 2) << to;
-    }
-  }
+  EXPECT_TRUE(store.planned().empty());
+  store.begin_session("", {planned("a", {"3", "1"}), planned("b", {"1"})}, {1, 4});
+  store.begin_session("", {planned("a", {"2", "1"})}, {2, 4});
+  std::string all;
+  for (const PlannedKey& one : store.planned())
+    all += one.study + " " + one.id + " " + std::to_string(one.shard) + "/" +
+           std::to_string(one.shards) + ", ";
+  EXPECT_EQ(all, "a case 1 " + std::to_string(Shard::of(key("1"), 4)) + "/4, a case 2 " +
+                     std::to_string(Shard::of(key("2"), 4)) + "/4, a case 3 " +
+                     std::to_string(Shard::of(key("3"), 4)) + "/4, ");
+  Database file(store.file(), Database::Access::read);
+  EXPECT_EQ(file.number_of("SELECT count(*) FROM planned"), 4) << "study by study";
 }
 
 TEST(MissingCases, AreNamedAsFarAsThereIsRoom) {
   Missing mark{"m", {}, 31};
   for (int n = 1; n <= 10; ++n) mark.ids.push_back(std::to_string(n));
-  EXPECT_EQ(
-      mark.sentence(),
-      "merged although 31 planned cases were missing; 10 still are: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10");
+  EXPECT_EQ(mark.sentence(),
+            "m: merged although 31 planned cases were missing; 10 still are: 1, 2, 3, 4, 5, 6, 7, "
+            "8, 9, 10");
   mark.ids.emplace_back("11");
   EXPECT_EQ(mark.sentence(),
-            "merged although 31 planned cases were missing; 11 still are: 1, 2, 3, 4, 5, 6, 7, 8, "
-            "9, 10, ...");
+            "m: merged although 31 planned cases were missing; 11 still are: 1, 2, 3, 4, 5, 6, 7, "
+            "8, 9, 10, ...");
 }
 
-TEST(MissingCases, AreCountedMarkByMark) {
+TEST(MissingCases, AreCountedStudyByStudyUntilTheyCome) {
   const Scratch scratch;
   const Store store(scratch.path());
-  mark_missing(store.root(), "b", {{key("1"), "one"}, {key("2"), "two"}, {key("3"), "three"}});
-  mark_missing(store.root(), "a", {{key("4"), "four"}});
-  mark_missing(store.root(), "none", {});
-  write_file(store.root() / "missing/notes.txt", "not a mark\n");
-  const auto marks = still_missing(store);
+  EXPECT_TRUE(store.still_missing().empty());
+  store.begin_session("", {planned("b", {"1", "2", "3", "5"})});
+  store.mark_missing({{"b", key("1"), "one"}, {"b", key("2"), "two"}, {"b", key("3"), "three"}});
+  store.mark_missing({{"a", key("4"), "four"}});
+  auto marks = store.still_missing();
   ASSERT_EQ(marks.size(), 2u);
-  EXPECT_EQ(marks[0].file, store.root() / "missing/a.jsonl");
+  EXPECT_EQ(marks[0].study, "a");
   EXPECT_EQ(marks[0].cases, 1u);
   EXPECT_EQ(marks[1].cases, 3u);
-  EXPECT_EQ(marks[1].ids, (std::vector<std::string>{"one", "two", "three"}));
+  EXPECT_EQ(marks[1].ids, (std::vector<std::string>{"case 1", "case 2", "case 3"}));
+  Record record = unfinished(make_case({"hang", {"cloth.grid=[2, 2]"}, "jakobsen"}), {});
+  record.key = key("4"), store.commit(record);
+  record.key = key("2"), store.commit(record);
+  marks = store.still_missing();
+  ASSERT_EQ(marks.size(), 1u);
+  EXPECT_EQ(marks[0].ids, (std::vector<std::string>{"case 1", "case 3"}));
 }
 
 }  // namespace

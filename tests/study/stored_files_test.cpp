@@ -11,7 +11,6 @@
 #include "experiments/case/reference_store.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/report/findings.hpp"
-#include "experiments/study/session.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/recommendation.hpp"
 #include "tests/support/synthetic_records.hpp"
@@ -65,13 +64,7 @@ std::vector<Kind> kinds(const fs::path& folder) {
   Reference reference{"hang", std::string(64, 'c'), "static", 0, "by hand", 1e-9, {}};
   reference.x = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
   write_reference(reference, folder / "reference");
-  const std::string entry = R"({"key":")" + std::string(64, 'a') +
-                            R"(","id":"hang","shard":1,"shards":2})"
-                            "\n";
   const auto baseline = [](const fs::path& file) { read_baseline(file.parent_path()); };
-  const auto manifest = [](const fs::path& file) {
-    read_manifests(file.parent_path().parent_path().parent_path());
-  };
   Answer check{"check"};
   check.add({"program"}, "p");
   check.add({"cases"}, 3);
@@ -85,7 +78,6 @@ std::vector<Kind> kinds(const fs::path& folder) {
        [](const fs::path& file) { record_from_json(read_text(file), file.string()); }},
       {"bench.json", bench_text(), use_bench},
       {"baseline/" + rows.filename().string(), read_text(rows), baseline},
-      {"root/sessions/one/manifest.jsonl", entry + entry, manifest},
       {"reference/static.json", read_text(folder / "reference/static.json"), read_reference},
       {"check.json", to_json(check),
        [](const fs::path& file) { report::stored_regressions(file.parent_path(), "p"); }},

@@ -25,13 +25,13 @@ struct Options {
 };
 
 /// The physics of every case, from the store or run now.
-std::vector<Record> physics(const std::vector<Case>& cases, const Options& options) {
+std::vector<Record> physics(const StudyCases& study, const Options& options) {
   const Store store(options.out);
   store.prepare();
   const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  if (run_missing(cases, store, "taut bench", {.jobs = jobs}).interrupted) throw Interrupted();
+  if (run_missing({study}, store, "taut bench", {.jobs = jobs}).interrupted) throw Interrupted();
   std::vector<Record> records;
-  for (const Case& one : cases)
+  for (const Case& one : study.cases)
     if (auto record = store.find(one)) records.push_back(std::move(*record));
   return records;
 }
@@ -102,7 +102,7 @@ std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
 
 StudyBench bench(const std::string& name, const std::vector<Case>& cases, const Options& options) {
   StudyBench result = StudyBench::here(name);
-  for (const auto& [scene, records] : by_scene(physics(cases, options))) {
+  for (const auto& [scene, records] : by_scene(physics({name, cases}, options))) {
     progress() << scene << ": timing " << records.size() << " cases\n";
     result.scenes.push_back(bench_scene(scene, records,
                                         {.rounds = options.rounds,

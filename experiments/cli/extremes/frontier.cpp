@@ -173,7 +173,7 @@ int run_all(const Options& options) {
   if (solvers.size() == 2 && solvers[0] == solvers[1])
     throw InputError("--all: " + solvers[0] + " twice");
   store.prepare();
-  begin_session(store, "taut frontier --all");
+  store.begin_session("taut frontier --all");
   std::vector<ParameterFrontier> found;
   for (const std::string& solver : solvers) {
     const Countdown countdown("parameter of " + solver);
@@ -213,7 +213,7 @@ int run(const Options& options) {
   const Case first = make_case(question.at(question.range.from));
   const Store store(options.out);
   store.prepare();
-  begin_session(store, "taut frontier " + first.id);
+  store.begin_session("taut frontier " + first.id);
   Progress progress;
   const CaseFrontier result = find_frontier(
       question, store,

@@ -259,7 +259,7 @@ int run_one(const Options& options, const std::string& scene, Table& scenes, boo
   }
   const Store store(options.out);
   store.prepare();
-  begin_session(store, "taut require " + full.id);
+  store.begin_session("taut require " + full.id);
   const fs::path folder =
       fs::path(options.out) / "require" / (full.scene->name + "-" + full.key.substr(0, 8));
   Progress shown;

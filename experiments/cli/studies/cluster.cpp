@@ -5,7 +5,6 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/session.hpp"
 #include "experiments/study/writer_mark.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -141,12 +140,12 @@ struct Run {
 int run(const Run& o) {
   const Manifest manifest = read_manifest(o.folder);
   const std::vector<Case> cases = taut::cluster::cases_of(manifest, o.shard, o.folder);
-  Store store(shard_folder(o.folder, o.shard));
-  const fs::path session =
-      begin_session(store, "taut cluster run --shard " + std::to_string(o.shard), cases);
-  Attempt attempt(store.root(), session);
+  const Store store(shard_folder(o.folder, o.shard));
+  Attempt attempt(store.root());
   WriterMark::remove(store.file());  // whoever began this shard is gone
   store.prepare();
+  store.begin_session("taut cluster run --shard " + std::to_string(o.shard),
+                      {{manifest.study, cases}});
   Progress progress;
   const CampaignProgress campaign =
       run_cases(cases, store,
@@ -271,13 +270,13 @@ int merge(const MergeOptions& o) {
   Store store(o.out);
   const MergePlan plan = merge.look(store);
   std::vector<std::string> missing;
-  for (const ManifestEntry& one : plan.missing)
+  for (const PlannedKey& one : plan.missing)
     missing.push_back(one.id + " (shard " + std::to_string(one.shard) + ")");
   const bool may = plan.mergeable() && (missing.empty() || o.allow_missing) && !plan.cases.empty();
   if (may) {
     store.prepare();
     merge.copy(plan, store, Countdown("merging"));
-    if (!missing.empty()) mark_missing(store.root(), plan.name, plan.missing);
+    if (!missing.empty()) store.mark_missing(plan.missing);
   }
   print_list(std::cerr, "foreign", plan.foreign);
   print_list(std::cerr, "conflict", plan.conflicts);

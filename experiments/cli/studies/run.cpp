@@ -41,14 +41,10 @@ std::vector<Study> load_studies(const Options& options) {
   return studies;
 }
 
-std::vector<Case> all_cases(const std::vector<Study>& studies) {
-  std::vector<Case> cases;
-  read_all(studies, [&](const Study& study) {
-    std::ranges::move(cases_of(study), std::back_inserter(cases));
-  });
-  std::ranges::stable_sort(cases, {}, &Case::key);
-  cases.erase(std::ranges::unique(cases, {}, &Case::key).begin(), cases.end());
-  return cases;
+std::vector<StudyCases> all_cases(const std::vector<Study>& studies) {
+  std::vector<StudyCases> all;
+  read_all(studies, [&](const Study& study) { all.push_back({study.name, cases_of(study)}); });
+  return all;
 }
 
 /// What accuracy costs: exclusive, so after everything else has ended. A machine too noisy to judge
@@ -167,8 +163,8 @@ int run(Options options) {
   }
   const Shard shard = Shard::parse(options.shard);
   const std::vector<Study> studies = load_studies(options);
-  const std::vector<Case> cases = all_cases(studies);
-  if (cases.empty()) {
+  const std::vector<StudyCases> cases = all_cases(studies);
+  if (std::ranges::all_of(cases, [](const StudyCases& one) { return one.cases.empty(); })) {
     std::cerr << "these studies have no case: their exclusions leave out all\n";
     return kNothing;
   }

@@ -5,6 +5,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/study/cluster/cluster.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
@@ -16,13 +17,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kBeatsFile = "beats";
 constexpr const char* kStates[] = {"claiming", "running", "ended"};
 
 constexpr std::tuple kBeatFields{
     Field{"done", &Beat::done},       Field{"cases", &Beat::cases},
     Field{"work", &Beat::work},       Field{"work_done", &Beat::work_done},
-    Field{"seconds", &Beat::seconds}, Field{"why", &Beat::why}};
+    Field{"seconds", &Beat::seconds}, Field{"why", &Beat::why},
+    Field{"host", &Beat::host},       Field{"started", &Beat::started}};
 
 Beat beat_of(const JsonReader& j) {
   Beat beat = read_as(j, kBeatFields);
@@ -39,16 +40,14 @@ std::string line_of(const Beat& beat) {
   return to_text(json);
 }
 
-/// What a session has said so far; a line that is being written is not counted.
-Beats read(const fs::path& session) {
-  Beats beats{session, 0, {}, {}, {}};
-  if (!fs::exists(session / kBeatsFile)) return beats;
-  std::istringstream lines(read_text(session / kBeatsFile));
+/// What a start has said so far; a line that is being written is not counted.
+Beats read(const fs::path& file) {
+  Beats beats{file, 0, {}};
+  std::istringstream lines(read_text(file));
   std::string last;
   for (std::string line; std::getline(lines, line) && !lines.eof(); ++beats.count) last = line;
   if (!last.empty())
-    beats.last =
-        read_json(last, (session / kBeatsFile).string(), beat_of, static_cast<int>(beats.count));
+    beats.last = read_json(last, file.string(), beat_of, static_cast<int>(beats.count));
   return beats;
 }
 
@@ -63,18 +62,10 @@ std::chrono::duration<double> patience() {
 std::vector<Beats> not_ended(const fs::path& shard) {
   std::vector<Beats> all;
   std::error_code none;
-  for (const auto& session : fs::directory_iterator(shard / "sessions", none)) {
-    if (!fs::exists(session.path() / "session.json")) continue;  // being made
-    Beats beats = read(session);
-    if (beats.last.state == Beat::State::ended) continue;
-    const fs::path file = session.path() / "session.json";
-    read_json(read_text(file), file.string(), [&](const JsonReader& j) {
-      beats.host = j.at("host").text();
-      beats.started = j.at("started").text();
-    });
-    all.push_back(std::move(beats));
-  }
-  std::ranges::sort(all, {}, &Beats::session);
+  for (const auto& file : fs::directory_iterator(shard / "beats", none))
+    if (Beats beats = read(file); beats.last.state != Beat::State::ended)
+      all.push_back(std::move(beats));
+  std::ranges::sort(all, {}, &Beats::file);
   return all;
 }
 
@@ -85,9 +76,8 @@ std::vector<Beats> living(const std::vector<Beats>& before) {
   while (!silent.empty() && SteadyClock::now() < deadline) {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     std::erase_if(silent, [&](const Beats& known) {
-      Beats now = read(known.session);
+      Beats now = read(known.file);
       if (now.count == known.count) return false;
-      now.host = known.host, now.started = known.started;
       if (now.last.state != Beat::State::ended) alive.push_back(std::move(now));
       return true;
     });
@@ -95,30 +85,35 @@ std::vector<Beats> living(const std::vector<Beats>& before) {
   return alive;
 }
 
-Attempt::Attempt(const fs::path& shard, const fs::path& session)
-    : file_(session / kBeatsFile), start_(SteadyClock::now()) {
+Attempt::Attempt(const fs::path& shard) : Attempt(shard, utc_stamp() + "-" + unique_suffix()) {}
+
+Attempt::Attempt(const fs::path& shard, const std::string& name)
+    : file_(shard / "beats" / name), start_(SteadyClock::now()) {
+  make_folder(shard / "beats");
+  now_.host = host_name(), now_.started = utc_stamp();
   beat();
   std::vector<Beats> others = not_ended(shard);
-  std::erase_if(others, [&](const Beats& b) { return b.session == session; });
-  // Of two that start together the one whose session has the lesser name goes on.
+  std::erase_if(others, [&](const Beats& b) { return b.file == file_; });
+  // Of two that start together the one with the lesser name goes on.
   const auto before_me = [&](const Beats& b) {
-    return b.last.state == Beat::State::running || b.session < session;
+    return b.last.state == Beat::State::running || b.file < file_;
   };
   for (const auto until = SteadyClock::now() + patience();
        !others.empty() && SteadyClock::now() < until;) {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     if (SteadyClock::now() - last_ >= kBeat) beat();
     for (const Beats& other : others)
-      if (const Beats now = read(other.session);
+      if (const Beats now = read(other.file);
           now.count > other.count && now.last.state != Beat::State::ended && before_me(now)) {
         end("another start was at this shard");
-        throw InputError(shard.string() + ": is being run on " + other.host + " since " +
-                         other.started + " (its clock); nothing was run here");
+        throw InputError(shard.string() + ": is being run on " + printable(other.last.host) +
+                         " since " + printable(other.last.started) +
+                         " (its clock); nothing was run here");
       }
   }
   for (const Beats& silent : others)  // nobody waits for it again, unless it speaks again
-    append_line(silent.session / kBeatsFile, line_of({Beat::State::ended, silent.last.done,
-                                                      silent.last.cases, 0, 0, 0, "lost"}));
+    append_line(silent.file, line_of({Beat::State::ended, silent.last.done, silent.last.cases, 0, 0,
+                                      0, "lost", silent.last.host, silent.last.started}));
   now_.state = Beat::State::running;
   beat();
 }

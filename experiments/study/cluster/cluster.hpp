@@ -84,9 +84,9 @@ std::string job_script(const Manifest&, Scheduler);
 /// The README of a folder: five lines.
 std::string readme(const Manifest&, Scheduler);
 
-/// A start of a shard says every two seconds that it is alive: a line in the file "beats" of its
-/// session. Whoever wants to know reads twice and looks for new lines, so no clock of one host is
-/// ever compared with that of another, and nothing is locked.
+/// A start of a shard says every two seconds that it is alive: a line in a file of its own in
+/// <shard>/beats. Whoever wants to know reads twice and looks for new lines, so no clock of one
+/// host is ever compared with that of another, and nothing is locked.
 inline constexpr std::chrono::seconds kBeat{2};
 /// Silent for so long: lost. ($TAUT_CLUSTER_PATIENCE [s] for file systems that show news late.)
 std::chrono::duration<double> patience();
@@ -99,20 +99,20 @@ struct Beat {
   double work = 0, work_done = 0;   ///< of this start
   double seconds = 0;               ///< since it started, by its own steady clock
   std::string why;                  ///< how it ended
+  std::string host, started;        ///< who and when, by its own clock
 };
 
-/// The beats of one session of a shard.
+/// The beats of one start of a shard.
 struct Beats {
-  std::filesystem::path session;
+  std::filesystem::path file;
   std::size_t count = 0;
   Beat last;
-  std::string host, started;  ///< of its session.json
 };
 
-/// Those sessions of a shard's store that have not ended. Throws InputError: damaged.
+/// Those starts of a shard that have not ended. Throws InputError: damaged.
 std::vector<Beats> not_ended(const std::filesystem::path& shard);
 
-/// Reads again until all of them have said more or ended, or patience is over; gives the sessions
+/// Reads again until all of them have said more or ended, or patience is over; gives the starts
 /// that have (which live) as they are now.
 std::vector<Beats> living(const std::vector<Beats>&);
 
@@ -120,7 +120,9 @@ std::vector<Beats> living(const std::vector<Beats>&);
 class Attempt {
  public:
   /// Throws InputError if another process is at this shard.
-  Attempt(const std::filesystem::path& shard, const std::filesystem::path& session);
+  explicit Attempt(const std::filesystem::path& shard);
+  /// The same under this name, which tells two starts apart.
+  Attempt(const std::filesystem::path& shard, const std::string& name);
   ~Attempt();
   Attempt(const Attempt&) = delete;
   Attempt& operator=(const Attempt&) = delete;
@@ -174,9 +176,8 @@ FolderStatus status_of(const Manifest&, const std::filesystem::path& folder);
 
 /// What a merge of some folders would find.
 struct MergePlan {
-  std::vector<ManifestEntry> cases;    ///< planned
-  std::string name;                    ///< of the study, or of the list of cases
-  std::vector<ManifestEntry> missing;  ///< planned, in no folder
+  std::vector<PlannedKey> cases;       ///< planned
+  std::vector<PlannedKey> missing;     ///< planned, in no folder
   std::vector<std::string> foreign;    ///< sentences: planned or stored by one folder alone
   std::vector<std::string> conflicts;  ///< sentences: results that differ, and where they are
 
@@ -199,14 +200,13 @@ class Merge {
  private:
   struct Source {
     std::filesystem::path folder;
-    std::vector<ManifestEntry> cases;
+    std::vector<PlannedKey> cases;
     std::vector<Store> stores;
   };
   /// What a planned and b did not.
   static void note_planned_alone(const Source& a, const Source& b,
                                  std::vector<std::string>& foreign);
   std::vector<Source> sources_;
-  std::string name_;
 };
 
 }  // namespace taut::cluster

@@ -6,10 +6,7 @@
 #include <unordered_set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/case/digest.hpp"
-#include "experiments/case/record_io.hpp"
 #include "experiments/study/cluster/cluster.hpp"
-#include "experiments/system/files.hpp"
 
 namespace taut::cluster {
 
@@ -24,30 +21,14 @@ struct Found {
   const Store* store = nullptr;
 };
 
-/// Who ran what, and when.
-void copy_sessions(const fs::path& from, const fs::path& to) {
-  std::error_code none;
-  for (const auto& session : fs::directory_iterator(from / "sessions", none)) {
-    make_folder(to / "sessions");
-    fs::copy(session.path(), to / "sessions" / session.path().filename(),
-             fs::copy_options::recursive | fs::copy_options::skip_existing);
-  }
-}
-
-std::string name_of(const std::vector<ManifestEntry>& cases) {
-  std::string keys;
-  for (const ManifestEntry& one : cases) keys += one.key;
-  return sha256(keys).substr(0, 12);
-}
-
 }  // namespace
 
 void Merge::note_planned_alone(const Source& a, const Source& b,
                                std::vector<std::string>& foreign) {
-  std::vector<ManifestEntry> alone;
-  std::ranges::set_difference(a.cases, b.cases, std::back_inserter(alone), {}, &ManifestEntry::key,
-                              &ManifestEntry::key);
-  for (const ManifestEntry& one : alone)
+  std::vector<PlannedKey> alone;
+  std::ranges::set_difference(a.cases, b.cases, std::back_inserter(alone), {}, &PlannedKey::key,
+                              &PlannedKey::key);
+  for (const PlannedKey& one : alone)
     foreign.push_back(one.id + ": planned by " + a.folder.string() + ", not by " +
                       b.folder.string() + " (another study or build)");
 }
@@ -57,29 +38,27 @@ Merge::Merge(const std::vector<fs::path>& folders) {
     Source source{folder, {}, {}};
     if (fs::exists(folder / "manifest.jsonl")) {
       const Manifest manifest = read_manifest(folder);
-      name_ = manifest.study;
       for (const PlannedCase& one : manifest.cases)
-        source.cases.push_back({one.key, one.id, one.shard, manifest.shards});
+        source.cases.push_back({manifest.study, one.key, one.id, one.shard, manifest.shards});
       for (int i = 1; i <= manifest.shards; ++i)
         source.stores.emplace_back(shard_folder(folder, i));
     } else if (Store::is_at(folder)) {
-      source.cases = read_manifests(folder);
       source.stores.emplace_back(folder);
+      source.cases = source.stores.front().planned();
     } else {
       throw InputError(folder.string() +
                        ": neither a cluster folder (no 'manifest.jsonl' in it) nor results (no "
                        "'results.db')");
     }
-    std::ranges::sort(source.cases, {}, &ManifestEntry::key);
+    std::ranges::sort(source.cases, {}, &PlannedKey::key);
     sources_.push_back(std::move(source));
   }
 }
 
 MergePlan Merge::look(const Store& into) const {
-  MergePlan plan{sources_.front().cases, name_, {}, {}, {}};
-  if (plan.name.empty()) plan.name = name_of(plan.cases);
+  MergePlan plan{sources_.front().cases, {}, {}, {}};
   std::map<std::string, std::string> ids;
-  for (const ManifestEntry& one : plan.cases) ids[one.key] = one.id;
+  for (const PlannedKey& one : plan.cases) ids[one.key] = one.id;
   for (const Source& other : std::span(sources_).subspan(1)) {
     note_planned_alone(sources_.front(), other, plan.foreign);
     note_planned_alone(other, sources_.front(), plan.foreign);
@@ -90,7 +69,7 @@ MergePlan Merge::look(const Store& into) const {
       for (const std::string& key : store.conflicts())
         plan.conflicts.push_back(ids[key] + ": two results in " + store.root().string());
       for (const Store::Entry& entry : store.entries()) {
-        if (!std::ranges::binary_search(source.cases, entry.key, {}, &ManifestEntry::key)) {
+        if (!std::ranges::binary_search(source.cases, entry.key, {}, &PlannedKey::key)) {
           plan.foreign.push_back(entry.id + ": in " + store.root().string() +
                                  ", but not planned (another study or build)");
           continue;
@@ -104,7 +83,7 @@ MergePlan Merge::look(const Store& into) const {
       }
     }
   const std::vector<Store::Entry> all = into.entries();
-  for (const ManifestEntry& one : plan.cases) {
+  for (const PlannedKey& one : plan.cases) {
     const auto at = found.find(one.key);
     const auto there = std::ranges::lower_bound(all, one.key, {}, &Store::Entry::key);
     const bool is_there = there != all.end() && there->key == one.key;
@@ -124,7 +103,6 @@ void Merge::copy(const MergePlan& plan, const Store& into,
     for (const Store& store : source.stores) {
       if (fs::weakly_canonical(store.root()) == fs::weakly_canonical(into.root())) continue;
       into.take(store);
-      copy_sessions(store.root(), into.root());
       progress(std::min(into.keys().size(), all), all);
     }
 }

@@ -34,24 +34,24 @@ FolderStatus status_of(const Manifest& manifest, const fs::path& folder) {
   for (int i = 1; i <= manifest.shards; ++i) {
     ShardStatus one;
     one.shard = i;
-    if (fs::exists(shard_folder(folder, i) / "sessions")) one.state = ShardStatus::State::stopped;
+    if (fs::exists(shard_folder(folder, i) / "beats")) one.state = ShardStatus::State::stopped;
     all.shards.push_back(one);
     std::ranges::copy(not_ended(shard_folder(folder, i)), std::back_inserter(silent));
   }
   const auto shard_of = [&](const Beats& beats) -> ShardStatus& {
-    const std::string name = beats.session.parent_path().parent_path().filename();
+    const std::string name = beats.file.parent_path().parent_path().filename();
     return all.shards[static_cast<std::size_t>(std::stoi(name)) - 1];
   };
   for (const Beats& beats : silent)
-    shard_of(beats).state = ShardStatus::State::lost, shard_of(beats).host = beats.host;
+    shard_of(beats).state = ShardStatus::State::lost, shard_of(beats).host = beats.last.host;
   for (const Beats& beats : living(silent)) {
     ShardStatus& one = shard_of(beats);
-    one.state = ShardStatus::State::running, one.host = beats.host;
+    one.state = ShardStatus::State::running, one.host = beats.last.host;
     if (beats.last.work_done > 0)
       one.seconds =
           (beats.last.work - beats.last.work_done) / beats.last.work_done * beats.last.seconds;
   }
-  std::vector<Store> stores;  // after the sessions: what ended in between counts as done
+  std::vector<Store> stores;  // after the beats: what ended in between counts as done
   for (int i = 1; i <= manifest.shards; ++i) stores.emplace_back(shard_folder(folder, i));
   for (const PlannedCase& planned : manifest.cases) {
     const auto shard = static_cast<std::size_t>(planned.shard) - 1;

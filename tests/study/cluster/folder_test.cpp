@@ -11,6 +11,7 @@
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/cluster/cluster.hpp"
 #include "tests/study/cluster/speaking.hpp"
+#include "tests/support/damaged_results.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::cluster::folder_test {
@@ -126,9 +127,9 @@ TEST_F(Folder, ItsStatusIsThatOfEveryShard) {
   const Manifest manifest = manifest_of({1, 2, 2, 3, 3, 4, 5, 6});
   const fs::path folder = make("c", manifest);
   const auto said = [&](int shard, const std::string& state) {
-    const fs::path session = make_session(shard_folder(folder, shard), "one");
-    append_line(session / "beats", beat_line(state));
-    return session;
+    const fs::path start = make_start(shard_folder(folder, shard), "one");
+    append_line(start, beat_line(state));
+    return start;
   };
   said(1, "ended"), put(shard_folder(folder, 1), 0);
   put(shard_folder(folder, 2), 1);
@@ -165,12 +166,12 @@ TEST_F(Folder, AMergeTakesResultsBeforeFailuresAndSaysWhatIsMissing) {
   const fs::path folder = make("c", manifest_of({1, 1, 2, 2, 2}));
   put(shard_folder(folder, 1), 0, 1, Kind::timeout), put(shard_folder(folder, 1), 1, 1, Kind::oom);
   put(shard_folder(folder, 2), 0, 5), put(shard_folder(folder, 2), 2, 6);
-  make_session(shard_folder(folder, 2), "mine");
+  Store(shard_folder(folder, 2)).begin_session("mine");
   Store into(root_.path() / "m");
   const Merge merge({folder});
   const MergePlan plan = merge.look(into);
   EXPECT_TRUE(plan.mergeable());
-  EXPECT_EQ(plan.name, "study");
+  EXPECT_EQ(plan.missing.at(0).study, "study");
   EXPECT_EQ(plan.cases.size(), 5u);
   ASSERT_EQ(plan.missing.size(), 2u);
   EXPECT_EQ(plan.missing[0].id + std::to_string(plan.missing[0].shard), "case 32");
@@ -184,7 +185,8 @@ TEST_F(Folder, AMergeTakesResultsBeforeFailuresAndSaysWhatIsMissing) {
   EXPECT_EQ(merged.find(key(0))->values.at("a"), 5);
   EXPECT_EQ(merged.find(key(1))->status.kind, Kind::oom) << "a failure is better than nothing";
   EXPECT_EQ(merged.series(key(2)).rows.size(), 1u);
-  EXPECT_TRUE(fs::exists(root_.path() / "m/sessions/mine/session.json"));
+  Database file(merged.file(), Database::Access::read);
+  EXPECT_EQ(file.number_of("SELECT count(*) FROM sessions WHERE command = 'mine'"), 1);
   put(shard_folder(folder, 2), 3);
   const MergePlan more = Merge({folder}).look(merged);
   ASSERT_EQ(more.missing.size(), 1u);
@@ -231,13 +233,18 @@ TEST_F(Folder, AMergeNamesWhatDiffersAndWhatOneFolderAloneHas) {
                   ": neither a cluster folder (no 'manifest.jsonl' in it) nor "
                   "results (no 'results.db')");
   }
-  // Results folders of `taut run --shard` have no study's name: that of their list of cases.
+  // Results folders of `taut run --shard` know their studies.
   const fs::path results = root_.path() / "r";
   put(results, 0);
-  make_session(results, "x");
-  write_file(results / "sessions/x/manifest.jsonl",
-             to_text(ManifestEntry{key(0), "case 0"}) + "\n");
-  EXPECT_EQ(Merge({results}).look(Store(nothing)).name, sha256(key(0)).substr(0, 12));
+  EXPECT_EQ(sentences({results}, nothing),
+            "case 0: in r, but not planned (another study or build)\n");
+  Case planned = make_case({"hang", {"cloth.grid=[2, 2]"}, "jakobsen"});
+  planned.key = key(0);
+  Store(results).begin_session("", {{"mine", {planned}}});
+  const MergePlan found = Merge({results}).look(Store(nothing));
+  ASSERT_EQ(found.cases.size(), 1u);
+  EXPECT_EQ(found.cases[0].study, "mine");
+  EXPECT_TRUE(found.mergeable() && found.missing.empty());
 }
 
 }  // namespace

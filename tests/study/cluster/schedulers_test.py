@@ -96,7 +96,7 @@ class Schedulers(CommandLine):
 
     def sessions(self):
         """Starts of shards of which something is stored."""
-        return sorted(session for shard in (self.folder / "c/shards").glob("*") if stored.keys(shard) for session in shard.glob("sessions/*"))
+        return sorted(session for shard in (self.folder / "c/shards").glob("*") if stored.keys(shard) for session in shard.glob("beats/*"))
 
     def tasks(self, node=None):
         """The processes of `taut cluster run` of this test, by number."""

@@ -9,22 +9,25 @@
 
 namespace taut::cluster {
 
-/// A line of a session's beats.
+/// A beat of a start by the host "zeus".
 inline std::string beat_line(const std::string& state, double work = 0, double work_done = 0) {
   return R"({"state":")" + state + R"(","done":0,"cases":9,"work":)" + std::to_string(work) +
-         R"(,"work_done":)" + std::to_string(work_done) + R"(,"seconds":3,"why":""})";
+         R"(,"work_done":)" + std::to_string(work_done) +
+         R"(,"seconds":3,"why":"","host":"zeus","started":"20260102T030405Z"})";
 }
 
 /// A start of a shard that speaks as long as it is there.
 class Speaking {
  public:
-  Speaking(const std::filesystem::path& session, const std::string& line)
-      : thread_([this, session, line] {
-          while (!ended_) {
-            append_line(session / "beats", line);
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-          }
-        }) {}
+  Speaking(const std::filesystem::path& file, const std::string& line) {
+    append_line(file, line);  // before it is looked for
+    thread_ = std::thread([this, file, line] {
+      while (!ended_) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        append_line(file, line);
+      }
+    });
+  }
   ~Speaking() {
     ended_ = true;
     thread_.join();
@@ -35,13 +38,11 @@ class Speaking {
   std::thread thread_;
 };
 
-/// A session of a shard's store, begun by the host "zeus".
-inline std::filesystem::path make_session(const std::filesystem::path& shard,
-                                          const std::string& name) {
-  const std::filesystem::path folder = shard / "sessions" / name;
-  make_folder(folder);
-  write_file(folder / "session.json", R"({"host":"zeus","started":"20260102T030405Z"})");
-  return folder;
+/// The file of the beats of a start of a shard, of which there are none yet.
+inline std::filesystem::path make_start(const std::filesystem::path& shard,
+                                        const std::string& name) {
+  make_folder(shard / "beats");
+  return shard / "beats" / name;
 }
 
 }  // namespace taut::cluster
