@@ -131,6 +131,17 @@ std::string to_csv(const Answer&, std::string_view table = "");
 /// A field of a CSV file; what a spreadsheet would take for a formula is marked as text.
 std::string csv_field(std::string_view text);
 
+/// A row that differs between two tables.
+struct Difference {
+  std::string text;    ///< "jakobsen, mass ratio: bad 16.62 -> 18.1"
+  bool moved = false;  ///< both tables have the row; false: one alone
+};
+/// Rows have the name that their cells of `names` make. Compared are the cells of `held`, numbers
+/// within `relative` of what they were.
+std::vector<Difference> differences(const Table& before, const Table& now,
+                                    const std::vector<std::string>& names,
+                                    const std::vector<std::string>& held, double relative = 0);
+
 /// As on a terminal, for documents.
 std::string to_markdown(const Answer&, bool details = false);
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -16,7 +15,6 @@ struct JudgedAssertion {
   std::string section, assertion;
   std::string verdict;  ///< to_string(AssertionVerdict), or "overturned": its truth is broken
   std::string figure;  ///< of the truth: "jakobsen: RMS stretch 0.061 (0.06 +- 0.01)"; may be empty
-  bool operator==(const JudgedAssertion&) const = default;
 };
 
 /// The findings of a truth by name; nullptr: it was not checked.
@@ -24,14 +22,5 @@ using FindingsOf = std::function<const std::vector<Finding>*(std::string_view tr
 
 /// Every assertion whose truth was checked, and those that no truth can hold.
 std::vector<JudgedAssertion> judge_assertions(const FindingsOf&);
-
-/// JSON lines. Reading throws InputError with file and line.
-std::string to_json_lines(const std::vector<JudgedAssertion>&);
-std::vector<JudgedAssertion> read_assertions(const std::filesystem::path&);
-
-/// A sentence for each assertion that has another verdict than before, that is new or that is gone.
-/// Figures may differ: the truth's tolerance judges them.
-std::vector<std::string> compare_assertions(const std::vector<JudgedAssertion>& before,
-                                            const std::vector<JudgedAssertion>& now);
 
 }  // namespace taut

@@ -9,7 +9,6 @@
 #include "core/model/solver.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {
@@ -63,36 +62,27 @@ Json row_of(const Found& truth, const Found& finding) {
   return say("exactly " + significant(expected, 3) + unit, significant(measured, 3) + unit);
 }
 
-/// What `read` makes of the answer in a file; nothing if there is none or another program gave it.
-/// Throws InputError if it is damaged.
+/// What `read` makes of each answer of a kind.
 template <class Read>
-auto read_found(const std::filesystem::path& file, std::string_view program, Read read) {
-  std::optional<std::invoke_result_t<Read, const Answer&>> found;
-  if (!std::filesystem::exists(file)) return found;
-  const Answer answer = answer_from_json(read_text(file), file.string());
-  if (answer.fact("program").text() == program) try {
-      found = read(answer);
+auto found(const Store& store, const char* kind, std::string_view program, Read read) {
+  std::vector<std::invoke_result_t<Read, const Answer&>> all;
+  for (const Answer& answer : store.answers(kind, program)) try {
+      all.push_back(read(answer));
     } catch (const InputError& error) {
-      throw InputError({{file.string(), 0, 0, error.what()}});
+      throw InputError(store.file().string() + ": answer of " + kind + ": " + error.what());
     }
-  return found;
+  return all;
+}
+
+template <class Value>
+std::optional<Value> only(std::vector<Value> all) {
+  return all.empty() ? std::nullopt : std::optional(std::move(all.front()));
 }
 
 std::size_t count(const Answer& answer, const char* fact) {
   const double number = answer.fact(fact).number();
   if (!(number >= 0 && number < 1e15)) throw InputError("has no number of " + std::string(fact));
   return static_cast<std::size_t>(number);
-}
-
-/// Files below `results`/`folder` that end so, sorted.
-std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder,
-                                               const std::string& ending) {
-  std::vector<std::filesystem::path> files;
-  if (!std::filesystem::is_directory(folder)) return files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-    if (entry.path().string().ends_with(ending)) files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
 }
 
 /// Of each truth the finding nearest to its tolerance, and all that did not simply pass.
@@ -132,37 +122,32 @@ Truths truths_of(const Answer& answer) {
 
 }  // namespace
 
-Json stored_requirements(const std::filesystem::path& results, std::string_view program) {
+Json stored_requirements(const Store& store, std::string_view program) {
   Json rows;
-  for (const auto& file : files_below(results / "require", "found.json"))
-    if (auto row = read_found(file, program, [](const Answer& answer) {
-          const auto text = [&](const char* fact) { return answer.fact(fact).text(); };
-          const double left = answer.fact("time_left").number();
-          return Json::array({text("scene"), solver_title(solver_name(text("solver"))),
-                              text("chaotic"), text("kept"), text("can_go"), text("required"),
-                              std::isnan(left) ? "-" : number_text(left, kShare, 2)});
-        }))
-      rows.push_back(std::move(*row));
+  for (Json& row : found(store, "require", program, [](const Answer& answer) {
+         const auto text = [&](const char* fact) { return answer.fact(fact).text(); };
+         const double left = answer.fact("time_left").number();
+         return Json::array({text("scene"), solver_title(solver_name(text("solver"))),
+                             text("chaotic"), text("kept"), text("can_go"), text("required"),
+                             std::isnan(left) ? "-" : number_text(left, kShare, 2)});
+       }))
+    rows.push_back(std::move(row));
   return rows;
 }
 
-std::vector<ParameterFrontier> stored_frontiers(const std::filesystem::path& results,
-                                                std::string_view program) {
+std::vector<ParameterFrontier> stored_frontiers(const Store& store, std::string_view program) {
   std::vector<ParameterFrontier> all;
-  for (const auto& file : files_below(results / kFrontiersFolder, ".json"))
-    if (const auto found = read_found(file, program, frontiers_of))
-      all.insert(all.end(), found->begin(), found->end());
+  for (const auto& one : found(store, "frontier", program, frontiers_of))
+    all.insert(all.end(), one.begin(), one.end());
   return all;
 }
 
-std::optional<Truths> stored_truths(const std::filesystem::path& results,
-                                    std::string_view program) {
-  return read_found(results / "verify.json", program, truths_of);
+std::optional<Truths> stored_truths(const Store& store, std::string_view program) {
+  return only(found(store, "verify", program, truths_of));
 }
 
-std::optional<Json> stored_regressions(const std::filesystem::path& results,
-                                       std::string_view program) {
-  return read_found(results / "check.json", program, [](const Answer& answer) {
+std::optional<Json> stored_regressions(const Store& store, std::string_view program) {
+  return only(found(store, "check", program, [](const Answer& answer) {
     const Table& findings = answer.table("findings");
     Json regressions{{"cases", count(answer, "cases")}, {"values", count(answer, "values")}};
     for (const auto& row : findings.rows) {
@@ -173,7 +158,7 @@ std::optional<Json> stored_regressions(const std::filesystem::path& results,
                                      {"change", one.text("change")}});
     }
     return regressions;
-  });
+  }));
 }
 
 }  // namespace taut::report

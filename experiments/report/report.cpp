@@ -330,7 +330,7 @@ class Builder {
           "taut render " + compared_.scenes.front().question.scene + " --video");
     if (!input_.truths)
       add("truths", "Closed forms and published numbers were not evaluated by this build.",
-          "taut verify -o results/runs/verify.json");
+          "taut verify --record");
     if (!input_.regressions)
       add("regressions", "Not compared with the committed baselines by this build.",
           "taut check --record");

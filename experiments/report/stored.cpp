@@ -88,8 +88,7 @@ std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of) 
   return all;
 }
 
-std::optional<StudyBench> stored_bench(const std::filesystem::path& file) {
-  StudyBench bench = bench_from_json(read_text(file), file.string());
+void keep_current(StudyBench& bench) {
   CaseMaker maker;
   for (SceneBench& scene : bench.scenes)
     std::erase_if(scene.cases, [&](const BenchedCase& c) {
@@ -100,8 +99,6 @@ std::optional<StudyBench> stored_bench(const std::filesystem::path& file) {
       }
     });
   std::erase_if(bench.scenes, [](const SceneBench& scene) { return scene.cases.empty(); });
-  if (bench.scenes.empty()) return std::nullopt;
-  return bench;
 }
 
 namespace {
@@ -142,18 +139,14 @@ std::map<std::string, T*> by_question(std::vector<T>& all, const Names& known, R
 /// What was timed, by host and processor.
 std::map<std::string, std::vector<BenchedCase>> all_timed(const Store& store, double& noise) {
   std::map<std::string, std::vector<BenchedCase>> all;
-  std::error_code none;
-  for (const auto& entry :
-       std::filesystem::recursive_directory_iterator(store.root() / "bench", none))
-    if (entry.path().extension() == ".json") {
-      const StudyBench session = bench_from_json(read_text(entry.path()), entry.path().string());
-      std::vector<BenchedCase>& here = all[session.host + ", " + session.machine];
-      for (const SceneBench& scene : session.scenes) {
-        if (!scene.in_turns) continue;  // nobody knows how far its times stray
-        noise = std::max(noise, spread(scene.control));
-        here.insert(here.end(), scene.cases.begin(), scene.cases.end());
-      }
+  for (const StudyBench& session : stored_benches(store, "")) {
+    std::vector<BenchedCase>& here = all[session.host + ", " + session.machine];
+    for (const SceneBench& scene : session.scenes) {
+      if (!scene.in_turns) continue;  // nobody knows how far its times stray
+      noise = std::max(noise, spread(scene.control));
+      here.insert(here.end(), scene.cases.begin(), scene.cases.end());
     }
+  }
   return all;
 }
 
@@ -273,16 +266,18 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
   benched.emplace_back("trade");
   for (const std::string& name : benched) {
     if (input.bench) break;
-    for (const std::filesystem::path& file : bench_files(store.root(), name)) try {
-        std::optional<StudyBench> bench = stored_bench(file);
-        if (!bench) continue;
-        input.cost_hosts.push_back(
-            bench->host + ", build " + bench->build.substr(0, 10) + ": " + bench->machine +
-            (input.bench ? "; not shown and not pooled: " : "; shown: ") + file.string());
+    try {
+      for (StudyBench& bench : stored_benches(store, name)) {
+        keep_current(bench);
+        if (bench.scenes.empty()) continue;
+        input.cost_hosts.push_back(bench.host + ", build " + bench.build.substr(0, 10) + ": " +
+                                   bench.machine +
+                                   (input.bench ? "; not shown and not pooled" : "; shown"));
         if (!input.bench) input.bench = std::move(bench);
-      } catch (const InputError& error) {
-        input.left_out.emplace_back(file.string(), error.what());
       }
+    } catch (const InputError& error) {
+      input.left_out.emplace_back("the costs of " + name, error.what());
+    }
   }
   for (const Missing& one : store.still_missing())
     input.left_out.emplace_back(store.file().string(), one.sentence());

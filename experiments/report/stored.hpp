@@ -23,9 +23,8 @@ std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of);
 /// A value over time of those cases of which the store has it, named by what sets them apart.
 std::vector<TimeSeries> stored_series(const Records&, const std::string& value, const Store&);
 
-/// What `taut bench STUDY` left in this file: the cases that this build would run alike,
-/// in scenes that have any; nullopt: none. Throws InputError if the file is damaged.
-std::optional<StudyBench> stored_bench(const std::filesystem::path& file);
+/// Leaves of a bench the cases that this build would run alike, in scenes that have any.
+void keep_current(StudyBench&);
 
 /// Adds the maps among these studies (two axes and a plot of kind "stability") of which the store
 /// has something; what the input holds of a study is not read again.

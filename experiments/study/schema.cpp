@@ -78,6 +78,43 @@ CREATE TABLE planned (
   PRIMARY KEY (study, key)) WITHOUT ROWID;
 CREATE INDEX planned_key ON planned (key);
 
+CREATE TABLE answers (
+  kind TEXT NOT NULL,
+  subject TEXT NOT NULL,
+  program TEXT NOT NULL,
+  made TEXT NOT NULL,
+  answer TEXT NOT NULL,
+  PRIMARY KEY (kind, subject)) WITHOUT ROWID;
+
+CREATE TABLE benches (
+  bench_id INTEGER PRIMARY KEY,
+  study TEXT NOT NULL,
+  host TEXT NOT NULL,
+  build TEXT NOT NULL,
+  machine TEXT NOT NULL,
+  made TEXT NOT NULL,
+  scene TEXT NOT NULL,
+  in_turns INTEGER NOT NULL,
+  control_low REAL,
+  control REAL,
+  control_high REAL);
+
+CREATE TABLE timings (
+  timing_id INTEGER PRIMARY KEY,
+  bench_id INTEGER NOT NULL REFERENCES benches ON DELETE CASCADE,
+  key TEXT NOT NULL,
+  peak_bytes INTEGER NOT NULL,
+  failure TEXT NOT NULL,
+  remark TEXT NOT NULL);
+CREATE INDEX timings_of_bench ON timings (bench_id);
+
+CREATE TABLE samples (
+  timing_id INTEGER NOT NULL REFERENCES timings ON DELETE CASCADE,
+  round INTEGER NOT NULL,
+  cpu REAL NOT NULL,
+  wall REAL NOT NULL,
+  PRIMARY KEY (timing_id, round)) WITHOUT ROWID;
+
 CREATE VIEW results AS
 SELECT study, scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
   parameters ->> '$.substeps' + 0 AS substeps, parameters ->> '$.iterations' + 0 AS iterations,
@@ -94,6 +131,24 @@ SELECT scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
 FROM series JOIN cases USING (case_id), json_each(series.columns) AS line,
   json_each(line.value) AS point LEFT JOIN metrics ON metrics.name = line.key
 WHERE line.key NOT IN ('step', 't');
+
+CREATE VIEW costs AS
+WITH ranked AS (
+  SELECT timing_id, cpu, wall, count(*) OVER (PARTITION BY timing_id) AS rounds,
+    row_number() OVER (PARTITION BY timing_id ORDER BY cpu) AS by_cpu,
+    row_number() OVER (PARTITION BY timing_id ORDER BY wall) AS by_wall
+  FROM samples),
+medians AS (
+  SELECT timing_id, rounds,
+    avg(cpu) FILTER (WHERE by_cpu IN ((rounds + 1) / 2, (rounds + 2) / 2)) AS cpu,
+    avg(wall) FILTER (WHERE by_wall IN ((rounds + 1) / 2, (rounds + 2) / 2)) AS wall
+  FROM ranked GROUP BY timing_id)
+SELECT study, cases.scene, solver, substr(cases.id, length(cases.scene) + 2) AS setting, dt,
+  parameters ->> '$.substeps' + 0 AS substeps, parameters ->> '$.iterations' + 0 AS iterations,
+  cpu, cpu / dt AS cpu_per_second, wall, peak_bytes AS memory, coalesce(rounds, 0) AS rounds,
+  failure, remark, status, host, build, cases.key
+FROM timings JOIN benches USING (bench_id) JOIN cases USING (key)
+  LEFT JOIN medians USING (timing_id);
 )SQL";
 
 }  // namespace taut

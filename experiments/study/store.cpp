@@ -339,6 +339,23 @@ std::vector<std::string> Store::conflicts() const {
   return keys;
 }
 
+void Store::keep(const Answer& answer) const {
+  writing().run("INSERT OR REPLACE INTO answers VALUES (?, ?, ?, ?, ?)", answer.kind,
+                answer.subject, program_digest(), utc_stamp(), to_json(answer));
+}
+
+std::vector<Answer> Store::answers(const std::string& kind, std::string_view program) const {
+  std::vector<Answer> all;
+  Database* database = reading();
+  if (!database) return all;
+  Database::Rows row =
+      database->rows("SELECT answer FROM answers WHERE kind = ? AND program = ? ORDER BY subject",
+                     kind, std::string(program));
+  while (row.next())
+    all.push_back(answer_from_json(row.text(0), file().string() + ": answer of " + kind));
+  return all;
+}
+
 void Store::take(const Store& other) const {
   if (!other.reading()) return;
   Database& database = writing();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/answer/answer.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/case/trajectory.hpp"
@@ -100,15 +101,21 @@ class Store {
   void mark_missing(const std::vector<PlannedKey>&) const;
   std::vector<Missing> still_missing() const;  ///< by study
 
+  /// Keeps what a verb found in place of what was found of this kind and subject before. Throws
+  /// InputError.
+  void keep(const Answer&) const;
+  /// What `program` (program_digest) found of this kind, by subject. Throws InputError: damaged.
+  std::vector<Answer> answers(const std::string& kind, std::string_view program) const;
+
   /// Takes over the cases and sessions of another store: results before failures, nothing twice.
   /// Throws InputError; then nothing of it was taken.
   void take(const Store& other) const;
 
+  Database* reading() const;  ///< nullptr: there is no file yet
+  Database& writing() const;
+
  private:
   struct State;
-  /// nullptr: there is no file yet.
-  Database* reading() const;
-  Database& writing() const;
   void say_earlier_results() const;
   std::optional<Record> sound_record(Database&, const std::string& key, std::string& why) const;
   void insert(Database&, const Record&, const CaseFiles&) const;

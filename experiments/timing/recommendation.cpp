@@ -5,8 +5,6 @@
 #include <numeric>
 #include <set>
 
-#include "experiments/answer/answer.hpp"
-
 namespace taut {
 
 namespace {
@@ -111,23 +109,41 @@ std::string text(const Target& target, const std::string& metric) {
   return "least " + metric + " within " + number_text(*target.budget, kFrameCost) + " of 1/60 s";
 }
 
-std::string text(const Recommendation& recommendation, const SceneBench& bench,
-                 const std::string& metric) {
-  std::string out = text(recommendation.target, metric) + ": ";
+Table recommendations(const std::string& metric) {
+  return {"recommended",
+          "the best for each target, and what the other solvers cost",
+          {{"scene"},
+           {"target"},
+           {"solver"},
+           {"setting"},
+           {"error", metric, unit_of_value(metric)},
+           {"cost", "CPU time", kFrameCost},
+           {"times", "times the best"},
+           {"answer"}}};
+}
+
+void add(Table& table, const Recommendation& recommendation, const SceneBench& bench,
+         const std::string& metric) {
+  const auto row = [&](const SolverRecommendation& solver, const Cell& times, Cell answer) {
+    auto& cells = table.rows.emplace_back(std::vector<Cell>{bench.scene,
+                                                            text(recommendation.target, metric),
+                                                            solver.solver,
+                                                            "",
+                                                            {},
+                                                            {},
+                                                            times,
+                                                            answer});
+    if (!solver.at) return;
+    const BenchedCase& c = bench.cases[*solver.at];
+    cells[3] = parse_solver(c.record.spec.solver).brief(), cells[3].key = c.record.key;
+    cells[4] = c.record.value(metric), cells[5] = c.cost();
+  };
   if (recommendation.best)
-    out += line(bench.cases[*recommendation.best], metric) + "; " + verdict(recommendation, bench) +
-           "\n";
-  else
-    out += "not reached\n";
-  for (const SolverRecommendation& solver : recommendation.solvers) {
-    if (recommendation.best && solver.at == recommendation.best) continue;
-    out += "  " + solver.solver + ": ";
-    out += solver.at ? (solver.times ? interval_text(*solver.times) + " x the cost: " : "") +
-                           line(bench.cases[*solver.at], metric)
-                     : nearest(solver, bench, recommendation, metric);
-    out += '\n';
-  }
-  return out;
+    row({bench.cases[*recommendation.best].record.solver, recommendation.best, {}}, {},
+        verdict(recommendation, bench));
+  for (const SolverRecommendation& solver : recommendation.solvers)
+    if (!recommendation.best || solver.at != recommendation.best)
+      row(solver, solver.times, solver.at ? "" : nearest(solver, bench, recommendation, metric));
 }
 
 }  // namespace taut

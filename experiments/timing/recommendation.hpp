@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/answer/answer.hpp"
 #include "experiments/timing/study_bench.hpp"
 
 namespace taut {
@@ -45,9 +46,10 @@ std::string verdict(const Recommendation&, const SceneBench&);
 std::string nearest(const SolverRecommendation&, const SceneBench&, const Recommendation&,
                     const std::string& metric);
 
-/// The recommendation in lines, the first without indentation: who, for what error and cost, and
-/// how sure; then a line for every other solver.
-std::string text(const Recommendation&, const SceneBench&, const std::string& metric);
+/// An empty table of recommendations, and its rows for one of them: the best, then every other
+/// solver with what it costs or how near it came.
+Table recommendations(const std::string& metric);
+void add(Table&, const Recommendation&, const SceneBench&, const std::string& metric);
 
 /// Whom to time: the best by quick cost of every solver that meets the target, at most `most`, then
 /// the next best of the leader. Indices into `tried`, best first.

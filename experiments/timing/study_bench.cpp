@@ -11,51 +11,64 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/study/database.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
-#include "experiments/system/text.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
 
 namespace {
 
-constexpr int kBenchSchema = 4;
-
-Interval interval_of(const JsonReader& j) {
-  const std::vector<JsonReader> ends = j.items(3);
-  return {ends[0].number_or_null(), ends[1].number_or_null(), ends[2].number_or_null()};
-}
-
-BenchedCase case_of(const JsonReader& j) {
-  BenchedCase benched{record_of(j.at("record")), {}};
-  benched.timing = {.samples = j.at("cpu_seconds_per_step").numbers(),
-                    .wall = j.at("wall_seconds_per_step").numbers(),
-                    .peak_bytes = j.at("peak_bytes").count(),
-                    .failure = j.at("failure").text(),
-                    .remark = j.find("remark") ? j.at("remark").text() : ""};
-  const Timing& timing = benched.timing;
-  for (const auto* seconds : {&timing.samples, &timing.wall})
-    for (const double value : *seconds)
-      if (!(value > 0)) j.fail("expected times greater than 0");
-  if (timing.failure.empty() && (timing.samples.empty() || timing.wall.empty()))
-    j.fail("has neither times nor a failure");
-  return benched;
-}
-
-StudyBench study_of(const JsonReader& j) {
-  j.require_schema(kBenchSchema);
-  StudyBench study{
-      j.at("study").text(), j.at("machine").text(), {}, j.at("host").text(), j.at("build").text()};
-  for (const JsonReader& one : j.at("scenes").items()) {
-    SceneBench scene{one.at("scene").text(), {}, {}};
-    if ((scene.in_turns = one.find("control").has_value()))
-      scene.control = interval_of(one.at("control"));
-    for (const JsonReader& c : one.at("cases").items()) scene.cases.push_back(case_of(c));
-    study.scenes.push_back(std::move(scene));
+/// The samples of one timing.
+Timing timing_in(Database& database, const Database::Rows& row, const std::string& key) {
+  Timing timing{.peak_bytes = static_cast<std::size_t>(row.integer(2)),
+                .failure = row.text(3),
+                .remark = row.text(4)};
+  Database::Rows sample = database.rows(
+      "SELECT cpu, wall FROM samples WHERE timing_id = ? ORDER BY round", row.integer(0));
+  while (sample.next()) {
+    timing.samples.push_back(sample.number(0)), timing.wall.push_back(sample.number(1));
+    if (!(timing.samples.back() > 0 && timing.wall.back() > 0))
+      throw InputError(database.file().string() + ": case " + key +
+                       ": expected times greater than 0");
   }
-  return study;
+  return timing;
+}
+
+/// A scene of a bench, without cases that are no longer stored.
+SceneBench scene_in(const Store& store, const Database::Rows& row) {
+  SceneBench scene{
+      row.text(5), {row.number(7), row.number(8), row.number(9)}, {}, row.integer(6) != 0};
+  Database::Rows timed = store.reading()->rows(
+      "SELECT timing_id, key, peak_bytes, failure, remark FROM timings WHERE bench_id = ? ORDER BY "
+      "timing_id",
+      row.integer(0));
+  while (timed.next()) {
+    const std::string key = timed.text(1);
+    Timing timing = timing_in(*store.reading(), timed, key);
+    if (auto record = store.find(key))
+      scene.cases.push_back({std::move(*record), std::move(timing)});
+  }
+  return scene;
+}
+
+void insert(Database& database, const StudyBench& study, const SceneBench& scene) {
+  database.run(
+      "INSERT INTO benches (study, host, build, machine, made, scene, in_turns, control_low, "
+      "control, control_high) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+      study.study, study.host, study.build, study.machine, utc_stamp(), scene.scene,
+      static_cast<int>(scene.in_turns), scene.control.low, scene.control.mid, scene.control.high);
+  const std::int64_t bench = database.number_of("SELECT last_insert_rowid()");
+  for (const auto& [record, timing] : scene.cases) {
+    database.run(
+        "INSERT INTO timings (bench_id, key, peak_bytes, failure, remark) VALUES (?, ?, ?, ?, ?)",
+        bench, record.key, timing.peak_bytes, timing.failure, timing.remark);
+    const std::int64_t id = database.number_of("SELECT last_insert_rowid()");
+    for (std::size_t i = 0; i < timing.samples.size(); ++i)
+      database.run("INSERT INTO samples VALUES (?, ?, ?, ?)", id, i, timing.samples[i],
+                   timing.wall[i]);
+  }
 }
 
 }  // namespace
@@ -159,63 +172,40 @@ std::vector<Record> StudyBench::records() const {
   return records;
 }
 
-std::string to_json(const StudyBench& study) {
-  Json all{{"schema", kBenchSchema},
-           {"study", study.study},
-           {"machine", study.machine},
-           {"host", study.host},
-           {"build", study.build}};
-  for (const SceneBench& scene : study.scenes) {
-    Json one{{"scene", scene.scene}};
-    if (scene.in_turns) one["control"] = scene.control;
-    for (const auto& [record, timing] : scene.cases)
-      one["cases"].push_back({{"record", parse_json(to_json(record))},
-                              {"cpu_seconds_per_step", timing.samples},
-                              {"wall_seconds_per_step", timing.wall},
-                              {"peak_bytes", timing.peak_bytes},
-                              {"failure", timing.failure},
-                              {"remark", timing.remark}});
-    for (const std::string& solver : solvers_of(scene))
-      for (const ParameterRange& range : scene.parameter_ranges(solver))
-        one["accuracy_parameters"][solver][range.parameter] = {{"largest", range.largest},
-                                                               {"end", range.end}};
-    all["scenes"].push_back(std::move(one));
-  }
-  return to_text(all, 1) + "\n";
-}
-
-StudyBench bench_from_json(std::string_view text, const std::string& where) {
-  return read_json(text, where, study_of);
-}
-
 StudyBench StudyBench::here(const std::string& study) {
   return {study, machine_name(), {}, host_name(), program_digest()};
 }
 
-std::filesystem::path bench_file(const std::filesystem::path& results, const StudyBench& study) {
-  return results / "bench" / study.study / (study.host + "-" + study.build.substr(0, 10) + ".json");
-}
-
-std::filesystem::path keep(const std::filesystem::path& results, const StudyBench& study) {
-  const std::filesystem::path file = bench_file(results, study);
-  make_folder(file.parent_path());
-  write_durably(file, to_json(study));
-  return file;
-}
-
-std::vector<std::filesystem::path> bench_files(const std::filesystem::path& results,
-                                               const std::string& study) {
-  const std::filesystem::path mine = bench_file(results, StudyBench::here(study));
-  const std::string name = mine.filename(), host = name.substr(0, name.rfind('-') + 1);
-  std::vector<std::filesystem::path> files;
-  std::error_code none;
-  for (const auto& file : std::filesystem::directory_iterator(mine.parent_path(), none))
-    if (file.path().extension() == ".json") files.push_back(file.path());
-  std::ranges::sort(files, {}, [&](const std::filesystem::path& file) {
-    const std::string other = file.filename();
-    return std::tuple(other != name, !other.starts_with(host), other);
+void keep(const Store& store, const StudyBench& study) {
+  Database& database = store.writing();
+  database.transaction([&] {
+    database.run("DELETE FROM benches WHERE study = ? AND host = ? AND build = ?", study.study,
+                 study.host, study.build);
+    for (const SceneBench& scene : study.scenes) insert(database, study, scene);
   });
-  return files;
+}
+
+std::vector<StudyBench> stored_benches(const Store& store, const std::string& study) {
+  std::vector<StudyBench> all;
+  Database* database = store.reading();
+  if (!database) return all;
+  const StudyBench mine = StudyBench::here(study);
+  Database::Rows row = database->rows(
+      "SELECT bench_id, study, machine, host, build, scene, in_turns, control_low, control, "
+      "control_high FROM benches WHERE ?1 IN ('', study) "
+      "ORDER BY study, host <> ?2 OR build <> ?3, host <> ?2, host, build, bench_id",
+      study, mine.host, mine.build);
+  while (row.next()) {
+    StudyBench bench{row.text(1), row.text(2), {}, row.text(3), row.text(4)};
+    const auto is_of = [&](const StudyBench& b) {
+      return std::tie(b.study, b.host, b.build) == std::tie(bench.study, bench.host, bench.build);
+    };
+    if (all.empty() || !is_of(all.back())) all.push_back(std::move(bench));
+    SceneBench scene = scene_in(store, row);
+    if (!scene.cases.empty()) all.back().scenes.push_back(std::move(scene));
+  }
+  std::erase_if(all, [](const StudyBench& bench) { return bench.scenes.empty(); });
+  return all;
 }
 
 void require_one_quiet_host() {

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "experiments/case/record.hpp"
+#include "experiments/study/store.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -82,7 +82,7 @@ struct SceneBench {
   bool searched_to_the_end(const std::string& solver) const;
 };
 
-/// What `taut bench STUDY` leaves for reports and plots: every sample is kept.
+/// What `taut bench STUDY` measures, for reports and plots.
 struct StudyBench {
   std::string study;
   std::string machine;  ///< processor and number of cores
@@ -103,19 +103,13 @@ SceneBench bench_scene(const std::string& scene, const std::vector<Record>&, con
 /// Names of the solvers in a bench, in order of appearance.
 std::vector<std::string> solvers_of(const SceneBench&);
 
-std::string to_json(const StudyBench&);
-/// Throws InputError that names `where` if the text is not a bench of this schema.
-StudyBench bench_from_json(std::string_view text, const std::string& where);
+/// Keeps every sample in place of what this host and build measured of the study before. Throws
+/// InputError; then the former stay.
+void keep(const Store&, const StudyBench&);
 
-/// Where a bench lies in a results folder: a file for each host and build.
-std::filesystem::path bench_file(const std::filesystem::path& results, const StudyBench&);
-
-/// Writes it there.
-std::filesystem::path keep(const std::filesystem::path& results, const StudyBench&);
-
-/// What is stored of a study: of this host and build, of this host, of others by name.
-std::vector<std::filesystem::path> bench_files(const std::filesystem::path& results,
-                                               const std::string& study);
+/// What is stored of a study ("": of all): of this host and build, of this host, of others by name;
+/// of cases that are stored, in scenes that have any. Throws InputError: damaged.
+std::vector<StudyBench> stored_benches(const Store&, const std::string& study);
 
 /// Throws InputError in a Slurm job that may not time: on several nodes, or not alone on its node.
 void require_one_quiet_host();

@@ -274,5 +274,25 @@ TEST(Numbers, HaveTheirDigitsAndNoExponentWherePeopleReadThem) {
   EXPECT_EQ(clock_text(725.9), "12:05");
 }
 
+TEST(Differences, AreOfRowsByNameInWhatIsHeld) {
+  const auto table = [](std::vector<std::vector<Cell>> rows) {
+    return Table{"t", "", {{"who"}, {"what"}, {"says"}, {"good"}, {"other"}}, std::move(rows)};
+  };
+  const auto compared = [&](const Table& before, const Table& now) {
+    std::string all;
+    for (const Difference& one : differences(before, now, {"who", "what"}, {"says", "good"}, 0.02))
+      all += std::string(one.moved ? "moved " : "alone ") + one.text + "\n";
+    return all;
+  };
+  const Table before = table({{"a", "x", "ok", 100, 1}, {"a", "y", "ok", {}, 1}});
+  EXPECT_EQ(compared(before, before), "");
+  EXPECT_EQ(compared(before, table({{"a", "y", "ok", {}, 2}, {"a", "x", "ok", 101.9, "3"}})), "");
+  EXPECT_EQ(compared(before, table({{"a", "x", "ok", 97.5, 1}, {"a", "y", "bad", 5, 1}})),
+            "moved a, x: good 100 -> 97.5\nmoved a, y: says ok -> bad; good - -> 5\n");
+  EXPECT_EQ(compared(before, table({{"a", "x", "ok", 100, 1}, {"b", "y", "ok", {}, 1}})),
+            "alone b, y is not in the baseline\nalone a, y is gone\n");
+  EXPECT_THROW(differences(before, before, {"nobody"}, {}), InputError);
+}
+
 }  // namespace
 }  // namespace taut::answer_test

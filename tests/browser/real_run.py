@@ -41,7 +41,7 @@ def main(binaries, out):
 
     taut("run", "./small.toml", "--out", "results")
     taut("bench", "./small.toml", "--rounds", "2", "--seconds", "0.0005", "--out", "results", "--quiet")
-    taut("verify", "--section", "1", "--quiet", "-o", "results/verify.json")
+    taut("verify", "--section", "1", "--quiet", "--record", "--out", "results")
     page = folder / taut("report", "./small.toml", "--out", "results", "--film", "disc", "--film", "twist")[-1]
     text = page.read_text()
     model = json.loads(text.split('<script type="application/json" id="model">', 1)[1].split("</script>", 1)[0])

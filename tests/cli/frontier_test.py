@@ -9,6 +9,7 @@ import pathlib
 import shlex
 import statistics
 
+import stored
 from command_line import CommandLine, facts_of, main, rows_of
 
 PARAMETERS = ["time step", "sweeps", "stiffness", "mass ratio", "resolution", "speed of a collider", "size, up", "size, down",
@@ -24,13 +25,16 @@ class AllFrontiers(CommandLine):
         return self.taut("frontier", "--all", self.SOLVER, "--baselines", "kept", *words, expect=expect)
 
     def edit(self, change):
-        file = self.folder / "kept/frontiers/xpbd.jsonl"
-        rows = [json.loads(line) for line in file.read_text().splitlines()]
-        change({row["id"].split(", ", 1)[1]: row for row in rows})
-        file.write_text("".join(json.dumps(row) + "\n" for row in rows))
+        file, = (self.folder / "kept/frontiers").iterdir()
+        answer = json.loads(file.read_text())
+        table = answer["tables"]["parameters"]
+        rows = rows_of(answer, "parameters")
+        change({row["parameter"]: row for row in rows})
+        table["rows"] = [[row[column["name"]] for column in table["columns"]] for row in rows]
+        file.write_text(json.dumps(answer))
 
     def test_every_parameter_has_its_frontier_and_a_narrower_one_is_red(self):
-        self.assertIn("xpbd: the study runs this solver, which has no baseline", self.all("--check", expect=4).err)
+        self.assertIn("xpbd:substeps=2: no baseline kept/frontiers/", self.all("--check", expect=4).err)
         answer = json.loads(self.all("--json", "--update").out)
         found, beyond = rows_of(answer, "parameters"), rows_of(answer, "beyond")
         self.assertEqual([one["parameter"] for one in found], PARAMETERS)
@@ -52,7 +56,7 @@ class AllFrontiers(CommandLine):
         self.assertGreater(values["stretch.max"], 1)
 
         text = self.all("--check")
-        self.assertIn(f"{len(PARAMETERS)} frontiers compared with kept/frontiers: none has moved", text.err)
+        self.assertRegex(text.err, f"{len(PARAMETERS)} frontiers compared with kept/frontiers/.*: 0 differ")
         commands = [one["command"] for one in rows_of(answer, "commands")]
         self.assertEqual(len(commands), sum(one["bad"] is not None for one in answered))
         self.assertEqual(shlex.split(commands[0])[:3], ["taut", "case", "swing"])
@@ -76,16 +80,19 @@ class AllFrontiers(CommandLine):
             if not effect["name"].startswith("("):
                 self.assertIn(effect["name"], row[4] if effect["verdict"] == "drop" else row[5])
 
-        self.edit(lambda rows: rows["time step"]["values"].update(bad=1.2 * rows["time step"]["values"]["bad"]))
+        self.edit(lambda rows: rows["time step"].update(bad=1.2 * rows["time step"]["bad"]))
         self.assertRegex(self.all("--check", expect=1).err, r"xpbd:substeps=2, time step: bad \S+ -> ")
         self.all("--update")
-        self.edit(lambda rows: rows["wind"].update(status="freezes"))
-        self.assertRegex(self.all("--check", expect=1).err, "wind: status freezes -> ")
+        self.edit(lambda rows: rows["wind"].update(symptom="freezes"))
+        self.assertRegex(self.all("--check", expect=1).err, "wind: symptom freezes -> ")
         self.all("--update")
-        self.edit(lambda rows: rows["wind"].update(id="xpbd:substeps=2, breeze"))
-        self.assertRegex(self.all("--check", expect=4).err, "renamed: the baseline calls it '.*breeze'")
-        (self.folder / "kept/frontiers/xpbd.jsonl").write_text("{\n")
-        self.assertIn("xpbd.jsonl:1", self.all("--check", expect=2).err)
+        self.edit(lambda rows: rows["wind"].update(parameter="breeze"))
+        said = self.all("--check", expect=4).err
+        self.assertIn("breeze is gone", said)
+        self.assertIn("wind is not in the baseline", said)
+        file, = (self.folder / "kept/frontiers").iterdir()
+        file.write_text("{\n")
+        self.assertIn(f"{file.name}: is not JSON", self.all("--check", expect=2).err)
 
     def test_bad_input_runs_nothing(self):
         for words in (["nobody"], ["jakobsen", "jakobsen"], ["jakobsen", "bullet", "xpbd"]):
@@ -97,16 +104,18 @@ class AllFrontiers(CommandLine):
 
 class Assertions(CommandLine):
     def test_a_verdict_that_changes_is_red(self):
-        kept = pathlib.Path(__file__).parents[2] / "results/baselines/assertions.jsonl"
-        rows = [json.loads(line) for line in kept.read_text().splitlines()]
+        kept = pathlib.Path(__file__).parents[2] / "results/baselines/assertions.json"
+        answer = json.loads(kept.read_text())
+        rows = rows_of(answer, "assertions")
         listed = self.answer("list", "assertions")
         self.assertEqual([(c["name"], c["summary"], c["verdict"]) for c in rows_of(listed, "assertions")],
                          [(c["section"], c["assertion"], c["verdict"]) for c in rows])
-        rows[4]["verdict"] = "does not hold"
+        names = [column["name"] for column in answer["tables"]["assertions"]["columns"]]
+        answer["tables"]["assertions"]["rows"][4][names.index("verdict")] = "does not hold"
         (self.folder / "kept").mkdir()
-        (self.folder / "kept/assertions.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+        (self.folder / "kept/assertions.json").write_text(json.dumps(answer))
         said = self.taut("verify", "--assertions", "--baselines", "kept", expect=1)
-        self.assertIn(f'"{rows[4]["assertion"]}": \'does not hold\' -> ', said.err)
+        self.assertIn(f'{rows[4]["assertion"]}: verdict does not hold -> ', said.err)
         self.assertIn("1 changed", said.err)
         self.taut("verify", "--update", expect=2)
         self.taut("verify", "--assertions", "--section", "8", "--update", expect=2)
@@ -115,17 +124,17 @@ class Assertions(CommandLine):
 class Profiles(CommandLine):
     LEVELS = [0.1, 0.01, 0.001, 0.0001]
 
-    def shares(self, session):
-        """Dolan and More, by hand: {solver: [ratio of every problem that anybody solves]}."""
-        ratios = {case["record"]["solver"]: [] for scene in session["scenes"] for case in scene["cases"]}
-        for scene in session["scenes"]:
-            tried = {}
-            for case in scene["cases"]:
-                record, samples = case["record"], case["cpu_seconds_per_step"]
-                error = record["values"].get("stretch.rms")
-                fine = record["status"]["kind"] in ("ok", "unsettled") and samples and error is not None
-                tried.setdefault(record["solver"], []).append(
-                    (statistics.median(samples) / record["dt"] if samples else math.inf, error if fine else math.inf))
+    def shares(self):
+        results = self.folder / "results/runs"
+        ratios, scenes = {}, {}
+        for row in stored.query(results, "SELECT * FROM timings JOIN benches USING (bench_id) ORDER BY timing_id"):
+            (solver, dt, status), = [tuple(r) for r in stored.query(results, "SELECT solver, dt, status FROM cases WHERE key = ?", row["key"])]
+            (error,), = stored.query(results, "SELECT value FROM results WHERE metric = 'stretch.rms' AND key = ?", row["key"])
+            samples = [cpu for cpu, in stored.query(results, "SELECT cpu FROM samples WHERE timing_id = ?", row["timing_id"])]
+            fine = status in ("ok", "unsettled") and not row["failure"] and error is not None
+            ratios[solver] = []
+            scenes.setdefault(row["scene"], {}).setdefault(solver, []).append((statistics.median(samples) / dt, error if fine else math.inf))
+        for tried in scenes.values():
             fewest = min(map(len, tried.values()))
             for solver, all_of in tried.items():
                 places = [k * (len(all_of) - 1) // (fewest - 1) for k in range(fewest)] if fewest > 1 else [0]
@@ -141,18 +150,15 @@ class Profiles(CommandLine):
     def test_plot_and_page_show_what_the_raw_samples_give(self):
         study = self.study(solvers=["jakobsen", "bullet"], rest="[axes]\niterations = [1, 4, 16, 64]\n")
         self.taut("bench", study)
-        file = next((self.folder / "results/runs/bench").glob("*/*.json"))
-        session = json.loads(file.read_text())
-        # Errors and costs at will: Bullet reaches less, and one of its settings explodes.
-        for scene in session["scenes"]:
-            for i, case in enumerate(scene["cases"]):
-                bullet = case["record"]["solver"] == "bullet"
-                case["record"]["values"]["stretch.rms"] = [0.05, 0.02, 0.005, 0.0009][i % 4] * (1.9 if bullet else 1)
-                times = case["cpu_seconds_per_step"]
-                times[:] = [(1 + i % 4) * (3e-6 if bullet and i % 4 else 4e-6)] * len(times)
-            scene["cases"][-1]["record"]["status"]["kind"] = "exploded"
-        file.write_text(json.dumps(session))
-        ratios = self.shares(session)
+        # Costs at will, and the most accurate setting of Bullet could not be timed.
+        results = self.folder / "results/runs"
+        for place, row in enumerate(stored.query(results, "SELECT timing_id, solver FROM timings JOIN cases USING (key) ORDER BY timing_id")):
+            bullet = row["solver"] == "bullet"
+            stored.change(results, "UPDATE samples SET cpu = ? WHERE timing_id = ?",
+                          (1 + place % 4) * (3e-6 if bullet and place % 4 else 4e-6), row["timing_id"])
+            if bullet and place % 4 == 3:
+                stored.change(results, "UPDATE timings SET failure = 'no clock' WHERE timing_id = ?", row["timing_id"])
+        ratios = self.shares()
         self.assertGreaterEqual(len(next(iter(ratios.values()))), 2)
         self.assertTrue(any(math.isinf(r) for of in ratios.values() for r in of), "a failure")
         self.taut("plot", study, "--kind", "profile", "-o", "figures")

@@ -236,7 +236,7 @@ def record(attempt):
     else:
         attempt.stored()
         results = attempt.folder / 'results/runs'
-        table = attempt.random.choice(['cases', 'cases', 'cases', 'numbers', 'series', 'metrics', 'planned', 'sessions'])
+        table = attempt.random.choice(['cases', 'cases', 'cases', 'numbers', 'series', 'metrics', 'planned', 'sessions', 'benches', 'timings', 'samples'])
         column = attempt.random.choice([row['name'] for row in stored.query(results, f'PRAGMA table_info({table})')])
         old = stored.query(results, f'SELECT {column} FROM {table} LIMIT 1')[0][0]
         new = old
@@ -248,11 +248,6 @@ def record(attempt):
             stored.change(results, f'UPDATE {table} SET {column} = ? WHERE {column} IS ?', new, old)
         except sqlite3.IntegrityError:
             pass
-    attempt.look()
-
-
-def bench(attempt):
-    damage(attempt, 'results/runs/bench/*/*.json')
     attempt.look()
 
 
@@ -287,7 +282,7 @@ def listed_solvers(build):
     return [one | {'params': [p for p in rows('parameters') if p['solver'] == one['name']]} for one in rows('solvers')]
 
 
-KINDS = {each.__name__: each for each in (scene_made, scene_damaged, mesh, solver, study_made, study_damaged, arguments, record, bench,
+KINDS = {each.__name__: each for each in (scene_made, scene_damaged, mesh, solver, study_made, study_damaged, arguments, record,
                                           baseline, trajectory, program)}
 SOLVERS = []
 

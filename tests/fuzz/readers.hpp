@@ -20,7 +20,6 @@
 #include "experiments/external/protocol.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/timing/study_bench.hpp"
 
 /// Everything that reads what others wrote, as functions of bytes: for libFuzzer (fuzz.cpp) and for
 /// the inputs that once broke something (corpus_test.cpp). Each throws InputError for what it
@@ -94,15 +93,6 @@ inline void read_record(const std::string& bytes) {
          "a record is what was written of it");
 }
 
-inline void read_bench(const std::string& bytes) {
-  const StudyBench bench = bench_from_json(bytes, "bench.json");
-  for (const Record& record : bench.records()) judge(record);
-  for (const SceneBench& scene : bench.scenes) {
-    scene.candidates("stretch.rms");
-    for (std::size_t i = 1; i < scene.cases.size(); ++i) scene.ratio(i, 0);
-  }
-}
-
 inline void read_baseline_rows(const std::string& bytes) {
   const Baseline rows = read_baseline(file_of(bytes, "baseline/jakobsen.jsonl").parent_path());
   expect(compare(rows, rows, {}).findings.empty(), "a baseline is equal to itself");
@@ -134,10 +124,13 @@ struct Reader {
 };
 
 inline constexpr Reader kReaders[] = {
-    {"scene", read_scene},     {"study", read_study},
-    {"mesh", read_mesh},       {"solver", read_solver},
-    {"record", read_record},   {"trajectory", read_trajectory_file},
-    {"bench", read_bench},     {"baseline", read_baseline_rows},
+    {"scene", read_scene},
+    {"study", read_study},
+    {"mesh", read_mesh},
+    {"solver", read_solver},
+    {"record", read_record},
+    {"trajectory", read_trajectory_file},
+    {"baseline", read_baseline_rows},
     {"answers", read_answers},
 };
 

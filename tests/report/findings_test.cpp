@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/report/claims/claim.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/campaign.hpp"
@@ -26,20 +27,9 @@ Cells finding(const std::string& subject, double expected, double tolerance, dou
           measured, expected, tolerance, verdict == "passed" ? "" : "reasons >= pi"};
 }
 
-Answer answer_by(const char* program) {
-  Answer answer{"made up"};
-  answer.add({"program"}, program);
-  return answer;
-}
-
-void put(const std::filesystem::path& file, const Answer& answer) {
-  make_folder(file.parent_path());
-  write_file(file, to_json(answer));
-}
-
 Truths truths_of(const std::vector<std::vector<Cells>>& findings) {
   const Scratch scratch;
-  Answer all = answer_by("p");
+  Answer all{"verify"};
   all.add(Table{"truths", "", {{"name"}, {"section_title"}, {"statement"}, {"source"}}});
   all.add(Table{"findings",
                 "",
@@ -60,9 +50,10 @@ Truths truths_of(const std::vector<std::vector<Cells>>& findings) {
       all.tables[1].rows.push_back(row);
     }
   }
-  put(scratch.path() / "verify.json", all);
-  EXPECT_FALSE(stored_truths(scratch.path(), "another"));
-  return *stored_truths(scratch.path(), "p");
+  const Store store(scratch.path());
+  store.keep(all);
+  EXPECT_FALSE(stored_truths(store, "another"));
+  return *stored_truths(store, program_digest());
 }
 
 TEST(StoredTruths, ShowOfEachTruthTheFindingNearestToItsTolerance) {
@@ -114,28 +105,30 @@ TEST(StoredTruths, WriteAsManyDigitsAsTheToleranceLetsMatter) {
   }
 }
 
-TEST(StoredFindings, AreThoseOfThisProgramAndNoneWithoutAFile) {
+TEST(StoredFindings, AreThoseOfThisProgramAndNoneWithoutAny) {
   const Scratch scratch;
-  EXPECT_FALSE(stored_truths(scratch.path(), "p"));
-  EXPECT_FALSE(stored_regressions(scratch.path(), "p"));
-  EXPECT_TRUE(stored_requirements(scratch.path(), "p").empty());
-  EXPECT_TRUE(stored_frontiers(scratch.path(), "p").empty());
-  Answer check = answer_by("p");
+  const Store store(scratch.path());
+  const std::string p = program_digest();
+  EXPECT_FALSE(stored_truths(store, p));
+  EXPECT_FALSE(stored_regressions(store, p));
+  EXPECT_TRUE(stored_requirements(store, p).empty());
+  EXPECT_TRUE(stored_frontiers(store, p).empty());
+  Answer check{"check"};
   check.add({"cases"}, 7);
   check.add({"values"}, 90);
   check.add(Table{"findings",
                   "",
                   {{"study"}, {"kind"}, {"case"}, {"change"}},
                   {{"s", "value moved", "c", "a -> b"}, {"s", "value new", "c", "is new"}}});
-  put(scratch.path() / "check.json", check);
-  const auto found = stored_regressions(scratch.path(), "p");
+  store.keep(check);
+  const auto found = stored_regressions(store, p);
   ASSERT_TRUE(found);
   EXPECT_EQ(*found, (Json{{"cases", 7},
                           {"values", 90},
                           {"rows", {{{"study", "s"}, {"case", "c"}, {"change", "a -> b"}}}}}));
-  EXPECT_FALSE(stored_regressions(scratch.path(), "q"));
+  EXPECT_FALSE(stored_regressions(store, "q"));
   for (const char* scene : {"b", "a"}) {
-    Answer one = answer_by("p");
+    Answer one{"require", scene};
     for (const auto& [name, text] : std::vector<std::pair<const char*, const char*>>{
              {"scene", scene},
              {"solver", "xpbd:iterations=1"},
@@ -145,14 +138,17 @@ TEST(StoredFindings, AreThoseOfThisProgramAndNoneWithoutAFile) {
              {"required", "pins"}})
       one.add({name}, text);
     if (*scene == 'a') one.add({"time_left"}, Interval{0.3, 0.34, 0.4});
-    put(scratch.path() / "require" / scene / "found.json", one);
+    store.keep(one);
   }
-  put(scratch.path() / "require/c/found.json", answer_by("q"));
-  const auto required = stored_requirements(scratch.path(), "p");
+  store.keep({"require", "c"});
+  change(store, "UPDATE answers SET program = 'q' WHERE subject = 'c'");
+  const auto required = stored_requirements(store, p);
   EXPECT_EQ(required, (Json{{"a", "XPBD", "no", "all", "wind", "pins", "34 %"},
                             {"b", "XPBD", "late", "all", "wind", "pins", "-"}}));
-  put(scratch.path() / "check.json", answer_by("p"));  // without numbers
-  EXPECT_THROW(stored_regressions(scratch.path(), "p"), InputError);
+  store.keep({"check"});  // without numbers
+  EXPECT_THROW(stored_regressions(store, p), InputError);
+  change(store, "UPDATE answers SET answer = '{' WHERE kind = 'require'");
+  EXPECT_THROW(stored_requirements(store, p), InputError);
 }
 
 TEST(TheorySlope, IsThatOfPinnedClothInNothingButGravity) {

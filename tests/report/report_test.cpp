@@ -193,11 +193,11 @@ TEST(Model, WhatIsMissingNamesTheCommandThatMakesIt) {
       all[one["section"]] = one["command"].get<std::string>();
     return all;
   };
-  EXPECT_EQ(commands(), (std::map<std::string, std::string>{
-                            {"cost", "taut bench trade --preset quick"},
-                            {"films", "taut render hang --video"},
-                            {"truths", "taut verify -o results/runs/verify.json"},
-                            {"regressions", "taut check --record"}}));
+  EXPECT_EQ(commands(),
+            (std::map<std::string, std::string>{{"cost", "taut bench trade --preset quick"},
+                                                {"films", "taut render hang --video"},
+                                                {"truths", "taut verify --record"},
+                                                {"regressions", "taut check --record"}}));
   input.studies.pop_back();
   EXPECT_EQ(commands()["cost"], "taut bench iterations");
   input.truths.emplace(), input.regressions.emplace();

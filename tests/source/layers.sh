@@ -24,7 +24,7 @@ experiments/external     | ((core/(model|io)|experiments/(answer|system|case|ext
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/study/[a-z_]+.hpp
 experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/study/[a-z_]+.hpp
-experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|timing))/
+experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|study|timing))/
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|study|truths|baseline))/
 experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|study|timing|require))/

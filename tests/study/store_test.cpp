@@ -371,7 +371,7 @@ TEST_F(StoreTest, AFileOfAnotherVersionIsNeitherReadNorWritten) {
       use();
       ADD_FAILURE();
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("(version 99; this one reads 2)"), std::string::npos)
+      EXPECT_NE(std::string(error.what()).find("(version 99; this one reads 3)"), std::string::npos)
           << error.what();
     }
 }

@@ -6,13 +6,12 @@
 #include <random>
 
 #include "core/model/input_error.hpp"
+#include "experiments/answer/answer.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/reference_store.hpp"
 #include "experiments/case/trajectory.hpp"
-#include "experiments/report/findings.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/timing/recommendation.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::stored_files_test {
@@ -34,22 +33,6 @@ Record stored_record() {
   return record;
 }
 
-std::string bench_text() {
-  SceneBench scene{"hang", {0.9, 1, 1.1}, {}};
-  for (int i = 0; i < 2; ++i)
-    scene.cases.push_back({stored_record(), {{1e-3, 2e-3, 1e-3, 3e-3}, {1, 2, 3, 4}, 4096, ""}});
-  return to_json(StudyBench{"trade", "a machine", {scene}});
-}
-
-void use_bench(const fs::path& file) {
-  const StudyBench bench = bench_from_json(read_text(file), file.string());
-  bench.records();
-  for (const SceneBench& scene : bench.scenes) {
-    if (!scene.cases.empty()) recommend(scene, {.error = 0.01}, "stretch.rms");
-    for (std::size_t i = 1; i < scene.cases.size(); ++i) scene.ratio(i, 0);
-  }
-}
-
 std::string trajectory_bytes(const fs::path& folder) {
   TrajectoryWriter writer(folder / "good", {"hang", "jakobsen", 0.1, 3, {{0, 1, 2}}});
   State state{std::vector<Vec3>(3, Vec3::Ones()), std::vector<Vec3>(3, Vec3::Zero())};
@@ -65,22 +48,16 @@ std::vector<Kind> kinds(const fs::path& folder) {
   reference.x = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
   write_reference(reference, folder / "reference");
   const auto baseline = [](const fs::path& file) { read_baseline(file.parent_path()); };
-  Answer check{"check"};
-  check.add({"program"}, "p");
-  check.add({"cases"}, 3);
-  check.add({"values"}, 9);
-  check.add(Table{"findings",
-                  "",
-                  {{"study"}, {"kind"}, {"case"}, {"change"}},
-                  {{"s", "value moved", "c", "x"}}});
+  Answer answer{"check"};
+  answer.add({"cases"}, 3);
+  answer.add(Table{"findings", "", {{"study"}, {"change"}}, {{"s", Cell("x").with("note")}}});
   return {
       {"case.json", to_json(stored_record(), 1),
        [](const fs::path& file) { record_from_json(read_text(file), file.string()); }},
-      {"bench.json", bench_text(), use_bench},
       {"baseline/" + rows.filename().string(), read_text(rows), baseline},
       {"reference/static.json", read_text(folder / "reference/static.json"), read_reference},
-      {"check.json", to_json(check),
-       [](const fs::path& file) { report::stored_regressions(file.parent_path(), "p"); }},
+      {"answer.json", to_json(answer),
+       [](const fs::path& file) { answer_from_json(read_text(file), file.string()); }},
       {"run.traj", trajectory_bytes(folder), [](const fs::path& file) { read_trajectory(file); }},
   };
 }
@@ -115,26 +92,21 @@ TEST(StoredFiles, FlippedBytesAreNamedOrRead) {
 }
 
 TEST(StoredFiles, WrongTypesAndMissingKeysAreNamedWithTheirPlace) {
-  const auto message = [](const std::string& text) -> std::string {
+  const auto message = [](std::string from, const std::string& to) -> std::string {
+    std::string text = to_json(stored_record(), 1);
+    text.replace(text.find(from), from.size(), to);
     try {
-      bench_from_json(text, "bench/trade.json");
+      record_from_json(text, "case.json");
     } catch (const InputError& error) {
       return error.what();
     }
     return "";
   };
-  const auto changed = [](std::string from, const std::string& to) {
-    std::string text = bench_text();
-    return text.replace(text.find(from), from.size(), to);
-  };
-  EXPECT_EQ(message(changed("\"machine\": \"a machine\"", "\"machine\": 7")),
-            "bench/trade.json: machine: expected a text");
-  EXPECT_EQ(message(changed("\"peak_bytes\": 4096,", "")),
-            "bench/trade.json: scenes[0].cases[0]: has no 'peak_bytes'");
-  EXPECT_EQ(message(changed("\"steps\": ", "\"steps\": 0.5")).substr(0, 48),
-            "bench/trade.json: scenes[0].cases[0].record.step");
-  EXPECT_NE(message(changed(std::string(64, 'a'), "../../escaped")).find("hexadecimal"),
-            std::string::npos);
+  EXPECT_EQ(message("\"scene\": \"hang\",\n \"solver\"", "\"scene\": 7,\n \"solver\""),
+            "case.json: scene: expected a text");
+  EXPECT_EQ(message("\"items\": 760,", ""), "case.json: step_cost[0]: has no 'items'");
+  EXPECT_EQ(message("\"steps\": ", "\"steps\": 0.5").substr(0, 16), "case.json: steps");
+  EXPECT_NE(message(std::string(64, 'a'), "../../escaped").find("hexadecimal"), std::string::npos);
 }
 
 }  // namespace

@@ -6,11 +6,11 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/timing/bench/contact.hpp"
 #include "experiments/timing/bench/kernels.hpp"
 #include "experiments/timing/recommendation.hpp"
 #include "experiments/timing/study_bench.hpp"
+#include "tests/support/damaged_results.hpp"
 
 namespace taut::bench_session_test {
 namespace {
@@ -90,9 +90,6 @@ TEST(BenchedCases, ASearchWentToTheEndIfEveryParameterOfTheSolverDid) {
   EXPECT_FALSE(bench.searched_to_the_end("xpbd"));
   EXPECT_FALSE(bench.searched_to_the_end("nobody"));
   EXPECT_FALSE(bench.searched_to_the_end("jakobsen")) << "none was timed";
-  const Json file = parse_json(to_json({"trade", "m", {bench}}));
-  EXPECT_EQ(to_text(file["scenes"][0]["accuracy_parameters"]["xpbd"]),
-            R"({"substeps":{"largest":1023,"end":1024},"iterations":{"largest":128,"end":128}})");
 }
 
 TEST(BenchSessions, RecordsCarryCostsOfWhatWasTimed) {
@@ -111,62 +108,120 @@ TEST(BenchSessions, RecordsCarryCostsOfWhatWasTimed) {
   EXPECT_EQ(records[2].values.at("cpu.per_second"), 8);
 }
 
-TEST(BenchSessions, WhatCannotBeATimeIsRefusedWithItsPlace) {
-  StudyBench session{
-      "trade", "m", {{"sheet", {0.5, std::nan(""), 2}, {timed("a", {1, 2})}}}, "zeus", "b"};
-  session.scenes[0].cases[0].timing.remark = "it says otherwise";
-  const std::string good = to_json(session);
-  const StudyBench back = bench_from_json(good, "f");
-  EXPECT_EQ(to_json(back), good);
-  EXPECT_EQ(
-      (std::tuple{back.study, back.machine, back.host, back.build}),
-      (std::tuple{std::string("trade"), std::string("m"), std::string("zeus"), std::string("b")}));
-  EXPECT_EQ(back.scenes[0].control.low, 0.5);
-  EXPECT_TRUE(std::isnan(back.scenes[0].control.mid));
-  EXPECT_EQ(back.scenes[0].cases[0].timing.remark, "it says otherwise");
-  EXPECT_EQ(back.scenes[0].cases[0].timing.wall, (std::vector<double>{3, 6}));
-  const auto said = [&](const char* from, const std::string& to) -> std::string {
-    Json json = parse_json(good);
-    json["scenes"][0]["cases"][0][from] = parse_json(to);
+/// A results folder that has these records.
+class Kept {
+ public:
+  explicit Kept(const StudyBench& session) {
+    for (const SceneBench& scene : session.scenes)
+      for (const BenchedCase& c : scene.cases) store.commit(c.record);
+    keep(store, session);
+  }
+  std::string said() const {
     try {
-      bench_from_json(to_text(json), "f");
+      stored_benches(store, "");
     } catch (const InputError& error) {
       return error.what();
     }
     return "";
-  };
-  EXPECT_EQ(said("cpu_seconds_per_step", "[1, 0]"),
-            "f: scenes[0].cases[0]: expected times greater than 0");
-  EXPECT_EQ(said("wall_seconds_per_step", "[-1]"),
-            "f: scenes[0].cases[0]: expected times greater than 0");
-  EXPECT_EQ(said("cpu_seconds_per_step", "[]"),
-            "f: scenes[0].cases[0]: has neither times nor a failure");
-  EXPECT_EQ(said("wall_seconds_per_step", "[]"),
-            "f: scenes[0].cases[0]: has neither times nor a failure");
-  EXPECT_EQ(said("failure", "\"why\""), "");
-  StudyBench one_by_one = session;
-  one_by_one.scenes[0].in_turns = false;
-  one_by_one.scenes[0].cases.push_back(timed("b", {2, 4}));
-  const StudyBench again = bench_from_json(to_json(one_by_one), "f");
-  EXPECT_FALSE(again.scenes[0].in_turns);
-  EXPECT_FALSE(again.scenes[0].ratio(0, 1)) << "not timed in turns";
-  one_by_one.scenes[0].in_turns = true;
-  EXPECT_TRUE(one_by_one.scenes[0].ratio(0, 1));
-  Json two = parse_json(good);
-  two["scenes"][0]["control"] = Json::array({1, 2});
-  EXPECT_THROW(bench_from_json(to_text(two), "f"), InputError);
+  }
+  const Scratch scratch;
+  const Store store{scratch.path() / "results"};
+};
+
+BenchedCase stored_case(const std::string& solver, std::vector<double> samples, char key) {
+  BenchedCase c = timed(solver, std::move(samples));
+  c.record.key = std::string(64, key);
+  return c;
 }
 
-TEST(BenchSessions, AreKeptInAFileOfTheirHostAndBuild) {
-  const Scratch scratch;
-  StudyBench session{"trade", "m", {}, "zeus", "0123456789abcdef"};
-  const auto file = keep(scratch.path(), session);
-  EXPECT_EQ(file, scratch.path() / "bench/trade/zeus-0123456789.json");
-  EXPECT_EQ(read_text(file), to_json(session));
-  const StudyBench here = StudyBench::here("trade");
+TEST(StoredBenches, AreWhatWasKept) {
+  StudyBench session{"trade",
+                     "m",
+                     {{"sheet", {0.5, std::nan(""), 2}, {stored_case("a", {1, 2}, 'a')}},
+                      {"ball", {1, 1, 1}, {stored_case("b", {2, 4}, 'b')}, false}},
+                     "zeus",
+                     "b"};
+  session.scenes[0].cases[0].timing.remark = "it says otherwise";
+  session.scenes[1].cases.push_back(stored_case("c", {}, 'c'));
+  session.scenes[1].cases[1].timing.failure = "no clock";
+  const Kept kept(session);
+  const auto all = stored_benches(kept.store, "trade");
+  ASSERT_EQ(all.size(), 1u);
+  const StudyBench& back = all[0];
+  EXPECT_EQ(back.study + back.machine + back.host + back.build, "trademzeusb");
+  ASSERT_EQ(back.scenes.size(), 2u);
+  EXPECT_EQ(back.scenes[0].scene, "sheet");
+  EXPECT_EQ(back.scenes[0].control.low, 0.5);
+  EXPECT_TRUE(std::isnan(back.scenes[0].control.mid));
+  const Timing& timing = back.scenes[0].cases[0].timing;
+  EXPECT_EQ(timing.samples, (std::vector<double>{1, 2}));
+  EXPECT_EQ(timing.wall, (std::vector<double>{3, 6}));
+  EXPECT_EQ(timing.peak_bytes, 4096u);
+  EXPECT_EQ(timing.remark, "it says otherwise");
+  EXPECT_EQ(back.scenes[0].cases[0].record.solver, "a");
+  EXPECT_FALSE(back.scenes[1].in_turns);
+  ASSERT_EQ(back.scenes[1].cases.size(), 2u);
+  EXPECT_FALSE(back.scenes[1].ratio(0, 0)) << "not timed in turns";
+  EXPECT_TRUE(back.scenes[0].ratio(0, 0));
+  EXPECT_EQ(back.scenes[1].cases[1].timing.failure, "no clock");
+  EXPECT_TRUE(stored_benches(kept.store, "other").empty());
+  forget(kept.store, std::string(64, 'a'));
+  EXPECT_EQ(stored_benches(kept.store, "trade")[0].scenes.size(), 1u)
+      << "a case that is no longer stored";
+}
+
+TEST(StoredBenches, TakeThePlaceOfThoseOfTheirHostAndBuildAlone) {
+  StudyBench session{
+      "trade", "m", {{"sheet", {1, 1, 1}, {stored_case("a", {1, 2}, 'a')}}}, "zeus", "b"};
+  const Kept kept(session);
+  session.scenes[0].cases[0].timing.samples = {5, 5};
+  keep(kept.store, session);
+  session.host = "ares", keep(kept.store, session);
+  StudyBench here = StudyBench::here("trade");
   EXPECT_EQ(here.machine, machine_name());
   EXPECT_EQ(here.host, host_name());
   EXPECT_EQ(here.build.size(), 64u);
+  here.scenes = session.scenes, here.build = "old", keep(kept.store, here);
+  here.build = StudyBench::here("").build, keep(kept.store, here);
+  std::string order;
+  for (const StudyBench& one : stored_benches(kept.store, "trade")) {
+    EXPECT_EQ(one.scenes[0].cases[0].timing.samples[0], 5) << "the last that was kept";
+    order += one.host == here.host ? one.build.substr(0, 3) + ' ' : one.host + ' ';
+  }
+  EXPECT_EQ(order, here.build.substr(0, 3) + " old ares zeus ") << "this host and build first";
+}
+
+TEST(StoredBenches, WhatCannotBeATimeIsRefusedWithItsCase) {
+  const Kept kept(
+      {"trade", "m", {{"sheet", {1, 1, 1}, {stored_case("a", {1, 2}, 'a')}}}, "zeus", "b"});
+  for (const char* damage : {"cpu = 0", "wall = -1", "cpu = 'x'"}) {
+    change(kept.store, "UPDATE samples SET cpu = 1, wall = 1");
+    EXPECT_EQ(kept.said(), "");
+    change(kept.store, std::string("UPDATE samples SET ") + damage + " WHERE round = 1");
+    EXPECT_EQ(kept.said(), kept.store.file().string() + ": case " + std::string(64, 'a') +
+                               ": expected times greater than 0");
+  }
+}
+
+TEST(Costs, AreMediansForWhoeverAsks) {
+  const Kept kept({"trade",
+                   "m",
+                   {{"sheet",
+                     {1, 1, 1},
+                     {stored_case("a", {4, 1, 2, 8}, 'a'), stored_case("b", {5, 1, 2}, 'b'),
+                      stored_case("c", {}, 'c')}}},
+                   "zeus",
+                   "b"});
+  Database file(kept.store.file(), Database::Access::read);
+  file.script("PRAGMA trusted_schema = ON");  // as for whoever opens it
+  Database::Rows row = file.rows(
+      "SELECT solver, cpu, cpu_per_second, wall, rounds, memory, host FROM costs ORDER BY solver");
+  std::string all;
+  while (row.next())
+    all += row.text(0) + " " + number_text(row.number(1)) + " " + number_text(row.number(2)) + " " +
+           number_text(row.number(3)) + " " + row.text(4) + " " + row.text(5) + " " + row.text(6) +
+           "\n";
+  EXPECT_EQ(all, "a 3 6 9 4 4096 zeus\nb 2 4 6 3 4096 zeus\nc - - - 0 4096 zeus\n");
 }
 
 // What contact adds to a step of so many sweeps, over a sweep; what one kernel costs over another.

@@ -52,15 +52,6 @@ TEST(Bench, ARatioAccountsForDifferentTimeSteps) {
   EXPECT_NEAR(bench.ratio(1, 0)->mid, 2, 1e-12);
 }
 
-TEST(Bench, AFileGivesBackEverySample) {
-  const StudyBench session{"trade", "a machine", {sheet()}};
-  const StudyBench again = bench_from_json(to_json(session), "bench.json");
-  EXPECT_EQ(to_json(again), to_json(session));
-  EXPECT_EQ(again.scenes[0].cases[1].timing.samples, session.scenes[0].cases[1].timing.samples);
-  EXPECT_THROW(bench_from_json("{\"schema\": 2}", "bench.json"), InputError);
-  EXPECT_THROW(bench_from_json("{", "bench.json"), InputError);
-}
-
 TEST(Bench, RecordsCarryTheirCost) {
   const auto records = StudyBench{"trade", "", {sheet()}}.records();
   EXPECT_DOUBLE_EQ(records[1].values.at("cpu.per_step"), 4e-3);
@@ -88,29 +79,7 @@ TEST(Bench, OnlyStepIsInsideTheClock) {
   EXPECT_NEAR(CheckpointedRun(scene, solver, 10).whole().cpu, 0.002, 0.0005);
 }
 
-TEST(BenchFiles, HostsAndBuildsStayApart) {
-  const std::filesystem::path results =
-      std::filesystem::path(testing::TempDir()) / ("bench." + unique_suffix());
-  StudyBench mine = StudyBench::here("trade");
-  mine.scenes = {sheet()};
-  StudyBench before = mine, other = mine;
-  before.build = std::string(64, '0');
-  other.host = "a" + mine.host;
-  std::vector<std::filesystem::path> expected;
-  for (const StudyBench& session : {mine, before, other}) {
-    expected.push_back(bench_file(results, session));
-    make_folder(expected.back().parent_path());
-    write_file(expected.back(), to_json(session));
-  }
-  EXPECT_EQ(bench_files(results, "trade"), expected) << "of this host and build first";
-  const StudyBench back = bench_from_json(read_text(expected.back()), "test");
-  EXPECT_EQ(back.host, other.host);
-  EXPECT_EQ(back.build, mine.build);
-  EXPECT_TRUE(bench_files(results, "scaling").empty());
-  std::filesystem::remove_all(results);
-}
-
-TEST(BenchFiles, AProcessStaysOnTheCoresThatItIsPinnedTo) {
+TEST(Bench, AProcessStaysOnTheCoresThatItIsPinnedTo) {
   std::thread([] {  // a thread's own set of cores
     cpu_set_t before, after;
     ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);

@@ -21,7 +21,8 @@ struct Options {
   int rounds = 5;
   double seconds = 0.05;
   double tolerance = kTolerance;
-  bool json = false, worker = false;
+  bool worker = false;
+  Format format;
 };
 
 /// The physics of every case, from the store or run now.
@@ -36,28 +37,6 @@ std::vector<Record> physics(const StudyCases& study, const Options& options) {
   return records;
 }
 
-void print_control(const SceneBench& bench, double tolerance) {
-  if (std::isnan(bench.control.mid)) {
-    std::cout << "  no case could be timed\n";
-    return;
-  }
-  const bool noisy = spread(bench.control) > tolerance;
-  std::cout << "  the same code against itself: " << interval_text(bench.control) << ", tolerance "
-            << number_text(100 * tolerance) << " %"
-            << (noisy ? ": THIS MACHINE IS TOO NOISY NOW TO JUDGE" : "") << '\n';
-}
-
-/// Who is cheapest for each error, and who is most accurate within each budget.
-void print_recommendations(const SceneBench& bench, const Options& options) {
-  std::vector<Target> targets;
-  for (const double level : options.levels) targets.push_back({level, {}});
-  for (const double budget : kFrameBudgets) targets.push_back({{}, budget / kFrame});
-  for (const Target& target : targets)
-    std::cout << "  "
-              << text(recommend(bench, target, options.metric, options.tolerance), bench,
-                      options.metric);
-}
-
 /// "clearly cheaper", "likely dearer", "no difference", ...
 std::string verdict(const Interval& ratio, const Interval& control, double tolerance) {
   const Certainty sure = judge(ratio, control, tolerance);
@@ -67,23 +46,95 @@ std::string verdict(const Interval& ratio, const Interval& control, double toler
          (ratio.mid < 1 ? "cheaper" : "dearer");
 }
 
-void print_pairs(const SceneBench& bench, double tolerance) {
-  const auto timed = [](const BenchedCase& c) { return c.timing.failure.empty(); };
-  const auto first =
-      static_cast<std::size_t>(std::ranges::find_if(bench.cases, timed) - bench.cases.begin());
-  for (std::size_t i = first + 1; i < bench.cases.size(); ++i)
-    if (const auto ratio = bench.ratio(i, first))
-      std::cout << "  " << bench.cases[i].record.id << ": " << interval_text(*ratio) << " x "
-                << bench.cases[first].record.id << ": " << verdict(*ratio, bench.control, tolerance)
-                << '\n';
+/// The same code against itself.
+Table controls_of(const StudyBench& bench, double tolerance) {
+  Table table{"scenes", "", {{"scene"}, {"control", "the same code against itself"}, {"verdict"}}};
+  for (const SceneBench& scene : bench.scenes)
+    table.rows.push_back({scene.scene, scene.control,
+                          std::isnan(scene.control.mid)       ? "no case could be timed"
+                          : spread(scene.control) > tolerance ? "this machine is too noisy now"
+                                                              : "quiet enough"});
+  return table;
 }
 
-void print_failures(const SceneBench& bench) {
-  for (const BenchedCase& c : bench.cases)
-    if (!c.timing.failure.empty())
-      std::cout << "  not timed: " << c.record.id << ": " << c.timing.failure << '\n';
-    else if (!c.timing.remark.empty())
-      std::cout << "  doubtful: " << c.record.id << ": " << c.timing.remark << '\n';
+/// Who is cheapest for each error, and who is most accurate within each budget.
+Table recommended_of(const StudyBench& bench, const Options& options) {
+  std::vector<Target> targets;
+  for (const double level : options.levels) targets.push_back({level, {}});
+  for (const double budget : kFrameBudgets) targets.push_back({{}, budget / kFrame});
+  Table table = recommendations(options.metric);
+  for (const SceneBench& scene : bench.scenes)
+    for (const Target& target : targets)
+      add(table, recommend(scene, target, options.metric, options.tolerance), scene,
+          options.metric);
+  return table;
+}
+
+/// Every case, beside the first of its scene that was timed.
+Table cases_of(const StudyBench& bench, const Options& options) {
+  Table table{"cases",
+              "what was timed",
+              {{"scene"},
+               {"case"},
+               {"solver"},
+               {"cost", "CPU time a simulated s", {"s/s", "ms", 1e3}},
+               {"cpu", "CPU time a step", kMilliseconds},
+               {"wall", "wall time", kMilliseconds},
+               {"peak_bytes", "process", kMegabytes},
+               {"error", options.metric, unit_of_value(options.metric)},
+               {"status"},
+               {"times", "times the first"},
+               {"verdict"},
+               {"remark"}}};
+  for (const SceneBench& scene : bench.scenes) {
+    const auto timed = [](const BenchedCase& c) { return c.timing.failure.empty(); };
+    const auto first =
+        static_cast<std::size_t>(std::ranges::find_if(scene.cases, timed) - scene.cases.begin());
+    for (std::size_t i = 0; i < scene.cases.size(); ++i) {
+      const auto& [record, timing] = scene.cases[i];
+      Cell id(record.id), cost, cpu, wall, bytes;
+      id.key = record.key;
+      if (timing.failure.empty())
+        cost = scene.cases[i].cost(), cpu = bootstrap_median(timing.samples),
+        wall = median(timing.wall), bytes = timing.peak_bytes;
+      const auto times = i > first ? scene.ratio(i, first) : std::nullopt;
+      table.rows.push_back(
+          {scene.scene, id, record.solver, cost, cpu, wall, bytes, record.value(options.metric),
+           to_string(record.status.kind), times,
+           times ? verdict(*times, scene.control, options.tolerance) : "",
+           timing.failure.empty() ? timing.remark : "not timed: " + timing.failure});
+    }
+  }
+  return table;
+}
+
+Table samples_of(const StudyBench& bench) {
+  Table table{"samples",
+              "samples of a step",
+              {{"scene"},
+               {"case"},
+               {"round"},
+               {"cpu", "CPU time", kMilliseconds},
+               {"wall", "wall time", kMilliseconds}}};
+  for (const SceneBench& scene : bench.scenes)
+    for (const auto& [record, timing] : scene.cases)
+      for (std::size_t k = 0; k < timing.samples.size(); ++k)
+        table.rows.push_back({scene.scene, record.id, k, timing.samples[k], timing.wall[k]});
+  table.detail = true;
+  return table;
+}
+
+/// `of_study`: people see who is best for what; else the cases.
+Answer answer_of(const StudyBench& bench, const Options& options, bool of_study) {
+  Answer answer{"bench", bench.study};
+  answer.add(Column("machine").in_detail(), bench.machine);
+  answer.add(Column("host").in_detail(), bench.host);
+  answer.add(Column("build").in_detail(), bench.build);
+  answer.add(controls_of(bench, options.tolerance));
+  if (of_study) answer.add(recommended_of(bench, options));
+  answer.add(cases_of(bench, options)).detail = of_study;
+  answer.add(samples_of(bench));
+  return answer;
 }
 
 /// Cases grouped by scene and its settings, in order of appearance. The time step is one of the
@@ -112,52 +163,22 @@ StudyBench bench(const std::string& name, const std::vector<Case>& cases, const 
   return result;
 }
 
-std::pair<StudyBench, std::filesystem::path> timed(const std::string& name,
-                                                   const Options& options) {
+StudyBench timed(const std::string& name, const Options& options) {
   if (std::ranges::count(shipped("scenes"), name) > std::ranges::count(shipped("studies"), name))
     throw InputError("'" + name + "' is a scene; --solver says what to time on it");
   const Study study = load_study(name, options.preset);
-  StudyBench result = bench(study.name, cases_of(study), options);
-  return {result, keep(options.out, result)};
+  StudyBench result = bench(study.name, taut::cases_of(study), options);
+  keep(Store(options.out), result);
+  return result;
 }
 
-void bench_study(const std::string& name, const Options& options) {
-  const auto [result, file] = timed(name, options);
-  if (options.json) {
-    std::cout << to_json(result);
-    return;
-  }
-  for (const SceneBench& scene : result.scenes) {
-    std::cout << scene.scene << '\n';
-    print_control(scene, options.tolerance);
-    print_recommendations(scene, options);
-    print_failures(scene);
-  }
-  std::cout << file.string() << '\n';
-}
-
-void compare(const std::string& scene, const Options& options) {
+StudyBench compared(const std::string& scene, const Options& options) {
   check_solvers(options.solvers);
   std::vector<Case> cases;
   CaseMaker maker;
   for (const std::string& solver : options.solvers)
     cases.push_back(maker.make({scene, options.settings, parse_solver(solver).canonical()}));
-  const StudyBench result = bench(scene, cases, options);
-  if (options.json) {
-    std::cout << to_json(result);
-    return;
-  }
-  for (const SceneBench& one : result.scenes) {
-    std::cout << one.scene << '\n';
-    print_control(one, options.tolerance);
-    for (const BenchedCase& c : one.cases)
-      std::cout << "  " << c.record.id << ": " << interval_text(c.cost(), kMilliseconds)
-                << " ms per simulated s, " << options.metric << " "
-                << number_text(c.record.value(options.metric)) << ", "
-                << to_string(c.record.status.kind) << '\n';
-    print_pairs(one, options.tolerance);
-    print_failures(one);
-  }
+  return bench(scene, cases, options);
 }
 
 /// Cores that a case keeps busy.
@@ -177,7 +198,9 @@ int run(const Options& options) {
   require_one_quiet_host();
   if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
   for (const std::string& name : options.what)
-    options.solvers.empty() ? bench_study(name, options) : compare(name, options);
+    print(options.solvers.empty() ? answer_of(timed(name, options), options, true)
+                                  : answer_of(compared(name, options), options, false),
+          options.format);
   return kPass;
 }
 
@@ -193,7 +216,7 @@ void add_options(CLI::App& app, Options& o) {
       ->check(above_zero());
   add_samples(app, o.rounds, o.seconds);
   add_results(app, o.out);
-  app.add_flag("--json", o.json, "Everything measured, every sample, as JSON");
+  add_format(app, o.format, "Print every case and every sample, too");
   app.add_flag("--worker", o.worker, "Serve samples of one case over stdin and stdout (internal)")
       ->group("");
 }

@@ -85,14 +85,13 @@ void add_tables(Answer& answer, const std::vector<ScalingLine>& lines) {
 }
 
 /// Where `taut plot` and the report find it: a bench, but of cases that were not timed in turns.
-std::filesystem::path keep(const Study& study, const std::vector<ScalingLine>& lines,
-                           const Options& options) {
+void keep(const Study& study, const std::vector<ScalingLine>& lines, const Store& store) {
   SceneBench scene{study.scenes.front(), {}, {}, false};
   for (const ScalingLine& line : lines)
     for (const BenchedCase& c : line.cases) scene.cases.push_back(c);
   StudyBench session = StudyBench::here(study.name);
   session.scenes = {scene};
-  return taut::keep(options.out, session);
+  taut::keep(store, session);
 }
 
 int run(const Options& options) {
@@ -105,7 +104,7 @@ int run(const Options& options) {
       cases, options.limit,
       [&](const Case& one, double expected) { return measure(one, expected, store, options); });
   Answer answer{"bench scaling", study.name};
-  answer.add({"file", "session"}, keep(study, lines, options).string());
+  keep(study, lines, store);
   add_tables(answer, lines);
   print(answer, options.format);
   return kPass;

@@ -5,7 +5,6 @@
 
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
-#include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/format.hpp"
@@ -122,47 +121,31 @@ Table commands(const std::vector<ParameterFrontier>& found) {
   return table;
 }
 
-/// As a baseline keeps cases: an id, what is wrong beyond, and the ends.
-BaselineRow row_of(const ParameterFrontier& one) {
-  BaselineRow row;
-  row.id = one.solver + ", " + one.parameter;
-  row.spec = one.beyond;
-  row.spec.solver = one.beyond.solver.empty() ? one.solver : one.beyond.solver;
-  if (!one.lacks.empty()) {
-    row.status = "no answer: " + one.lacks;
-    return row;
-  }
-  row.status = one.symptom.empty() ? "nothing wrong" : one.symptom;
-  if (!one.at_start.empty()) row.status += "; from the start: " + one.at_start;
-  row.values = {{"from", one.from}, {"to", one.to}, {"good", one.good}, {"bad", one.bad}};
-  return row;
-}
-
-/// Compares with the rows of these solvers in the baseline, or puts what was found in their place.
-int check_or_update(const Options& options, const std::vector<ParameterFrontier>& found) {
-  const auto folder = std::filesystem::path(options.baselines) / kFrontiersFolder;
-  Baseline now, others, before = read_baseline(folder);
-  for (const ParameterFrontier& one : found) now.push_back(row_of(one));
-  std::erase_if(before, [&](const BaselineRow& row) {
-    const bool other = std::ranges::none_of(
-        found, [&](const ParameterFrontier& one) { return row.id.starts_with(one.solver + ", "); });
-    if (other) others.push_back(row);
-    return other;
-  });
-  const Tolerances tolerances = read_tolerances(folder);
+/// Compares with what the baseline has of this solver, or puts this answer in its place.
+int check_or_update(const Options& options, const std::string& solver, const Answer& now) {
+  constexpr double kBracket = 0.02;  // twice the width of a bracket
+  const auto file = std::filesystem::path(options.baselines) / kFrontiersFolder /
+                    (report::slug(solver) + ".json");
   if (options.update) {
-    std::ranges::copy(updated(before, now, tolerances), std::back_inserter(others));
-    write_baseline(folder, others);
-    progress() << folder.string() << '\n';
+    make_folder(file.parent_path());
+    write_durably(file, to_json(now));
+    progress() << file.string() << '\n';
     return kPass;
   }
-  const Comparison comparison = compare(before, now, tolerances);
-  for (const Change& change : comparison.findings)
-    std::cerr << (change.id.empty() ? change.solver : change.id) << ": " << change.text << '\n';
-  progress() << comparison.cases << " frontiers compared with " << folder.string() << ": "
-             << (comparison.regressed() ? "some have moved" : "none has moved") << '\n';
-  if (comparison.regressed()) return kRegression;
-  return comparison.mismatched() || comparison.cases == 0 ? kNothing : kPass;
+  if (!std::filesystem::exists(file)) {
+    std::cerr << solver << ": no baseline " << printable(file.string()) << '\n';
+    return kNothing;
+  }
+  const Answer before = answer_from_json(read_text(file), file.string());
+  const Table& found = now.table("parameters");
+  const auto changes =
+      differences(before.table("parameters"), found, {"solver", "parameter"},
+                  {"lacks", "symptom", "at_start", "from", "to", "good", "bad"}, kBracket);
+  for (const Difference& change : changes) std::cerr << printable(change.text) << '\n';
+  progress() << found.rows.size() << " frontiers compared with " << file.string() << ": "
+             << changes.size() << " differ\n";
+  if (std::ranges::any_of(changes, &Difference::moved)) return kRegression;
+  return changes.empty() ? kPass : kNothing;
 }
 
 /// Every parameter of one or two solvers.
@@ -175,19 +158,21 @@ int run_all(const Options& options) {
   store.prepare();
   store.begin_session("taut frontier --all");
   std::vector<ParameterFrontier> found;
+  int code = kPass;
   for (const std::string& solver : solvers) {
     const Countdown countdown("parameter of " + solver);
     const auto frontiers =
         find_frontiers(solver, store, {.jobs = options.jobs, .frames = true},
                        [&](std::size_t done, std::size_t all) { countdown(done, all); });
     if (!frontiers) return kInterrupted;
-    const std::filesystem::path folder = std::filesystem::path(options.out) / kFrontiersFolder;
-    make_folder(folder);
-    write_file(folder / (report::slug(solver) + ".json"),
-               to_json(answer_of(*frontiers, program_digest())));
+    Answer answer = answer_of(*frontiers);
+    answer.subject = solver;
+    store.keep(answer);
+    if (options.check || options.update)
+      code = std::max(code, check_or_update(options, solver, answer));
     found.insert(found.end(), frontiers->begin(), frontiers->end());
   }
-  Answer answer = answer_of(found, program_digest());
+  Answer answer = answer_of(found);
   answer.subject = join(solvers, " ");
   answer.add(commands(found));
   try {
@@ -200,7 +185,7 @@ int run_all(const Options& options) {
     std::cerr << "no picture: " << error.what() << '\n';
   }
   print(answer, options.format);
-  return options.check || options.update ? check_or_update(options, found) : kPass;
+  return code;
 }
 
 int run(const Options& options) {

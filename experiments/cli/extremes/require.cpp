@@ -170,7 +170,6 @@ Answer answer_of(const Requirement& found, const Store& store, const std::string
   Answer answer{"require", found.full.id};
   const Summary summary = summary_of(found);
   const std::size_t bytes = full_bytes(found, store);
-  answer.add(Column("program").in_detail(), program_digest());
   answer.add(Column("key").in_detail(), found.full.key);
   answer.add(Column("scene").in_detail(), found.full.scene->name);
   answer.add(Column("solver").in_detail(), found.full.choice.brief());
@@ -281,10 +280,7 @@ int run_one(const Options& options, const std::string& scene, Table& scenes, boo
   scenes.rows.push_back({full.scene->name, chaos_text(found), summary.kept, summary.can_go,
                          summary.required, found.time_ratio});
   const Answer answer = answer_of(found, store, picture, seconds(), options.patience);
-  if (!found.answers.empty()) {  // for the report
-    make_folder(folder);
-    write_file(folder / "found.json", to_json(answer));
-  }
+  if (!found.answers.empty()) store.keep(answer);
   if (alone)
     print(answer, options.format);
   else

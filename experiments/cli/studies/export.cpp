@@ -1,7 +1,6 @@
 #include <map>
 #include <set>
 
-#include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
@@ -41,12 +40,11 @@ struct Costs {
   std::map<std::string, BenchedCase> of;  ///< by the key of the case
 };
 
-Costs stored_costs(const Options& options, const Study& study) {
+Costs stored_costs(const Store& store, const Study& study) {
   Costs costs;
-  const std::vector<std::filesystem::path> files = bench_files(options.results, study.name);
-  if (files.empty()) return costs;
-  const std::filesystem::path& file = files.front();
-  StudyBench session = bench_from_json(read_text(file), file.string());
+  std::vector<StudyBench> benches = stored_benches(store, study.name);
+  if (benches.empty()) return costs;
+  StudyBench& session = benches.front();
   costs.host = session.host;
   for (SceneBench& scene : session.scenes)
     for (BenchedCase& c : scene.cases)
@@ -145,12 +143,13 @@ class TidyTable {
 
 int run(const Options& options) {
   const Study study = load_study(options.study, options.preset);
-  const StudyRecords known = collect(study, Store(options.results));
+  const Store store(options.results);
+  const StudyRecords known = collect(study, store);
   if (known.records.empty())
     throw InputError("none of the " + std::to_string(known.cases.size()) + " cases of study '" +
                      study.name + "' is in " + options.results +
                      " as this build would run them; taut run makes them");
-  const TidyTable table(known, stored_costs(options, study));
+  const TidyTable table(known, stored_costs(store, study));
   const std::string text =
       options.json ? to_text(table.json(known.cases), 1) + "\n" : table.csv(known.cases);
   if (options.output.empty()) {

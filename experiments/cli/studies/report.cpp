@@ -131,19 +131,18 @@ int run(Options options) {
                       {"toolchain", std::string(toolchain())},
                       {"preset", options.preset}};
   if (options.preset.empty()) input.provenance.pop_back();
-  const auto add = [&](const char* file, auto& to, const auto& stored) {
+  const auto add = [&](const char* verb, auto& to, const auto& stored) {
     try {
-      to = stored(options.results, program);
+      to = stored(store, program);
     } catch (const InputError& error) {
-      input.left_out.emplace_back((std::filesystem::path(options.results) / file).string(),
-                                  error.what());
+      input.left_out.emplace_back(verb, error.what());
       std::cerr << "left out: " << error.what() << '\n';
     }
   };
-  add("verify.json", input.truths, report::stored_truths);
-  add("check.json", input.regressions, report::stored_regressions);
-  add("require", input.required, report::stored_requirements);
-  add("frontiers", input.frontiers, report::stored_frontiers);
+  add("taut verify", input.truths, report::stored_truths);
+  add("taut check", input.regressions, report::stored_regressions);
+  add("taut require", input.required, report::stored_requirements);
+  add("taut frontier --all", input.frontiers, report::stored_frontiers);
   if (!options.json && !options.no_media) {
     std::set<std::string> scenes(options.films.begin(), options.films.end());
     for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);

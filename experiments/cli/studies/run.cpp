@@ -53,8 +53,7 @@ std::vector<StudyCases> all_cases(const std::vector<Study>& studies) {
 int finish_main_job(const MainJob& job, const Options& options) {
   bench::time_study(job.bench, job.preset, 0.015, options.out);
   progress() << "holding solvers to closed forms and published numbers\n";
-  write_file(std::filesystem::path(options.out) / "verify.json",
-             to_json(verify::verify_all(options.jobs)));
+  Store(options.out).keep(verify::verify_all(options.jobs));
   progress() << "comparing with the committed baselines\n";
   const Answer compared = check::check_all(options.jobs, options.out);
   if (!options.json) print(compared, {});

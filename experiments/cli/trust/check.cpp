@@ -117,7 +117,6 @@ class Report {
 
   Answer answer() {
     Answer all{"check"};
-    all.add(Column("program").in_detail(), program_digest());
     all.add(Column("cases").in_detail(), cases_);
     all.add(Column("values").in_detail(), values_);
     findings_.detail = true;
@@ -223,7 +222,7 @@ std::pair<Answer, int> compare_all(Options options) {
                                   suites + "</testsuites>\n");
   const bool record = options.record && report.cases() > 0;
   Answer answer = report.answer();
-  if (record) write_file(std::filesystem::path(options.out) / "check.json", to_json(answer));
+  if (record) Store(options.out).keep(answer);
   return {std::move(answer), code};
 }
 

@@ -22,9 +22,9 @@ namespace {
 struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
-  bool assertions = false, update = false, list = false;
+  bool assertions = false, update = false, list = false, record = false;
   Format format;
-  std::string output, baselines;
+  std::string baselines, out;
 
   /// Whether every truth that an assertion rests on is checked, for every solver.
   bool of_all_assertions() const { return names.empty() && solvers.empty() && section == 0; }
@@ -190,7 +190,6 @@ Table broken(const std::vector<Outcome>& outcomes) {
 
 Answer answer_of(const std::vector<Outcome>& outcomes, const Options& options) {
   Answer answer{"verify"};
-  answer.add(Column("program").in_detail(), program_digest());
   answer.add(table_of(outcomes));
   answer.add(findings_of(outcomes));
   answer.add(table_of(judged(outcomes)));
@@ -220,11 +219,14 @@ int summary(const std::vector<Outcome>& outcomes) {
 }
 
 /// Holds the verdicts of assertions to those that were kept, or keeps them.
-int compare_with_baseline(const std::vector<JudgedAssertion>& assertions, const Options& options) {
-  const std::filesystem::path file = std::filesystem::path(options.baselines) / "assertions.jsonl";
+int compare_with_baseline(const Answer& answer, const Options& options) {
+  const std::filesystem::path file = std::filesystem::path(options.baselines) / "assertions.json";
+  const Table& now = answer.table("assertions");
   if (options.update) {
+    Answer kept{"verify", "assertions"};
+    kept.add(now);
     make_folder(file.parent_path());
-    write_durably(file, to_json_lines(assertions));
+    write_durably(file, to_json(kept));
     progress() << file.string() << '\n';
     return kPass;
   }
@@ -232,9 +234,13 @@ int compare_with_baseline(const std::vector<JudgedAssertion>& assertions, const 
     std::cerr << "assertions: no baseline " << printable(file.string()) << '\n';
     return options.assertions ? kNothing : kPass;
   }
-  const std::vector<std::string> changes = compare_assertions(read_assertions(file), assertions);
-  for (const std::string& change : changes) std::cerr << change << '\n';
-  progress() << assertions.size() << " assertions of Vasilovici's report: "
+  // Figures may differ: the truth's tolerance judges them.
+  const auto changes =
+      differences(answer_from_json(read_text(file), file.string()).table("assertions"), now,
+                  {"section", "assertion"}, {"verdict"});
+  for (const Difference& change : changes)
+    std::cerr << "assertion " << printable(change.text) << '\n';
+  progress() << now.rows.size() << " assertions of Vasilovici's report: "
              << (changes.empty() ? "every verdict is as it was"
                                  : std::to_string(changes.size()) + " changed")
              << '\n';
@@ -255,11 +261,15 @@ int run(const Options& options) {
         "--update keeps the verdicts of all assertions: taut verify --assertions --update");
   const std::vector<Outcome> outcomes = check(choose(options), options);
   const Answer answer = answer_of(outcomes, options);
-  if (!options.output.empty()) write_file(options.output, to_json(answer));
+  if (options.record) {
+    const Store store(options.out);
+    store.prepare();
+    store.keep(answer);
+  }
   print(answer, options.format);
   const int code = summary(outcomes);
   if (!options.of_all_assertions()) return code;
-  const int assertions = compare_with_baseline(judged(outcomes), options);
+  const int assertions = compare_with_baseline(answer, options);
   return code == kPass ? assertions : code;
 }
 
@@ -275,7 +285,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("-j,--jobs", options.jobs,
                  "Threads (default: " + std::to_string(options.jobs) + ")")
       ->check(CLI::Range(1, 64));
-  add_output(app, options.output, "Also write the findings as JSON to this file");
+  app.add_flag("--record", options.record, "Also keep the findings for the report");
+  add_results(app, options.out);
   app.add_flag("--assertions", options.assertions,
                "Only what holds the assertions of Vasilovici's report, and their verdicts");
   add_baselines(app, options.baselines);

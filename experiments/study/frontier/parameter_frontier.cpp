@@ -101,7 +101,7 @@ std::optional<std::vector<ParameterFrontier>> find_frontiers(
   return frontiers;
 }
 
-Answer answer_of(const std::vector<ParameterFrontier>& frontiers, std::string_view program) {
+Answer answer_of(const std::vector<ParameterFrontier>& frontiers) {
   Table table{"parameters",
               "how far every parameter goes, and what goes wrong first",
               {{"solver"},
@@ -130,7 +130,6 @@ Answer answer_of(const std::vector<ParameterFrontier>& frontiers, std::string_vi
   }
   beyond.detail = true;
   Answer answer{"frontier"};
-  answer.add(Column("program").in_detail(), program);
   answer.add(std::move(table));
   answer.add(std::move(beyond));
   return answer;

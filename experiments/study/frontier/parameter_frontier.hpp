@@ -96,13 +96,12 @@ std::optional<std::vector<ParameterFrontier>> find_frontiers(
     const std::string& solver, const Store&, const CampaignOptions&,
     const std::function<void(std::size_t done, std::size_t all)>& progress);
 
-/// What `taut frontier --all` answers and leaves below kFrontiersFolder for the report; `program`
-/// found it.
-Answer answer_of(const std::vector<ParameterFrontier>&, std::string_view program);
+/// What `taut frontier --all` answers.
+Answer answer_of(const std::vector<ParameterFrontier>&);
 /// What such an answer was made of. Throws InputError: it is another one.
 std::vector<ParameterFrontier> frontiers_of(const Answer&);
 
-/// Where `taut frontier --all` leaves what it found in a results folder, for the report.
+/// Where `taut frontier --all` draws its pictures in a results folder, and keeps its baselines.
 inline constexpr std::string_view kFrontiersFolder = "frontiers";
 
 }  // namespace taut

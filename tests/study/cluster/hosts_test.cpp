@@ -41,9 +41,7 @@ class Timed {
         scene.cases.push_back({records[i], {samples, samples, 4096, "", ""}});
       }
       session.scenes = {scene};
-      const std::filesystem::path file = bench_file(store.root(), session);
-      make_folder(file.parent_path());
-      write_file(file, to_json(session));
+      keep(store, session);
     }
   }
   /// CPU seconds per step of each case in the page's model.

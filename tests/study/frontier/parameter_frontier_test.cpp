@@ -228,9 +228,9 @@ const double kNone = std::numeric_limits<double>::quiet_NaN();
 TEST(Frontiers, AreReadBackFromTheirAnswer) {
   std::vector<ParameterFrontier> all{kept(0.1, 0.102), kept(0.1, kNone, true)};
   all[1].parameter = "size, down";
-  const Answer answer = answer_of(all, "program");
+  const Answer answer = answer_of(all);
   const std::vector<ParameterFrontier> read = frontiers_of(answer);
-  EXPECT_EQ(answer_of(read, "program"), answer);
+  EXPECT_EQ(answer_of(read), answer);
   EXPECT_EQ(read[0].beyond.overrides, all[0].beyond.overrides);
   EXPECT_DOUBLE_EQ(read[0].headroom(), 10);
   EXPECT_DOUBLE_EQ(read[1].headroom(), 10) << "downwards from 1 to 0.1";
