@@ -12,7 +12,6 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/case/trajectory.hpp"
 #include "experiments/external/connection.hpp"
 #include "experiments/system/text.hpp"
 
@@ -21,23 +20,6 @@ namespace taut::external {
 namespace {
 
 constexpr double kInch = 0.0254;
-
-/// taut's own format.
-class TrajectoryPositions final : public PositionReader {
- public:
-  explicit TrajectoryPositions(const std::filesystem::path& path) : reader_(path) {
-    if (reader_.frames() == 0) throw InputError({{path.string(), 0, 0, "has no whole frame"}});
-    header_ = {.vertices = reader_.header().vertices,
-               .frames = reader_.frames(),
-               .rounding = Rounding::binary32,
-               .files = {path}};
-    for (int k = 0; k < header_.frames; ++k) header_.times.push_back(reader_.read(k).t);
-  }
-  std::vector<Vec3> read(int k) override { return reader_.read(k).state.x; }
-
- private:
-  TrajectoryReader reader_;
-};
 
 std::vector<Vec3> converted(std::vector<Vec3> x, double scale, bool z_up) {
   for (Vec3& v : x) v = scale * (z_up ? Vec3(v.x(), v.z(), -v.y()) : v);
@@ -162,7 +144,7 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
 using Kind = ParamSpec::Kind;
 
 constexpr ParamSpec kParams[] = {
-    {.name = "file", .kind = Kind::text, .help = "Positions: .npy, .pc2, .mdd, .obj, .ply, .traj"},
+    {.name = "file", .kind = Kind::text, .help = "Positions: .npy, .pc2, .mdd, .obj, .ply"},
     {.name = "fps",
      .default_value = "0",
      .max = 1e6,
@@ -219,7 +201,7 @@ std::string digest_of(const MotionOptions& options) {
   std::string all;
   for (const std::filesystem::path& file : {options.file, options.rest}) {
     if (file.empty()) continue;
-    const std::unique_ptr<PositionReader> reader = open_motion(file);
+    const std::unique_ptr<PositionReader> reader = open_positions(file);
     for (const std::filesystem::path& part : reader->header().files)
       all += sha256(read_text(part, std::size_t{1} << 32));
   }
@@ -233,13 +215,8 @@ struct Entry {
 
 }  // namespace
 
-std::unique_ptr<PositionReader> open_motion(const std::filesystem::path& path) {
-  if (path.extension() == ".traj") return std::make_unique<TrajectoryPositions>(path);
-  return open_positions(path);
-}
-
 MotionFile::MotionFile(const Scene& scene, const MotionOptions& options)
-    : reader_(open_motion(options.file)), file_(options.file) {
+    : reader_(open_positions(options.file)), file_(options.file) {
   find_time(scene, options.fps);
   find_place(scene, options);
   if (std::abs(frame_dt_ - scene.dt) > 1e-6 * scene.dt)
@@ -275,7 +252,7 @@ void MotionFile::find_time(const Scene& scene, double fps) {
 
 void MotionFile::find_place(const Scene& scene, const MotionOptions& options) {
   const std::filesystem::path& rest = options.rest;
-  const std::vector<Vec3> first = rest.empty() ? reader_->read(0) : open_motion(rest)->read(0);
+  const std::vector<Vec3> first = rest.empty() ? reader_->read(0) : open_positions(rest)->read(0);
   const std::vector<Vec3>& target = rest.empty() ? scene.start.x : scene.mesh.rest;
   const double said = options.scale, tolerance = 1e-4 * extent(scene);
   const std::vector<double> scales =

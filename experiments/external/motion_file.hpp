@@ -14,7 +14,7 @@ namespace taut::external {
 
 /// What is said of a file; what is not is derived.
 struct MotionOptions {
-  std::filesystem::path file;  ///< positions (core/io/positions) or a trajectory of taut's own
+  std::filesystem::path file;  ///< positions (core/io/positions)
   double fps = 0;              ///< frames in a second; 0: what the file says, else one a step
   double scale = 0;            ///< m per unit; 0: of m, cm, mm and inch the one that fits
   std::string up = "auto";     ///< the axis that points up, y or z; auto: the one that fits
@@ -27,9 +27,6 @@ struct StrainFloor {
   double rms = 0;  ///< expected, over the links
   double max = 0;  ///< no link is off by more
 };
-
-/// A file of positions or a trajectory of taut's own. Throws InputError.
-std::unique_ptr<PositionReader> open_motion(const std::filesystem::path&);
 
 /// A file of positions as a motion of a scene's cloth: in m, y up, in the scene's order.
 class MotionFile {

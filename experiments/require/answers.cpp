@@ -96,12 +96,11 @@ double apart(const Scene& scene, const std::vector<Vec3>& x, const Scene& other,
 }
 
 /// A metric's value on a motion, as the full model's scene has it measured.
-double measured(const KeptAnswer& answer, const Scene& scene,
-                const std::vector<TrajectoryReader::Frame>& frames) {
+double measured(const KeptAnswer& answer, const Scene& scene, const std::vector<Frame>& frames) {
   const auto [entry, value] = find_value(answer.name);
   const auto metric = entry->make(scene);
   if (!metric) return std::nan("");
-  for (const TrajectoryReader::Frame& frame : frames) {
+  for (const Frame& frame : frames) {
     if (frame.state.x.size() != scene.start.x.size()) return std::nan("");
     const State state{frame.state.x, scene.start.v};
     const auto before_end = std::lround((frames.back().t - frame.t) / scene.dt);

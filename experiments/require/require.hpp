@@ -110,7 +110,7 @@ std::string text(const KeptAnswer&, double value);
 struct Observation {
   Case one;
   Record record;
-  std::vector<TrajectoryReader::Frame> frames;  ///< as the store keeps them
+  std::vector<Frame> frames;  ///< as the store keeps them
 };
 
 /// "METRIC" or "METRIC:TOLERANCE". A tolerance is a number in SI units, or with the unit in which

@@ -143,14 +143,6 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   }
 }
 
-TrajectoryHeader trajectory_header(const Case& one) {
-  return {.scene = one.scene->name,
-          .solver = one.choice.canonical(),
-          .frame_dt = one.scene->dt,
-          .vertices = one.scene->mesh.size(),
-          .triangles = one.scene->mesh.triangles};
-}
-
 int run_into(const Case& one, const fs::path& folder, int frames) try {
   std::signal(SIGXFSZ, SIG_DFL);  // a case that prints without end dies of it
   const auto write = [&](auto&& what) {
@@ -164,16 +156,14 @@ int run_into(const Case& one, const fs::path& folder, int frames) try {
   };
   std::optional<Heartbeat> heartbeat;
   if (!write([&] { heartbeat.emplace(folder / "heartbeat"); })) return kCannotWrite;
-  std::optional<TrajectoryWriter> motion;
-  if (frames > 0 && !write([&] { motion.emplace(folder / kFramesFile, trajectory_header(one)); }))
-    return kCannotWrite;
+  const fs::path motion = folder / kFramesFile;
+  if (frames > 0 && !write([&] { write_file(motion, ""); })) return kCannotWrite;
   const int steps = one.scene->steps, stride = std::max(1, steps / std::max(1, frames));
   const CaseRun run = run_case(one, {.series_rows = kSeriesRows, .watch = [&](const Snapshot& m) {
                                        heartbeat->beat(m.step);
-                                       if (motion && (m.step % stride == 0 || m.step == steps))
-                                         motion->append(m.t, m.state);
+                                       if (frames > 0 && (m.step % stride == 0 || m.step == steps))
+                                         append(motion, frame_bytes({m.t, {m.state.x, {}}}));
                                      }});
-  motion.reset();
   const bool written = write([&] {
     write_file(folder / kSeriesFile, to_json(run.series));
     write_file(folder / "case.json", to_json(run.record, 1) + "\n");

@@ -6,7 +6,6 @@
 
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
-#include "experiments/case/trajectory.hpp"
 #include "experiments/system/process.hpp"
 
 namespace taut {
@@ -72,9 +71,6 @@ class IsolatedCase {
   std::size_t bytes_;
   Process process_;
 };
-
-/// What a recording of the case says about itself.
-TrajectoryHeader trajectory_header(const Case&);
 
 /// The child's side: runs the case in this process and leaves case.json, series.json, its heartbeat
 /// and, if asked for, so many moments of its motion in `folder`. Gives the exit code.

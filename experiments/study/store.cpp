@@ -222,12 +222,16 @@ bool Store::has_frames(const std::string& key) const {
 }
 
 Trajectory Store::motion(const std::string& key) const {
-  Database::Rows row =
-      reading()->rows("SELECT motion FROM frames JOIN cases USING (case_id) WHERE key = ?", key);
+  Database::Rows row = reading()->rows(
+      "SELECT motion, vertices, solver_text, dt FROM frames JOIN cases USING "
+      "(case_id) WHERE key = ?",
+      key);
   row.next();
-  const Scratch scratch;
-  write_file(scratch.path() / kFramesFile, row.text(0));
-  return read_trajectory(scratch.path() / kFramesFile);
+  try {
+    return {row.text(2), row.number(3), frames_in(row.text(0), place(row, 1))};
+  } catch (const InputError& error) {
+    throw InputError(file().string() + ": motion of " + key + ": " + error.what());
+  }
 }
 
 fs::path Store::stage(const std::string& key) const {

@@ -24,9 +24,8 @@ struct CaseFiles {
   std::string errors;  ///< stderr.txt: what it said, of which the end is kept
 };
 inline constexpr const char* kSeriesFile = "series.json";
-/// A trajectory (experiments/case/trajectory.hpp) of about kFrames + 1 moments, first and last
-/// included.
-inline constexpr const char* kFramesFile = "frames.traj";
+/// Frames (experiments/case/trajectory.hpp) of about kFrames + 1 moments, first and last included.
+inline constexpr const char* kFramesFile = "frames";
 inline constexpr int kFrames = 32;
 
 /// All that a results folder holds, in one SQLite file, <root>/results.db: its tables and views are

@@ -146,8 +146,8 @@ void test_writable(const fs::path& path) {
   fs::remove(probe);
 }
 
-void append_line(const fs::path& path, std::string_view line) {
-  File(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC).write_all(std::string(line) + '\n');
+void append(const fs::path& path, std::string_view bytes) {
+  File(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC).write_all(std::string(bytes));
 }
 
 void make_folder(const fs::path& path) {

@@ -21,8 +21,8 @@ void write_durably(const std::filesystem::path&, std::string_view bytes);
 /// Leaves nothing behind. Throws InputError with the reason.
 void test_writable(const std::filesystem::path&);
 
-/// Appends a line in one write. Throws as write_durably.
-void append_line(const std::filesystem::path&, std::string_view line);
+/// Appends in one write. Throws as write_durably.
+void append(const std::filesystem::path&, std::string_view bytes);
 
 /// Creates the folder and its parents; throws InputError with the system's reason.
 void make_folder(const std::filesystem::path&);

@@ -300,7 +300,7 @@ class Verbs(CommandLine):
     def test_case_prints_a_record_and_its_final_state(self):
         run = self.taut("case", "./small.toml", "jakobsen:precision=double", "--dt", "1/128", "--duration", 0.25,
                         "--set", "cloth.grid=[5, 3]", "--json", "--final-state", "end.csv", "--series", "series.csv",
-                        "--trajectory", "all.traj")
+                        "--trajectory", "all.npy")
         record = json.loads(run.out)
         self.assertEqual((record["dt"], record["steps"], record["vertices"]), (1 / 128, 32, 15))
         self.assertEqual(record["status"]["kind"], "ok")
@@ -312,7 +312,7 @@ class Verbs(CommandLine):
                         for keys in (("x", "y", "z"), ("vx", "vy", "vz")))
         self.assertEqual(hashlib.sha256(bits).hexdigest(), record["digest"])
         self.assertEqual(len((self.folder / "series.csv").read_text().splitlines()), 34)
-        self.assertEqual((self.folder / "all.traj").read_bytes()[:8], b"TAUTTRAJ")
+        self.assertEqual((self.folder / "all.npy").read_bytes()[:6], b"\x93NUMPY")
 
     def test_a_case_says_how_far_it_is_and_what_the_settings_became(self):
         words = ["case", "./small.toml", "jakobsen", "--dt", "1/128", "--duration", 0.25, "--json"]

@@ -216,11 +216,10 @@ class Input(CommandLine):
 
     def test_a_pipe_is_never_waited_for(self):
         (self.folder / "results/runs").mkdir(parents=True)
-        for pipe in ("pipe.traj", "pipe.pc2", "pipe.npy", "pipe.toml", "results/runs/results.db"):
+        for pipe in ("pipe.pc2", "pipe.npy", "pipe.toml", "results/runs/results.db"):
             os.mkfifo(self.folder / pipe)
         study = self.study()
-        for words in (["render", "./small.toml", "--trajectory", "pipe.traj", "-o", "x.png"], ["external", "score", "./small.toml", "pipe.traj"],
-                      ["external", "score", "./small.toml", "pipe.pc2"], ["external", "score", "./small.toml", "pipe.npy"],
+        for words in (["external", "score", "./small.toml", "pipe.pc2"], ["external", "score", "./small.toml", "pipe.npy"],
                       ["run", "./pipe.toml"], ["case", "./small.toml", "jakobsen", "--set", 'cloth.mesh="pipe.npy"'],
                       ["run", study], ["export", study], ["report", study], ["cluster", "merge", "results/runs"]):
             self.assertRegex(self.taut(*words, expect=2).err, "is no regular file|no such study file", words)

@@ -6,7 +6,6 @@ import json
 import os
 import pathlib
 import shutil
-import struct
 
 from command_line import CommandLine, main
 
@@ -85,56 +84,10 @@ class Pictures(CommandLine):
         self.render("--solver", "jakobsen", "--solver", exploding, *SMALL, *long, "-o", "a.png")
         self.assertEqual(self.files(), ["a.png"])
 
-    def kept(self, *words):
-        self.taut("case", "./small.toml", *words, "--trajectory", "run.traj")
-        return self.folder / "run.traj"
-
-    def test_a_stored_motion_is_drawn_as_if_it_were_run(self):
-        self.kept("jakobsen")
-        self.render("--trajectory", "run.traj", *SMALL, "-o", "stored.png")
-        self.render("--solver", "jakobsen", *SMALL, "-o", "run.png")
-        self.assertEqual((self.folder / "stored.png").read_bytes(), (self.folder / "run.png").read_bytes())
-        done = self.render("--trajectory", "run.traj", "--set", "cloth.grid=[3, 3]", "-o", "a.png", expect=2)
-        self.assertIn("run.traj: a trajectory of 'small' with 16 vertices; small has 9", done.err)
-
-    def test_a_cut_motion_is_drawn_up_to_its_last_whole_frame_and_marked(self):
-        file = self.kept("jakobsen")
-        whole = file.read_bytes()
-        self.render("--trajectory", "run.traj", *SMALL, "-o", "whole.png")
-        file.write_bytes(whole[:len(whole) // 2])
-        done = self.render("--trajectory", "run.traj", *SMALL, "-o", "half.png")
-        self.assertRegex(done.err, r"run\.traj: the writer was interrupted; dropped .* from byte \d+ on")
-        self.assertNotEqual((self.folder / "half.png").read_bytes(), (self.folder / "whole.png").read_bytes())
-
-    def test_a_motion_that_explodes_half_way_is_drawn_up_to_its_last_sound_state(self):
-        file = self.kept("jakobsen")
-        data = bytearray(file.read_bytes())
-        first, vertices, _, real, channels = struct.unpack_from("<5I", data, 12)
-        size = 8 + 3 * vertices * real * channels
-        frames = (len(data) - first) // size
-        for k in range(frames // 2, frames):
-            struct.pack_into("<f" if real == 4 else "<d", data, first + k * size + 8, float("nan"))
-        self.render("--trajectory", "run.traj", *SMALL, "-o", "stable.png")
-        file.write_bytes(data)
-        self.render("--trajectory", "run.traj", *SMALL, "-o", "exploded.png")
-        self.assertNotEqual((self.folder / "stable.png").read_bytes(), (self.folder / "exploded.png").read_bytes())
-        struct.pack_into("<d", data, first + 8, float("nan"))
-        file.write_bytes(data)
-        done = self.render("--trajectory", "run.traj", *SMALL, "-o", "a.png", expect=2)
-        self.assertIn("no stable frame", done.err)
-
-    def test_an_empty_or_headless_motion_names_file_and_byte(self):
-        file = self.kept("jakobsen")
-        whole = file.read_bytes()
-        first = int.from_bytes(whole[12:16], "little")
-        for size, text in [(0, "empty file"), (20, "ends at byte 20 of 48"),
-                           (first - 1, f"ends at byte {first - 1} of {first}"),
-                           (first + 8, f"ends at byte {first + 8}, the first frame would end at byte")]:
-            file.write_bytes(whole[:size])
-            done = self.render("--trajectory", "run.traj", *SMALL, "-o", "a.png", expect=2)
-            self.assertIn("run.traj: ", done.err)
-            self.assertIn(text, done.err)
-        self.assertFalse((self.folder / "a.png").exists())
+    def test_a_motion_of_a_file_is_drawn_as_if_it_were_run(self):
+        self.taut("case", "./small.toml", "jakobsen", "--trajectory", "run.npy")
+        self.render("--solver", "positions:file=run.npy", *SMALL, "-o", "stored.png")
+        self.assertIn("stored.png", self.files())
 
     def test_sheet_view_colour_and_moments(self):
         plain = ["--solver", "jakobsen", *SMALL]

@@ -126,7 +126,6 @@ class Attempt:
             whole.taut('run', './study.toml')
             whole.taut('bench', './study.toml', '--rounds', 2, '--seconds', 0.001)
             whole.taut('baseline', 'update', './study.toml', '--baselines', 'baselines', '--why', 'fuzz')
-            whole.taut('case', './small.toml', 'jakobsen', '--trajectory', 'run.traj')
             if any(whole.codes):
                 raise RuntimeError(f'the study that is to be damaged did not run: {whole.codes}')
         shutil.copytree(template, self.folder, dirs_exist_ok=True)
@@ -258,11 +257,6 @@ def baseline(attempt):
         strict(said)
 
 
-def trajectory(attempt):
-    damage(attempt, 'run.traj')
-    attempt.taut('render', './small.toml', '--trajectory', 'run.traj', '--size', '320x240', '--quality', 'draft', '-o', 'x.png')
-
-
 def program(attempt):
     """A solver from outside of which one answer is damaged."""
     attempt.write('small.toml', SMALL)
@@ -283,7 +277,7 @@ def listed_solvers(build):
 
 
 KINDS = {each.__name__: each for each in (scene_made, scene_damaged, mesh, solver, study_made, study_damaged, arguments, record,
-                                          baseline, trajectory, program)}
+                                          baseline, program)}
 SOLVERS = []
 
 

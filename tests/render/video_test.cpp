@@ -191,7 +191,7 @@ TEST_F(Posters, FramesAreWholeStepsAtAboutTheRateOfTheFilm) {
   EXPECT_EQ(steps(0.01, 1, runs), (Steps{0, 3})) << "two at least";
   EXPECT_EQ(steps(9, 8, runs), (Steps{0, 23, 46})) << "to the scene's end";
   std::vector<RecordedRun> coarse = runs;
-  coarse[0].trajectory.header.frame_dt = 4.0 / 64;
+  coarse[0].trajectory.frame_dt = 4.0 / 64;
   EXPECT_EQ(steps(0.25, 1, coarse), (Steps{0, 4, 8, 12, 16}));
 }
 

@@ -129,7 +129,7 @@ TEST_F(Runs, WhatIsStoredWithoutItsMotionIsRunAgainForItUnlessItFailed) {
   const std::vector<Case> cases{scripted_case(2), scripted_case(1)};
   give(cases[0]), give(cases[1], Kind::oom);
   run(cases);
-  scripted_.write(kCopy + "echo \"$*\" >>$folder/words; echo motion >$5/frames.traj\n");
+  scripted_.write(kCopy + "echo \"$*\" >>$folder/words; echo motion >$5/frames\n");
   const CampaignProgress with = run(cases, {.frames = true});
   EXPECT_EQ((std::tuple{with.ran, with.reused}), (std::tuple{std::size_t{1}, std::size_t{1}}));
   EXPECT_NE(scripted_.told("words").find("--frames 32\n"), std::string::npos);
@@ -142,7 +142,7 @@ TEST_F(Runs, AnotherResultThanTheStoredOneIsCounted) {
   give(one);
   EXPECT_EQ(run({one}).conflicts, 0u);
   give(one, Kind::ok, 2);
-  scripted_.write(kCopy + "echo motion >$5/frames.traj\n");
+  scripted_.write(kCopy + "echo motion >$5/frames\n");
   EXPECT_EQ(run({one}, {.frames = true}).conflicts, 1u);
   EXPECT_EQ(store_.find(one.key)->values.at("a"), 1);
   EXPECT_EQ(store_.conflicts(), std::vector{one.key});

@@ -123,8 +123,11 @@ TEST_F(StoreTest, OfWhatACaseLeavesSeriesAndMotionAreKept) {
   const Series series{{"step", "t"}, {{0, 0}, {1, 0.5}}};
   write_file(staged / kSeriesFile, to_json(series));
   write_file(staged / "stderr.txt", std::string(70000, 'a') + "the end");
-  TrajectoryWriter(staged / kFramesFile, {"hang", "xpbd", 0.1, 1, {}})
-      .append(0.25, {{Vec3(1, 2, 3)}, {Vec3(0, 0, 0)}});
+  std::string frames;
+  for (const double t : {0.25, 0.5})
+    frames += frame_bytes(
+        {t, {std::vector<Vec3>(static_cast<std::size_t>(r.vertices), Vec3(1, 2, 3)), {}}});
+  write_file(staged / kFramesFile, frames);
   EXPECT_EQ(store_.commit(staged, r), Store::Commit::stored);
   EXPECT_FALSE(fs::exists(staged));
   const Store other(root_);
@@ -132,7 +135,9 @@ TEST_F(StoreTest, OfWhatACaseLeavesSeriesAndMotionAreKept) {
   EXPECT_EQ(other.series(r.key).rows, series.rows);
   ASSERT_TRUE(other.has_frames(r.key));
   const Trajectory motion = other.motion(r.key);
-  EXPECT_EQ(motion.header.scene, "hang");
+  EXPECT_EQ(motion.solver, r.spec.solver);
+  EXPECT_EQ(motion.frame_dt, r.dt);
+  EXPECT_EQ(motion.frames.size(), 2u);
   EXPECT_EQ(motion.frames.at(0).t, 0.25);
   EXPECT_EQ(motion.frames[0].state.x[0], Vec3(1, 2, 3));
   Database file(store_.file(), Database::Access::read);

@@ -10,7 +10,6 @@
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/reference_store.hpp"
-#include "experiments/case/trajectory.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/synthetic_records.hpp"
 
@@ -33,13 +32,6 @@ Record stored_record() {
   return record;
 }
 
-std::string trajectory_bytes(const fs::path& folder) {
-  TrajectoryWriter writer(folder / "good", {"hang", "jakobsen", 0.1, 3, {{0, 1, 2}}});
-  State state{std::vector<Vec3>(3, Vec3::Ones()), std::vector<Vec3>(3, Vec3::Zero())};
-  for (int k = 0; k < 3; ++k) writer.append(0.1 * k, state);
-  return read_text(folder / "good");
-}
-
 std::vector<Kind> kinds(const fs::path& folder) {
   BaselineRow row = baseline_row(stored_record(), std::string(64, 'b'));
   write_baseline(folder / "baseline", {row});
@@ -58,7 +50,6 @@ std::vector<Kind> kinds(const fs::path& folder) {
       {"reference/static.json", read_text(folder / "reference/static.json"), read_reference},
       {"answer.json", to_json(answer),
        [](const fs::path& file) { answer_from_json(read_text(file), file.string()); }},
-      {"run.traj", trajectory_bytes(folder), [](const fs::path& file) { read_trajectory(file); }},
   };
 }
 

@@ -97,12 +97,12 @@ TEST(WrittenFiles, ALinkStaysOneAndAPipeIsWrittenTo) {
 TEST(WrittenFiles, GrowByLines) {
   const Scratch scratch;
   const fs::path file = scratch.path() / "a";
-  append_line(file, "one");
-  append_line(file, "two");
-  append_line(file, "");
-  append_line(file, "three");
+  append(file, "one\n");
+  append(file, "two\n");
+  append(file, "\n");
+  append(file, "three\n");
   EXPECT_EQ(read_text(file), "one\ntwo\n\nthree\n");
-  EXPECT_EQ(refused([&] { append_line(file / "b", "x"); }),
+  EXPECT_EQ(refused([&] { append(file / "b", "x"); }),
             (file / "b").string() + ": cannot write: Not a directory");
   EXPECT_EQ(refused([&] { make_folder(file / "b"); }),
             (file / "b").string() + ": cannot create: Not a directory");

@@ -4,7 +4,6 @@
 
 #include "core/io/positions/positions.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/case/trajectory.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/isolate.hpp"
 #include "experiments/system/clock.hpp"
@@ -19,29 +18,6 @@ struct Options {
   bool json = false, verbose = false;
   int frames = 0;
   std::string final_state, trajectory, series, into;
-};
-
-/// What keeps the motion: taut's own trajectory, or a format of other programs.
-class MotionWriter {
- public:
-  MotionWriter(const std::string& file, const Case& one) {
-    if (file.empty()) return;
-    if (!file.ends_with(".traj"))
-      positions_ = create_positions(file, one.scene->mesh);
-    else
-      trajectory_.emplace(file, trajectory_header(one));
-  }
-  void append(const Snapshot& m) {
-    if (trajectory_) trajectory_->append(m.t, m.state);
-    if (positions_) positions_->append(m.t, m.state.x);
-  }
-  void finish() {
-    if (positions_) positions_->finish();
-  }
-
- private:
-  std::optional<TrajectoryWriter> trajectory_;
-  std::unique_ptr<PositionWriter> positions_;
 };
 
 void tell(const Snapshot& m, int steps) {
@@ -79,15 +55,16 @@ int run(const Options& options) try {
 
   for (const std::string& file : {options.final_state, options.series, options.trajectory})
     if (!file.empty()) test_writable(file);
-  MotionWriter writer(options.trajectory, one);
+  const std::unique_ptr<PositionWriter> motion =
+      options.trajectory.empty() ? nullptr : create_positions(options.trajectory, one.scene->mesh);
   SlowRun slow(one.scene->steps);
   const CaseRun result = run_case(
       one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Snapshot& m) {
-              writer.append(m);
+              if (motion) motion->append(m.t, m.state.x);
               slow.at(m.step);
               if (options.verbose) tell(m, one.scene->steps);
             }});
-  writer.finish();
+  if (motion) motion->finish();
   if (!options.final_state.empty()) write_durably(options.final_state, to_csv(result.last));
   if (!options.series.empty()) write_durably(options.series, to_csv(result.series));
   if (options.json)
@@ -109,7 +86,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--final-state", options.final_state,
                  "Write vertex,x,y,z,vx,vy,vz of the last stable state, full precision (CSV)");
   app.add_option("--trajectory", options.trajectory,
-                 "Write every step's positions: taut's .traj, .npy, .pc2, .mdd, or a file a step, "
+                 "Write every step's positions: .npy, .pc2, .mdd, or a file a step, "
                  ".obj or .ply");
   app.add_option("--series", options.series, "Write values over time (CSV)");
   app.add_flag("--verbose", options.verbose,

@@ -57,7 +57,7 @@ int run(const Options& o) {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.scene, "Name of a shipped scene, or a path")->required();
   app.add_option("POSITIONS", o.motion.file,
-                 "A .npy, .pc2, .mdd or .traj; or one .obj or .ply of a sequence")
+                 "A .npy, .pc2 or .mdd; or one .obj or .ply of a sequence")
       ->required();
   app.add_option("--fps", o.motion.fps, "Frames in a second (default: what the file says)")
       ->check(above_zero());

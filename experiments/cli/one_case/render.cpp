@@ -130,10 +130,8 @@ void check_output(const Options& options) {
 int run(Options options) {
   if (options.output.ends_with(".mp4")) options.video = true;
   check_output(options);
-  const std::size_t panels = options.what.solvers.size() + options.what.files.size();
-  if (panels == 0 || panels > 4)
-    throw InputError(
-        "one to four --solver or --trajectory, for example --solver jakobsen --solver bullet");
+  if (options.what.solvers.empty() || options.what.solvers.size() > 4)
+    throw InputError("one to four --solver, for example --solver jakobsen --solver bullet");
   check_solvers(options.what.solvers);
   if (!options.dt.empty()) options.what.overrides.push_back("time.dt=\"" + options.dt + "\"");
   if (!options.duration.empty())
@@ -172,9 +170,6 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.what.scene, "Name of a shipped scene, or a path")->required();
   app.add_option("--solver", o.what.solvers, "NAME or NAME:key=value,...; one to four of them")
       ->allow_extra_args(false);
-  app.add_option("--trajectory", o.what.files,
-                 "A motion of this scene kept by `taut case --trajectory`, in a panel of its own")
-      ->allow_extra_args(false);
   app.add_option("--at", o.at, "Moments to draw [s]; default: the end")->allow_extra_args(false);
   app.add_flag("--sheet", o.sheet, "One picture, a row for each moment");
   app.add_flag("--video", o.video, "H.264 video in real time (so does -o NAME.mp4)");
@@ -211,5 +206,5 @@ TAUT_VERB(render) = {
     .example =
         "taut render ball --solver jakobsen --solver bullet:substeps=5 --at 0.6\n"
         "  taut render flag --solver jakobsen --solver bullet:substeps=5 --video --duration 4\n"
-        "  taut render ball --trajectory run.traj --solver bullet:substeps=5 --sheet",
+        "  taut render ball --solver positions:file=run.npy --solver bullet:substeps=5 --sheet",
     .bind = taut::bind_verb<taut::verb::render::add_options, taut::verb::render::run>};

@@ -173,18 +173,15 @@ FilmResult make_film(const Film& film) {
                     {}};
   for (std::size_t k = 0; k < media.material.size(); ++k) {
     report::MaterialRow& row = result.media.material.emplace_back();
-    row.solver = solver_name(set.runs[k].trajectory.header.solver);
+    row.solver = solver_name(set.runs[k].trajectory.solver);
     for (const Media::Flat& flat : media.material[k])
       row.stills.push_back({flat.t, flat.rms, flat.png});
   }
   for (std::size_t k = 0; !film.studied && k < set.runs.size(); ++k)
     std::ranges::move(
-        report::shown_series(set.series[k], {film.scene,
-                                             solver_name(set.runs[k].trajectory.header.solver),
-                                             film.labels[k],
-                                             "",
-                                             {},
-                                             {}}),
+        report::shown_series(
+            set.series[k],
+            {film.scene, solver_name(set.runs[k].trajectory.solver), film.labels[k], "", {}, {}}),
         std::back_inserter(result.series));
   return result;
 }

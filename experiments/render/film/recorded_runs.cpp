@@ -25,7 +25,8 @@ Rgb8 colour_of(std::string_view hex) {
 }
 
 /// A motion with the title, settings and colour of the solver that made it.
-RecordedRun shown_run(const Scene& scene, Trajectory motion, const std::string& solver) {
+RecordedRun shown_run(const Scene& scene, Trajectory motion) {
+  const std::string solver = motion.solver;
   RecordedRun run = recorded_run(scene, std::move(motion));
   const std::string name = solver_name(solver);
   run.title = report::solver_title(name);
@@ -41,24 +42,12 @@ RecordedRun finished_run(IsolatedCase& process) {
     throw InputError(one.choice.brief() + " cannot run " + one.scene->name + ": " + status.reason);
   const fs::path motion = process.folder() / kFramesFile;
   if (!fs::exists(motion))
-    throw InputError(one.choice.brief() + " left no trajectory of " + one.scene->name + ": " +
+    throw InputError(one.choice.brief() + " left no motion of " + one.scene->name + ": " +
                      std::string(to_string(status.kind)) + ", " + status.reason);
-  RecordedRun run = shown_run(*one.scene, read_trajectory(motion), one.choice.canonical());
+  RecordedRun run = shown_run(*one.scene, {one.choice.canonical(), one.scene->dt,
+                                           frames_in(read_text(motion), one.scene->mesh.size())});
   if (run.stop && status.kind != Status::Kind::ok) run.stop->why = to_string(status.kind);
   return run;
-}
-
-/// What a file holds, under the name of the solver that it says made it.
-RecordedRun stored_run(const Scene& scene, const std::string& file) {
-  Trajectory trajectory = read_trajectory(file);
-  const TrajectoryHeader& header = trajectory.header;
-  if (header.vertices != scene.mesh.size())
-    throw InputError(
-        {{file, 0, 0,
-          "a trajectory of '" + header.scene + "' with " + std::to_string(header.vertices) +
-              " vertices; " + scene.name + " has " + std::to_string(scene.mesh.size())}});
-  const std::string solver = header.solver;
-  return shown_run(scene, std::move(trajectory), solver);
 }
 
 }  // namespace
@@ -81,7 +70,6 @@ RunSet record_runs(const RunRequest& request, const std::function<void(const std
     set.series.push_back(fs::exists(series) ? series_from_json(read_text(series), series.string())
                                             : Series{});
   }
-  for (const std::string& file : request.files) set.runs.push_back(stored_run(set.scene, file));
   return set;
 }
 

@@ -14,19 +14,18 @@ struct RunRequest {
   std::string scene;                   ///< name or path
   std::vector<std::string> overrides;  ///< of the scene file
   std::vector<std::string> solvers;    ///< "jakobsen:iterations=8"
-  std::vector<std::string> files{};    ///< trajectories, shown after the solvers
 };
 
 struct RunSet {
   Scene scene;
-  std::vector<RecordedRun> runs;  ///< of the solvers, then of the files, with titles and colours
+  std::vector<RecordedRun> runs;  ///< with titles and colours
   std::vector<Series> series{};   ///< of the solvers: values over time
 };
 
 /// Runs every solver on the scene, each in a process of its own and all at once, and keeps every
 /// step. A run that explodes, crashes or hangs is kept up to its last stable state. `say` is told
 /// what is being run. Throws InputError: unknown scene or solver, a solver that cannot represent
-/// the scene, a trajectory that cannot be read or is of other cloth.
+/// the scene.
 RunSet record_runs(const RunRequest&, const std::function<void(const std::string&)>& say);
 
 }  // namespace taut

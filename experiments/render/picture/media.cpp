@@ -15,7 +15,7 @@ namespace {
 std::vector<double> frame_times(const Scene& scene, const std::vector<RecordedRun>& runs,
                                 const MediaOptions& options) {
   double step = scene.dt;
-  for (const RecordedRun& run : runs) step = std::max(step, run.trajectory.header.frame_dt);
+  for (const RecordedRun& run : runs) step = std::max(step, run.trajectory.frame_dt);
   const double stride = std::max(1.0, std::round(options.speed / (options.fps * step)));
   const double end = std::min(options.duration, scene.duration());
   std::vector<double> times;

@@ -17,7 +17,7 @@ bool is_sound(const State& state, const Vec3& centre, double reach) {
 
 /// Fills in what a trajectory without velocities leaves out: backward differences, as Verlet has
 /// them; the scene's own at the start.
-void add_velocities(const Scene& scene, std::vector<TrajectoryReader::Frame>& frames) {
+void add_velocities(const Scene& scene, std::vector<Frame>& frames) {
   for (std::size_t k = 0; k < frames.size(); ++k) {
     State& now = frames[k].state;
     if (!now.v.empty()) continue;
@@ -149,9 +149,9 @@ View telling_view(const View& view, const std::vector<Vec3>& cloth, const Vec3& 
 
 }  // namespace
 
-const TrajectoryReader::Frame& RecordedRun::at(double t) const {
+const Frame& RecordedRun::at(double t) const {
   const auto& frames = trajectory.frames;
-  const auto after = std::ranges::lower_bound(frames, t, {}, &TrajectoryReader::Frame::t);
+  const auto after = std::ranges::lower_bound(frames, t, {}, &Frame::t);
   if (after == frames.begin()) return *after;
   if (after == frames.end()) return frames.back();
   return t - std::prev(after)->t <= after->t - t ? *std::prev(after) : *after;
@@ -169,10 +169,10 @@ RecordedRun recorded_run(const Scene& scene, Trajectory trajectory, double reach
   const bool exploded = bad != frames.end();
   frames.erase(bad, frames.end());
   if (frames.empty())
-    throw InputError("the trajectory of '" + trajectory.header.solver +
+    throw InputError("the trajectory of '" + trajectory.solver +
                      "' has no stable frame: there is nothing to draw");
   add_velocities(scene, frames);
-  const double slack = 1.5 * std::max(trajectory.header.frame_dt, scene.dt);
+  const double slack = 1.5 * std::max(trajectory.frame_dt, scene.dt);
   if (exploded || frames.back().t < scene.duration() - slack)
     run.stop = RecordedRun::Stop{frames.back().t, exploded ? "exploded" : "ended"};
   run.trajectory = std::move(trajectory);
@@ -310,8 +310,7 @@ void SceneRenderer::choose_scale() {
   if (scale_.colour_by == ColourBy::strain) scale_.high = std::min(scale_.high, kMostStrain);
 }
 
-std::vector<RenderMesh> SceneRenderer::meshes(const TrajectoryReader::Frame& frame,
-                                              const Vec3& centre) const {
+std::vector<RenderMesh> SceneRenderer::meshes(const Frame& frame, const Vec3& centre) const {
   std::vector<RenderMesh> meshes{
       mesher_.mesh(frame.state.x, vertex_values(scene_, scale_.colour_by, frame.state, frame.t),
                    vertex_values(scene_, ColourBy::penetration, frame.state, frame.t))};

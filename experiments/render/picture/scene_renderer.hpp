@@ -27,7 +27,7 @@ struct RecordedRun {
   std::optional<Stop> stop;
 
   /// The frame nearest to t: the last one if the run ended before. Precondition: frames exist.
-  const TrajectoryReader::Frame& at(double t) const;
+  const Frame& at(double t) const;
 };
 
 /// Drops everything from the first frame that is not finite or lies more than `reach` extents of
@@ -125,7 +125,7 @@ class SceneRenderer {
   void choose_scale();
   std::vector<double> sampled_times() const;
   /// Cloth, colliders, pins; in this order.
-  std::vector<RenderMesh> meshes(const TrajectoryReader::Frame&, const Vec3& centre) const;
+  std::vector<RenderMesh> meshes(const Frame&, const Vec3& centre) const;
   const Scene& scene_;
   const std::vector<RecordedRun>& runs_;
   SceneRendererOptions options_;

@@ -37,7 +37,7 @@ Beat beat_of(const JsonReader& j) {
 std::string line_of(const Beat& beat) {
   Json json{{"state", kStates[static_cast<int>(beat.state)]}};
   json.update(json_of(beat, kBeatFields));
-  return to_text(json);
+  return to_text(json) + "\n";
 }
 
 /// What a start has said so far; a line that is being written is not counted.
@@ -112,8 +112,8 @@ Attempt::Attempt(const fs::path& shard, const std::string& name)
       }
   }
   for (const Beats& silent : others)  // nobody waits for it again, unless it speaks again
-    append_line(silent.file, line_of({Beat::State::ended, silent.last.done, silent.last.cases, 0, 0,
-                                      0, "lost", silent.last.host, silent.last.started}));
+    append(silent.file, line_of({Beat::State::ended, silent.last.done, silent.last.cases, 0, 0, 0,
+                                 "lost", silent.last.host, silent.last.started}));
   now_.state = Beat::State::running;
   beat();
 }
@@ -139,7 +139,7 @@ void Attempt::end(const std::string& why) {
 void Attempt::beat() {
   last_ = SteadyClock::now();
   now_.seconds = seconds_between(start_, last_);
-  append_line(file_, line_of(now_));
+  append(file_, line_of(now_));
 }
 
 }  // namespace taut::cluster

@@ -98,7 +98,7 @@ TEST_F(Starts, SayWhatTheyDo) {
 // Who was silent for the whole of another's patience is written off, and nobody waits again.
 TEST_F(Starts, WhoIsSilentIsLost) {
   const fs::path silent = start("0");
-  append_line(silent, beat_line("running"));
+  append(silent, beat_line("running") + "\n");
   const auto begun = SteadyClock::now();
   { Attempt attempt(scratch(), std::string("1")); }
   EXPECT_GE(seconds_since(begun), 0.99) << "patience is a second here";

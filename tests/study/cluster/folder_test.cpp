@@ -128,7 +128,7 @@ TEST_F(Folder, ItsStatusIsThatOfEveryShard) {
   const fs::path folder = make("c", manifest);
   const auto said = [&](int shard, const std::string& state) {
     const fs::path start = make_start(shard_folder(folder, shard), "one");
-    append_line(start, beat_line(state));
+    append(start, beat_line(state) + "\n");
     return start;
   };
   said(1, "ended"), put(shard_folder(folder, 1), 0);

@@ -20,11 +20,11 @@ inline std::string beat_line(const std::string& state, double work = 0, double w
 class Speaking {
  public:
   Speaking(const std::filesystem::path& file, const std::string& line) {
-    append_line(file, line);  // before it is looked for
+    append(file, line + "\n");  // before it is looked for
     thread_ = std::thread([this, file, line] {
       while (!ended_) {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        append_line(file, line);
+        append(file, line + "\n");
       }
     });
   }
