@@ -56,11 +56,6 @@ WriterMark::WriterMark(const fs::path& file) {
   mark_ = mark;
 }
 
-void WriterMark::remove(const fs::path& file) {
-  std::error_code ignored;
-  fs::remove(file.string() + ".writer", ignored);
-}
-
 WriterMark::~WriterMark() {
   std::error_code ignored;
   if (!mark_.empty()) fs::remove(mark_, ignored);

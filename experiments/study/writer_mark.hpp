@@ -12,8 +12,6 @@ class WriterMark {
   /// Throws InputError if another host writes the file.
   explicit WriterMark(const std::filesystem::path& file);
   ~WriterMark();
-  /// Removes the mark of another host of which it is known that it writes no more.
-  static void remove(const std::filesystem::path& file);
   WriterMark(const WriterMark&) = delete;
   WriterMark& operator=(const WriterMark&) = delete;
 

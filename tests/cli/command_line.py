@@ -64,8 +64,8 @@ class CommandLine(unittest.TestCase):
         return "./" + name
 
     def store_digest(self, process):
-        lines = [line for line in (process.out + process.err).splitlines() if line.startswith("store ")]
-        return lines[-1]
+        lines = [line.split() for line in (process.out + process.err).splitlines() if line.strip().startswith("store ")]
+        return " ".join(lines[-1])
 
     def records(self, results="results/runs"):
         return stored.records(self.folder / results)

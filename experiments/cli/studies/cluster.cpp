@@ -1,11 +1,8 @@
 #include "experiments/study/cluster/cluster.hpp"
 
 #include "core/io/text_file.hpp"
-#include "core/model/text.hpp"
-#include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/writer_mark.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
@@ -25,7 +22,8 @@ struct Submit {
   int shards = 0;
   double hours = 0;
   Limits limits;
-  bool dry_run = false, json = false;
+  bool dry_run = false;
+  Format format;
 };
 
 /// The lines of `nodes`: what --sshlogin and --node-file say; "" if neither does.
@@ -35,15 +33,6 @@ std::string nodes_of(const Submit& o) {
   if (o.on == "slurm" && !nodes.empty())
     throw InputError("--sshlogin and --node-file are for GNU parallel; Slurm knows its nodes");
   return nodes;
-}
-
-void share_out_as_asked(Manifest& manifest, const Submit& o) {
-  const int cases = static_cast<int>(manifest.cases.size());
-  if (o.shards > cases)
-    throw InputError("--shards " + std::to_string(o.shards) + ": the study has only " +
-                     std::to_string(cases) + " cases");
-  manifest.shards = o.shards > 0 ? o.shards : shards_for(manifest, o.hours > 0 ? o.hours : 1);
-  share_out(manifest);
 }
 
 void start(const fs::path& folder, Scheduler on) {
@@ -74,35 +63,32 @@ int submit(const Submit& o) {
                      folder.string() + "`, or name another with --folder");
   fs::path there = folder.parent_path();  // what exists already of the folder's path
   while (!there.empty() && !fs::exists(there)) there = there.parent_path();
-  make_folder(folder / "log");
-  Manifest manifest;
+  const std::vector<Case> cases = cases_of(study);
+  Plan made;
   try {
-    manifest = plan(study, o.limits, folder);
-    if (manifest.cases.empty()) throw InputError("this study has no case");
-    share_out_as_asked(manifest, o);
-    write_durably(folder / "study.toml", read_text(study.file));
-    write_durably(folder / "README", readme(manifest, on));
+    made = plan(study, cases, o.limits, o.shards, o.hours > 0 ? o.hours : 1);
+    make_folder(folder / "log"), make_folder(folder / "shards");
+    copy_scenes(cases, folder);
+    write_durably(folder / (study.name + ".toml"), read_text(study.file));
+    write_durably(folder / "README", readme(made, on));
     if (!nodes.empty()) write_durably(folder / "nodes", nodes);
-    write_durably(folder / "job.sh", job_script(manifest, on));
+    write_durably(folder / "job.sh", job_script(made, on));
     fs::permissions(folder / "job.sh", fs::perms::owner_exec | fs::perms::group_exec,
                     fs::perm_options::add);
-    write_durably(folder / "manifest.jsonl", manifest_text(manifest));
+    Store(folder).begin_session("taut cluster submit", {{study.name, cases}}, {1, made.shards});
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
-    for (fs::path made = folder.parent_path(); made != there; made = made.parent_path())
-      fs::remove(made, ignored);
+    for (fs::path parent = folder.parent_path(); parent != there; parent = parent.parent_path())
+      fs::remove(parent, ignored);
     throw;
   }
-  if (o.json)
-    print_json({{"folder", folder.string()},
-                {"cases", manifest.cases.size()},
-                {"shards", manifest.shards},
-                {"minutes", shard_minutes(manifest)},
-                {"digest", manifest.digest}});
-  else
-    std::cout << folder.string() << ": " << manifest.cases.size() << " cases in " << manifest.shards
-              << " shards of at most " << shard_minutes(manifest) << " minutes\n";
+  Answer answer{"cluster submit", study.name};
+  answer.add({"folder"}, folder.string());
+  answer.add({"cases"}, made.cases);
+  answer.add({"shards"}, made.shards);
+  answer.add({"minutes", "limit of a shard", {"min", "min"}}, shard_minutes(made));
+  print(answer, o.format);
   if (!o.dry_run) start(folder, on);
   return kPass;
 }
@@ -112,8 +98,7 @@ void add_options_submit(CLI::App& app, Submit& o) {
   app.add_option("--on", o.on, "Who starts the shards: slurm or parallel")
       ->required()
       ->check(known("scheduler", {"slurm", "parallel"}));
-  auto* shards = app.add_option("--shards", o.shards, "Parts of about equal work")
-                     ->check(CLI::Range(1, kMostShards));
+  auto* shards = app.add_option("--shards", o.shards, "Parts")->check(CLI::Range(1, kMostShards));
   app.add_option("--hours", o.hours, "As few shards as end within that time (default: 1)")
       ->check(above_zero())
       ->excludes(shards);
@@ -127,134 +112,25 @@ void add_options_submit(CLI::App& app, Submit& o) {
       ->check(CLI::ExistingFile);
   add_limits(app, o.limits);
   app.add_flag("--dry-run", o.dry_run, "Write the folder and start nothing");
-  add_json(app, o.json, "Folder and sizes");
-}
-
-// run
-
-struct Run {
-  std::string folder, only;
-  int shard = 0, jobs = 1;
-};
-
-int run(const Run& o) {
-  const Manifest manifest = read_manifest(o.folder);
-  const std::vector<Case> cases = taut::cluster::cases_of(manifest, o.shard, o.folder);
-  const Store store(shard_folder(o.folder, o.shard));
-  Attempt attempt(store.root());
-  WriterMark::remove(store.file());  // whoever began this shard is gone
-  store.prepare();
-  store.begin_session("taut cluster run --shard " + std::to_string(o.shard),
-                      {{manifest.study, cases}});
-  Progress progress;
-  const CampaignProgress campaign =
-      run_cases(cases, store,
-                {.jobs = o.jobs,
-                 .limits = manifest.limits,
-                 .only_failed = o.only == "failed",
-                 .progress = [&](const CampaignProgress& t, const Record* record) {
-                   attempt.progress(t);
-                   progress.show(t, record);
-                 }});
-  attempt.end(campaign.interrupted ? "interrupted" : "all cases");
-  progress.finish(campaign);
-  return exit_code(campaign, store);
-}
-
-void add_options_run(CLI::App& app, Run& o) {
-  app.add_option("DIR", o.folder, "The folder of `taut cluster submit`")->required();
-  app.add_option("--shard", o.shard, "Which part, from 1 on")->required();
-  app.add_option("--only", o.only, "failed: run stored failures again, nothing else")
-      ->check(CLI::IsMember({"failed"}));
-  app.add_option("-j,--jobs", o.jobs, "Cases at a time (default: 1)")->check(CLI::Range(1, 1024));
+  add_json(app, o.format.json, "Folder and sizes");
 }
 
 // status
 
-/// The first ten.
-void print_list(std::ostream& out, const std::string& word, const std::vector<std::string>& lines) {
-  constexpr std::size_t kShown = 10;
-  for (std::size_t i = 0; i < std::min(kShown, lines.size()); ++i)
-    out << word << ": " << lines[i] << '\n';
-  if (lines.size() > kShown)
-    out << word << ": " << lines.size() - kShown << " more (--json names all)\n";
-}
-
-std::string clock_text(double seconds) {
-  const auto minutes = static_cast<long>(seconds / 60);
-  return minutes < 1    ? "less than a minute"
-         : minutes < 90 ? std::to_string(minutes) + " minutes"
-                        : std::to_string((minutes + 30) / 60) + " hours";
-}
-
-std::string commands_of(const std::vector<int>& shards, const fs::path& folder) {
-  const auto list = [&](const char* separator) {
-    return join(shards, separator, [](int shard) { return std::to_string(shard); });
-  };
-  const bool slurm = read_text(folder / "job.sh").find("#SBATCH") != std::string::npos;
-  return "cd " + shell_word(folder.string()) + " && " +
-         (slurm ? "sbatch --array=" + list(",") + " job.sh" : "./job.sh " + list(" "));
-}
-
-Json to_json(const FolderStatus& all, const fs::path& folder) {
-  const auto shard = [](const ShardStatus& one) -> Json {
-    return {{"shard", one.shard},
-            {"state", taut::cluster::to_string(one.state)},
-            {"cases", one.cases},
-            {"done", one.done},
-            {"host", one.host}};
-  };
-  const auto failed = [](const FailedCase& one) -> Json {
-    return {{"shard", one.shard}, {"id", one.id}, {"status", describe(one.status)}};
-  };
-  return {{"cases", all.cases},
-          {"done", all.done},
-          {"seconds", all.seconds() ? Json(*all.seconds()) : Json()},
-          {"shards", json_array(all.shards, shard)},
-          {"failed", json_array(all.failed, failed)},
-          {"start", all.to_start()},
-          {"command", all.to_start().empty() ? "" : commands_of(all.to_start(), folder)}};
-}
-
-void print(const FolderStatus& all, const fs::path& folder) {
-  std::cout << all.done << "/" << all.cases << " cases";
-  if (const auto seconds = all.seconds()) std::cout << ", left: " << clock_text(*seconds);
-  std::cout << '\n';
-  for (const ShardStatus& one : all.shards) {
-    if (one.state == ShardStatus::State::done) continue;
-    std::cout << "shard " << one.shard << ": " << taut::cluster::to_string(one.state) << ", "
-              << one.done << "/" << one.cases << (one.host.empty() ? "" : ", on " + one.host)
-              << '\n';
-  }
-  std::vector<std::string> failed;
-  for (const FailedCase& one : all.failed)
-    failed.push_back(one.id + " (shard " + std::to_string(one.shard) +
-                     "): " + describe(one.status));
-  print_list(std::cout, "failed", failed);
-  if (!all.failed.empty())
-    std::cout << "failures again: taut cluster run " << shell_word(folder.string()) << " --shard "
-              << all.failed.front().shard << " --only failed\n";
-  if (!all.to_start().empty())
-    std::cout << "start again: " << commands_of(all.to_start(), folder) << '\n';
-}
-
 struct StatusOptions {
   std::string folder;
-  bool json = false;
+  Format format;
 };
 
 int status(const StatusOptions& o) {
-  const FolderStatus all = status_of(read_manifest(o.folder), o.folder);
-  if (o.json)
-    print_json(to_json(all, o.folder));
-  else
-    print(all, o.folder);
-  return all.complete() ? kPass : kIncomplete;
+  const Answer answer = status_of(o.folder);
+  print(answer, o.format);
+  return answer.fact("done") == answer.fact("cases") ? kPass : kIncomplete;
 }
 
 void add_options_status(CLI::App& app, StatusOptions& o) {
   app.add_option("DIR", o.folder, "The folder of `taut cluster submit`")->required();
-  add_json(app, o.json, "Every shard and every failed case");
+  add_format(app, o.format, "Every shard and every failed case");
 }
 
 // merge
@@ -262,8 +138,16 @@ void add_options_status(CLI::App& app, StatusOptions& o) {
 struct MergeOptions {
   std::vector<std::string> folders;
   std::string out;
-  bool allow_missing = false, json = false;
+  bool allow_missing = false;
+  Format format;
 };
+
+Table sentences(const char* name, const std::vector<std::string>& lines) {
+  Table table{name, name, {{"case"}}};
+  for (const std::string& line : lines) table.rows.push_back({line});
+  table.most = 10;
+  return table;
+}
 
 int merge(const MergeOptions& o) {
   const Merge merge({o.folders.begin(), o.folders.end()});
@@ -278,20 +162,15 @@ int merge(const MergeOptions& o) {
     merge.copy(plan, store, Countdown("merging"));
     if (!missing.empty()) store.mark_missing(plan.missing);
   }
-  print_list(std::cerr, "foreign", plan.foreign);
-  print_list(std::cerr, "conflict", plan.conflicts);
-  print_list(std::cerr, "missing", missing);
-  if (o.json)
-    print_json({{"cases", plan.cases.size()},
-                {"there", plan.cases.size() - missing.size()},
-                {"merged", may},
-                {"missing", missing},
-                {"foreign", plan.foreign},
-                {"conflicts", plan.conflicts},
-                {"store", store.digest()}});
-  else
-    std::cout << plan.cases.size() - missing.size() << "/" << plan.cases.size() << " cases"
-              << (may ? "" : "; nothing was merged") << "\nstore " << store.digest() << '\n';
+  Answer answer{"cluster merge", o.out};
+  answer.add({"cases"}, plan.cases.size());
+  answer.add({"there"}, plan.cases.size() - missing.size());
+  answer.add({"merged"}, may);
+  answer.add({"store"}, store.digest());
+  answer.add(sentences("missing", missing));
+  answer.add(sentences("foreign", plan.foreign));
+  answer.add(sentences("conflicts", plan.conflicts));
+  print(answer, o.format);
   if (!plan.foreign.empty()) return kUsage;
   if (!plan.conflicts.empty()) return kConflict;
   if (plan.cases.empty()) return kNothing;
@@ -305,7 +184,7 @@ void add_options_merge(CLI::App& app, MergeOptions& o) {
   add_results(app, o.out);
   app.add_flag("--allow-missing", o.allow_missing,
                "Merge although planned cases are missing; reports say so");
-  add_json(app, o.json, "What is there, what is missing, foreign or in conflict");
+  add_format(app, o.format, "All that is missing, foreign or in conflict");
 }
 
 }  // namespace
@@ -327,15 +206,9 @@ TAUT_VERB(cluster_submit) = {
         "my/study.toml --on parallel --sshlogin a,b --shards 8 --dry-run",
     .bind = taut::bind_verb<taut::verb::cluster::add_options_submit, taut::verb::cluster::submit>};
 
-TAUT_VERB(cluster_run) = {
-    .name = "cluster run",
-    .summary = "Runs one shard, or goes on with it: what the job scripts call",
-    .example = "taut cluster run results/cluster/iterations --shard 3",
-    .bind = taut::bind_verb<taut::verb::cluster::add_options_run, taut::verb::cluster::run>};
-
 TAUT_VERB(cluster_status) = {
     .name = "cluster status",
-    .summary = "Done, running, failed and lost shards, and the command that starts them again",
+    .summary = "Done and failed cases of every shard, and the command that starts the rest",
     .example = "taut cluster status results/cluster/iterations",
     .bind = taut::bind_verb<taut::verb::cluster::add_options_status, taut::verb::cluster::status>};
 

@@ -36,21 +36,13 @@ void Merge::note_planned_alone(const Source& a, const Source& b,
 Merge::Merge(const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders) {
     Source source{folder, {}, {}};
-    if (fs::exists(folder / "manifest.jsonl")) {
-      const Manifest manifest = read_manifest(folder);
-      for (const PlannedCase& one : manifest.cases)
-        source.cases.push_back({manifest.study, one.key, one.id, one.shard, manifest.shards});
-      for (int i = 1; i <= manifest.shards; ++i)
-        source.stores.emplace_back(shard_folder(folder, i));
-    } else if (Store::is_at(folder)) {
-      source.stores.emplace_back(folder);
-      source.cases = source.stores.front().planned();
-    } else {
-      throw InputError(folder.string() +
-                       ": neither a cluster folder (no 'manifest.jsonl' in it) nor results (no "
-                       "'results.db')");
-    }
-    std::ranges::sort(source.cases, {}, &PlannedKey::key);
+    if (!Store::is_at(folder)) throw InputError(folder.string() + ": has no 'results.db'");
+    source.stores.emplace_back(folder);
+    source.cases = source.stores.front().planned();
+    if (fs::is_directory(folder / "shards"))  // of `taut cluster submit`
+      for (const auto& shard : fs::directory_iterator(folder / "shards"))
+        source.stores.emplace_back(shard.path());
+    std::ranges::sort(source.stores, {}, &Store::root);
     sources_.push_back(std::move(source));
   }
 }

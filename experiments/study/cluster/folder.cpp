@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/io/document.hpp"
+#include "core/io/text_file.hpp"
+#include "core/model/index.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/study/campaign.hpp"
+#include "experiments/study/cluster/cluster.hpp"
+#include "experiments/study/database.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
+
+namespace taut::cluster {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A case of a few hundred vertices holds 15 MB.
+constexpr std::size_t kProgramBytes = std::size_t{64} << 20, kElementBytes = 2048;
+
+/// Wall time that a case may take (isolate.hpp) [s].
+double longest_case(const Limits& limits) { return 5 * limits.seconds; }
+
+double longest_shard(const std::vector<Case>& cases, int shards) {
+  std::vector<double> seconds(static_cast<std::size_t>(shards), 0);
+  for (const Case& one : cases)
+    seconds[static_cast<std::size_t>(Shard::of(one.key, shards)) - 1] +=
+        estimated_seconds(estimated_work(one));
+  return *std::ranges::max_element(seconds);
+}
+
+/// As few shards as each end within so many hours.
+int shards_for(Plan& plan, const std::vector<Case>& cases, double hours) {
+  if (!(3600 * hours - longest_case(plan.limits) - 60 > 0))
+    throw InputError("--hours " + shortest(hours) + ": a single case may take " +
+                     shortest(std::ceil(longest_case(plan.limits) / 60)) +
+                     " minutes (--timeout makes that less)");
+  const int most = std::min(kMostShards, static_cast<int>(cases.size()));
+  const auto fits = [&](int shards) {
+    plan.longest = longest_shard(cases, shards);
+    return shard_minutes(plan) <= 60 * hours;
+  };
+  int fewest = 1;
+  while (!fits(fewest) && fewest < most) fewest = std::min(most, fewest + 1 + fewest / 16);
+  if (!fits(fewest))
+    throw InputError("--hours " + shortest(hours) + ": " + std::to_string(most) +
+                     " shards, as many as there can be, take " +
+                     std::to_string(shard_minutes(plan)) + " minutes each");
+  return fewest;
+}
+
+void copy_mesh(const fs::path& scene, const std::vector<std::string>& overrides,
+               const fs::path& into) {
+  const Document document = read_document(scene, overrides);
+  const Value* cloth = document.root.find("cloth");
+  const Value* mesh = cloth && cloth->is_table() ? cloth->find("mesh") : nullptr;
+  if (!mesh || !mesh->is_string()) return;
+  const fs::path name(mesh->string);
+  if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
+    throw InputError({document.diagnostic(
+        mesh->place, "a mesh that goes to other machines lies in the scene's folder or below")});
+  make_folder((into / name).parent_path());
+  write_file(into / name, read_text(scene.parent_path() / name, kMostMeshBytes));
+}
+
+/// Who began a shard last, and when.
+std::pair<std::string, std::string> last_start(const Store& store) {
+  Database* database = store.reading();
+  if (!database) return {};
+  Database::Rows row =
+      database->rows("SELECT host, started FROM sessions ORDER BY started DESC LIMIT 1");
+  return row.next() ? std::pair(row.text(0), row.text(1)) : std::pair<std::string, std::string>();
+}
+
+std::string start_command(const std::vector<int>& shards, const fs::path& folder) {
+  const auto list = [&](const char* separator) {
+    return join(shards, separator, [](int shard) { return std::to_string(shard); });
+  };
+  const bool slurm = read_text(folder / "job.sh").find("#SBATCH") != std::string::npos;
+  return "cd " + shell_word(folder.string()) + " && " +
+         (slurm ? "sbatch --array=" + list(",") + " job.sh" : "./job.sh " + list(" "));
+}
+
+}  // namespace
+
+double estimated_seconds(double work) { return 0.1 + 1.5e-8 * work; }
+
+Plan plan(const Study& study, const std::vector<Case>& cases, const Limits& limits, int shards,
+          double hours) {
+  if (cases.empty()) throw InputError("this study has no case");
+  if (shards > static_cast<int>(cases.size()))
+    throw InputError("--shards " + std::to_string(shards) + ": the study has only " +
+                     std::to_string(cases.size()) + " cases");
+  Plan plan{study.name, study.preset, 1, limits, cases.size()};
+  plan.shards = shards > 0 ? shards : shards_for(plan, cases, hours);
+  plan.longest = longest_shard(cases, plan.shards);
+  for (const Case& one : cases)
+    plan.case_memory = std::max(plan.case_memory,
+                                kProgramBytes + kElementBytes * (to_index(one.scene->mesh.size()) +
+                                                                 one.scene->links.size()));
+  return plan;
+}
+
+void copy_scenes(const std::vector<Case>& cases, const fs::path& folder) {
+  std::set<std::string> seen;
+  for (const Case& one : cases) {
+    if (!seen.insert(one.spec.scene + '\n' + join(one.spec.overrides, "\n")).second) continue;
+    const fs::path name(one.spec.scene), file = find_scene(one.spec.scene);
+    if (file.parent_path() == data_folder() / "scenes" || !fs::exists(name)) continue;
+    if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
+      throw InputError(name.string() +
+                       ": a scene that goes to other machines lies in this folder or below");
+    make_folder((folder / name).parent_path());
+    write_file(folder / name, read_text(file));
+    copy_mesh(file, one.spec.overrides, (folder / name).parent_path());
+  }
+}
+
+fs::path shard_folder(const fs::path& folder, int shard) {
+  const std::string number = std::to_string(shard);
+  return folder / "shards" /
+         (std::string(4 - std::min<std::size_t>(4, number.size()), '0') + number);
+}
+
+Answer status_of(const fs::path& folder) {
+  std::map<int, std::map<std::string, std::string>> planned;  // ids by shard and key
+  if (Store::is_at(folder) && fs::is_directory(folder / "shards"))
+    for (const PlannedKey& one : Store(folder).planned()) planned[one.shard][one.key] = one.id;
+  if (planned.empty()) throw InputError(folder.string() + ": no folder of `taut cluster submit`");
+  Table shards{"shards", "", {{"shard"}, {"state"}, {"cases"}, {"done"}, {"host"}, {"started"}}},
+      failed{"failed", "failed", {{"shard"}, {"case"}, {"status"}}};
+  std::size_t cases = 0, done = 0;
+  std::vector<int> to_start, with_failures;
+  for (const auto& [shard, ids] : planned) {
+    const Store store(shard_folder(folder, shard));
+    std::size_t there = 0;
+    for (const Store::Entry& entry : store.entries()) {
+      const auto id = ids.find(entry.key);
+      if (id == ids.end()) continue;  // the merge says so
+      ++there;
+      if (!entry.is_result)
+        if (const auto record = store.find(entry.key))
+          failed.rows.push_back({shard, id->second, describe(record->status)});
+    }
+    const auto [host, started] = last_start(store);
+    const bool whole = there == ids.size();
+    shards.rows.push_back({shard,
+                           whole             ? "done"
+                           : started.empty() ? "waiting"
+                                             : "begun",
+                           ids.size(), there, host, started});
+    if (!whole) to_start.push_back(shard);
+    if (!failed.rows.empty() && failed.rows.back()[0] == Cell(shard))
+      with_failures.push_back(shard);
+    cases += ids.size(), done += there;
+  }
+  std::ranges::stable_sort(shards.rows, {},
+                           [](const std::vector<Cell>& row) { return row[1] == Cell("done"); });
+  shards.most = failed.most = 12;
+  shards.caption = to_start.empty() ? "" : "which of them run: squeue, or GNU parallel's terminal";
+  Answer answer{"cluster status", folder.string()};
+  answer.add({"cases"}, cases);
+  answer.add({"done"}, done);
+  if (!to_start.empty())
+    answer.add({"start", "start what is not done"}, start_command(to_start, folder));
+  if (!failed.rows.empty())
+    answer.add({"again", "failures again"},
+               "export ONLY=failed; " + start_command(with_failures, folder));
+  answer.add(std::move(shards));
+  answer.add(std::move(failed));
+  return answer;
+}
+
+}  // namespace taut::cluster
