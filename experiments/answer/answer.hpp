@@ -130,6 +130,10 @@ Answer answer_from_json(std::string_view text, const std::string& file);
 std::string to_csv(const Answer&, std::string_view table = "");
 /// A field of a CSV file; what a spreadsheet would take for a formula is marked as text.
 std::string csv_field(std::string_view text);
+/// Letters, digits, '-', '_' and '.' only, '-' and '.' not first, at most 129: safe as a file name
+/// and as an HTML id. A text of which something was replaced or cut off gets a digest: two texts
+/// never share one.
+std::string slug(std::string_view);
 
 /// A row that differs between two tables.
 struct Difference {

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/answer/answer.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -83,6 +85,25 @@ std::string to_csv(const Answer& answer, std::string_view name) {
   for (const Table& table : answer.tables) names.push_back(table.name);
   throw InputError("no table '" + std::string(name) + "' here" +
                    suggestion(std::string(name), names) + ": there are " + join(names, ", "));
+}
+
+std::string slug(std::string_view text) {
+  constexpr std::size_t kMost = 120;  // a file name has 255 bytes, with extensions and more
+  std::string out;
+  for (const char c : text) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '.' || c == '_';
+    if (plain && !(out.empty() && (c == '-' || c == '.')))
+      out += c;
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
+  }
+  out.resize(std::min(out.size(), kMost));
+  while (!out.empty() && (out.back() == '-' || out.back() == '.')) out.pop_back();
+  if (!out.empty() && out == text) return out;
+  // What was replaced or cut off still tells names apart.
+  return (out.empty() ? "x" : out) +
+         formatted("-%08zx", std::hash<std::string_view>{}(text)&0xFFFFFFFFU);
 }
 
 }  // namespace taut

@@ -22,13 +22,6 @@ constexpr double kNoiseBy = 0.65, kTrialsBy = 0.65, kCombinedBy = 0.75, kVerifie
                  kTimedBy = 0.97;
 constexpr int kTimingRounds = 4;
 
-/// "Bend links" as part of a file's name.
-std::string slug(std::string text) {
-  for (char& c : text)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '-';
-  return text;
-}
-
 class Search {
  public:
   Search(const RequireOptions& options, const Store& store, std::filesystem::path folder)

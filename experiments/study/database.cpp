@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "core/model/input_error.hpp"
+#include "experiments/answer/number.hpp"
 
 namespace taut {
 
@@ -64,6 +65,11 @@ void Database::fail(const SQLite::Exception& error) const {
 
 bool Database::Rows::next() {
   return of_.guarded([&] { return statement_.executeStep(); });
+}
+
+std::string Database::Rows::exact_text(int column) const {
+  const SQLite::Column value = statement_.getColumn(column);
+  return value.isFloat() ? exact(value.getDouble()) : value.getString();
 }
 
 SQLite::Statement& Database::prepared(const std::string& sql) {

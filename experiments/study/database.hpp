@@ -35,6 +35,8 @@ class Database {
     bool next();
     bool null(int column) const { return statement_.getColumn(column).isNull(); }
     std::string text(int column) const { return statement_.getColumn(column).getString(); }
+    /// To the bit, of a number; "": NULL.
+    std::string exact_text(int column) const;
     std::int64_t integer(int column) const { return statement_.getColumn(column).getInt64(); }
     double number(int column) const {  ///< NaN: NULL, or no finite number
       const double value = null(column) ? std::nan("") : statement_.getColumn(column).getDouble();

@@ -464,6 +464,14 @@ class Verbs(CommandLine):
         more = self.study(solvers=["jakobsen:iterations=2", "xpbd", "bullet"], rest='axes.time.dt = ["1/64", "1/32"]\n')
         missing = self.taut("export", more, expect=3)
         self.assertEqual(missing.out.count(",not run,"), 2)
+        tidy = list(csv.DictReader(self.taut("export", study, "--tidy").out.splitlines()))
+        series = list(csv.DictReader(self.taut("export", study, "--series").out.splitlines()))
+        for row in rows:
+            one, = [t for t in tidy if t["key"] == row["key"] and t["metric"] == "stretch.rms"]
+            self.assertEqual((one["value"], one["unit"], one["status"]), (row["stretch.rms"], "1", "ok"))
+            steps = [s for s in series if s["key"] == row["key"] and s["metric"] == "stretch.rms"]
+            self.assertEqual(len(steps), int(row["steps"]) + 1)
+            self.assertEqual(sorted(float(s["t"]) for s in steps)[-1], float(row["dt"]) * int(row["steps"]))
 
     def test_no_cell_of_a_table_is_a_formula(self):
         (self.folder / "=1+1.toml").write_text((self.folder / "small.toml").read_text())

@@ -124,8 +124,8 @@ Table commands(const std::vector<ParameterFrontier>& found) {
 /// Compares with what the baseline has of this solver, or puts this answer in its place.
 int check_or_update(const Options& options, const std::string& solver, const Answer& now) {
   constexpr double kBracket = 0.02;  // twice the width of a bracket
-  const auto file = std::filesystem::path(options.baselines) / kFrontiersFolder /
-                    (report::slug(solver) + ".json");
+  const auto file =
+      std::filesystem::path(options.baselines) / kFrontiersFolder / (slug(solver) + ".json");
   if (options.update) {
     make_folder(file.parent_path());
     write_durably(file, to_json(now));
@@ -176,8 +176,8 @@ int run_all(const Options& options) {
   answer.subject = join(solvers, " ");
   answer.add(commands(found));
   try {
-    std::string stem = report::slug(solvers[0]);
-    if (solvers.size() == 2) stem += "-and-" + report::slug(solvers[1]);
+    std::string stem = slug(solvers[0]);
+    if (solvers.size() == 2) stem += "-and-" + slug(solvers[1]);
     const auto picture =
         report::plot_frontiers(found, std::filesystem::path(options.out) / kFrontiersFolder, stem);
     answer.add({"picture"}, picture.string());

@@ -1,12 +1,8 @@
-#include <map>
-#include <set>
-
 #include "core/model/text.hpp"
+#include "experiments/answer/answer.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/metrics/metric.hpp"
-#include "experiments/report/chart/format.hpp"
-#include "experiments/report/chart/wording.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/study/database.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/study_bench.hpp"
 
@@ -14,151 +10,137 @@ namespace taut::verb::exporting {
 
 namespace {
 
+using Cells = std::vector<std::string>;
+
 struct Options {
   std::string study, preset, results, output;
-  bool json = false;
+  bool tidy = false, series = false;
 };
 
-/// Numbers as they are, text safe for a spreadsheet.
-std::string cell(const std::string& text) {
-  return whole<double>(text) ? text : report::csv_field(text);
+/// A line of CSV: numbers as they are, texts safe for a spreadsheet.
+std::string line(const Cells& cells) {
+  const auto field = [](const std::string& s) { return whole<double>(s) ? s : csv_field(s); };
+  return join(cells, ",", field) + "\n";
 }
 
-/// The value that a case has of a scene key, as typed in the study: the last assignment holds.
-std::string axis_value(const CaseSpec& spec, const std::string& key) {
-  std::string value;
-  for (const std::string& text : spec.overrides)
-    if (text.starts_with(key + "=")) value = text.substr(key.size() + 1);
-  if (value.size() > 1 && value.front() == '"' && value.back() == '"')
-    value = value.substr(1, value.size() - 2);
-  return value;
+/// A text of SQL.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? "''" : std::string(1, c);
+  return out + "'";
 }
 
-/// What `taut bench STUDY` measured on one host, on this one if it did so here.
-struct Costs {
-  std::string host;
-  std::map<std::string, BenchedCase> of;  ///< by the key of the case
-};
-
-Costs stored_costs(const Store& store, const Study& study) {
-  Costs costs;
-  std::vector<StudyBench> benches = stored_benches(store, study.name);
-  if (benches.empty()) return costs;
-  StudyBench& session = benches.front();
-  costs.host = session.host;
-  for (SceneBench& scene : session.scenes)
-    for (BenchedCase& c : scene.cases)
-      if (c.timing.failure.empty()) costs.of[c.record.key] = std::move(c);
-  return costs;
-}
-
-/// One line a case; the names of the columns are the first.
-class TidyTable {
+/// The results file with a table `asked` of the study's cases, as this build would run them, and
+/// `timed` of what they cost here or, if nothing was timed here, on another host.
+class Asked {
  public:
-  TidyTable(const StudyRecords& known, Costs costs) : costs_(std::move(costs)) {
-    std::set<std::string> params;
-    for (const Case& one : known.cases)
-      for (const ParamSpec& spec : one.choice.entry->params) params.insert(std::string(spec.name));
-    params_.assign(params.begin(), params.end());
-    for (const StudyAxis& axis : known.study.axes)
-      if (axis.of_scene()) axes_.push_back(axis.name);
-    values_ = value_names();
-    for (const Record& record : known.records) records_[record.key] = &record;
+  Asked(const Study& study, const Store& store) : database_(*store.reading()) {
+    database_.script(
+        "CREATE TEMP TABLE asked (place INTEGER PRIMARY KEY, key, id, scene, solver);"
+        "CREATE TEMP TABLE timed (key PRIMARY KEY, 'cpu.host', 'cpu.per_second', "
+        "'cpu.per_second.low', 'cpu.per_second.high', 'memory.peak')");
+    each_case(study, [&](Case&& one) {
+      database_.run("INSERT INTO asked (key, id, scene, solver) VALUES (?, ?, ?, ?)", one.key,
+                    one.id, one.scene->name, std::string(one.choice.entry->name));
+    });
+    const std::vector<StudyBench> benches = stored_benches(store, study.name);
+    if (benches.empty()) return;
+    for (const SceneBench& scene : benches.front().scenes)
+      for (const BenchedCase& c : scene.cases)
+        if (const Interval cost = c.cost(); c.timing.failure.empty())
+          database_.run("INSERT INTO timed VALUES (?, ?, ?, ?, ?, ?)", c.record.key,
+                        benches.front().host, cost.mid, cost.low, cost.high, c.timing.peak_bytes);
+  }
+  std::int64_t count(const std::string& of) { return database_.number_of("SELECT count(*) " + of); }
+
+  /// A row a case: what it was asked for, how it ended, every value, what it cost.
+  std::string wide() {
+    Cells names{"scene", "solver"}, columns{"asked.scene", "asked.solver"};
+    const auto add = [&](const std::string& name, const std::string& column) {
+      names.push_back(name), columns.push_back(column);
+    };
+    for (const std::string& name : list("SELECT DISTINCT value.key FROM asked JOIN cases USING "
+                                        "(key), json_each(parameters) AS value ORDER BY 1"))
+      add(name, "parameters ->> " + quoted("$.\"" + name + "\""));
+    for (const std::string& name :
+         list("SELECT DISTINCT substr(value, 1, instr(value, '=') - 1) FROM asked JOIN cases USING "
+              "(key), json_each(settings) ORDER BY 1"))
+      add(name,
+          "(SELECT trim(substr(value, instr(value, '=') + 1), '\"') FROM json_each(settings) "
+          "WHERE substr(value, 1, instr(value, '=')) = " +
+              quoted(name + "=") + " ORDER BY json_each.key DESC LIMIT 1)");
+    for (const char* name : {"dt", "steps", "vertices", "links"}) add(name, name);
+    add("status", "coalesce(status, 'not run')"), add("reason", "reason"), add("step", "step");
+    Database::Rows metric = database_.rows("SELECT name, metric_id FROM metrics ORDER BY name");
+    while (metric.next())
+      add(metric.text(0),
+          "(SELECT value FROM numbers WHERE case_id = cases.case_id AND metric_id = " +
+              metric.text(1) + ")");
+    if (count("FROM timed") > 0)
+      for (const std::string name : {"cpu.host", "cpu.per_second", "cpu.per_second.low",
+                                     "cpu.per_second.high", "memory.peak"})
+        add(name, "timed.\"" + name + "\"");
+    add("case", "asked.id"), add("key", "asked.key");
+    return all("SELECT " + join(columns, ", ") +
+                   " FROM asked LEFT JOIN cases USING (key) LEFT JOIN timed USING (key) "
+                   "ORDER BY place",
+               names);
   }
 
-  std::string csv(const std::vector<Case>& cases) const {
-    std::string out = line(head());
-    for (const Case& one : cases) out += line(row(one));
-    return out;
+  /// A row for each value of each case.
+  std::string tidy() {
+    return all(
+        "SELECT asked.scene, asked.solver, asked.id, metrics.name, value, metrics.unit, "
+        "coalesce(status, 'not run'), asked.key FROM asked CROSS JOIN metrics LEFT JOIN cases "
+        "USING (key) LEFT JOIN numbers USING (case_id, metric_id) ORDER BY place, metric_id",
+        {"scene", "solver", "case", "metric", "value", "unit", "status", "key"});
   }
-  /// A list of objects; a cell without a value is left out.
-  Json json(const std::vector<Case>& cases) const {
-    Json all = Json::array();
-    const Cells names = head();
-    for (const Case& one : cases) {
-      const Cells cells = row(one);
-      Json& object = all.emplace_back(Json::object());
-      for (std::size_t i = 0; i < cells.size(); ++i)
-        if (const auto number = whole<double>(cells[i]); number && names[i] != "key")
-          object[names[i]] = *number;
-        else if (!cells[i].empty())
-          object[names[i]] = cells[i];
-    }
-    return all;
+
+  /// A row for each value over time of each case.
+  std::string series() {
+    return all(
+        "SELECT asked.scene, asked.solver, asked.id, json_extract(columns, '$.t[' || point.key || "
+        "']'), line.key, point.value, asked.key FROM asked JOIN cases USING (key) JOIN series "
+        "USING (case_id), json_each(columns) AS line, json_each(line.value) AS point "
+        "WHERE line.key NOT IN ('step', 't') ORDER BY place, line.key, point.key",
+        {"scene", "solver", "case", "t", "metric", "value", "key"});
   }
 
  private:
-  using Cells = std::vector<std::string>;
-  Cells head() const {
-    Cells head{"scene", "solver"};
-    append(head, params_), append(head, axes_);
-    append(head, {"dt", "steps", "vertices", "links", "status", "reason", "step"});
-    append(head, values_);
-    if (!costs_.of.empty())
-      append(head, {"cpu.host", "cpu.per_second", "cpu.per_second.low", "cpu.per_second.high",
-                    "memory.peak"});
-    append(head, {"case", "key"});
-    return head;
+  Cells list(const std::string& sql) {
+    Cells all;
+    Database::Rows row = database_.rows(sql);
+    while (row.next()) all.push_back(row.text(0));
+    return all;
   }
-  static void append(Cells& row, const Cells& more) {
-    row.insert(row.end(), more.begin(), more.end());
-  }
-  static std::string line(const Cells& cells) { return join(cells, ",", cell) + "\n"; }
-
-  Cells row(const Case& one) const {
-    const auto at = records_.find(one.key);
-    const Record* record = at == records_.end() ? nullptr : at->second;
-    const auto specs = one.choice.params.specs();
-    Cells cells{one.scene->name, std::string(one.choice.entry->name)};
-    for (const std::string& name : params_) {
-      const bool has = std::ranges::find(specs, name, &ParamSpec::name) != specs.end();
-      cells.push_back(has ? std::string(one.choice.params.value(name)) : "");
-    }
-    for (const std::string& name : axes_) cells.push_back(axis_value(one.spec, name));
-    const Status status = record ? record->status : Status{};
-    append(cells, {report::exact(one.scene->dt), std::to_string(one.scene->steps),
-                   std::to_string(one.scene->mesh.size()), std::to_string(one.scene->links.size()),
-                   record ? std::string(to_string(status.kind)) : "not run", status.reason,
-                   status.step < 0 ? "" : std::to_string(status.step)});
-    for (const std::string& name : values_) {
-      const bool has = record && record->values.contains(name);
-      cells.push_back(has ? report::exact(record->values.at(name)) : "");
-    }
-    const auto cost = costs_.of.find(one.key);
-    if (cost != costs_.of.end()) {
-      const Interval cpu = cost->second.cost();
-      append(cells, {costs_.host, report::exact(cpu.mid), report::exact(cpu.low),
-                     report::exact(cpu.high), std::to_string(cost->second.timing.peak_bytes)});
-    } else if (!costs_.of.empty()) {
-      cells.resize(cells.size() + 5);
-    }
-    append(cells, {one.id, one.key});
-    return cells;
+  std::string all(const std::string& sql, const Cells& names) {
+    std::string text = line(names);
+    Database::Rows row = database_.rows(sql);
+    for (Cells cells(names.size()); row.next(); text += line(cells))
+      for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = row.exact_text(static_cast<int>(i));
+    return text;
   }
 
-  Costs costs_;
-  std::map<std::string, const Record*> records_;
-  std::vector<std::string> params_, axes_, values_;
+  Database& database_;
 };
 
 int run(const Options& options) {
   const Study study = load_study(options.study, options.preset);
   const Store store(options.results);
-  const StudyRecords known = collect(study, store);
-  if (known.records.empty())
-    throw InputError("none of the " + std::to_string(known.cases.size()) + " cases of study '" +
-                     study.name + "' is in " + options.results +
-                     " as this build would run them; taut run makes them");
-  const TidyTable table(known, stored_costs(store, study));
-  const std::string text =
-      options.json ? to_text(table.json(known.cases), 1) + "\n" : table.csv(known.cases);
-  if (options.output.empty()) {
+  std::optional<Asked> asked;
+  if (store.reading()) asked.emplace(study, store);
+  if (!asked || asked->count("FROM asked JOIN cases USING (key)") == 0)
+    throw InputError("no case of study '" + study.name + "' is in " + options.results +
+                     " as this build would run it; taut run makes them");
+  const std::string text = options.series ? asked->series()
+                           : options.tidy ? asked->tidy()
+                                          : asked->wide();
+  if (options.output.empty())
     std::cout << text;
-  } else {
-    write_durably(options.output, text);
-    std::cout << options.output << '\n';
-  }
-  const std::size_t missing = known.cases.size() - known.records.size();
+  else
+    write_durably(options.output, text), std::cout << options.output << '\n';
+  const std::int64_t missing =
+      asked->count("FROM asked LEFT JOIN cases USING (key) WHERE case_id IS NULL");
   if (missing > 0) progress() << missing << " cases were not run\n";
   return missing > 0 ? kIncomplete : kPass;
 }
@@ -166,8 +148,10 @@ int run(const Options& options) {
 void add_options(CLI::App& app, Options& options) {
   app.add_option("STUDY", options.study, "Name or path of a study that was run")->required();
   add_stored(app, options.preset, options.results);
+  auto* tidy = app.add_flag("--tidy", options.tidy, "A row for each value of each case");
+  app.add_flag("--series", options.series, "A row for each value over time of each case")
+      ->excludes(tidy);
   add_output(app, options.output, "File (default: standard output)");
-  add_json(app, options.json, "The same rows");
 }
 
 }  // namespace
@@ -176,15 +160,12 @@ void add_options(CLI::App& app, Options& options) {
 TAUT_VERB(export) = {
     .name = "export",
     .group = VerbGroup::studies,
-    .summary = "Writes a study as a tidy CSV: a row a case, SI units, costs",
+    .summary = "Writes a study as CSV: a row a case, a value or a moment; SI units, costs",
     .example = R"(taut export iterations --preset quick -o x.csv
+  taut export iterations --series -o motion.csv
 Python:
   import pandas
   cases = pandas.read_csv("x.csv").query("status == 'ok'")
   print(cases.pivot_table("stretch.rms", ["scene", "iterations"], "solver"))
-R:
-  cases <- read.csv("x.csv", check.names = FALSE)
-  ok <- subset(cases, status == "ok")
-  print(aggregate(ok["stretch.rms"], ok[c("scene", "solver", "iterations")], mean))
 Exit: 0 every case is there; 3 some were not run (their status says so))",
     .bind = taut::bind_verb<taut::verb::exporting::add_options, taut::verb::exporting::run>};

@@ -96,8 +96,8 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
   spec.title += ", " + scene + held;
   if (const std::string unequal = report::unequal_work(records); !unequal.empty())
     spec.title += "; unequal work: " + unequal;
-  spec.file = report::slug(
-      scene + "-" + (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
+  spec.file = slug(scene + "-" +
+                   (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
   return report::make_plot(spec, records, series, out);
 }
 

@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <utility>
-
-#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -54,25 +51,6 @@ std::string base64(std::string_view bytes) {
                   reinterpret_cast<const unsigned char*>(bytes.data()),
                   static_cast<int>(bytes.size()));
   return out;
-}
-
-std::string slug(std::string_view text) {
-  constexpr std::size_t kMost = 120;  // a file name has 255 bytes, with extensions and more
-  std::string out;
-  for (const char c : text) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '.' || c == '_';
-    if (plain && !(out.empty() && (c == '-' || c == '.')))
-      out += c;
-    else if (!out.empty() && out.back() != '-')
-      out += '-';
-  }
-  out.resize(std::min(out.size(), kMost));
-  while (!out.empty() && (out.back() == '-' || out.back() == '.')) out.pop_back();
-  if (!out.empty() && out == text) return out;
-  // What was replaced or cut off still tells names apart.
-  return (out.empty() ? "x" : out) +
-         formatted("-%08zx", std::hash<std::string_view>{}(text)&0xFFFFFFFFU);
 }
 
 }  // namespace taut::report

@@ -17,8 +17,6 @@
 
 namespace taut::report {
 
-using taut::exact;
-
 /// Plain text with the signs that a keyboard lacks: "dt^2 >= 2e-5, mu x 2" ->
 /// "dt² ≥ 2×10⁻⁵, μ × 2".
 std::string typeset(std::string_view);
