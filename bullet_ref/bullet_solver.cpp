@@ -203,8 +203,12 @@ void require_program(const std::string& solver, const Params& params) {
 }
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
-  if (static_cast<btScalar>(substep_length(scene, params)) > SIMD_EPSILON) return {};
-  return {"stepSimulation ignores a substep this short"};
+  std::vector<std::string> reasons;
+  if (static_cast<btScalar>(substep_length(scene, params)) <= SIMD_EPSILON)
+    reasons.emplace_back("stepSimulation ignores a substep this short");
+  if (scene.bending)
+    reasons.emplace_back("bending: Bullet's cloth has links alone, and no bending stiffness");
+  return reasons;
 }
 
 ResolvedSettings library_settings(const Scene& scene, const Params& params) {

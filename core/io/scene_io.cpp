@@ -8,6 +8,7 @@
 #include "core/io/scene_readers.hpp"
 #include "core/model/angle.hpp"
 #include "core/model/crossings.hpp"
+#include "core/model/index.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -181,6 +182,25 @@ LinkChoice read_links(Section& links, Scene& scene) {
   return choice;
 }
 
+/// One stiffness [N m], or those of warp and weft; the warp's direction is a grid's v unless given.
+Bending read_bending(Section& section) {
+  Bending bending;
+  section.need({"stiffness"});
+  const Range range{1e-12, 1e6};
+  const Value* value = section.find("stiffness");
+  if (value && value->is_table()) {
+    Section both(section.diagnostics(), *value, "'stiffness' in [bending]");
+    both.need({"warp", "weft"});
+    bending.warp = both.number("warp", range, 1), bending.weft = both.number("weft", range, 1);
+    both.finish();
+  } else {
+    bending.warp = bending.weft = section.number("stiffness", range, 1);
+  }
+  bending.direction = section.direction("warp", Vec3::Zero());
+  section.finish();
+  return bending;
+}
+
 void read_forces(Section& forces, Scene& scene) {
   scene.gravity = forces.vec3("gravity", 1e6, Vec3(0, -9.81, 0));
   scene.damping = forces.number("damping", Range::non_negative(1e6), 0);
@@ -225,6 +245,16 @@ void read_time(Section& time, Scene& scene) {
 
 constexpr double kShortestLink = 1e-9;  ///< m
 
+/// The warp's direction where the scene leaves it open: along v of a grid; any where it makes no
+/// difference.
+void complete(Bending& bending, const Mesh& mesh) {
+  if (!bending.direction.isZero(0)) return;
+  if (mesh.grid && mesh.grid->nv > 1)
+    bending.direction = (mesh.rest[to_index(mesh.grid->nu)] - mesh.rest[0]).normalized();
+  else if (bending.warp == bending.weft)
+    bending.direction = -Vec3::UnitY();
+}
+
 /// What no single key is to blame for.
 void check_whole(Section& root, Diagnostics& diagnostics, const Scene& scene) {
   for (const Link& link : scene.links)
@@ -234,6 +264,12 @@ void check_whole(Section& root, Diagnostics& diagnostics, const Scene& scene) {
                                                   " coincide: their link has no length");
       break;
     }
+  if (scene.bending && scene.mesh.triangles.empty())
+    diagnostics.report(root.place("bending"), "[bending] acts on faces, and this cloth has none");
+  if (scene.bending && scene.bending->direction.isZero(0))
+    diagnostics.report(root.place("bending"),
+                       "'warp' in [bending] is missing: where warp and weft differ, a mesh needs "
+                       "the direction of its warp");
   if (scene.wind && scene.mesh.triangles.empty())
     diagnostics.report(root.place("wind"), "[wind] acts on faces, and this cloth has none");
 }
@@ -348,6 +384,10 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   if (root.table("cloth")) cloth.finish();
   Section forces(diagnostics, part(root, "forces"), "[forces]");
   read_forces(forces, scene);
+  if (const Value* table = root.table("bending")) {
+    Section bending(diagnostics, *table, "[bending]");
+    scene.bending = read_bending(bending);
+  }
   if (const Value* table = root.table("wind")) {
     Section wind(diagnostics, *table, "[wind]");
     scene.wind = read_wind(wind);
@@ -361,6 +401,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   Section time(diagnostics, part(root, "time"), "[time]");
   read_time(time, scene);
   root.finish();
+  if (built && scene.bending) complete(*scene.bending, scene.mesh);
   if (built) check_whole(root, diagnostics, scene);
   if (built && diagnostics.clean()) check_contact(root, rules, scene);
   diagnostics.throw_if_any();

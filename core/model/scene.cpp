@@ -46,6 +46,7 @@ class Bytes {
     std::visit([&](const auto& shape) { add(shape); }, c.shape);
     add(c.motion), add(c.friction);
   }
+  void add(const Bending& b) { add(b.warp), add(b.weft), add(b.direction); }
   void add(const Wind& w) { add(w.velocity), add(w.strength), add(w.law); }
   void add(const SelfCollision& s) { add(s.radius); }
   void add(const Mesh& m) {
@@ -107,14 +108,15 @@ Vec3 pin_position(const Scene& scene, int vertex, double t) {
 
 std::string content(const Scene& scene) {
   // Every member is named here: a new one does not compile until it has an answer.
-  const auto& [name, summary, mesh, start, pins, pin_motions, links, stiffness, colliders, wind,
-               self_collision, gravity, damping, thickness, dt, steps] = scene;
+  const auto& [name, summary, mesh, start, pins, pin_motions, links, stiffness, bending, colliders,
+               wind, self_collision, gravity, damping, thickness, dt, steps] = scene;
   Bytes bytes;
   bytes.add(mesh), bytes.add(start), bytes.add(pins), bytes.add(pin_motions), bytes.add(links);
   bytes.add(colliders), bytes.add(wind), bytes.add(self_collision);
   bytes.add(gravity), bytes.add(damping), bytes.add(thickness), bytes.add(dt), bytes.add(steps);
   if (stiffness != kRigid)  // a scene without has the bytes that it had before there was any
     for (const double k : stiffness) bytes.add(k);
+  if (bending) bytes.add(bending);
   return bytes.take();
 }
 

@@ -35,6 +35,13 @@ struct SelfCollision {
   double radius = 0;  ///< m
 };
 
+/// The cloth resists bending out of its plane (core/model/bending.hpp).
+struct Bending {
+  double warp = 0;                  ///< N m, > 0: of a strip along the warp
+  double weft = 0;                  ///< N m, > 0: of a strip across it
+  Vec3 direction = -Vec3::UnitY();  ///< unit: of the warp, over the rest shape
+};
+
 /// Pins that move together along a prescribed motion.
 struct PinMotion {
   std::vector<int> vertices;  ///< each of them in Scene::pins
@@ -58,6 +65,7 @@ struct Scene {
   std::vector<Link> links;             ///< Gauss-Seidel order, families contiguous
   /// Of the links of each family [N/m], > 0; infinite: rigid.
   std::array<double, kFamilies.size()> stiffness = kRigid;
+  std::optional<Bending> bending;
   std::vector<Collider> colliders;
   std::optional<Wind> wind;
   std::optional<SelfCollision> self_collision;

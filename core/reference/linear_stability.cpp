@@ -6,6 +6,7 @@
 #include <complex>
 #include <vector>
 
+#include "core/model/bending.hpp"
 #include "core/model/index.hpp"
 #include "core/reference/dense.hpp"
 
@@ -58,10 +59,15 @@ double largest_eigenvalue(Eigen::Index n, const Apply& apply) {
   return reference::tridiagonal_eigenvalues(diagonal.head(size), off.head(size - 1))[size - 1];
 }
 
+struct Elastic {
+  std::vector<Bar> springs;
+  std::vector<BendingElement> bending;
+};
+
 /// Largest eigenvalue of M^-1/2 (stiff K + damped C) M^-1/2, C = drag times unity on free
 /// particles.
-double spring_eigenvalue(const std::vector<Bar>& springs, const std::vector<double>& w,
-                         double stiff, double damped) {
+double spring_eigenvalue(const Elastic& parts, const std::vector<double>& w, double stiff,
+                         double damped) {
   const auto n = static_cast<Eigen::Index>(3 * w.size());
   return largest_eigenvalue(n, [&](const Eigen::VectorXd& x) {
     Eigen::VectorXd y(n);
@@ -69,11 +75,18 @@ double spring_eigenvalue(const std::vector<Bar>& springs, const std::vector<doub
       const auto k = static_cast<Eigen::Index>(3 * i);
       y.segment<3>(k) = damped * w[i] * x.segment<3>(k);
     }
-    for (const Bar& s : springs) {
+    for (const Bar& s : parts.springs) {
       const double ra = std::sqrt(w[to_index(s.a)]), rb = std::sqrt(w[to_index(s.b)]);
       const double stretch = s.along.dot(rb * x.segment<3>(3 * s.b) - ra * x.segment<3>(3 * s.a));
       y.segment<3>(3 * s.b) += stiff * s.stiffness * stretch * rb * s.along;
       y.segment<3>(3 * s.a) -= stiff * s.stiffness * stretch * ra * s.along;
+    }
+    for (const BendingElement& e : parts.bending) {
+      const Vec3 pull = stiff * e.stiffness * e.value([&](std::size_t v) {
+        return Vec3(std::sqrt(w[v]) * x.segment<3>(3 * static_cast<Eigen::Index>(v)));
+      });
+      for (std::size_t i = 0; i < e.size; ++i)
+        y.segment<3>(3 * e.vertex[i]) += std::sqrt(w[to_index(e.vertex[i])]) * e.weight[i] * pull;
     }
     return y;
   });
@@ -83,8 +96,7 @@ double spring_eigenvalue(const std::vector<Bar>& springs, const std::vector<doub
 /// of a complex pair |z|^2 = 1 - y h + w^2 h^2. Empty with unequal masses, whose modes drag
 /// couples.
 std::optional<LinearStability> dragged_explicit_euler(const std::vector<double>& w,
-                                                      const std::vector<Bar>& all, double h,
-                                                      double drag) {
+                                                      const Elastic& all, double h, double drag) {
   double inverse_mass = 0;
   for (const double one : w) {
     if (one == 0) continue;
@@ -105,8 +117,8 @@ std::optional<LinearStability> stability(const Scene& scene, const LinearSprings
   const std::vector<double> w = inverse_masses(scene);
   const double h = scene.dt / model.substeps, drag = model.drag;
   const double q = std::exp(-scene.damping * h);
-  const std::vector<Bar> all = bars(scene, w, model.stiffness);
-  if (all.empty()) return {};
+  const Elastic all{bars(scene, w, model.stiffness), make_bending(scene)};
+  if (all.springs.empty() && all.bending.empty()) return {};
   if (model.explicit_euler) {
     if (scene.damping > 0) return {};
     if (drag > 0) return dragged_explicit_euler(w, all, h, drag);
@@ -162,7 +174,7 @@ double growth(const Eigen::MatrixXd& g, int k, double q) {
 std::optional<LinearStability> stability(const Scene& scene, const LinearSweeps& model) {
   const std::vector<double> w = inverse_masses(scene);
   const std::vector<Bar> links = bars(scene, w, {1, 1, 1});
-  if (links.empty() || links.size() > kMostLinks) return {};
+  if (links.empty() || links.size() > kMostLinks || scene.bending) return {};
   const double q = std::exp(-scene.damping * scene.dt / model.substeps);
   const double fastest = growth(sweep(links, w, model.omega, model.jacobi), model.sweeps, q);
   return LinearStability{fastest, fastest,

@@ -19,8 +19,9 @@ struct LinearStability {
 
 /// Empty where no theory is known: the solver says what it does (SolverEntry::linear_model).
 ///
-/// LinearSprings, Verlet and symplectic Euler. With the stiffness K, masses M, drag C, h the
-/// substep, q = exp(-damping h), a mode turns unstable when its multiplier reaches -1:
+/// LinearSprings, Verlet and symplectic Euler. With the stiffness K of springs and bending, masses
+/// M, drag C, h the substep, q = exp(-damping h), a mode turns unstable when its multiplier reaches
+/// -1:
 ///     lagged drag    h^2 K + 2 h C          against 2 (1 + q) M
 ///     central drag   h^2 K - (1 - q) h C    against 2 (1 + q) M
 /// For one mass: h < (2/w)(sqrt(1 + zeta^2) - zeta), and 2/w without drag. `margin` is the largest

@@ -167,6 +167,7 @@ std::vector<std::string> refuse_dynamic(const Scene& scene) {
   };
   refuse(!scene.colliders.empty(), "contact: impacts have no unique limit");
   refuse(scene.self_collision.has_value(), "self-collision: impacts have no unique limit");
+  refuse(scene.bending.has_value(), "bending: rods have none");
   refuse(std::any_of(scene.links.begin(), scene.links.end(),
                      [](const Link& l) { return l.family != Family::structural; }),
          "rigid shear or bending links lock: J M^-1 J^T is singular in the plane");

@@ -41,7 +41,7 @@ class AdmmPass final : public Pass<double> {
       : rigid_(is_rigid(s.scene, s.params)),
         keep_(s.params.is("multipliers", "keep")),
         ratio_(s.params.real("penalty-ratio")),
-        system_(weights(s), s.w, s.scene.dt / s.params.integer("substeps")),
+        system_(weights(s), make_bending(s.scene), s.w, s.scene.dt / s.params.integer("substeps")),
         u_(system_.springs().size(), Vec3::Zero()),
         wanted_(u_.size()) {}
 
@@ -89,7 +89,8 @@ class AdmmPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
-  return {.layout = Layout::packed(s.w.size()), .pass = std::make_unique<AdmmPass>(s)};
+  return {
+      .layout = Layout::packed(s.w.size()), .pass = std::make_unique<AdmmPass>(s), .bends = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
@@ -103,7 +104,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
        "all at once by a sparse LLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};
   if (!scene.colliders.empty()) own.emplace_back("order of passes", kLaggedContact);
-  return loop::resolved_settings(scene, params, own);
+  return loop::resolved_settings(scene, params, own, "constant terms of the factored system");
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"penalty", "30|100|300"},

@@ -32,7 +32,7 @@ class AugmentedPass final : public Pass<double> {
  public:
   explicit AugmentedPass(const loop::Setup& s)
       : springs_(make_springs(s.scene, s.w, {1, 1, 1})),
-        blocks_(springs_, s.w, s.params.is("order", "coloured"), s.pool),
+        blocks_(springs_, make_bending(s.scene), s.w, s.params.is("order", "coloured"), s.pool),
         start_(s.scene, s.params.is("start", "adaptive")),
         alpha_(s.params.real("alpha")),
         beta_(s.params.real("beta")),
@@ -74,6 +74,7 @@ class AugmentedPass final : public Pass<double> {
         hessian.diagonal().array() +=
             std::abs(pull) / length * (1 - u.array().square()).max(0.0).sqrt();
       });
+      blocks_.add_bending(p, i, force, hessian);
       return Vec3(x + solve_symmetric(hessian, force));
     });
     for (std::size_t j = 0; j < links_.size(); ++j) {
@@ -109,7 +110,9 @@ class AugmentedPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
-  return {.layout = Layout::packed(s.w.size()), .pass = std::make_unique<AugmentedPass>(s)};
+  return {.layout = Layout::packed(s.w.size()),
+          .pass = std::make_unique<AugmentedPass>(s),
+          .bends = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
@@ -126,7 +129,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params,
                                  {{"links", "rigid"},
                                   {"vertex order", std::string(params.choice("order"))},
-                                  {"work unit", "vertices, not projections"}});
+                                  {"work unit", "vertices, not projections"}},
+                                 "in each vertex' force and Hessian");
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"beta", "10|100|1000"},

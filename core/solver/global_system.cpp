@@ -9,8 +9,12 @@ struct GlobalSystem::Factor {
   Eigen::Matrix<double, Eigen::Dynamic, 3> fixed;  ///< M/h^2 y + k x_pin, of this substep
 };
 
-GlobalSystem::GlobalSystem(std::vector<Spring> springs, std::span<const double> w, double h)
-    : springs_(std::move(springs)), row_(w.size(), -1), factor_(std::make_unique<Factor>()) {
+GlobalSystem::GlobalSystem(std::vector<Spring> springs, std::vector<BendingElement> bending,
+                           std::span<const double> w, double h)
+    : springs_(std::move(springs)),
+      bending_(std::move(bending)),
+      row_(w.size(), -1),
+      factor_(std::make_unique<Factor>()) {
   for (std::size_t i = 0; i < w.size(); ++i)
     if (w[i] > 0) row_[i] = static_cast<int>(mass_.size()), mass_.push_back(1 / w[i]);
   factor(h);
@@ -29,6 +33,13 @@ void GlobalSystem::factor(double h) {
     if (row_[a] >= 0 && row_[b] >= 0)
       entries.emplace_back(std::max(row_[a], row_[b]), std::min(row_[a], row_[b]), -k);
   }
+  for (const BendingElement& e : bending_)
+    for (std::size_t i = 0; i < e.size; ++i)
+      for (std::size_t j = 0; j < e.size; ++j) {
+        const int row = row_[to_index(e.vertex[i])], column = row_[to_index(e.vertex[j])];
+        if (row >= column && column >= 0)
+          entries.emplace_back(row, column, e.stiffness * e.weight[i] * e.weight[j]);
+      }
   const auto n = static_cast<Eigen::Index>(mass_.size());
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -45,6 +56,13 @@ void GlobalSystem::begin(const Particles<double>& p, double h) {
     if (row_[a] < 0) fixed.row(row_[b]) += k * p.x[a];
     if (row_[b] < 0) fixed.row(row_[a]) += k * p.x[b];
   }
+  for (const BendingElement& e : bending_)
+    for (std::size_t j = 0; j < e.size; ++j) {
+      if (row_[to_index(e.vertex[j])] >= 0) continue;
+      const Vec3 pull = -e.stiffness * e.weight[j] * p.x[to_index(e.vertex[j])];
+      for (std::size_t i = 0; i < e.size; ++i)
+        if (const int r = row_[to_index(e.vertex[i])]; r >= 0) fixed.row(r) += e.weight[i] * pull;
+    }
 }
 
 void GlobalSystem::solve(std::span<const Vec3> q, Particles<double>& p) {
@@ -72,7 +90,8 @@ std::vector<PassCost> GlobalSystem::cost(std::string_view local, std::size_t byt
           {.pass = "global system, entries of its factor",
            .items = factor_entries(),
            .bytes = factor_entries() * (sizeof(double) + sizeof(int)) +
-                    mass_.size() * (7 * sizeof(double) + 3 * sizeof(int))}};
+                    mass_.size() * (7 * sizeof(double) + 3 * sizeof(int)) +
+                    bending_.size() * sizeof(BendingElement)}};
 }
 
 }  // namespace taut

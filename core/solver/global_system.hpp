@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/model/bending.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/springs.hpp"
 
@@ -12,18 +13,21 @@ namespace taut {
 /// The linear system of solvers that place all vertices at once from a wanted vector q [m] for each
 /// link, with weights k [N/m]: x minimises
 ///
-///     sum m/(2 h^2) |x - y|^2 + sum k/2 |(x_b - x_a) - q|^2,     pins where they are.
+///     sum m/(2 h^2) |x - y|^2 + sum k/2 |(x_b - x_a) - q|^2 + bending,     pins where they are.
 ///
-/// Its matrix, M/h^2 + sum k (e_b - e_a)(e_b - e_a)^T over the vertices that move, is the same for
+/// Its matrix, M/h^2 + sum k (e_b - e_a)(e_b - e_a)^T + sum k c c^T of the bending elements
+/// (core/model/bending.hpp) over the vertices that move, is the same for
 /// the three coordinates and from step to step: a sparse LLT, factored when made and again only if
 /// h changes. Other pins, masses, links or weights are another system.
 class GlobalSystem {
  public:
   /// w: inverse masses [1/kg]; the springs' stiffness is the weight; h [s].
-  GlobalSystem(std::vector<Spring>, std::span<const double> w, double h);
+  GlobalSystem(std::vector<Spring>, std::vector<BendingElement>, std::span<const double> w,
+               double h);
   ~GlobalSystem();
 
   const std::vector<Spring>& springs() const { return springs_; }
+  const std::vector<BendingElement>& bending() const { return bending_; }
   /// A substep of h [s] begins: p.x is y, pins are where they have to be.
   void begin(const Particles<double>& p, double h);
   /// Moves the vertices that are no pins. q: [springs] m.
@@ -37,6 +41,7 @@ class GlobalSystem {
   void factor(double h);
   struct Factor;
   std::vector<Spring> springs_;
+  std::vector<BendingElement> bending_;
   std::vector<int> row_;      ///< of each vertex; -1: a pin
   std::vector<double> mass_;  ///< [rows] kg
   double factored_for_ = 0;   ///< s

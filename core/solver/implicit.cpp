@@ -19,6 +19,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/model/bending.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 
@@ -65,8 +66,9 @@ struct SpringHessian {
 /// M/h^2 + the springs, over the vertices that move.
 class Hessian {
  public:
-  Hessian(const std::vector<Spring>& springs, std::span<const double> w, bool factored)
-      : springs_(springs), column_(w.size(), kPinned), blocks_(springs.size()) {
+  Hessian(const std::vector<Spring>& springs, const std::vector<BendingElement>& bending,
+          std::span<const double> w, bool factored)
+      : springs_(springs), bending_(bending), column_(w.size(), kPinned), blocks_(springs.size()) {
     for (std::size_t i = 0; i < w.size(); ++i)
       if (w[i] > 0) column_[i] = 3 * static_cast<int>(mass_.size()), mass_.push_back(1 / w[i]);
     if (factored) analyse();
@@ -96,8 +98,8 @@ class Hessian {
   std::size_t bytes() const {
     constexpr std::size_t kEntry = sizeof(double) + sizeof(int);
     return factor_entries() * kEntry + static_cast<std::size_t>(matrix_.nonZeros()) * kEntry +
-           blocks_.size() * sizeof blocks_[0] + diagonal_.size() * sizeof diagonal_[0] +
-           beside_.size() * sizeof beside_[0];
+           bent_.size() * sizeof bent_[0] + blocks_.size() * sizeof blocks_[0] +
+           diagonal_.size() * sizeof diagonal_[0] + beside_.size() * sizeof beside_[0];
   }
 
  private:
@@ -112,6 +114,7 @@ class Hessian {
     for (const Spring& s : springs_)
       if (const auto [low, high] = std::minmax(column_[s.a], column_[s.b]); low >= 0)
         add(high, low);
+    each_bending([&](int row, int column, double) { entries.emplace_back(row, column, 1.0); });
     matrix_.resize(size(), size());
     matrix_.setFromTriplets(entries.begin(), entries.end());
     const auto place = [&](int row, int column) { return &matrix_.coeffRef(row, column); };
@@ -120,9 +123,27 @@ class Hessian {
       const auto [low, high] = std::minmax(column_[s.a], column_[s.b]);
       for (int c = 0; c < 3; ++c) beside_.push_back(low < 0 ? nullptr : place(high, low + c));
     }
+    if (!bending_.empty()) {
+      std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+      each_bending([&](int row, int column, double k) { *place(row, column) += k; });
+      bent_.assign(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
+    }
     fill(1);
     ldlt_.analyzePattern(matrix_);
     ldlt_.factorize(matrix_);  // allocates: set-up, not the first step
+  }
+
+  /// add(row, column, k [N/m]) for every entry in the lower triangle of the bending elements, whose
+  /// Hessian is constant.
+  template <class Add>
+  void each_bending(const Add& add) const {
+    for (const BendingElement& e : bending_)
+      for (std::size_t i = 0; i < e.size; ++i)
+        for (std::size_t j = 0; j < e.size; ++j) {
+          const int row = column_[to_index(e.vertex[i])], column = column_[to_index(e.vertex[j])];
+          for (int c = 0; c < 3 && row >= column && column >= 0; ++c)
+            add(row + c, column + c, e.stiffness * e.weight[i] * e.weight[j]);
+        }
   }
 
   /// Entries below each other in a column lie one after the other.
@@ -131,7 +152,10 @@ class Hessian {
       for (int r = c; r < 3; ++r) diagonal_[to_index(column + c)][r - c] += block(r, c);
   }
   void fill(double h) {
-    std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+    if (bent_.empty())
+      std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+    else
+      std::ranges::copy(bent_, matrix_.valuePtr());
     for (std::size_t i = 0; i < mass_.size(); ++i)
       add_diagonal(3 * static_cast<int>(i), mass_[i] / (h * h) * Matrix3d::Identity());
     for (std::size_t j = 0; j < springs_.size(); ++j) {
@@ -158,6 +182,12 @@ class Hessian {
       if (column_[a] >= 0) out.segment<3>(column_[a]) -= pull;
       if (column_[b] >= 0) out.segment<3>(column_[b]) += pull;
     }
+    for (const BendingElement& e : bending_) {
+      const Vec3 pull = e.stiffness * e.value(at);
+      for (std::size_t i = 0; i < e.size; ++i)
+        if (const int c = column_[to_index(e.vertex[i])]; c >= 0)
+          out.segment<3>(c) += e.weight[i] * pull;
+    }
     return out;
   }
 
@@ -170,6 +200,9 @@ class Hessian {
     for (std::size_t j = 0; j < springs_.size(); ++j)
       for (const std::size_t v : {springs_[j].a, springs_[j].b})
         if (column_[v] >= 0) inverse[to_index(column_[v]) / 3] += blocks_[j].matrix();
+    each_bending([&](int row, int column, double k) {
+      if (row == column) inverse[to_index(row) / 3](row % 3, row % 3) += k;
+    });
     for (Matrix3d& m : inverse) m = Matrix3d(m.inverse());
     const auto preconditioned = [&](const Vector& r) {
       Vector z(r.size());
@@ -196,6 +229,8 @@ class Hessian {
   }
 
   const std::vector<Spring>& springs_;
+  const std::vector<BendingElement>& bending_;
+  std::vector<double> bent_;  ///< [non-zeros] N/m, the matrix of bending alone; empty: none
   std::vector<int> column_;
   std::vector<double> mass_;  ///< kg, of those that move
   std::vector<SpringHessian> blocks_;
@@ -209,8 +244,9 @@ class NewtonPass final : public Pass<double> {
  public:
   explicit NewtonPass(const loop::Setup& s)
       : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
+        bending_(make_bending(s.scene)),
         line_search_(s.params.is("line-search", "on")),
-        hessian_(springs_, s.w,
+        hessian_(springs_, bending_, s.w,
                  factors(s.params, to_index(static_cast<int>(std::ranges::count_if(
                                        s.w, [](double w) { return w > 0; }))))) {}
 
@@ -237,7 +273,8 @@ class NewtonPass final : public Pass<double> {
   }
 
   std::vector<PassCost> cost() const override {
-    const std::size_t bytes = y_.size() * sizeof(Vec3) + springs_.size() * sizeof(Spring);
+    const std::size_t bytes = y_.size() * sizeof(Vec3) + springs_.size() * sizeof(Spring) +
+                              bending_.size() * sizeof(BendingElement);
     return {{.pass = "spring Hessians", .items = springs_.size(), .bytes = bytes},
             {.pass = hessian_.factored() ? "LDLT" : "conjugate gradients",
              .items = hessian_.factored() ? hessian_.factor_entries() : to_index(hessian_.size()),
@@ -287,7 +324,7 @@ class NewtonPass final : public Pass<double> {
   }
 
   double energy(const std::vector<Vec3>& x, double h) const {
-    double sum = 0;
+    double sum = bending_energy(bending_, x);
     for (std::size_t i = 0; i < x.size(); ++i)
       if (hessian_.column(i) >= 0)
         sum += hessian_.mass(i) / (2 * h * h) * (x[i] - y_[i]).squaredNorm();
@@ -311,6 +348,12 @@ class NewtonPass final : public Pass<double> {
       if (hessian_.column(a) >= 0) g.segment<3>(hessian_.column(a)) -= pull;
       if (hessian_.column(b) >= 0) g.segment<3>(hessian_.column(b)) += pull;
     }
+    for (const BendingElement& e : bending_) {
+      const Vec3 pull = e.stiffness * e.value([&](std::size_t v) { return x[v]; });
+      for (std::size_t i = 0; i < e.size; ++i)
+        if (const int c = hessian_.column(to_index(e.vertex[i])); c >= 0)
+          g.segment<3>(c) += e.weight[i] * pull;
+    }
     return g;
   }
 
@@ -321,6 +364,7 @@ class NewtonPass final : public Pass<double> {
   }
 
   std::vector<Spring> springs_;
+  std::vector<BendingElement> bending_;
   bool line_search_;
   Hessian hessian_;
   bool clamped_ = true;
@@ -329,7 +373,8 @@ class NewtonPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
-  return {.layout = Layout::packed(s.w.size()), .pass = std::make_unique<NewtonPass>(s)};
+  return {
+      .layout = Layout::packed(s.w.size()), .pass = std::make_unique<NewtonPass>(s), .bends = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
@@ -345,7 +390,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                                     : "conjugate gradients")},
       {"work unit", "Newton iterations, not projections"}};
   if (!scene.colliders.empty()) own.emplace_back("order of passes", kLaggedContact);
-  return loop::resolved_settings(scene, params, own);
+  return loop::resolved_settings(scene, params, own, "constant terms of the Hessian");
 }
 
 }  // namespace

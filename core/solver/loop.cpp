@@ -6,6 +6,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
+#include "core/solver/bending.hpp"
 #include "core/solver/constraints/tethers.hpp"
 #include "core/solver/wind.hpp"
 
@@ -116,6 +117,7 @@ class Loop final : public Solver {
         constraints_.push_back(
             std::make_unique<TetherPass<Real>>(scene, tethers, links.tethers, simd_));
     if (links.pass) constraints_.push_back(std::move(links.pass));
+    if (scene.bending && !links.bends) constraints_.push_back(make_bending_pass<Real>(scene, w));
     pins_ = Pins(scene, *p_.layout);
     contact_ = make_contact<Real>(scene, *p_.layout, contact_settings(params), pool_);
   }
@@ -270,12 +272,16 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
-                                   const ResolvedSettings& own) {
+                                   const ResolvedSettings& own, std::string_view bending) {
   const double h = scene.dt / params.integer("substeps");
   ResolvedSettings lines{
       {"time step", shortest(h) + " s x " + std::string(params.value("substeps"))},
       {"integration", "Verlet"}};
   lines.insert(lines.end(), own.begin(), own.end());
+  if (scene.bending)
+    lines.emplace_back("bending", shortest(scene.bending->warp) + " N m along the warp, " +
+                                      shortest(scene.bending->weft) + " N m along the weft, " +
+                                      std::string(bending));
   lines.emplace_back("gravity", "the scene's");
   lines.emplace_back("precision", in_float(params) ? "float" : "double");
   if (scene.damping > 0)

@@ -42,6 +42,7 @@
 ///  3. begin(): y and x_t are there to be kept; multipliers are set to zero, or kept.
 ///  4. `iterations` times: apply() moves p.x once towards the links' lengths, then contact with
 ///     friction puts out what is inside colliders. apply() finds p.x as contact left it.
+///     In between the loop projects the scene's bending, unless Links::bends (make_bending_pass).
 ///  5. end(): after the last iteration. To move p.x without a change of velocity, move p.previous
 ///     by as much.
 ///
@@ -67,6 +68,7 @@ struct Links {
   Layout layout;                                    ///< where the particles lie in memory
   std::unique_ptr<Pass<Real>> pass = nullptr;       ///< null: no link can move
   bool accelerates = false;                         ///< `pass` does, and p.a is there
+  bool bends = false;                               ///< `pass` takes the scene's bending
   std::vector<std::unique_ptr<Pass<Real>>> coarse;  ///< accelerators of `pass`
   Projection tethers = Projection::exact;
 };
@@ -87,8 +89,11 @@ inline std::unique_ptr<Solver> make(const Scene& scene, const Params& params,
 /// What the loop itself would get wrong (SolverEntry::unsupported).
 std::vector<std::string> unsupported(const Scene&, const Params&);
 
-/// The loop's lines, `own` after those of time integration (SolverEntry::resolved_settings).
-ResolvedSettings resolved_settings(const Scene&, const Params&, const ResolvedSettings& own);
+/// The loop's lines, `own` after those of time integration (SolverEntry::resolved_settings);
+/// `bending`: how the scene's is taken.
+ResolvedSettings resolved_settings(
+    const Scene&, const Params&, const ResolvedSettings& own,
+    std::string_view bending = "projected after the links with compliance and multipliers (XPBD)");
 
 // The loop's parameters. `iterations` (one without it), `tethers` and `precision` (double without
 // it) may be left out.

@@ -10,6 +10,7 @@
 // (2/w)(sqrt(1 + zeta^2) - zeta); Verlet's `drag-at=central` restores it.
 #include <cmath>
 
+#include "core/model/bending.hpp"
 #include "core/model/text.hpp"
 #include "core/solver/layout/order.hpp"
 #include "core/solver/loop.hpp"
@@ -44,6 +45,7 @@ class Springs final : public Pass<Real> {
         central_(setup.params.is("drag-at", "central")),
         explicit_(setup.params.is("integrator", "explicit-euler")),
         damping_(setup.scene.damping),
+        bending_(make_bending(setup.scene)),
         moved_(central_ || explicit_ ? setup.w.size() : 0) {
     const auto k = stiffnesses(setup.scene, setup.params);
     for (const Link& l : setup.scene.links)
@@ -66,6 +68,13 @@ class Springs final : public Pass<Real> {
       if (length == 0) continue;  // no direction to pull in
       const V pull = k * (length - static_cast<Real>(l.rest)) / length * delta;
       p.a.add(a, p.w[a] * pull), p.a.add(b, -p.w[b] * pull);
+    }
+    for (const BendingElement& e : bending_) {
+      const V pull =
+          static_cast<Real>(-e.stiffness) * e.value([&](std::size_t v) { return p.x[v]; });
+      for (std::size_t i = 0; i < e.size; ++i)
+        if (const std::size_t v = to_index(e.vertex[i]); p.w[v] > 0)
+          p.a.add(v, p.w[v] * static_cast<Real>(e.weight[i]) * pull);
     }
   }
 
@@ -96,6 +105,10 @@ class Springs final : public Pass<Real> {
                          .items = n,
                          .bytes = n * sizeof(Spring)});
     }
+    if (!bending_.empty())
+      costs.push_back({.pass = "bending forces",
+                       .items = bending_.size(),
+                       .bytes = bending_.size() * sizeof(BendingElement)});
     if (!costs.empty()) costs.front().bytes += moved_.size() * sizeof(V);
     return costs;
   }
@@ -108,6 +121,7 @@ class Springs final : public Pass<Real> {
   Real drag_;
   bool central_, explicit_;
   double damping_;
+  std::vector<BendingElement> bending_;
   std::vector<Spring> springs_;
   std::vector<V> moved_;  ///< h v before the step; empty: not needed
 };
@@ -116,7 +130,8 @@ template <class Real>
 loop::Links<Real> make_links(const loop::Setup& setup) {
   return {.layout = Layout::packed(setup.w.size()),
           .pass = std::make_unique<Springs<Real>>(setup),
-          .accelerates = true};
+          .accelerates = true,
+          .bends = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
@@ -133,7 +148,8 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params,
                                  {{"links", describe_springs(scene, params)},
-                                  {"work unit", "spring evaluations, not projections"}});
+                                  {"work unit", "spring evaluations, not projections"}},
+                                 "as forces");
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"}};

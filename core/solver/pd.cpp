@@ -77,8 +77,8 @@ class Anderson {
 class ProjectivePass final : public Pass<double> {
  public:
   explicit ProjectivePass(const loop::Setup& s)
-      : system_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params)), s.w,
-                s.scene.dt / s.params.integer("substeps")),
+      : system_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params)), make_bending(s.scene),
+                s.w, s.scene.dt / s.params.integer("substeps")),
         wanted_(system_.springs().size()),
         chebyshev_(s.params.real("chebyshev")),
         anderson_(to_index(s.params.integer("anderson")), s.w.size()) {}
@@ -129,6 +129,8 @@ class ProjectivePass final : public Pass<double> {
       const double c = (p.x[b] - p.x[a]).norm() - rest;
       now += k / 2 * c * c;
     }
+    for (const BendingElement& e : system_.bending())
+      now += e.stiffness / 2 * e.value([&](std::size_t v) { return p.x[v]; }).squaredNorm();
     if (now > energy_) {
       for (std::size_t i = 0; i < p.size(); ++i)
         if (p.w[i] > 0) p.x.set(i, last_image_[i]);
@@ -148,7 +150,9 @@ class ProjectivePass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
-  return {.layout = Layout::packed(s.w.size()), .pass = std::make_unique<ProjectivePass>(s)};
+  return {.layout = Layout::packed(s.w.size()),
+          .pass = std::make_unique<ProjectivePass>(s),
+          .bends = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
@@ -169,7 +173,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
        "all at once by a sparse LLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};
   if (!scene.colliders.empty()) own.emplace_back("order of passes", kLaggedContact);
-  return loop::resolved_settings(scene, params, own);
+  return loop::resolved_settings(scene, params, own, "constant terms of the factored system");
 }
 
 }  // namespace

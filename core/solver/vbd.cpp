@@ -32,7 +32,7 @@ class DescentPass final : public Pass<double> {
  public:
   explicit DescentPass(const loop::Setup& s)
       : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
-        blocks_(springs_, s.w, s.params.is("order", "coloured"), s.pool),
+        blocks_(springs_, make_bending(s.scene), s.w, s.params.is("order", "coloured"), s.pool),
         start_(s.scene, s.params.is("start", "adaptive")),
         chebyshev_(s.params.real("chebyshev")),
         damping_(s.params.real("damping")) {}
@@ -62,6 +62,7 @@ class DescentPass final : public Pass<double> {
         force -= damping_ / h * (hessian * (x - p.previous[i]));
         hessian *= 1 + damping_ / h;
       }
+      blocks_.add_bending(p, i, force, hessian);
       hessian.diagonal().array() += inertia;
       return Vec3(x + solve_symmetric(hessian, force));
     });
@@ -87,7 +88,9 @@ class DescentPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
-  return {.layout = Layout::packed(s.w.size()), .pass = std::make_unique<DescentPass>(s)};
+  return {.layout = Layout::packed(s.w.size()),
+          .pass = std::make_unique<DescentPass>(s),
+          .bends = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
@@ -98,7 +101,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params,
                                  {{"links", describe_springs(scene, params)},
                                   {"vertex order", std::string(params.choice("order"))},
-                                  {"work unit", "vertices, not projections"}});
+                                  {"work unit", "vertices, not projections"}},
+                                 "in each vertex' force and Hessian");
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"chebyshev", "0.5|0.8|0.9"},

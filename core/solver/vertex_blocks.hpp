@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/model/adjacency.hpp"
+#include "core/model/bending.hpp"
 #include "core/solver/global_system.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
@@ -15,23 +16,35 @@
 namespace taut {
 
 /// Sweeps of solvers that move one vertex at a time to the minimum of a quadratic model in its own
-/// three coordinates, all others held: colour after colour, no two vertices of a colour linked, so
-/// that threads divide a colour and any number of them computes the same bits.
+/// three coordinates, all others held: colour after colour, no two vertices of a colour linked or
+/// in one bending element, so that threads divide a colour and any number of them computes the same
+/// bits.
 class VertexBlocks {
  public:
   /// coloured: else the scene's order, one vertex after the other.
-  VertexBlocks(const std::vector<Spring>& springs, std::span<const double> w, bool coloured,
-               ThreadPool& pool)
-      : springs_(springs), ends_(links_of(springs), static_cast<int>(w.size())), pool_(pool) {
+  VertexBlocks(const std::vector<Spring>& springs, std::vector<BendingElement> bending,
+               std::span<const double> w, bool coloured, ThreadPool& pool)
+      : springs_(springs),
+        bending_(std::move(bending)),
+        bent_(bending_.empty() ? 0 : w.size()),
+        ends_(links_of(springs), static_cast<int>(w.size())),
+        pool_(pool) {
+    for (std::size_t k = 0; k < bending_.size(); ++k)
+      for (std::size_t i = 0; i < bending_[k].size; ++i)
+        bent_[to_index(bending_[k].vertex[i])].push_back({k, i});
     std::vector<int> colour_of(w.size(), -1);
     for (std::size_t i = 0; i < w.size(); ++i) {
       if (w[i] == 0) continue;
       std::size_t colour = 0;
       if (coloured) {
         const auto taken = [&](std::size_t c) {
-          return std::ranges::any_of(ends_.of(static_cast<int>(i)), [&](const Adjacency::End& e) {
-            return colour_of[to_index(e.vertex)] == static_cast<int>(c);
-          });
+          const auto has = [&](int v) { return colour_of[to_index(v)] == static_cast<int>(c); };
+          return std::ranges::any_of(ends_.of(static_cast<int>(i)), has, &Adjacency::End::vertex) ||
+                 (!bent_.empty() && std::ranges::any_of(bent_[i], [&](const Bent& b) {
+                   const auto& [n, vertices, unused, stiffness] = bending_[b.element];
+                   return std::any_of(vertices.begin(), vertices.begin() + static_cast<long>(n),
+                                      has);
+                 }));
         };
         while (taken(colour)) ++colour;
       } else {
@@ -70,8 +83,22 @@ class VertexBlocks {
           colour.size() >= ThreadPool::kWorthSharing / 8);
   }
 
+  /// Adds the bending of vertex i at x: what it pulls with [N], and its part of the Hessian [N/m],
+  /// which is that number times unity.
+  void add_bending(const Particles<double>& p, std::size_t i, Vec3& force,
+                   Eigen::Matrix3d& hessian) const {
+    if (bent_.empty()) return;
+    for (const Bent& b : bent_[i]) {
+      const BendingElement& e = bending_[b.element];
+      const double pull = e.stiffness * e.weight[b.place];
+      force -= pull * e.value([&](std::size_t v) { return p.x[v]; });
+      hessian.diagonal().array() += pull * e.weight[b.place];
+    }
+  }
+
   std::size_t bytes() const {
-    return springs_.size() * (sizeof(Spring) + 2 * sizeof(Adjacency::End)) +
+    return bending_.size() * sizeof(BendingElement) +
+           springs_.size() * (sizeof(Spring) + 2 * sizeof(Adjacency::End)) +
            ends_.size() * (sizeof(int) + sizeof(std::size_t));
   }
 
@@ -82,7 +109,12 @@ class VertexBlocks {
       links.push_back({static_cast<int>(s.a), static_cast<int>(s.b), s.rest, Family::structural});
     return links;
   }
+  struct Bent {
+    std::size_t element, place;  ///< the vertex is its place-th
+  };
   const std::vector<Spring>& springs_;
+  std::vector<BendingElement> bending_;
+  std::vector<std::vector<Bent>> bent_;  ///< [n] elements of each vertex; empty: no bending
   Adjacency ends_;
   std::vector<std::vector<std::size_t>> colours_;
   ThreadPool& pool_;

@@ -174,6 +174,7 @@ std::vector<std::string> beyond_first(const Scene& scene) {
         return std::holds_alternative<Capsule>(c.shape);
       }))
     all.emplace_back("a capsule");
+  if (scene.bending) all.emplace_back("bending stiffness");
   return all;
 }
 
@@ -209,6 +210,10 @@ std::string scene_file(const Scene& scene) {
              scene.self_collision ? Json{{"radius", scene.self_collision->radius}} : Json()}};
   if (!beyond_first(scene).empty()) file["format"] = "taut-scene/2";
   if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
+  if (scene.bending)
+    file["bending"] = {{"warp", scene.bending->warp},
+                       {"weft", scene.bending->weft},
+                       {"direction", json_of(scene.bending->direction)}};
   return to_text(file) + "\n";
 }
 

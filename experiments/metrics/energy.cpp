@@ -1,5 +1,6 @@
 #include <numeric>
 
+#include "core/model/bending.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -22,8 +23,13 @@ class Energy final : public Metric {
   };
   static bool measures(const Scene& scene) { return !scene.gravity.isZero(0); }
   explicit Energy(const Scene& scene)
-      : mass_(scene.mesh.mass), start_(scene.start.x), gravity_(scene.gravity), end_(scene) {
+      : mass_(scene.mesh.mass),
+        bending_(make_bending(scene)),
+        start_(scene.start.x),
+        gravity_(scene.gravity),
+        end_(scene) {
     const double total = std::accumulate(mass_.begin(), mass_.end(), 0.0);
+    bent_at_start_ = bending_energy(bending_, start_);
     unit_ = total * gravity_.norm() * extent(scene);
   }
 
@@ -43,7 +49,7 @@ class Energy final : public Metric {
     double kinetic = 0, total = 0;  ///< in units of m g L
   };
   Energies measure(const State& state) const {
-    double kinetic = 0, potential = 0;
+    double kinetic = 0, potential = bending_energy(bending_, state.x) - bent_at_start_;
     for (std::size_t i = 0; i < mass_.size(); ++i) {
       kinetic += mass_[i] * state.v[i].squaredNorm() / 2;
       potential -= mass_[i] * gravity_.dot(state.x[i] - start_[i]);
@@ -52,6 +58,8 @@ class Energy final : public Metric {
   }
 
   std::vector<double> mass_;
+  std::vector<BendingElement> bending_;
+  double bent_at_start_ = 0;  ///< J
   std::vector<Vec3> start_;
   Vec3 gravity_;
   LastSecond end_;
@@ -62,6 +70,6 @@ class Energy final : public Metric {
 }  // namespace
 
 TAUT_METRIC(energy, Energy, "Mechanical energy; relaxation dissipates it legitimately",
-            "sum of m v^2/2 - m g . (x - x_start) over vertices");
+            "sum of m v^2/2 - m g . (x - x_start) over vertices, and the energy of bending");
 
 }  // namespace taut

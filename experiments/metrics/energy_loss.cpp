@@ -1,3 +1,4 @@
+#include "core/model/bending.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -25,7 +26,10 @@ class EnergyLoss final : public Metric {
            !scene.wind && scene.damping == 0 && scene.pin_motions.empty();
   }
   explicit EnergyLoss(const Scene& scene)
-      : mass_(scene.mesh.mass), start_(scene.start.x), gravity_(scene.gravity) {}
+      : mass_(scene.mesh.mass),
+        bending_(make_bending(scene)),
+        start_(scene.start.x),
+        gravity_(scene.gravity) {}
 
   void observe(const Snapshot& m) override {
     const Moment now = measure(m.state);
@@ -51,7 +55,7 @@ class EnergyLoss final : public Metric {
       m.kinetic += mass_[i] * s.v[i].squaredNorm() / 2;
       m.total -= mass_[i] * gravity_.dot(s.x[i] - start_[i]);
     }
-    m.total += m.kinetic;
+    m.total += m.kinetic + bending_energy(bending_, s.x);
     return m;
   }
   void turn() {
@@ -63,6 +67,7 @@ class EnergyLoss final : public Metric {
   }
 
   std::vector<double> mass_;
+  std::vector<BendingElement> bending_;
   std::vector<Vec3> start_;
   Vec3 gravity_;
   Moment least_;                 ///< since the largest kinetic energy after the last turning point

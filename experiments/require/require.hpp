@@ -73,8 +73,8 @@ struct Effect {
   std::vector<Reduction> reductions;  ///< from the weakest to the strongest; one at least
 };
 
-/// What there is to take away or to coarsen in a case: bend and shear links, wind and its law,
-/// damping, friction, each collider, self-collision, contact of faces, continuous detection,
+/// What there is to take away or to coarsen in a case: bend and shear links, bending, wind and its
+/// law, damping, friction, each collider, self-collision, contact of faces, continuous detection,
 /// thickness, tethers, levels, substeps, sweeps, precision, resolution, duration. What the case
 /// does not have is not listed.
 std::vector<Effect> effects_of(const Case&);

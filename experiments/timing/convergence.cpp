@@ -85,6 +85,7 @@ double floor_of(const std::vector<ConvergencePoint>& points, const Way& way) {
 
 std::vector<std::string> refuse(const Scene& scene, const SolverChoice& choice) {
   std::vector<std::string> reasons = choice.entry->unsupported(scene, choice.params);
+  if (scene.bending) reasons.emplace_back("bending: the exact step has links alone");
   if (choice.entry->accuracy.sweeps.empty()) reasons.emplace_back("it has no iterations");
   return reasons;
 }

@@ -114,12 +114,12 @@ inline void compare_wind(SceneComparison& c, const std::optional<Wind>& asked,
 /// Where `held` is not the simulation that `asked` describes, a sentence each; empty: the same.
 /// Numbers agree if they differ by no more than `tolerance` relative to the larger of 1 and their
 /// size. Not compared, for Bullet has no place for them: the labels, the mesh's grid, the
-/// masses of pinned vertices, and the links' stiffness.
+/// masses of pinned vertices, and the stiffness of links and of bending.
 inline std::vector<std::string> differences(const Scene& asked, const Scene& held,
                                             double tolerance) {
   // Every member is named here: a new one does not compile until it has an answer.
-  const auto& [name, summary, mesh, start, pins, pin_motions, links, stiffness, colliders, wind,
-               self_collision, gravity, damping, thickness, dt, steps] = asked;
+  const auto& [name, summary, mesh, start, pins, pin_motions, links, stiffness, bending, colliders,
+               wind, self_collision, gravity, damping, thickness, dt, steps] = asked;
   SceneComparison c(tolerance);
   compare_mesh(c, mesh, held.mesh, pins);
   c.vectors("start.x", start.x, held.start.x);

@@ -222,6 +222,12 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
             (Json{{"structural", nullptr}, {"shear", 500.0}, {"bend", nullptr}}));
   EXPECT_EQ(beyond_first(scene), std::vector<std::string>{"links of 500 N/m"});
   scene.stiffness = kRigid;
+  scene.bending = Bending{2, 0.5, Vec3(0, 0.6, 0.8)};
+  EXPECT_EQ(beyond_first(scene), std::vector<std::string>{"bending stiffness"});
+  file = parse_json(scene_file(scene));
+  EXPECT_EQ(file["format"], "taut-scene/2");
+  EXPECT_EQ(file["bending"], (Json{{"warp", 2.0}, {"weft", 0.5}, {"direction", {0, 0.6, 0.8}}}));
+  scene.bending.reset();
   scene.colliders.push_back({Capsule{Vec3(1, 2, 3), Vec3(4, 5, 6), 7}, moving, 0.75});
   EXPECT_EQ(beyond_first(scene), std::vector<std::string>{"a capsule"});
   file = parse_json(scene_file(scene));

@@ -304,6 +304,32 @@ TEST(SceneFiles, WhatMakesContactMeaninglessIsRefused) {
           "the cloth starts through itself");
 }
 
+TEST(SceneFiles, BendingIsOneStiffnessOrThatOfWarpAndWeft) {
+  EXPECT_FALSE(shipped("hang").bending);
+  const Scene one = shipped("hang", {"bending.stiffness=2e-5"}),
+              two = shipped("hang", {"bending.stiffness={ warp = 2e-5, weft = 1e-6 }"}),
+              turned = shipped("hang", {"bending.stiffness=1", "bending.warp=[2, 0, 0]"});
+  EXPECT_EQ(one.bending->warp, 2e-5);
+  EXPECT_EQ(one.bending->weft, 2e-5);
+  EXPECT_EQ(two.bending->weft, 1e-6);
+  EXPECT_EQ(two.bending->direction, -Vec3::UnitY()) << "along v";
+  EXPECT_EQ(turned.bending->direction, Vec3::UnitX());
+  const std::string cloth = "cloth = { grid = [2, 2], size = [1, 1] }\n";
+  const auto error = [&](const std::string& bending, const std::string& start) {
+    return errors_of(start + "[bending]\n" + bending);
+  };
+  EXPECT_NE(error("stiffness = 0", cloth).find(":3:"), std::string::npos);
+  EXPECT_NE(error("stiffness = 0", cloth).find("stiffness"), std::string::npos);
+  EXPECT_NE(error("", cloth).find("'stiffness'"), std::string::npos);
+  EXPECT_NE(error("stiffness = { warp = 1 }", cloth).find("'weft'"), std::string::npos);
+  EXPECT_NE(error("stiffness = { warp = 1, weft = 1, bias = 1 }", cloth).find("bias"),
+            std::string::npos);
+  EXPECT_NE(error("stiffness = 1\nstifness = 1", cloth).find("stifness"), std::string::npos);
+  EXPECT_NE(error("stiffness = 1", "cloth = { grid = [1, 9], size = [0, 1], mass = 1 }\n")
+                .find("[bending] acts on faces"),
+            std::string::npos);
+}
+
 TEST(SceneFiles, StiffnessIsOfTheFamiliesThatAreNamedAndTheOthersAreRigid) {
   const Scene rigid = shipped("hang"),
               elastic = shipped("hang", {"links.stiffness.shear=50", "links.stiffness.bend=0.25"});
@@ -369,6 +395,7 @@ constexpr const char* kBare = R"(
 cloth = { grid = [32, 32], size = [1, 1], pins = ["top"], start_inside = "resolve" }
 wind = {}
 self_collision = { radius = 0.015 }
+bending = { stiffness = 1e-5 }
 [[collider]]
 type = "plane"
 [[collider]]

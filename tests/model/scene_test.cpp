@@ -192,6 +192,7 @@ Scene everything() {
                  {.shape = Capsule{{1, 2, 3}, {4, 5, 6}, 7}}};
   s.wind = Wind{.velocity = {1, 2, 3}, .strength = 0.5};
   s.self_collision = SelfCollision{0.25};
+  s.bending = Bending{2, 1};
   s.damping = 0.5, s.thickness = 0.125, s.dt = 0.25, s.steps = 7;
   return s;
 }
@@ -237,6 +238,11 @@ TEST(Content, DiffersWithEveryMemberButTheLabels) {
       [](Scene& s) { s.wind->law = Wind::Law::literal; },
       [](Scene& s) { s.self_collision.reset(); },
       [](Scene& s) { s.self_collision->radius = 1; },
+      [](Scene& s) { s.stiffness[0] = 1; },
+      [](Scene& s) { s.bending.reset(); },
+      [](Scene& s) { s.bending->warp = 1; },
+      [](Scene& s) { s.bending->weft = 2; },
+      [](Scene& s) { s.bending->direction = Vec3::UnitX(); },
       [](Scene& s) { s.gravity.x() = 1; },
       [](Scene& s) { s.damping = 1; },
       [](Scene& s) { s.thickness = 1; },

@@ -54,6 +54,10 @@ const std::vector<Effect> kEffects{
      }},
     {"collide", [](Scene& s) { s.colliders = {{.shape = Plane{.offset = -9}}}; }},
     {"self-collide", [](Scene& s) { s.self_collision = SelfCollision{.radius = 1e-3}; }},
+    {"bending",
+     [](Scene& s) {
+       s.bending = Bending{1e-5, 1e-5};
+     }},
     {"shear",
      [](Scene& s) {
        s.links = hanging_sheet(20, 20, {true, true, false}).links;

@@ -38,6 +38,7 @@ std::optional<Scene> scene_of(const std::string& name, int side) {
 std::string effects_of(const Scene& scene) {
   std::vector<std::string> all;
   if (!scene.mesh.grid) all.emplace_back("any mesh");
+  if (scene.bending) all.emplace_back("bending");
   if (scene.wind) all.emplace_back("wind");
   for (const Collider& c : scene.colliders) all.emplace_back(type_name(c.shape));
   if (scene.self_collision) all.emplace_back("itself");
@@ -45,7 +46,7 @@ std::string effects_of(const Scene& scene) {
 }
 
 Scene without_effects(Scene scene) {
-  scene.wind.reset(), scene.colliders.clear(), scene.self_collision.reset();
+  scene.bending.reset(), scene.wind.reset(), scene.colliders.clear(), scene.self_collision.reset();
   return scene;
 }
 
