@@ -53,7 +53,8 @@ double take_steps(Connection&, double t, double dt, int count);
 bool agrees(double word, double clock, double empty);
 void store_state(Connection&, int vertices, State&);
 
-/// What of a scene came with the second version, a few words each: elastic links, capsules. A
+/// What of a scene came with the second version, a few words each: elastic links, capsules,
+/// bending. A
 /// program that speaks the first is not asked for such a scene.
 std::vector<std::string> beyond_first(const Scene&);
 
