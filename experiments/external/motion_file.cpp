@@ -19,8 +19,6 @@ namespace taut::external {
 
 namespace {
 
-constexpr double kInch = 0.0254;
-
 std::vector<Vec3> converted(std::vector<Vec3> x, double scale, bool z_up) {
   for (Vec3& v : x) v = scale * (z_up ? Vec3(v.x(), v.z(), -v.y()) : v);
   return x;
@@ -144,21 +142,19 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
 using Kind = ParamSpec::Kind;
 
 constexpr ParamSpec kParams[] = {
-    {.name = "file", .kind = Kind::text, .help = "Positions: .npy, .pc2, .mdd, .obj, .ply"},
-    {.name = "fps",
-     .default_value = "0",
-     .max = 1e6,
-     .help = "frames in a second; 0: what the file says, else one a step"},
+    {.name = "file", .kind = Kind::text, .help = "Positions: .npy, .pc2 or .obj"},
+    {.name = "fps", .default_value = "0", .max = 1e6, .help = "frames in a second; 0: one a step"},
     {.name = "scale",
      .unit = "m",
-     .default_value = "0",
+     .default_value = "1",
+     .min = 1e-6,
      .max = 1e6,
-     .help = "the file's unit; 0: of m, cm, mm and inch the one that fits"},
+     .help = "the file's unit: 0.01 for centimetres"},
     {.name = "up",
      .kind = Kind::choice,
-     .default_value = "auto",
-     .choices = "auto|y|z",
-     .help = "the axis that points up; auto: the one that fits"},
+     .default_value = "y",
+     .choices = "y|z",
+     .help = "the axis that points up"},
     {.name = "rest",
      .kind = Kind::text,
      .help =
@@ -169,7 +165,7 @@ MotionOptions options_of(const Params& params) {
   return {.file = params.value("file"),
           .fps = params.real("fps"),
           .scale = params.real("scale"),
-          .up = std::string(params.choice("up")),
+          .z_up = params.choice("up") == "z",
           .rest = params.value("rest")};
 }
 
@@ -216,72 +212,63 @@ struct Entry {
 }  // namespace
 
 MotionFile::MotionFile(const Scene& scene, const MotionOptions& options)
-    : reader_(open_positions(options.file)), file_(options.file) {
-  find_time(scene, options.fps);
-  find_place(scene, options);
+    : reader_(open_positions(options.file)),
+      options_(options),
+      frame_dt_(options.fps > 0 ? header().spacing / options.fps : scene.dt) {
+  find_place(scene);
+  const std::string file = options.file.string();
   if (std::abs(frame_dt_ - scene.dt) > 1e-6 * scene.dt)
-    misfits_.push_back(file_ + " has a frame each " + shortest(frame_dt_) +
+    misfits_.push_back(file + " has a frame each " + shortest(frame_dt_) +
                        " s, the scene a step each " + shortest(scene.dt) +
                        " s: --dt (time.dt in a study) makes them agree");
   if (header().frames <= scene.steps)
-    misfits_.push_back(file_ + " has " + std::to_string(header().frames) +
+    misfits_.push_back(file + " has " + std::to_string(header().frames) +
                        " frames, the scene needs " + std::to_string(scene.steps + 1) +
                        ": --duration (time.duration in a study) makes it shorter");
+  if (misfits_.empty()) check_pins(scene);
 }
 
-void MotionFile::find_time(const Scene& scene, double fps) {
-  const std::vector<double>& times = header().times;
-  if (fps > 0) {
-    frame_dt_ = header().spacing / fps;
-    time_said_ = "as said";
-  } else if (times.size() > 1) {
-    frame_dt_ = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-    time_said_ = "from the times in the file";
-  } else {
-    frame_dt_ = scene.dt;
-    time_said_ = "assumed: the scene's time step; fps says otherwise";
-  }
-  for (std::size_t k = 0; fps == 0 && k < times.size(); ++k) {
-    const double even = times.front() + static_cast<double>(k) * frame_dt_;
-    if (!(frame_dt_ > 0) || !(std::abs(times[k] - even) <= 0.01 * frame_dt_))
-      throw InputError({{file_, 0, 0,
-                         "frame " + std::to_string(k) + " is at " + shortest(times[k]) +
-                             " s; evenly spaced it would be at " + shortest(even) + " s"}});
-  }
-}
-
-void MotionFile::find_place(const Scene& scene, const MotionOptions& options) {
-  const std::filesystem::path& rest = options.rest;
+void MotionFile::find_place(const Scene& scene) {
+  const std::filesystem::path& rest = options_.rest;
   const std::vector<Vec3> first = rest.empty() ? reader_->read(0) : open_positions(rest)->read(0);
-  const std::vector<Vec3>& target = rest.empty() ? scene.start.x : scene.mesh.rest;
-  const double said = options.scale, tolerance = 1e-4 * extent(scene);
-  const std::vector<double> scales =
-      said > 0 ? std::vector{said} : std::vector{1.0, 0.01, 0.001, kInch};
-  std::string mismatch;
-  for (const bool z_up : {false, true}) {
-    if (options.up == (z_up ? "y" : "z")) continue;
-    for (const double scale : scales) {
-      VertexMatch match = match_vertices(converted(first, scale, z_up), target, tolerance);
-      if (!match.mismatch.empty()) {
-        if (mismatch.empty()) mismatch = match.mismatch;
-        continue;
-      }
-      scale_ = scale, z_up_ = z_up;
-      place_said_ = "1 unit is " + shortest(scale) + " m (" + (said > 0 ? "as said" : "derived") +
-                    "), " + (z_up ? "z" : "y") + " up (" +
-                    (options.up == "auto" ? "derived" : "as said") + ")";
-      order_said_ = std::string(match.same_order() ? "as in the scene" : "matched by position") +
-                    ", at " + (rest.empty() ? "the start" : "rest") + " at most " +
-                    formatted("%.2g", match.farthest) + " m off";
-      of_scene_ = std::move(match.of_scene);
-      return;
+  VertexMatch match =
+      match_vertices(converted(first, options_.scale, options_.z_up),
+                     rest.empty() ? scene.start.x : scene.mesh.rest, 1e-4 * extent(scene));
+  if (!match.mismatch.empty()) {
+    misfits_.push_back(options_.file.string() + " does not begin as " + scene.name + " does, at " +
+                       place() + ": " + match.mismatch);
+    return;
+  }
+  order_said_ = std::string(match.same_order() ? "as in the scene" : "matched by position") +
+                ", at " + (rest.empty() ? "the start" : "rest") + " at most " +
+                formatted("%.2g", match.farthest) + " m off";
+  of_scene_ = std::move(match.of_scene);
+}
+
+void MotionFile::check_pins(const Scene& scene) {
+  double farthest = 1e-4 * extent(scene);
+  std::string where;
+  for (int k = 0; !scene.pins.empty() && k <= scene.steps; ++k) {
+    const std::vector<Vec3> x = frame(k);
+    for (const int pin : scene.pins) {
+      const Vec3 held = pin_position(scene, pin, k * scene.dt);
+      const double distance = (x[to_index(pin)] - held).norm();
+      if (distance <= farthest) continue;
+      farthest = distance;
+      where = formatted("vertex %d is %.3g m from %s at t = %.4g s", pin, distance,
+                        coordinates(held).c_str(), k * scene.dt);
     }
   }
-  misfits_.push_back(file_ + " does not begin as " + scene.name + " does: " + mismatch);
+  if (!where.empty())
+    misfits_.push_back(options_.file.string() + " does not hold the scene's pins: " + where);
+}
+
+std::string MotionFile::place() const {
+  return "1 unit is " + shortest(options_.scale) + " m, " + (options_.z_up ? "z" : "y") + " up";
 }
 
 std::vector<Vec3> MotionFile::frame(int k) {
-  const std::vector<Vec3> x = converted(reader_->read(k), scale_, z_up_);
+  const std::vector<Vec3> x = converted(reader_->read(k), options_.scale, options_.z_up);
   std::vector<Vec3> ordered;
   ordered.reserve(x.size());
   for (const std::size_t i : of_scene_) ordered.push_back(x[i]);
@@ -292,7 +279,8 @@ StrainFloor MotionFile::floor(const Scene& scene) {
   std::vector<Vec3> x = frame(scene.steps);
   if (!std::ranges::all_of(x, [](const Vec3& v) { return v.allFinite(); })) x = frame(0);
   const Rounding rounding = header().rounding;
-  const int digits = rounding == Rounding::decimal ? decimals(converted(x, 1 / scale_, false)) : 0;
+  const double scale = options_.scale;
+  const int digits = rounding == Rounding::decimal ? decimals(converted(x, 1 / scale, false)) : 0;
   StrainFloor floor;
   double sum = 0;
   for (const Link& link : scene.links) {
@@ -301,7 +289,7 @@ StrainFloor MotionFile::floor(const Scene& scene) {
     double variance = 0, most = 0;
     for (int axis = 0; axis < 3; ++axis)
       for (const double c : {a[axis], b[axis]}) {
-        const double step = scale_ * spacing(c / scale_, rounding, digits) * std::abs(along[axis]);
+        const double step = scale * spacing(c / scale, rounding, digits) * std::abs(along[axis]);
         variance += step * step / 12;  // of a rounding that is as likely anywhere in the step
         most += step / 2;
       }
@@ -321,8 +309,10 @@ ResolvedSettings MotionFile::settings(const Scene& scene) {
   return {
       {"frames", std::to_string(about.frames) + " of " + std::to_string(about.vertices) +
                      " vertices, " + rounding},
-      {"time step", shortest(frame_dt_) + " s a frame, " + time_said_},
-      {"unit", place_said_},
+      {"time step",
+       shortest(frame_dt_) + " s a frame, " +
+           (options_.fps > 0 ? "as said" : "assumed: the scene's; fps says otherwise")},
+      {"unit", place()},
       {"vertex order", order_said_},
       {"floor of strain", formatted("%.1e", least.rms) + " RMS, " + formatted("%.1e", least.max) +
                               " at most: the rounding of the file"},
@@ -371,7 +361,7 @@ std::string solver_text(const MotionOptions& o) {
     return text + "'";
   };
   return "positions:file=" + quoted(o.file) + ",fps=" + shortest(o.fps) +
-         ",scale=" + shortest(o.scale) + ",up=" + o.up +
+         ",scale=" + shortest(o.scale) + ",up=" + (o.z_up ? "z" : "y") +
          (o.rest.empty() ? "" : ",rest=" + quoted(o.rest));
 }
 

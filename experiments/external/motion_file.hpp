@@ -15,9 +15,9 @@ namespace taut::external {
 /// What is said of a file; what is not is derived.
 struct MotionOptions {
   std::filesystem::path file;  ///< positions (core/io/positions)
-  double fps = 0;              ///< frames in a second; 0: what the file says, else one a step
-  double scale = 0;            ///< m per unit; 0: of m, cm, mm and inch the one that fits
-  std::string up = "auto";     ///< the axis that points up, y or z; auto: the one that fits
+  double fps = 0;              ///< frames in a second; 0: one a step of the scene
+  double scale = 1;            ///< m per unit of the file
+  bool z_up = false;           ///< else y
   std::filesystem::path rest;  ///< its first frame is the cloth at rest, in the file's order;
                                ///< empty: the file's own first frame is the scene's start
 };
@@ -31,13 +31,12 @@ struct StrainFloor {
 /// A file of positions as a motion of a scene's cloth: in m, y up, in the scene's order.
 class MotionFile {
  public:
-  /// Throws InputError: malformed file, times that are not evenly spaced. What does not fit the
-  /// scene is in misfits().
+  /// Throws InputError: malformed file. What does not fit the scene is in misfits().
   MotionFile(const Scene&, const MotionOptions&);
   const PositionsHeader& header() const { return reader_->header(); }
   /// Why it is no motion of this scene, a sentence each; empty: it is one.
   const std::vector<std::string>& misfits() const { return misfits_; }
-  double frame_dt() const { return frame_dt_; }  ///< s, said, from the file, or the scene's
+  double frame_dt() const { return frame_dt_; }  ///< s, said, or the scene's
   /// Positions at t = k frame_dt [m]. Precondition: no misfits.
   std::vector<Vec3> frame(int k);
   StrainFloor floor(const Scene&);
@@ -45,14 +44,14 @@ class MotionFile {
   ResolvedSettings settings(const Scene&);
 
  private:
-  void find_time(const Scene&, double fps);
-  void find_place(const Scene&, const MotionOptions&);
+  void find_place(const Scene&);
+  void check_pins(const Scene&);
+  std::string place() const;
 
   std::unique_ptr<PositionReader> reader_;
-  std::string file_, time_said_, place_said_, order_said_;
-  double frame_dt_ = 0;
-  double scale_ = 1;  ///< m per unit of the file
-  bool z_up_ = false;
+  MotionOptions options_;
+  double frame_dt_;
+  std::string order_said_;
   std::vector<std::size_t> of_scene_;
   std::vector<std::string> misfits_;
 };

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFormats[] = {"a.npy", "a.pc2", "a.mdd", "a.obj", "a.ply"};
+constexpr const char* kFormats[] = {"a.npy", "a.pc2", "a.obj"};
 
 class Positions : public testing::Test {
  protected:
@@ -42,7 +42,6 @@ class Positions : public testing::Test {
     const Mesh mesh = make_sheet({.nu = 2, .nv = 3, .width = 1, .height = 1, .mass = 1});
     const auto writer = create_positions(folder_ / name, mesh);
     for (int k = 0; k < kFrames; ++k) writer->append(k / 64.0, frame(k));
-    writer->finish();
     return folder_ / name;
   }
   fs::path file(const std::string& name, const std::string& bytes) const {
@@ -73,7 +72,7 @@ TEST_F(Positions, ComeBackToTheRoundingOfTheFormat) {
     const PositionsHeader& header = reader->header();
     EXPECT_EQ(header.vertices, static_cast<int>(kVertices)) << name;
     ASSERT_EQ(header.frames, kFrames) << name;
-    const bool single = name == "a.pc2" || name == "a.mdd";
+    const bool single = name == "a.pc2";
     EXPECT_EQ(header.rounding, single            ? Rounding::binary32
                                : name == "a.obj" ? Rounding::decimal
                                                  : Rounding::binary64);
@@ -86,10 +85,6 @@ TEST_F(Positions, ComeBackToTheRoundingOfTheFormat) {
           EXPECT_EQ(x[i][axis], kept) << name << " frame " << k;
         }
     }
-    if (name == "a.mdd")
-      EXPECT_EQ(header.times, (std::vector<double>{0, 1 / 64.0, 2 / 64.0, 3 / 64.0}));
-    else
-      EXPECT_TRUE(header.times.empty());
   }
 }
 
@@ -98,7 +93,6 @@ TEST_F(Positions, WhatIsNotFiniteIsData) {
   for (const char* name : kFormats) {
     const auto writer = create_positions(folder_ / name, {});
     writer->append(0, {Vec3(nan, 1, -std::numeric_limits<double>::infinity())});
-    writer->finish();
     const Vec3 x = all_of(folder_ / name).at(0).at(0);
     EXPECT_TRUE(std::isnan(x.x()) && x.y() == 1 &&
                 x.z() == -std::numeric_limits<double>::infinity())
@@ -168,40 +162,16 @@ TEST_F(Positions, SayWhatIsWrongAndWhere) {
   says("b.pc2", std::string(pc2).replace(28, 4, "\xff\xff\xff\xff"), "byte 28: -1 is no number");
   says("b.pc2", std::string(pc2).replace(16, 4, std::string(4, '\0')), "byte 16: 0 is no number");
   says("b.pc2", std::string(pc2).replace(24, 4, std::string(4, '\0')), "byte 24");
-  says("b.mdd", "\x7f\xff\xff\xff\x7f\xff\xff\xff", "the file ends at byte 8");
-  says("b.mdd", "\1\1", "ends at byte 2, within its header");
 
   says("b.obj", "v 1 2 3\nv 1 2\n", "b.obj:2:1: a vertex needs three numbers");
   says("b.obj", "v 1 2 3\n\nv 1 2 x\n", "b.obj:3:1");
   says("b.obj", "# nothing\n", "has no vertices");
-  const std::string ply =
-      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
-      "property float y\nproperty float z\nend_header\n";
-  EXPECT_EQ(message(file("good.ply", ply + "1 2 3\n4 5 6\n")), "no error");
-  says("b.ply", ply + "1 2 3\n", "b.ply:8:1: ends after 1 of 2 vertices");
-  says("b.ply", ply + "1 2 3\n1 2\n", "b.ply:9:1: a vertex has 3 numbers");
-  says("b.ply",
-       "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\n"
-       "property double y\nproperty double z\nend_header\n",
-       "4000000000 vertices of 24 bytes begin at byte ");
-  says("b.ply", "ply\nformat ascii 1.0\nelement face 1\n",
-       "b.ply:3:1: the element vertex has to be");
-  says("b.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\n",
-       "is no list");
-  says("b.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n",
-       "lack one of the properties");
-  says("b.abc", "", ".npy, .pc2, .mdd, .obj or .ply");
+  says("b.abc", "", ".npy, .pc2 or .obj");
   EXPECT_NE(message(folder_ / "none.pc2").find("No such file"), std::string::npos);
   EXPECT_NE(message(folder_ / "none.obj").find("no such file"), std::string::npos);
 }
 
-TEST_F(Positions, BothByteOrdersAndOtherProperties) {
-  std::string ply =
-      "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty uchar red\n"
-      "property float z\nproperty double x\nproperty short s\nproperty float y\n"
-      "element face 0\nproperty list uchar int vertex_indices\nend_header\n";
-  ply += std::string("\7\x40\x40\0\0\x3f\xf0\0\0\0\0\0\0\0\0\x40\0\0\0", 19);  // 7 3 1 0 2
-  EXPECT_EQ(all_of(file("a.ply", ply)).at(0).at(0), Vec3(1, 2, 3));
+TEST_F(Positions, BothByteOrdersAndBothWidths) {
   const std::string array =
       npy("{'descr': '>f4', 'fortran_order': False, 'shape': (1, 1, 3), }", 0) +
       std::string("\x3f\x80\0\0\x40\0\0\0\x40\x40\0\0", 12);
@@ -253,7 +223,7 @@ TEST_F(Positions, AreWrittenAsTheFormatsSay) {
       two{{2, 4, 6}, {0, 0, 0}, {0, 0, -8}};
   const auto text_of = [&](const std::string& name, const std::string& first) {
     const auto writer = create_positions(folder_ / name, mesh);
-    writer->append(0, one), writer->append(0.5, two), writer->finish();
+    writer->append(0, one), writer->append(0.5, two);
     return read_text(folder_ / first);
   };
   const std::string none4(8, '0'), none8(16, '0'), little_1 = "0000803f", little_2 = "00000040",
@@ -264,12 +234,6 @@ TEST_F(Positions, AreWrittenAsTheFormatsSay) {
   EXPECT_EQ(text_of("f.pc2", "f.pc2"),
             std::string("POINTCACHE2\0", 12) +
                 bytes("01000000 03000000 00000000 0000803f 02000000" + floats));
-  EXPECT_EQ(text_of("f.mdd", "f.mdd"), bytes("00000002 00000003 00000000 3f000000"
-                                             "3f800000 40000000 40400000" +
-                                             none8 + none8 + none4 +
-                                             "c0800000"
-                                             "40000000 40800000 40c00000" +
-                                             none8 + none8 + none4 + "c1000000"));
   const std::string doubles_1 = "000000000000f03f 0000000000000040 0000000000000840" + none8 +
                                 none8 + none8 + none8 + none8 + "00000000000010c0",
                     doubles_2 = "0000000000000040 0000000000001040 0000000000001840" + none8 +
@@ -281,13 +245,7 @@ TEST_F(Positions, AreWrittenAsTheFormatsSay) {
   text_of("f.obj", "f_00000.obj");
   EXPECT_EQ(read_text(folder_ / "f_00001.obj"),
             "# t = 0.5 s, metres\nv 2 4 6\nv 0 0 0\nv 0 0 -8\nf 1 3 2\n");
-  text_of("f.ply", "f_00000.ply");
-  EXPECT_EQ(read_text(folder_ / "f_00001.ply"),
-            "ply\nformat binary_little_endian 1.0\ncomment t = 0.5 s, metres\nelement vertex 3\n"
-            "property double x\nproperty double y\nproperty double z\nelement face 1\n"
-            "property list uchar int vertex_indices\nend_header\n" +
-                bytes(doubles_2 + "03 00000000 02000000 01000000"));
-  EXPECT_FALSE(fs::exists(folder_ / "f_00002.ply"));
+  EXPECT_FALSE(fs::exists(folder_ / "f_00002.obj"));
 }
 
 TEST_F(Positions, ArraysOfEveryVersionAndTheirErrors) {
@@ -339,56 +297,6 @@ TEST_F(Positions, PointCachesOfOtherPrograms) {
   says(pc2, "byte 24: a frame every -2.5 frames; expected a number above 0");
   pc2.replace(24, 4, bytes("0000807f"));
   says(pc2, "byte 24: a frame every inf frames; expected a number above 0");
-  const fs::path mdd = file("o.mdd", bytes("00000002 00000001 3e800000 40100000 3f800000 40000000 "
-                                           "40400000 40800000 40a00000 40c00000"));
-  EXPECT_EQ(open_positions(mdd)->header().times, (std::vector<double>{0.25, 2.25}));
-  EXPECT_EQ(all_of(mdd).at(1).at(0), Vec3(4, 5, 6));
-}
-
-TEST_F(Positions, PolygonFilesMayHoldAnythingBesideTheirVertices) {
-  const std::string properties =
-      "property char a\nproperty int8 b\nproperty uchar c\nproperty uint8 d\nproperty short e\n"
-      "property int16 f\nproperty ushort g\nproperty uint16 h\nproperty int i\nproperty int32 j\n"
-      "property uint k\nproperty uint32 l\nproperty float m\nproperty float32 y\n"
-      "property double n\nproperty float64 z\nproperty float32 x\n";
-  const std::string before(1 * 4 + 2 * 4 + 4 * 4 + 4, 'q');
-  const fs::path path =
-      file("p.ply",
-           "ply\nobj_info made by hand\nformat binary_little_endian 1.0\n\ncomment x y\nelement "
-           "vertex 1\n" +
-               properties + "end_header\n" + before + bytes("00000040") + std::string(8, 'q') +
-               bytes("0000000000000840 0000803f"));
-  EXPECT_EQ(all_of(path).at(0).at(0), Vec3(1, 2, 3));
-  const auto rounding = [&](const std::string& type, const std::string& format) {
-    std::string text = "ply\nformat " + format + " 1.0\nelement vertex 1\n";
-    for (const char* axis : {"x", "y", "z"}) text += "property " + type + " " + axis + "\n";
-    text += "end_header\n" + (format == "ascii" ? std::string("1 2 3\n") : std::string(24, '\0'));
-    return open_positions(file("r.ply", text))->header().rounding;
-  };
-  EXPECT_EQ(rounding("float", "binary_big_endian"), Rounding::binary32);
-  EXPECT_EQ(rounding("double", "binary_little_endian"), Rounding::binary64);
-  EXPECT_EQ(rounding("double", "ascii"), Rounding::decimal);
-  const auto says = [&](const std::string& text, const std::string& what) {
-    EXPECT_EQ(message(file("w.ply", text)), (folder_ / "w.ply").string() + what);
-  };
-  const std::string start = "ply\nformat ascii 1.0\nelement vertex 1\n";
-  says("plx\n", ":1:1: a PLY file begins with the line 'ply'");
-  says("ply\nformat binary 1.0\n", ":2:1: format 'binary' is not known");
-  says("ply\nelement vertex -1\n", ":2:1: '-1' is no number of vertices");
-  says(start + "property int x\n", ":4:1: a coordinate is float or double");
-  says(start + "property half x\n", ":4:1: type 'half' is not known");
-  says(start + "vertices\n", ":4:1: expected format, element, property, comment or end_header");
-  says(start + "property float x\n", ":4:1: ends within its header");
-  says("ply\nelement vertex 1\nend_header\n", ":3:1: its header has no format");
-  says("ply\nformat ascii 1.0\nend_header\n", ":3:1: its header has no element vertex");
-  std::string flat =
-      "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\n"
-      "property float y\nproperty float z\nend_header\n";
-  const std::size_t header = flat.size();
-  EXPECT_EQ(message(file("w.ply", flat + std::string(24, '\0'))), "no error");
-  says(flat + std::string(23, '\0'), ": 2 vertices of 12 bytes begin at byte " +
-                                         std::to_string(header) + ", but the file ends at byte " +
-                                         std::to_string(header + 23));
 }
 
 TEST_F(Positions, FramesMayCountInStepsAndBeSetApartByASign) {

@@ -62,11 +62,4 @@ class OutputFile {
 std::unique_ptr<PositionReader> open_sequence(const std::filesystem::path&);
 std::unique_ptr<PositionWriter> create_sequence(const std::filesystem::path&, const Mesh&);
 
-/// The vertices of one file of a sequence, and to what they are rounded.
-std::vector<Vec3> obj_vertices(const std::filesystem::path&, Rounding&);
-std::vector<Vec3> ply_vertices(const std::filesystem::path&, Rounding&);
-/// The text of such a file.
-std::string obj_text(double t, const std::vector<Vec3>&, const Mesh&);
-std::string ply_text(double t, const std::vector<Vec3>&, const Mesh&);
-
 }  // namespace taut

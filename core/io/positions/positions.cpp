@@ -1,8 +1,8 @@
 #include "core/io/positions/positions.hpp"
 
 // All frames in one file: NumPy arrays (versions 1 to 3,
-// https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html), and PC2 and MDD, the
-// point caches of animation programs.
+// https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html), and PC2, the point cache
+// of animation programs.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -229,33 +229,6 @@ class Pc2Writer final : public PositionWriter {
   std::int32_t frames_ = 0;
 };
 
-/// The times come first, so nothing can be written before their number is known.
-class MddWriter final : public PositionWriter {
- public:
-  explicit MddWriter(const std::filesystem::path& path) : out_(path) {}
-
-  void append(double t, const std::vector<Vec3>& x) override {
-    times_.push_back(static_cast<float>(t));
-    vertices_ = static_cast<std::int32_t>(x.size());
-    append_vectors<float>(frames_, x, endian::big);
-  }
-
-  void finish() override {
-    std::string header;
-    append_number(header, static_cast<std::int32_t>(times_.size()), endian::big);
-    append_number(header, vertices_, endian::big);
-    for (const float t : times_) append_number(header, t, endian::big);
-    out_.write_at(0, header);
-    out_.write_at(header.size(), frames_);
-  }
-
- private:
-  OutputFile out_;
-  std::vector<float> times_;
-  std::int32_t vertices_ = 0;
-  std::string frames_;
-};
-
 std::unique_ptr<PositionReader> open_pc2(const std::filesystem::path& path) {
   const std::string header = first_bytes(path, kPc2Header);
   if (!header.starts_with(kPc2Magic)) fail_in(path, "byte 0: a PC2 file begins with POINTCACHE2");
@@ -274,25 +247,6 @@ std::unique_ptr<PositionReader> open_pc2(const std::filesystem::path& path) {
                     {.spacing = rate});
 }
 
-std::unique_ptr<PositionReader> open_mdd(const std::filesystem::path& path) {
-  constexpr std::size_t kCounts = 8;
-  std::string header = first_bytes(path, kCounts);
-  if (header.size() < kCounts)
-    fail_in(path, "ends at byte " + std::to_string(header.size()) + ", within its header");
-  const std::uint64_t frames = count_at(path, header, 0, endian::big);
-  const FrameBlock block{.first = kCounts + 4 * frames,
-                         .frames = frames,
-                         .n = count_at(path, header, 4, endian::big),
-                         .order = endian::big};
-  auto reader = read_block(path, block, {});  // before as many times are read as it says
-  header = first_bytes(path, block.first);
-  PositionsHeader about;
-  for (std::size_t k = 0; k < frames; ++k)
-    about.times.push_back(
-        static_cast<double>(number_at<float>(header.data() + kCounts + 4 * k, endian::big)));
-  return read_block(path, block, std::move(about));
-}
-
 struct Format {
   std::string_view extension;
   std::unique_ptr<PositionReader> (*open)(const std::filesystem::path&);
@@ -304,17 +258,14 @@ std::unique_ptr<PositionWriter> create(const std::filesystem::path& path, const 
   return std::make_unique<Writer>(path);
 }
 
-constexpr std::array kFormats{
-    Format{".npy", open_npy, create<NpyWriter>}, Format{".pc2", open_pc2, create<Pc2Writer>},
-    Format{".mdd", open_mdd, create<MddWriter>}, Format{".obj", open_sequence, create_sequence},
-    Format{".ply", open_sequence, create_sequence}};
+constexpr std::array kFormats{Format{".npy", open_npy, create<NpyWriter>},
+                              Format{".pc2", open_pc2, create<Pc2Writer>},
+                              Format{".obj", open_sequence, create_sequence}};
 
 const Format& format_of(const std::filesystem::path& path) {
   const auto at = std::ranges::find(kFormats, path.extension().string(), &Format::extension);
   if (at != kFormats.end()) return *at;
-  fail_in(path,
-          "positions are in files that end in .npy, .pc2, .mdd, .obj or .ply, or in taut's own "
-          ".traj");
+  fail_in(path, "positions are in files that end in .npy, .pc2 or .obj");
 }
 
 }  // namespace

@@ -11,9 +11,7 @@
 ///
 ///     .npy   NumPy array [T, n, 3] of float32 or float64, in C order
 ///     .pc2   Point Cache 2: a header of 32 bytes, then float32, little-endian
-///     .mdd   Lightwave's point cache: counts and times in s, then float32, big-endian
 ///     .obj   Wavefront, a file for each frame: its `v` lines
-///     .ply   Stanford polygons, a file for each frame: x, y, z of its vertices; ASCII or binary
 ///
 /// The frames of a sequence have names that end in digits, equally far apart; any of them names it,
 /// as does the name without the digits: cloth_0001.obj, cloth.obj.
@@ -26,7 +24,6 @@ enum class Rounding { binary32, binary64, decimal };
 struct PositionsHeader {
   int vertices = 0, frames = 0;  ///< >= 1 each
   Rounding rounding = Rounding::binary64;
-  std::vector<double> times = {};            ///< [frames] s; empty: the format keeps none
   double spacing = 1;                        ///< between two frames, in frames of the animation
   std::vector<std::filesystem::path> files;  ///< in the order of the frames, or one for all
 };
@@ -49,15 +46,13 @@ class PositionReader {
 /// counts that do not agree with the size of the file, a missing frame of a sequence.
 std::unique_ptr<PositionReader> open_positions(const std::filesystem::path&);
 
-/// Appends frames to a new file or sequence; what was written is good if the program is killed,
-/// but .mdd is only there after finish(). float32 where the format has nothing else; coordinates of
-/// .npy, .obj and .ply come back bit for bit.
+/// Appends frames to a new file or sequence; what was written is good if the program is killed.
+/// float32 where the format has nothing else; coordinates of .npy and .obj come back bit for bit.
 class PositionWriter {
  public:
   virtual ~PositionWriter() = default;
   /// `x` is [n] m, the same n each time. Throws InputError if it cannot be written.
   virtual void append(double t, const std::vector<Vec3>& x) = 0;
-  virtual void finish() {}
 };
 
 /// Replaces what is there; frames of a sequence are NAME_00000.obj and on, with the triangles; .obj

@@ -1,4 +1,4 @@
-// A file for each frame: OBJ and PLY.
+// A file for each frame: OBJ.
 #include <algorithm>
 #include <cassert>
 
@@ -62,64 +62,7 @@ std::vector<fs::path> files_of(const fs::path& path) {
   return files;
 }
 
-class SequenceReader final : public PositionReader {
- public:
-  explicit SequenceReader(const fs::path& path) {
-    header_.files = files_of(path);
-    header_.frames = static_cast<int>(header_.files.size());
-    header_.vertices = static_cast<int>(vertices_of(header_.files.front()).size());
-    if (header_.vertices == 0) fail_in(header_.files.front(), "has no vertices");
-  }
-
-  std::vector<Vec3> read(int k) override {
-    assert(k >= 0 && k < header_.frames);
-    const fs::path& file = header_.files[static_cast<std::size_t>(k)];
-    std::vector<Vec3> x = vertices_of(file);
-    if (x.size() != static_cast<std::size_t>(header_.vertices))
-      fail_in(file, "has " + std::to_string(x.size()) + " vertices; " +
-                        header_.files.front().string() + " has " +
-                        std::to_string(header_.vertices));
-    return x;
-  }
-
- private:
-  std::vector<Vec3> vertices_of(const fs::path& file) {
-    return file.extension() == ".ply" ? ply_vertices(file, header_.rounding)
-                                      : obj_vertices(file, header_.rounding);
-  }
-};
-
-class SequenceWriter final : public PositionWriter {
- public:
-  SequenceWriter(const fs::path& path, const Mesh& mesh) : path_(path), mesh_(mesh) {}
-
-  void append(double t, const std::vector<Vec3>& x) override {
-    std::string digits = std::to_string(frames_++);
-    digits.insert(0, 5 - std::min<std::size_t>(5, digits.size()), '0');
-    fs::path file = path_;
-    file.replace_filename(path_.stem().string() + "_" + digits + path_.extension().string());
-    OutputFile(file).write_at(
-        0, path_.extension() == ".ply" ? ply_text(t, x, mesh_) : obj_text(t, x, mesh_));
-  }
-
- private:
-  fs::path path_;
-  Mesh mesh_;
-  int frames_ = 0;
-};
-
-}  // namespace
-
-std::unique_ptr<PositionReader> open_sequence(const fs::path& path) {
-  return std::make_unique<SequenceReader>(path);
-}
-
-std::unique_ptr<PositionWriter> create_sequence(const fs::path& path, const Mesh& mesh) {
-  return std::make_unique<SequenceWriter>(path, mesh);
-}
-
-std::vector<Vec3> obj_vertices(const fs::path& path, Rounding& rounding) {
-  rounding = Rounding::decimal;
+std::vector<Vec3> obj_vertices(const fs::path& path) {
   const std::string text = read_text(path, kMostMeshBytes);
   std::vector<Vec3> x;
   int line = 0;
@@ -160,6 +103,56 @@ std::string obj_text(double t, const std::vector<Vec3>& x, const Mesh& mesh) {
     out += '\n';
   }
   return out;
+}
+
+class SequenceReader final : public PositionReader {
+ public:
+  explicit SequenceReader(const fs::path& path) {
+    header_.files = files_of(path);
+    header_.frames = static_cast<int>(header_.files.size());
+    header_.rounding = Rounding::decimal;
+    header_.vertices = static_cast<int>(obj_vertices(header_.files.front()).size());
+    if (header_.vertices == 0) fail_in(header_.files.front(), "has no vertices");
+  }
+
+  std::vector<Vec3> read(int k) override {
+    assert(k >= 0 && k < header_.frames);
+    const fs::path& file = header_.files[static_cast<std::size_t>(k)];
+    std::vector<Vec3> x = obj_vertices(file);
+    if (x.size() != static_cast<std::size_t>(header_.vertices))
+      fail_in(file, "has " + std::to_string(x.size()) + " vertices; " +
+                        header_.files.front().string() + " has " +
+                        std::to_string(header_.vertices));
+    return x;
+  }
+};
+
+class SequenceWriter final : public PositionWriter {
+ public:
+  SequenceWriter(const fs::path& path, const Mesh& mesh) : path_(path), mesh_(mesh) {}
+
+  void append(double t, const std::vector<Vec3>& x) override {
+    std::string digits = std::to_string(frames_++);
+    digits.insert(0, 5 - std::min<std::size_t>(5, digits.size()), '0');
+    fs::path file = path_;
+    file.replace_filename(path_.stem().string() + "_" + digits + path_.extension().string());
+    OutputFile(file).write_at(0, obj_text(t, x, mesh_));
+  }
+
+ private:
+  fs::path path_;
+  Mesh mesh_;
+  int frames_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<PositionReader> open_sequence(const fs::path& path) {
+  return std::make_unique<SequenceReader>(path);
+}
+
+std::unique_ptr<PositionWriter> create_sequence(const fs::path& path, const Mesh& mesh) {
+  return std::make_unique<SequenceWriter>(path, mesh);
 }
 
 }  // namespace taut

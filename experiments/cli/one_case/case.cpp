@@ -64,7 +64,6 @@ int run(const Options& options) try {
               slow.at(m.step);
               if (options.verbose) tell(m, one.scene->steps);
             }});
-  if (motion) motion->finish();
   if (!options.final_state.empty()) write_durably(options.final_state, to_csv(result.last));
   if (!options.series.empty()) write_durably(options.series, to_csv(result.series));
   if (options.json)
@@ -86,8 +85,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--final-state", options.final_state,
                  "Write vertex,x,y,z,vx,vy,vz of the last stable state, full precision (CSV)");
   app.add_option("--trajectory", options.trajectory,
-                 "Write every step's positions: .npy, .pc2, .mdd, or a file a step, "
-                 ".obj or .ply");
+                 "Write every step's positions: .npy, .pc2, or .obj, a file a step");
   app.add_option("--series", options.series, "Write values over time (CSV)");
   app.add_flag("--verbose", options.verbose,
                "Say on stderr how far it is and what the solver made of its settings");

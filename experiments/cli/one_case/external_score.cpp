@@ -56,15 +56,14 @@ int run(const Options& o) {
 
 void add_options(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.scene, "Name of a shipped scene, or a path")->required();
-  app.add_option("POSITIONS", o.motion.file,
-                 "A .npy, .pc2 or .mdd; or one .obj or .ply of a sequence")
+  app.add_option("POSITIONS", o.motion.file, "A .npy, a .pc2, or one .obj of a sequence")
       ->required();
-  app.add_option("--fps", o.motion.fps, "Frames in a second (default: what the file says)")
+  app.add_option("--fps", o.motion.fps, "Frames in a second (default: one a step of the scene)")
       ->check(above_zero());
-  app.add_option("--scale", o.motion.scale, "What the file's unit is [m] (default: what fits)")
+  app.add_option("--scale", o.motion.scale,
+                 "The file's unit [m]: 0.01 for centimetres (default: 1)")
       ->check(above_zero());
-  app.add_option("--up", o.motion.up, "The axis that points up (default: what fits)")
-      ->check(CLI::IsMember({"auto", "y", "z"}));
+  app.add_flag("--z-up", o.motion.z_up, "The file's z points up, not its y");
   app.add_option("--rest", o.motion.rest,
                  "A file with the cloth at rest in the file's order, if it does not begin as the "
                  "scene does");
@@ -84,5 +83,5 @@ TAUT_VERB(external_score) = {
     .summary = "All metrics of positions that another program computed, from its file",
     .example =
         "taut external score hang blender.pc2 --fps 24 --series blender.csv\n  taut external "
-        "score hang houdini.mdd --solver jakobsen --picture hang.png",
+        "score hang houdini.pc2 --scale 0.01 --z-up --solver jakobsen --picture hang.png",
     .bind = taut::bind_verb<taut::verb::score::add_options, taut::verb::score::run>};
