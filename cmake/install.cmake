@@ -2,11 +2,14 @@
 include(CMakePackageConfigHelpers)
 
 install(TARGETS taut taut-f32 COMPONENT program)
+# ./taut builds the programs alone.
+install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" --build \"${PROJECT_BINARY_DIR}\" --target taut_manual
+                              OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/taut.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/taut.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
         RENAME taut COMPONENT program)
 install(FILES experiments/main-job.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
-install(DIRECTORY experiments/external/sdk experiments/external/jolt experiments/external/nvcloth
+install(DIRECTORY experiments/external/sdk
         DESTINATION ${CMAKE_INSTALL_DATADIR}/taut/external COMPONENT program)
 install(DIRECTORY experiments/scenes experiments/studies experiments/templates results/references
         DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)

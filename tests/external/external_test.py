@@ -24,7 +24,7 @@ os.environ["TAUT_SDK"] = str(SDK)
 os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
 USERS_SOLVERS = os.environ.get("TAUT_SOLVERS")
 LISTING = "jakobsen:substeps=1,order=mesh,projection=exact,precision=double,iterations="
-TOYS = {"python": f'python3 "{SDK}/toy.py"', "cpp": f'"{BINARIES}/tests/taut_toy_solver"', "node": f'node "{SDK}/toy.js"'}
+TOYS = {"python": f'python3 "{SDK}/toy.py"', "cpp": f'"{BINARIES}/tests/taut_toy_solver"'}
 
 
 def hostile(mode, timeout=3):
@@ -93,11 +93,6 @@ class Toys(Programs):
 
     def test_cpp(self):
         self.check("cpp")
-
-    def test_node(self):
-        if not shutil.which("node"):
-            self.skipTest("node is missing")
-        self.check("node")
 
     def test_what_it_cannot_do_is_unsupported(self):
         status = self.case(f"external:cmd='{TOYS['cpp']}'", "ball")["status"]
@@ -314,42 +309,6 @@ class Everywhere(Programs):
         torture = self.study("torture.toml", scenes=["torture/smallest", "torture/step-huge"], solvers=[toy])
         self.taut("run", torture, "--timeout", 10)
         self.taut("require", "./small.toml", toy, "--patience", 20, expect=None)
-
-
-class Jolt(Programs):
-    """`taut external install jolt` with an npm that downloads nothing."""
-
-    def setUp(self):
-        super().setUp()
-        if not shutil.which("node"):
-            self.skipTest("node is not here")
-        tools = self.folder / "tools"
-        tools.mkdir()
-        (tools / "npm").write_text("""#!/bin/sh
-test -e "$TAUT_NPM_FAILS" && echo "npm error network" >&2 && exit 1
-while [ "$1" != --prefix ]; do shift; done
-mkdir -p "$2/node_modules/jolt-physics/dist" && cd "$2/node_modules/jolt-physics" || exit 1
-echo '{"version": "0", "type": "module"}' >package.json
-echo MIT >LICENSE
-echo 'export default 1' >dist/jolt-physics.wasm-compat.js
-echo more >dist/large.js
-""")
-        (tools / "npm").chmod(0o755)
-        self.path = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "TAUT_NPM_FAILS": str(self.folder / "fails")}
-
-    def test_it_says_what_it_downloads_and_keeps_what_it_needs(self):
-        done = self.taut("external", "install", "jolt", env=self.path, expect=1)  # this npm's Jolt is none: the probe says so
-        self.assertRegex(done.err, r"npm downloads jolt-physics@1.1.0 \(MIT, 13 MB\), of which 3 MB stay in .*/solvers/jolt; to be rid of it")
-        kept = sorted(str(f.relative_to(self.solvers)) for f in self.solvers.rglob("*") if f.is_file())
-        package = "jolt/node_modules/jolt-physics/"
-        self.assertEqual(kept, sorted(["jolt.toml", "jolt/jolt.js", "jolt/taut_solver.js", package + "LICENSE", package + "package.json",
-                                       package + "dist/jolt-physics.wasm-compat.js"]))
-
-    def test_a_download_that_fails_registers_nothing(self):
-        (self.folder / "fails").write_text("")
-        self.assertIn("npm error network", self.taut("external", "install", "jolt", env=self.path, expect=2).err)
-        self.assertEqual(list(self.solvers.rglob("*")), [])
-        self.assertIn("there is jolt", self.taut("external", "install", "havok", expect=2).err)
 
 
 class Engines(Programs):

@@ -1,5 +1,5 @@
 // order=jolt is the order in which Jolt's soft body visits its edges, and with it the same float32
-// arithmetic gives Jolt's bits. Jolt itself is there after `taut external install jolt`.
+// arithmetic gives Jolt's bits. experiments/external/README.md says how to register Jolt itself.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -101,7 +101,7 @@ class JoltTwin : public testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::is_regular_file(registered_folder() / "jolt.toml"))
-      GTEST_SKIP() << "jolt is not installed: taut external install jolt";
+      GTEST_SKIP() << "jolt is not registered: experiments/external/README.md";
   }
 };
 

@@ -4,9 +4,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/probe.hpp"
 #include "experiments/external/protocol.hpp"
-#include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/process.hpp"
 
 namespace taut::verb::external_program {
 
@@ -58,47 +56,6 @@ int write_scene(const Options& o) {
   return kPass;
 }
 
-/// Downloads Jolt and registers it; if that fails, nothing is registered. Nothing of it is part of
-/// taut or of its set-up.
-int install(const Options& o) {
-  namespace fs = std::filesystem;
-  constexpr const char* kPackage = "jolt-physics@1.1.0";
-  if (o.command != "jolt") throw InputError("unknown program '" + o.command + "': there is jolt");
-  for (const char* needed : {"node", "npm"})
-    if (!on_path(needed))
-      throw InputError(std::string(needed) + " is not here (apt install nodejs npm): no jolt");
-  const fs::path registered = external::registered_folder(), folder = registered / "jolt";
-  progress() << "npm downloads " << kPackage << " (MIT, 13 MB), of which 3 MB stay in "
-             << folder.string() << "; to be rid of it, delete that folder and "
-             << (registered / "jolt.toml").string() << '\n';
-  const Scratch scratch;
-  Process npm({"npm", "install", "--prefix", scratch.path(), "--no-save", "--no-audit", "--no-fund",
-               "--ignore-scripts", kPackage},
-              {.output = ProcessOptions::Stream::piped, .errors = ProcessOptions::Stream::piped});
-  const std::string said = npm.read_all(600);
-  if (const auto end = npm.wait(10); !end || !end->good())
-    throw InputError("npm could not install " + std::string(kPackage) + ":\n" + said);
-  const fs::path package = fs::path("node_modules") / "jolt-physics",
-                 ours = data_folder() / "external";
-  const auto put = [&](const fs::path& from, const fs::path& to) {
-    make_folder((folder / to).parent_path());
-    write_file(folder / to, read_text(from));
-  };
-  for (const char* file : {"package.json", "LICENSE", "dist/jolt-physics.wasm-compat.js"})
-    put(scratch.path() / package / file, package / file);
-  put(ours / "jolt" / "jolt.js", "jolt.js");
-  put(ours / "sdk" / "taut_solver.js", "taut_solver.js");
-  write_file(registered / "jolt.toml",
-             "cmd = \"node jolt/jolt.js\"\nfiles = [\"jolt/taut_solver.js\", "
-             "\"jolt/node_modules/jolt-physics/dist/jolt-physics.wasm-compat.js\"]\n");
-  return probe(o);
-}
-
-void add_options_install(CLI::App& app, Options& o) {
-  app.add_option("PROGRAM", o.command, "jolt")->required();
-  add_format(app, o.format);
-}
-
 }  // namespace
 }  // namespace taut::verb::external_program
 
@@ -116,13 +73,6 @@ TAUT_VERB(external_probe) = {
     .example = "taut external probe 'python3 mine.py'\nExit: 0 it may be scored; 1 it may not",
     .bind = taut::bind_verb<taut::verb::external_program::add_options_probe,
                             taut::verb::external_program::probe>};
-
-TAUT_VERB(external_install) = {
-    .name = "external install",
-    .summary = "Downloads another engine, says what, registers it as a solver and probes it: jolt",
-    .example = "taut external install jolt\n  taut case hang jolt:substeps=15",
-    .bind = taut::bind_verb<taut::verb::external_program::add_options_install,
-                            taut::verb::external_program::install>};
 
 TAUT_VERB(external_scene) = {
     .name = "external scene",

@@ -1,6 +1,6 @@
 #!/usr/bin/env node
 // Jolt Physics' soft body (npm jolt-physics 1.1.0, MIT) as a solver: vertices, edges, rest lengths and inverse masses of
-// the scene, compliance 0, float32. `taut external install jolt` puts it in its place.
+// the scene, compliance 0, float32. experiments/external/README.md says how to register it.
 //
 // Jolt's "iterations" are substeps of one sweep each, without multipliers. Its Optimize() is obligatory and reorders
 // the edges; pins have to be set before it.

@@ -1,4 +1,4 @@
-// taut-solver/1 for node 12 and later, no packages: copy this file beside your solver.
+// taut-solver/1 for node 12 and later, no packages.
 //
 //     class Mine {
 //       constructor(scene, params) {}  // scene: the scene file; params.iterations
