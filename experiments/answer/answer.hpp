@@ -95,7 +95,7 @@ struct Table {
 /// kept and compared, each by one piece of code. Names of facts, of tables and of a table's columns
 /// are unique.
 struct Answer {
-  std::string kind;     ///< the verb: "check", "bench kernels"
+  std::string kind;     ///< the verb: "check", "bench effects"
   std::string subject;  ///< of what: "regression", "hang jakobsen:iterations=8"
   std::vector<Fact> facts = {};
   std::vector<Table> tables = {};

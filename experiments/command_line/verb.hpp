@@ -38,7 +38,7 @@ enum class VerbGroup { studies, one_case, cost, trust, extremes };
 /// How `taut VERB` introduces itself: one per file in experiments/cli, found by its TAUT_VERB
 /// line.
 struct VerbEntry {
-  std::string_view name;  ///< "run"; "bench kernels" is a verb of the verb bench
+  std::string_view name;  ///< "run"; "bench effects" is a verb of the verb bench
   VerbGroup group = VerbGroup::studies;
   std::string_view summary;  ///< one line
   std::string_view example;  ///< one or more full command lines, shown below --help

@@ -4,7 +4,6 @@
 import csv
 import hashlib
 import json
-import math
 import os
 import pathlib
 import re
@@ -522,22 +521,6 @@ class Verbs(CommandLine):
         noise = [good.get(name, True) for name in ("load", "clock", "same code, twice")]
         self.assertEqual(facts_of(report)["timing_trusted"], all(noise))
 
-    def test_benches_of_two_words_take_options(self):
-        short = ["--sizes", "8", "--rounds", "1", "--seconds", "0.0001"]
-        out = self.taut("bench", "kernels", *short).out
-        self.assertIn("textbook, float", out)
-        self.assertIn("fixed: what a step costs without a sweep", out)
-        bench = self.answer("bench", "kernels", *short)
-        fixed = [row["fixed"] for row in rows_of(bench, "size_8") if row["name"].startswith("jakobsen:")]
-        self.assertGreater(len(fixed), 8)
-        self.assertTrue(all(map(math.isfinite, fixed)))  # a difference: below 0 where other programs slowed the sweeps
-        limits, = rows_of(bench, "limits")
-        self.assertGreater(min(limits["traffic_float"], limits["traffic_double"], limits["two_threads"][1], limits["share"][1]), 0)
-        out = self.taut("bench", "contact", *short).out
-        for text in ["contact=continuous,order=mesh", "self=grid,order=coloured"]:
-            self.assertIn(text, out)
-        self.assertEqual({row["particles"] for row in rows_of(self.answer("bench", "contact", *short), "contact")}, {64})
-
     def test_effects_are_timed_beside_the_links_of_hang(self):
         def samples(bench, scene, what, side=0):
             return [s["value"] for s in rows_of(bench, "samples") if (s["scene"], s["what"], s["side"]) == (scene, what, side)]
@@ -552,14 +535,21 @@ class Verbs(CommandLine):
         bench = self.answer("bench", "effects", "crumple", "chain", "--sizes", "20,24", *short)
         self.assertEqual([(row["scene"], row["vertices"]) for side in (20, 24) for row in rows_of(bench, f"effects_{side}")],
                          [("hang", 400), ("crumple", 400), ("hang", 576), ("crumple", 576)])  # a chain is no sheet
-        bench = self.answer("bench", "effects", "hang", "--two-threads", "--sizes", "0,92", *short)
-        small, large = (rows_of(bench, f"two_threads_{side}")[0] for side in (0, 92))
-        self.assertEqual((small["vertices"], large["vertices"]), (1024, 8464))
-        self.assertEqual([len(samples(bench, "hang", "two threads", side)) for side in (0, 92)], [0, 4])
-        self.assertIn("fewer than 8192 vertices take one thread", bench["tables"]["two_threads_0"]["notes"][0]["note"])
         solver = "jakobsen:iterations=1,substeps=1000000"
         out = self.taut("bench", "effects", "ball", "--solver", solver, "--rounds", "1").out
         self.assertIn("not timed: in float, gravity's move", out)
+
+    def test_the_curves_of_a_step_are_drawn_from_its_points(self):
+        words = ["converge", "./small.toml", "--solver", "pd", "--solver", "jakobsen:order=mesh", "--most", "16", "-o", "figures"]
+        answer = self.answer(*words, "--kind", "gap")
+        picture = self.folder / facts_of(answer)["picture"]
+        self.assertIn("exact step", "".join(self.answer(*words)["tables"]["points"]["columns"][5]["heading"]))
+        self.assertIn("pd", picture.read_text())
+        drawn = [line.split(",") for line in picture.with_suffix(".csv").read_text().splitlines()[1:]]
+        points = [(row["iterations"], row["gap"]) for row in rows_of(answer, "points") if row["gap"]]
+        self.assertEqual([(int(k), float(gap)) for *_, k, gap in drawn], points)
+        self.assertIn("did you mean 'residual'", self.taut(*words, "--kind", "residuel", expect=2).err)
+        self.assertIn("--kind", self.taut(*words[:-2], "--kind", "gap", expect=2).err)
 
     def test_the_same_scene_under_another_name_is_the_same_case(self):
         (self.folder / "copy.toml").write_text((self.folder / "small.toml").read_text())

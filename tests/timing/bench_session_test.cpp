@@ -6,8 +6,6 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/timing/bench/contact.hpp"
-#include "experiments/timing/bench/kernels.hpp"
 #include "experiments/timing/recommendation.hpp"
 #include "experiments/timing/study_bench.hpp"
 #include "tests/support/damaged_results.hpp"
@@ -222,22 +220,6 @@ TEST(Costs, AreMediansForWhoeverAsks) {
            number_text(row.number(3)) + " " + row.text(4) + " " + row.text(5) + " " + row.text(6) +
            "\n";
   EXPECT_EQ(all, "a 3 6 9 4 4096 zeus\nb 2 4 6 3 4096 zeus\nc - - - 0 4096 zeus\n");
-}
-
-// What contact adds to a step of so many sweeps, over a sweep; what one kernel costs over another.
-// Medians of the rounds.
-TEST(BenchRows, RatiosAreMediansOfTheRounds) {
-  ContactRow row;
-  row.sweep = {2, 4, 5}, row.each_step = {1, 2, 30}, row.each_sweep = {0.5, 3, 1};
-  EXPECT_EQ(row.ratio(0).mid, 0.5);
-  EXPECT_EQ(row.ratio(2).mid, 2) << "1, 2 and 6.4";
-  EXPECT_EQ(row.ratio(2).low, 1);
-  EXPECT_EQ(row.ratio(2).high, 6.4);
-  KernelBench kernels;
-  kernels.rows.resize(2);
-  kernels.rows[0].samples = {1, 6, 4}, kernels.rows[1].samples = {2, 3, 1};
-  EXPECT_EQ(kernels.ratio(0, 1).mid, 2) << "0.5, 2 and 4";
-  EXPECT_EQ(kernels.ratio(1, 0).mid, 0.5);
 }
 
 TEST(Answers, FinalistsLeaveRoomForASecondSettingOfTheBest) {

@@ -240,5 +240,5 @@ TAUT_VERB(bench) = {
     .example =
         "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
         "jakobsen:iterations=1,substeps=16 --solver "
-        "bullet:iterations=1,substeps=16\n  taut bench kernels\n  taut bench contact",
+        "bullet:iterations=1,substeps=16\n  taut bench effects\n  taut bench scaling",
     .bind = taut::bind_verb<taut::verb::bench::add_options, taut::verb::bench::run>};

@@ -5,7 +5,6 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/bench/effects.hpp"
-#include "experiments/timing/bench/kernels.hpp"
 
 namespace taut::verb::effects {
 
@@ -19,7 +18,6 @@ struct Options {
   std::vector<int> sizes{0};
   int rounds = 11, copies = 0;
   double seconds = 0.01;
-  bool two_threads = false;
   Format format;
 };
 
@@ -49,7 +47,6 @@ Table table_of(const std::vector<EffectRow>& rows, const Options& options, int s
                {"times_hang_per_second", "x hang, a second"},
                {"times_links_alone", "x its links alone"},
                {"times_hang_touching_nothing", "x hang, touching nothing"},
-               {"times_hang_link_traffic", "x hang, link traffic"},
                {"times_one_copy", "copies on two threads, x half as many on one"}}};
   const EffectRow& unit = rows.front();
   for (const EffectRow& row : rows) {
@@ -60,45 +57,12 @@ Table table_of(const std::vector<EffectRow>& rows, const Options& options, int s
                   {row.cost() * 1e-9, row.times(unit), row.times(unit).mid * unit.dt / row.dt,
                    row.times_links_alone(),
                    of(row.touching_nothing, [&] { return row.touching_nothing_times(unit); }),
-                   of(row.traffic, [&] { return row.traffic_times(unit); }),
                    of(row.copies, [&] { return row.times_one() * (1 / half); })});
     else
       line.push_back(Cell().with("not timed: " + row.refused));
     line.resize(table.columns.size());
   }
-  table.caption =
-      "touching nothing: with its colliders out of reach; link traffic: the ends of its links "
-      "loaded and stored, nothing computed";
-  return table;
-}
-
-Table two_cores_of(const std::vector<EffectRow>& rows, int side) {
-  Table table{"two_threads_" + std::to_string(side),
-              size_text(side) + ": wall time; as fast as so many single threads, 95 %",
-              {{"scene"},
-               {"effects"},
-               {"vertices"},
-               {"two_threads", "two threads on one sheet"},
-               {"unrelated_sheets", "two unrelated sheets"},
-               {"share", "two threads / unrelated"},
-               {"threads_while_free", "two threads, cores free"},
-               {"free_rounds", "free rounds"},
-               {"rounds"}}};
-  for (const EffectRow& row : rows) {
-    auto& line = table.rows.emplace_back();
-    line = {row.scene, row.effects, row.vertices};
-    const TwoCores& cores = row.two_cores;
-    if (row.refused.empty())
-      line.insert(line.end(), {cores.threads(), cores.unrelated(), cores.share(),
-                               cores.threads_while_free(), cores.free_rounds(), cores.rounds()});
-    else
-      line.push_back(Cell().with("not timed: " + row.refused));
-    line.resize(table.columns.size());
-  }
-  table.caption = "both cores were free in the rounds in which unrelated sheets reached " +
-                  number_text(TwoCores::kFree) + "; a word takes " +
-                  number_text(seconds_per_handover(), kNs) +
-                  " from one thread to the other, at its fastest";
+  table.caption = "touching nothing: with its colliders out of reach";
   return table;
 }
 
@@ -108,9 +72,7 @@ void add_samples_of(const std::vector<EffectRow>& rows, int side, Table& table) 
     for (const auto& [what, scale, samples] :
          {std::tuple("whole", 1e-9, row.whole), std::tuple("links alone", 1e-9, row.links_alone),
           std::tuple("touching nothing", 1e-9, row.touching_nothing),
-          std::tuple("link traffic", 1e-9, row.traffic), std::tuple("copies", 1e-9, row.copies),
-          std::tuple("two threads", 1.0, row.two_cores.thread_samples()),
-          std::tuple("unrelated sheets", 1.0, row.two_cores.unrelated_samples())})
+          std::tuple("copies", 1e-9, row.copies)})
       for (const double sample : samples)
         table.rows.push_back({row.scene, side, what, scale * sample});
 }
@@ -120,19 +82,17 @@ int run(const Options& o) {
   std::erase(scenes, kUnit);
   scenes.insert(scenes.begin(), kUnit);
   Answer answer{"bench effects", o.solver};
-  Table samples{"samples",
-                "samples: SI, of a vertex and step; of two threads in single threads",
-                {{"scene"}, {"side"}, {"what"}, {"value"}}};
+  Table samples{
+      "samples", "samples: SI, of a vertex and step", {{"scene"}, {"side"}, {"what"}, {"value"}}};
   for (const int side : o.sizes) {
     const auto rows = bench_effects({.scenes = scenes,
                                      .solver = o.solver,
                                      .side = side,
                                      .copies = o.copies,
-                                     .two_threads = o.two_threads,
                                      .rounds = o.rounds,
                                      .seconds = o.seconds,
                                      .progress = Countdown("timing round")});
-    answer.add(o.two_threads ? two_cores_of(rows, side) : table_of(rows, o, side));
+    answer.add(table_of(rows, o, side));
     add_samples_of(rows, side, samples);
   }
   samples.detail = true;
@@ -149,15 +109,9 @@ void add_options(CLI::App& app, Options& o) {
       ->delimiter(',')
       ->check(CLI::Range(0, 1024));
   add_samples(app, o.rounds, o.seconds);
-  CLI::Option* const copies =
-      app.add_option("--copies", o.copies,
-                     "Also so many sheets of each scene at once on two threads; in wall time")
-          ->check(CLI::Range(1, 4096));
-  app.add_flag(
-         "--two-threads", o.two_threads,
-         "Instead what two threads are worth beside two unrelated sheets, in wall time; fewer "
-         "than 8192 vertices take one thread and are refused")
-      ->excludes(copies);
+  app.add_option("--copies", o.copies,
+                 "Also so many sheets of each scene at once on two threads; in wall time")
+      ->check(CLI::Range(1, 4096));
   add_format(app, o.format, "Print every sample, too");
 }
 
@@ -170,6 +124,5 @@ TAUT_VERB(bench_effects) = {
     .summary = "Measures what wind, contact and self-collision cost beside links alone",
     .example =
         "taut bench effects\n  taut bench effects ball box --sizes 64,128\n  "
-        "taut bench effects flag plane crumple --sizes 128 --two-threads --rounds 30\n  "
         "taut bench effects hang --copies 16",
     .bind = taut::bind_verb<taut::verb::effects::add_options, taut::verb::effects::run>};

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <variant>
 
 #include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/solver/thread_pool.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/timing/bench/kernels.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -26,12 +25,11 @@ std::optional<Scene> scene_of(const std::string& name, int side) {
   if (!scene.mesh.grid || std::min(scene.mesh.grid->nu, scene.mesh.grid->nv) < 2) return {};
   const std::string n = std::to_string(side);
   std::vector<std::string> changes{"cloth.grid=[" + n + "," + n + "]"};
-  if (scene.self_collision) {
-    const double finer = (std::min(scene.mesh.grid->nu, scene.mesh.grid->nv) - 1.0) / (side - 1);
-    changes.push_back("self_collision.radius=" +
-                      std::to_string(scene.self_collision->radius * finer));
-    changes.push_back("cloth.thickness=" + std::to_string(scene.thickness * finer));
-  }
+  const double finer = (std::min(scene.mesh.grid->nu, scene.mesh.grid->nv) - 1.0) / (side - 1);
+  if (!scene.colliders.empty() || scene.self_collision)
+    changes.push_back("cloth.thickness=" + shortest(scene.thickness * finer));
+  if (scene.self_collision)
+    changes.push_back("self_collision.radius=" + shortest(scene.self_collision->radius * finer));
   return load_scene(file, changes);
 }
 
@@ -88,8 +86,10 @@ class Copies final : public Solver {
 /// One scene, with its effects and without them.
 class TimedScene {
  public:
-  TimedScene(const Scene& scene, const EffectBenchOptions& options)
-      : wall_(options.copies > 0 || options.two_threads) {
+  TimedScene(const std::string& scene, const std::string& why) : wall_(false) {
+    row_.scene = scene, row_.refused = why;
+  }
+  TimedScene(const Scene& scene, const EffectBenchOptions& options) : wall_(options.copies > 0) {
     const SolverChoice choice = parse_solver(options.solver);
     row_ = {.scene = scene.name,
             .effects = effects_of(scene),
@@ -99,26 +99,16 @@ class TimedScene {
             .whole = {},
             .links_alone = {},
             .copies = {},
-            .touching_nothing = {},
-            .traffic = {},
-            .two_cores = {}};
+            .touching_nothing = {}};
     if (const auto reasons = choice.entry->unsupported(scene, choice.params); !reasons.empty()) {
       row_.refused = reasons.front();
       return;
     }
-    if (options.two_threads && row_.vertices < ThreadPool::kWorthSharing) {
-      row_.refused = "fewer than " + std::to_string(ThreadPool::kWorthSharing) +
-                     " vertices take one thread (see --sizes)";
-      return;
-    }
     whole_ = choice.entry->make(scene, choice.params);
-    if (options.two_threads) {
-      const SolverChoice two = parse_solver(with(options.solver, "threads=2"));
-      two_threads_ = two.entry->make(scene, two.params);
-      another_ = choice.entry->make(scene, choice.params);
-    } else {
-      make_others(scene, choice, options.copies);
-    }
+    links_alone_ = choice.entry->make(without_effects(scene), choice.params);
+    if (!scene.colliders.empty())
+      touching_nothing_ = choice.entry->make(touching_nothing(scene), choice.params);
+    if (options.copies > 0) copies_ = std::make_unique<Copies>(scene, choice, options.copies);
     run_.emplace(scene, *whole_, scene.steps);
     State end;
     whole_->store(end);
@@ -133,53 +123,23 @@ class TimedScene {
 
   void sample() {
     if (!row_.refused.empty()) return;
-    if (two_threads_) {
-      const double one = time(*whole_), two = time(*two_threads_), again = time(*whole_);
-      row_.two_cores.add(one, two, again, time_of_both());
-      return;
-    }
     row_.whole.push_back(time(*whole_));
     row_.links_alone.push_back(time(*links_alone_));
     if (touching_nothing_) row_.touching_nothing.push_back(time(*touching_nothing_));
-    if (any_mesh_) row_.traffic.push_back(traffic());
     if (copies_) row_.copies.push_back(time(*copies_));
   }
 
   EffectRow take() { return std::move(row_); }
 
  private:
-  /// What the whole is compared with.
-  void make_others(const Scene& scene, const SolverChoice& choice, int copies) {
-    links_alone_ = choice.entry->make(without_effects(scene), choice.params);
-    if (!scene.colliders.empty())
-      touching_nothing_ = choice.entry->make(touching_nothing(scene), choice.params);
-    if (!scene.mesh.grid) any_mesh_ = scene;
-    if (copies > 0) copies_ = std::make_unique<Copies>(scene, choice, copies);
-  }
-
   double time(Solver& solver) const {
     const StepTime step = run_->sample(solver, steps_);
     return 1e9 * (wall_ ? step.wall : step.cpu) / static_cast<double>(row_.vertices);
   }
 
-  /// Of the slower of two sheets that have a thread each, and no word between them.
-  double time_of_both() const {
-    double other = 0;
-    std::thread second([&] { other = time(*another_); });
-    const double one = time(*whole_);
-    second.join();
-    return std::max(one, other);
-  }
-
-  double traffic() const {
-    return 1e9 * seconds_per_link_traffic(*any_mesh_, true) *
-           static_cast<double>(projections_per_step(*whole_)) / static_cast<double>(row_.vertices);
-  }
-
   EffectRow row_;
   bool wall_;
-  std::unique_ptr<Solver> whole_, links_alone_, touching_nothing_, copies_, two_threads_, another_;
-  std::optional<Scene> any_mesh_;
+  std::unique_ptr<Solver> whole_, links_alone_, touching_nothing_, copies_;
   std::optional<CheckpointedRun> run_;
   int steps_ = 1;
 };
@@ -188,8 +148,11 @@ class TimedScene {
 
 std::vector<EffectRow> bench_effects(const EffectBenchOptions& options) {
   std::vector<TimedScene> subjects;
-  for (const std::string& name : options.scenes)
-    if (const auto scene = scene_of(name, options.side)) subjects.emplace_back(*scene, options);
+  for (const std::string& name : options.scenes) try {
+      if (const auto scene = scene_of(name, options.side)) subjects.emplace_back(*scene, options);
+    } catch (const InputError& error) {
+      subjects.emplace_back(name, error.what());
+    }
   for (int round = 0; round < options.rounds; ++round) {
     for (TimedScene& subject : subjects) subject.sample();
     for (auto s = subjects.rbegin(); s != subjects.rend(); ++s) s->sample();

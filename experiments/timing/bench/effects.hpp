@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "experiments/timing/bench/two_cores.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut {
@@ -21,10 +20,6 @@ struct EffectRow {
   std::vector<double> copies;  ///< likewise: all copies of it on two threads, one step of each
   /// Likewise: with its colliders so far away that nothing touches them. Empty: it has none.
   std::vector<double> touching_nothing;
-  /// Likewise, of the links alone: loading and storing their ends as colour batches do, in float,
-  /// with an addition in the place of the projection, at its fastest. Empty: a sheet.
-  std::vector<double> traffic;
-  TwoCores two_cores;  ///< in the place of all these, if EffectBenchOptions::two_threads
 
   Interval cost() const { return bootstrap_median(whole); }
   /// The copies over one sheet alone.
@@ -35,9 +30,6 @@ struct EffectRow {
   Interval touching_nothing_times(const EffectRow& other) const {
     return interleaved_ratio(touching_nothing, other.whole);
   }
-  Interval traffic_times(const EffectRow& other) const {
-    return interleaved_ratio(traffic, other.whole);
-  }
 };
 
 struct EffectBenchOptions {
@@ -46,8 +38,6 @@ struct EffectBenchOptions {
   int side = 0;                     ///< sheets of side x side vertices; 0: as the scene has it
   int copies = 0;  ///< of each scene, to be timed together on two threads; all is wall time then,
                    ///< else CPU time of the process; 0: none
-  /// Time two threads on one sheet and two unrelated sheets instead.
-  bool two_threads = false;
   int rounds = 11;
   double seconds = 0.01;  ///< of one sample
   std::function<void(std::size_t done, std::size_t all)> progress = [](auto, auto) {};
@@ -55,7 +45,8 @@ struct EffectBenchOptions {
 
 /// All scenes in one interleaved session, in rounds of alternating order (ABBA). A sample begins at
 /// up to four states spread over the scene's whole run. Scenes that are no sheet are left out where
-/// `side` is set; radius and thickness of a cloth that meets itself shrink with the spacing.
+/// `side` is set; radius and thickness shrink with the spacing. A scene that cannot be timed has a
+/// row that says why.
 std::vector<EffectRow> bench_effects(const EffectBenchOptions&);
 
 }  // namespace taut

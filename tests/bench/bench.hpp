@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/model/solver.hpp"
+#include "experiments/system/clock.hpp"
+
+namespace taut::bench {
+
+inline std::unique_ptr<Solver> make(const Scene& scene, const std::string& text) {
+  const SolverChoice choice = parse_solver(text);
+  return choice.entry->make(scene, choice.params);
+}
+
+/// Seconds of one step, of `steps` from this state on. CLOCK_THREAD_CPUTIME_ID: of this thread.
+inline double time_of(Solver& solver, const State& start, int steps, double dt,
+                      clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
+  solver.load(start);
+  const double begin = seconds_of(clock);
+  for (int n = 0; n < steps; ++n) solver.step(n * dt, dt);
+  return (seconds_of(clock) - begin) / steps;
+}
+
+void register_projections();
+void register_contact();
+void register_threads();
+
+}  // namespace taut::bench

@@ -1,0 +1,28 @@
+#!/usr/bin/env python3
+"""Every micro-benchmark runs, and what it measures lies where it can: bench_test.py PROGRAM"""
+import json
+import math
+import subprocess
+import sys
+
+done = subprocess.run([sys.argv[1], "--benchmark_min_time=0.0001", "--benchmark_format=json", "--benchmark_filter=/(0|32|64)/"],
+                      stdout=subprocess.PIPE, check=True)
+rows = {row["name"]: row for row in json.loads(done.stdout)["benchmarks"]}
+bound = rows["projection/0/in registers float"]["projection"]
+for name, row in rows.items():
+    assert not row.get("error_occurred"), (name, row)
+    kind = name.split("/")[0]
+    counters = {"projection": ["projection"], "contact": ["sweep", "in_sweep", "in_step", "touching"], "threads": ["two_threads"]}[kind]
+    for counter in counters:
+        assert math.isfinite(row[counter]), (name, counter)
+    if kind == "projection" and "threads" not in name:
+        assert bound / 2 < row["projection"] < 1e-5, (name, row["projection"], "s; faster than the arithmetic alone, or slower than any machine")
+    if name.startswith("contact/64/plane"):
+        assert row["touching"] > 0.9, (name, row["touching"])
+    elif kind == "contact" and "crumple" not in name:
+        assert 0.02 < row["touching"] < 0.9, (name, row["touching"])
+expected = {"projection": 14, "contact": 26}
+for kind, least in expected.items():
+    found = sum(name.startswith(kind) for name in rows)
+    assert found >= least, f"{found} benchmarks of {kind}; there were {least}"
+print(len(rows), "benchmarks ran")

@@ -1,0 +1,12 @@
+#include <benchmark/benchmark.h>
+
+#include "tests/bench/bench.hpp"
+
+int main(int argc, char** argv) {
+  taut::bench::register_projections();
+  taut::bench::register_contact();
+  taut::bench::register_threads();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+}
