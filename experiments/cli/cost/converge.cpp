@@ -3,6 +3,8 @@
 
 #include "core/io/scene_io.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/plot/convergence_plot.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/convergence.hpp"
 
@@ -13,6 +15,7 @@ namespace {
 struct Options {
   std::string scene, from = "jakobsen:iterations=50,substeps=1,precision=double";
   std::vector<std::string> solvers, settings;
+  std::string kind = "distance", figures;
   double at = 0.5;
   int most = 256;
   Format format;
@@ -131,7 +134,13 @@ int run(const Options& options) {
   std::vector<Convergence> all;
   for (const std::string& solver : options.solvers)
     all.push_back(converge(scene, state, at, solver, options.most));
-  print(answer_of(scene, options, at, all), options.format);
+  Answer answer = answer_of(scene, options, at, all);
+  if (!options.figures.empty())
+    answer.add({"picture"},
+               report::plot_convergence(all, options.kind, answer.subject, options.figures,
+                                        report::slug("converge-" + scene.name + "-" + options.kind))
+                   .string());
+  print(answer, options.format);
   return std::ranges::any_of(all, [](const Convergence& c) { return c.refused.empty(); })
              ? kPass
              : kNothing;
@@ -147,6 +156,11 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--from", o.from, "Solver whose run gives the state");
   app.add_option("--most", o.most, "Iterations, at most")->check(CLI::Range(1, 1 << 20));
   add_settings(app, o.settings);
+  CLI::Option* const figures =
+      add_output(app, o.figures, "Draw it into this folder, as SVG with its data and script");
+  app.add_option("--kind", o.kind, "What is drawn: distance, gap, stretch, residual")
+      ->check(known("kind", report::convergence_kinds()))
+      ->needs(figures);
   add_format(app, o.format);
 }
 
@@ -157,5 +171,5 @@ TAUT_VERB(converge) = {
     .name = "converge",
     .group = VerbGroup::cost,
     .summary = "Error over iterations inside one step, against the exact step",
-    .example = "taut converge chain --solver jakobsen --solver admm --at 0.5",
+    .example = "taut converge chain --solver jakobsen --solver admm --at 0.5 -o figures",
     .bind = taut::bind_verb<taut::verb::convergence::add_options, taut::verb::convergence::run>};
