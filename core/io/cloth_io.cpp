@@ -201,6 +201,8 @@ class VertexReader {
   void add(const Value& value) {
     if (value.is_string())
       add_part(value);
+    else if (value.is_table() && value.find("edge"))
+      add_along(value);
     else if (value.is_table())
       add_box(value);
     else if (value.is_number())
@@ -209,8 +211,8 @@ class VertexReader {
       add_pair(value);
     else
       report(value,
-             "must name vertices: a number, [i, j], an edge such as \"top\", or a box "
-             "{ min, max }; not " +
+             "must name vertices: a number, [i, j], an edge such as \"top\", a place "
+             "{ edge, at } or a box { min, max }; not " +
                  describe(value));
   }
   std::vector<int> take() {
@@ -226,19 +228,42 @@ class VertexReader {
   }
 
   void add_part(const Value& value) {
+    for (const int vertex : part_of(value)) all_.push_back(vertex);
+  }
+
+  /// The vertices of an edge or corner in their order, or a report and none.
+  std::vector<int> part_of(const Value& value) {
     std::vector<std::string> names;
     for (const Part& part : kParts) names.push_back(part.name);
     const auto part = std::find_if(kParts.begin(), kParts.end(),
                                    [&](const Part& p) { return p.name == value.string; });
     if (part == kParts.end())
-      return report(value, "names no edge or corner: \"" + value.string + "\"" +
-                               suggestion(value.string, names));
-    if (!mesh_.grid)
-      return report(value, "names \"" + value.string + "\", but only a grid has edges and corners");
+      report(value,
+             "names no edge or corner: \"" + value.string + "\"" + suggestion(value.string, names));
+    else if (!mesh_.grid)
+      report(value, "names \"" + value.string + "\", but only a grid has edges and corners");
+    if (part == kParts.end() || !mesh_.grid) return {};
+    std::vector<int> vertices;
     const Grid& g = *mesh_.grid;
     const auto at = [](int index, int count) { return index < 0 ? count + index : index; };
     for (int j = at(part->j0, g.nv); j <= at(part->j1, g.nv); ++j)
-      for (int i = at(part->i0, g.nu); i <= at(part->i1, g.nu); ++i) all_.push_back(g.index(i, j));
+      for (int i = at(part->i0, g.nu); i <= at(part->i1, g.nu); ++i)
+        vertices.push_back(g.index(i, j));
+    return vertices;
+  }
+
+  /// The vertex nearest to a fraction of the edge, the first of two.
+  void add_along(const Value& value) {
+    Section place(section_.diagnostics(), value, "a place of '" + key_ + "' in " + section_.name());
+    place.need({"edge", "at"});
+    const auto edge = place.string("edge");
+    const auto at = place.number("at", {0, 1});
+    place.finish();
+    if (!edge || !at) return;
+    const std::vector<int> vertices = part_of(*value.find("edge"));
+    if (vertices.empty()) return;
+    const double exact = *at * static_cast<double>(vertices.size() - 1);
+    all_.push_back(vertices[static_cast<std::size_t>(std::ceil(exact - 0.5 - 1e-9))]);
   }
 
   void add_number(const Value& value) {

@@ -30,7 +30,8 @@ std::vector<StudyAxis> scene_axes(const Study& study) {
   return chosen;
 }
 
-/// The parameters to vary of one solver: those that it has and that its text does not fix.
+/// The parameters to vary of one solver: those that it has and that its text does not fix. An axis
+/// of this solver stands in the place of one of all.
 std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) {
   const SolverChoice choice = parse_solver(text);
   const auto colon = text.find(':');
@@ -38,9 +39,13 @@ std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) 
       param_items(colon == text.npos ? "" : std::string_view(text).substr(colon + 1));
   std::vector<StudyAxis> chosen;
   for (const StudyAxis& axis : study.axes) {
-    const bool has = std::ranges::count(choice.entry->params, axis.name, &ParamSpec::name) > 0;
-    const bool fixed = std::ranges::find(given, axis.name, &ParamItem::key) != given.end();
-    if (has && !fixed) chosen.push_back(axis);
+    const std::string name = axis.parameter();
+    const bool has = axis.is_of(choice.entry->name) &&
+                     std::ranges::count(choice.entry->params, name, &ParamSpec::name) > 0;
+    const bool fixed = std::ranges::find(given, name, &ParamItem::key) != given.end();
+    const std::string own = std::string(choice.entry->name) + ":" + axis.name;
+    const bool replaced = std::ranges::find(study.axes, own, &StudyAxis::name) != study.axes.end();
+    if (has && !fixed && !replaced) chosen.push_back(axis);
   }
   return chosen;
 }
@@ -81,7 +86,8 @@ CaseSpec spec_of(const Study& study, const std::string& scene, const std::string
   for (const StudyAxis& axis : study.axes)
     if (of_scene.contains(axis.name))
       spec.overrides.push_back(axis.name + "=" + of_scene.at(axis.name));
-  for (const auto& [name, value] : of_solver) spec.solver = with(spec.solver, name + "=" + value);
+  for (const auto& [name, value] : of_solver)
+    spec.solver = with(spec.solver, StudyAxis{name, {}}.parameter() + "=" + value);
   return spec;
 }
 

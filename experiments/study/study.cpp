@@ -38,11 +38,15 @@ std::string text_of(const Value& value, bool toml) {
   }
 }
 
+constexpr const char* kAll = "all";  ///< shipped scenes
+
 /// Whether any of the solvers has the parameter; with `whole`, as a whole number.
-bool has_param(const std::vector<SolverChoice>& solvers, const std::string& name, bool whole) {
+bool has_param(const std::vector<SolverChoice>& solvers, const StudyAxis& axis, bool whole) {
   for (const SolverChoice& choice : solvers)
     for (const ParamSpec& spec : choice.entry->params)
-      if (spec.name == name && (!whole || spec.kind == ParamSpec::Kind::integer)) return true;
+      if (axis.is_of(choice.entry->name) && spec.name == axis.parameter() &&
+          (!whole || spec.kind == ParamSpec::Kind::integer))
+        return true;
   return false;
 }
 
@@ -79,7 +83,12 @@ class StudyReader {
  private:
   /// What a study and a preset have in common; a list that is present replaces the one before.
   void read_lists(Section& section) {
-    strings(section, "scenes", study_.scenes, find_scene);
+    strings(section, "scenes", study_.scenes, [](const std::string& name) {
+      if (name != kAll) find_scene(name);
+    });
+    if (std::erase(study_.scenes, kAll) > 0)
+      for (const std::string& name : shipped("scenes"))
+        if (std::ranges::count(study_.scenes, name) == 0) study_.scenes.push_back(name);
     if (strings(section, "solvers", study_.solvers, parse_solver)) remember_solvers();
     if (strings(section, "set", study_.settings, [](const std::string&) {}))
       for (const Value& item : section.find("set")->items) study_.places[item.string] = item.place;
@@ -142,15 +151,34 @@ class StudyReader {
     }
   }
 
+  /// What the parameter is measured in, where solvers that spell it alike mean different things:
+  /// "N/m in bullet-deformable, 1 in bullet"; "": all the same.
+  std::string mixed_units(const StudyAxis& axis) const {
+    std::map<std::string, std::string> solver_of;
+    for (const SolverChoice& choice : choices_)
+      for (const ParamSpec& spec : choice.entry->params)
+        if (axis.is_of(choice.entry->name) && spec.name == axis.parameter())
+          solver_of.emplace(spec.unit.empty() ? "1" : spec.unit, choice.entry->name);
+    return solver_of.size() < 2 ? "" : join(solver_of, " and ", [](const auto& one) {
+      return one.first + " in " + one.second;
+    });
+  }
+
   void read_axis(StudyAxis axis, const Key& key, const Value& value) {
-    if (!axis.of_scene() && !choices_.empty() && !has_param(choices_, axis.name, false)) {
+    if (const std::string mixed = mixed_units(axis); !mixed.empty()) {
+      diagnostics_.report(key.place, "'" + axis.name + "' is " + mixed +
+                                         ": an axis for each, as \"" + axis_of_first(axis) + "\"");
+      return;
+    }
+    if (!axis.of_scene() && !choices_.empty() && !has_param(choices_, axis, false)) {
       diagnostics_.report(key.place, "no solver of this study has a parameter '" + axis.name + "'" +
-                                         suggestion(axis.name, param_names()) +
-                                         " (a scene key has a dot, as \"time.dt\")");
+                                         suggestion(axis.parameter(), param_names()) +
+                                         " (a scene key has a dot, as \"time.dt\"; a parameter of "
+                                         "one solver a colon, as \"xpbd:substeps\")");
       return;
     }
     if (value.is_table())
-      axis.values = range(value, has_param(choices_, axis.name, true));
+      axis.values = range(value, has_param(choices_, axis, true));
     else if (value.is_array())
       for (const Value& item : value.items) axis.values.push_back(text_of(item, axis.of_scene()));
     if (axis.values.empty()) {
@@ -197,12 +225,21 @@ class StudyReader {
 
   void check_values(const StudyAxis& axis, const Value& value) {
     for (const SolverChoice& choice : choices_)
-      if (has_param({choice}, axis.name, false))
+      if (has_param({choice}, axis, false))
         for (std::size_t i = 0; i < axis.values.size(); ++i)
           if (!guarded(value.is_array() ? value.items[i] : value, [&] {
-                Params(choice.entry->name, choice.entry->params, axis.name + "=" + axis.values[i]);
+                Params(choice.entry->name, choice.entry->params,
+                       axis.parameter() + "=" + axis.values[i]);
               }))
             return;
+  }
+
+  /// "bullet:stiffness" of stiffness.
+  std::string axis_of_first(const StudyAxis& axis) const {
+    for (const SolverChoice& choice : choices_)
+      if (has_param({choice}, axis, false))
+        return std::string(choice.entry->name) + ":" + axis.name;
+    return axis.name;
   }
 
   std::vector<std::string> param_names() const {

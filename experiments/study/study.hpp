@@ -11,12 +11,20 @@
 
 namespace taut {
 
-/// A setting that a study varies: a scene key ("time.dt") if its name has a dot, else a parameter
-/// of those solvers that have it.
+/// A setting that a study varies: a scene key ("time.dt") if its name has a dot, a parameter of one
+/// solver ("xpbd:structural"), or a parameter of all that have it.
 struct StudyAxis {
   std::string name;
   std::vector<std::string> values;  ///< as typed: TOML for scene keys ("\"1/64\"", "[16, 16]")
   bool of_scene() const { return name.find('.') != std::string::npos; }
+  std::string solver() const {  ///< "": all that have the parameter
+    return of_solver() ? name.substr(0, name.find(':')) : "";
+  }
+  std::string parameter() const { return of_solver() ? name.substr(name.find(':') + 1) : name; }
+  bool is_of(std::string_view a_solver) const { return !of_solver() || solver() == a_solver; }
+
+ private:
+  bool of_solver() const { return name.find(':') != std::string::npos; }
 };
 
 /// Cases that a study leaves out: those that match every setting that is named.

@@ -180,6 +180,10 @@ TEST(SceneValues, EveryEdgeAndCornerOfAGridHasItsName) {
   EXPECT_EQ(pins("'bottom'"), (std::vector{9, 10, 11}));
   EXPECT_EQ(pins("'left'"), (std::vector{0, 3, 6, 9}));
   EXPECT_EQ(pins("'right'"), (std::vector{2, 5, 8, 11}));
+  EXPECT_EQ(pins("{ edge = 'left', at = 0.34 }"), (std::vector{3}));
+  EXPECT_EQ(pins("{ edge = 'left', at = 1 }"), (std::vector{9}));
+  EXPECT_EQ(pins("{ edge = 'bottom', at = 0.5 }"), (std::vector{10}));
+  EXPECT_EQ(pins("{ edge = 'right', at = 0.5 }"), (std::vector{5})) << "the first of two";
   EXPECT_EQ(pins("[[0, 3], [2, 0], 11, 0]"), (std::vector{0, 2, 9, 11}));
   EXPECT_EQ(pins("{ min = [0.5, -0.5, 0], max = [1, 0, 0] }"), (std::vector{1, 2, 4, 5}));
 }
@@ -199,9 +203,13 @@ TEST(SceneValues, WhatNamesNoVertexIsRefusedAtTheBorder) {
   for (const char* pair : {"[1]", "[1, 2, 3]", "[1, 2.0]", "[1.0, 2]", "['a', 2]"})
     EXPECT_EQ(refused(pair), "must be a pair of whole numbers [i, j]") << pair;
   EXPECT_EQ(refused("'tap'"), "names no edge or corner: \"tap\"; did you mean 'top'?");
-  EXPECT_EQ(refused("true"),
-            "must name vertices: a number, [i, j], an edge such as \"top\", or a box { min, max }; "
-            "not true");
+  EXPECT_EQ(
+      refused("true"),
+      "must name vertices: a number, [i, j], an edge such as \"top\", a place { edge, at } or "
+      "a box { min, max }; not true");
+  EXPECT_EQ(refused("{ edge = 'tap', at = 0.5 }"),
+            "names no edge or corner: \"tap\"; did you mean 'top'?");
+  EXPECT_NE(refused("{ edge = 'top', at = 1.5 }").find("at"), std::string::npos);
 }
 
 TEST(SceneValues, TheMassIsGivenOrFollowsFromTheArea) {

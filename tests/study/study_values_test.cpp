@@ -122,6 +122,37 @@ solvers = ["bullet"]
   }
 }
 
+// Two solvers that spell a parameter alike may mean different things by it.
+TEST_F(StudyFile, AnAxisMayBeOfOneSolverAndNeverMixesUnits) {
+  const auto asked = [](const std::string& axes) {
+    return "question = \"?\"\nscenes = [\"hang\"]\n"
+           "solvers = [\"jakobsen\", \"xpbd\", \"mass-spring\"]\n" +
+           axes;
+  };
+  std::string all;
+  for (const Case& one : cases_of(read(asked("axes.substeps = [1, 2]\n"
+                                             "axes.\"xpbd:substeps\" = [3]\n"))))
+    all += one.choice.entry->name[0] + std::string(one.choice.params.value("substeps")) + " ";
+  EXPECT_EQ(all, "j1 j2 x3 m1 m2 ");
+  EXPECT_EQ(wrong(asked("axes.structural = [1, 2]\n")),
+            "4:6: 'structural' is N/m in mass-spring and m/N in xpbd: an axis for each, as "
+            "\"xpbd:structural\"\n");
+  EXPECT_EQ(cases_of(read(asked("axes.\"xpbd:structural\" = [1e-4, 1e-3]\n"))).size(), 4u);
+  EXPECT_NE(wrong(asked("axes.\"jakobsen:structural\" = [1]\n")).find("no solver of this study"),
+            std::string::npos);
+}
+
+TEST_F(StudyFile, AllIsEveryShippedScene) {
+  const auto scenes = [&](const std::string& list) {
+    return read("question = \"?\"\nscenes = [" + list + "]\nsolvers = [\"jakobsen\"]\n").scenes;
+  };
+  const Strings all = scenes("\"all\"");
+  EXPECT_GT(all.size(), 10u);
+  EXPECT_EQ(std::ranges::count(all, "hang"), 1);
+  EXPECT_EQ(scenes("\"hang\", \"all\"").size(), all.size());
+  EXPECT_EQ(scenes("\"hang\", \"all\"").front(), "hang");
+}
+
 // Of a scene's key a list is one value; of scenes, solvers and parameters it is several.
 TEST_F(StudyFile, AnExclusionNamesAnyOfSomeValues) {
   const auto left = [&](const std::string& exclusion) {
@@ -170,7 +201,7 @@ knd = "x"
             "3:22: jakobsen: unknown parameter 'iteratons'; did you mean 'iterations'?\n"
             "4:7: 'set' in the study must be a list of texts, not a whole number\n"
             "6:1: no solver of this study has a parameter 'colour' (a scene key has a dot, as "
-            "\"time.dt\")\n"
+            "\"time.dt\"; a parameter of one solver a colon, as \"xpbd:substeps\")\n"
             "7:14: missing key 'steps' in the range\n"
             "8:9: 'order' must be a list of values or a range { from, to, steps, scale }\n"
             "9:12: 'substeps' must be a list of values or a range { from, to, steps, scale }\n"
