@@ -30,8 +30,9 @@ const Finding* telling(const std::vector<Finding>& findings, std::string_view be
 
 std::vector<JudgedAssertion> judge_assertions(const FindingsOf& findings_of) {
   std::vector<JudgedAssertion> all;
-  for (const VasiloviciAssertion& assertion : vasilovici_assertions()) {
-    JudgedAssertion judged{std::string(assertion.section), std::string(assertion.assertion),
+  for (const Assertion& assertion : assertions()) {
+    JudgedAssertion judged{std::string(assertion.source), std::string(assertion.place),
+                           std::string(assertion.assertion),
                            std::string(to_string(assertion.verdict)), ""};
     if (!assertion.truth.empty()) {
       const std::vector<Finding>* findings = findings_of(assertion.truth);

@@ -5,14 +5,14 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/truths/assertions/assertions.hpp"
 #include "experiments/truths/truth.hpp"
-#include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut {
 
-/// An assertion of Vasilovici's report with the verdict that its truth gives now.
+/// An assertion of a publication with the verdict that its truth gives now.
 struct JudgedAssertion {
-  std::string section, assertion;
+  std::string source, section, assertion;
   std::string verdict;  ///< to_string(AssertionVerdict), or "overturned": its truth is broken
   std::string figure;  ///< of the truth: "jakobsen: RMS stretch 0.061 (0.06 +- 0.01)"; may be empty
 };

@@ -96,7 +96,7 @@ struct SceneMedia {
 /// What `taut verify` found.
 struct Truths {
   Json shown = {};  ///< `truths` of the model (model/MODEL.md)
-  /// By assertion of Vasilovici's report: its verdict now, and the number that it rests on.
+  /// By assertion of a publication: its verdict now, and the number that it rests on.
   std::map<std::string, std::pair<std::string, std::string>> assertions = {};
 };
 

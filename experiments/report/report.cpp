@@ -306,7 +306,7 @@ class Builder {
         at["unequal"] = "Unequal work: " + unequal + ".";
       one["studies"].push_back(std::move(at));
     }
-    one["assertions"] = json_of_vasilovici(input_.truths);
+    one["assertions"] = json_of_assertions(input_.truths);
     for (const auto& [what, value] : input_.provenance)
       one["facts"].push_back({{"name", what}, {"value", value}});
     for (const std::string& host : input_.cost_hosts)

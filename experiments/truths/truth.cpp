@@ -10,9 +10,21 @@
 
 namespace taut {
 
+namespace {
+
+constexpr std::array<std::string_view, 4> kVerdicts{"passed", "deviates", "not applicable",
+                                                    "broken"};
+
+}  // namespace
+
 std::string_view to_string(TruthVerdict verdict) {
-  constexpr std::array<std::string_view, 4> names{"passed", "deviates", "not applicable", "broken"};
-  return names[static_cast<std::size_t>(verdict)];
+  return kVerdicts[static_cast<std::size_t>(verdict)];
+}
+
+TruthVerdict verdict_of(std::string_view text) {
+  const auto at = std::ranges::find(kVerdicts, text);
+  return at == kVerdicts.end() ? TruthVerdict::broken
+                               : static_cast<TruthVerdict>(at - kVerdicts.begin());
 }
 
 std::string_view section_title(int section) {

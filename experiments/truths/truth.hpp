@@ -21,6 +21,7 @@ enum class TruthVerdict {
   broken           ///< differs: the testbed or the solver is wrong
 };
 std::string_view to_string(TruthVerdict);
+TruthVerdict verdict_of(std::string_view);  ///< the inverse; `broken` of anything else
 
 /// One number of one subject against the truth.
 struct Finding {

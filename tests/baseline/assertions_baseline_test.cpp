@@ -3,28 +3,31 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace taut::assertions_baseline_test {
 namespace {
 
+/// With one passed finding of what each assertion quotes, and one more of that truth.
 std::vector<JudgedAssertion> judged(TruthVerdict of_three_sweeps) {
-  static std::vector<Finding> fine, changed;
-  const auto finding = [](TruthVerdict verdict) {
+  std::map<std::string, std::vector<Finding>, std::less<>> findings;
+  const auto finding = [](std::string_view quantity, TruthVerdict verdict) {
     return Finding{
-        "jakobsen:iterations=3", "largest acceleration", "1", 0.06, 0.06, 0.01, 0, verdict, ""};
+        "jakobsen:iterations=3", std::string(quantity), "1", 0.06, 0.06, 0.01, 0, verdict, ""};
   };
-  fine = {finding(TruthVerdict::passed)};
-  changed = {finding(TruthVerdict::passed), finding(of_three_sweeps)};
-  return judge_assertions(
-      [](std::string_view truth) { return truth == "three-sweeps" ? &changed : &fine; });
+  for (const Assertion& one : assertions())
+    findings[std::string(one.truth)].push_back(finding(one.figure, TruthVerdict::passed));
+  findings["three-sweeps"].push_back(finding("", of_three_sweeps));
+  return judge_assertions([&](std::string_view truth) { return &findings.find(truth)->second; });
 }
 
 TEST(AssertionsBaseline, HasEveryAssertionWithVerdictAndFigure) {
-  const auto assertions = judged(TruthVerdict::passed);
-  ASSERT_EQ(assertions.size(), vasilovici_assertions().size());
-  for (std::size_t i = 0; i < assertions.size(); ++i) {
-    EXPECT_EQ(assertions[i].verdict, to_string(vasilovici_assertions()[i].verdict));
-    EXPECT_EQ(assertions[i].figure.empty(), vasilovici_assertions()[i].truth.empty())
-        << assertions[i].assertion;
+  const auto all = judged(TruthVerdict::passed);
+  ASSERT_EQ(all.size(), assertions().size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].verdict, to_string(assertions()[i].verdict));
+    EXPECT_EQ(all[i].source, assertions()[i].source);
+    EXPECT_EQ(all[i].figure.empty(), assertions()[i].truth.empty()) << all[i].assertion;
   }
 }
 

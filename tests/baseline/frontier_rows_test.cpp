@@ -104,9 +104,8 @@ TEST(ClaimFigures, AreTheNumberThatSpeaksForTheClaim) {
   };
   /// Verdict and figure of the claim that the truth of this name holds, from these findings.
   const auto judged = [](const std::vector<Finding>& findings) {
-    const VasiloviciAssertion& claim =
-        *std::ranges::find_if(vasilovici_assertions(),
-                              [](const auto& c) { return !c.truth.empty() && c.figure.empty(); });
+    const Assertion& claim = *std::ranges::find_if(
+        assertions(), [](const auto& c) { return !c.truth.empty() && c.figure.empty(); });
     for (const JudgedAssertion& one : judge_assertions(
              [&](std::string_view truth) { return truth == claim.truth ? &findings : nullptr; }))
       if (one.assertion == claim.assertion)
@@ -130,14 +129,14 @@ TEST(ClaimFigures, AreOfTheQuantityThatTheClaimQuotes) {
     return Finding{"bullet", quantity, "1", measured, 1, 0.5, 0, TruthVerdict::passed, ""};
   };
   int quoted = 0;
-  for (const VasiloviciAssertion& claim : vasilovici_assertions()) {
+  for (const Assertion& claim : assertions()) {
     if (claim.figure.empty()) continue;
     const std::string own(claim.figure);
     const std::vector<Finding> findings{finding("not " + own, 0.5), finding(own + " of it", 0.75),
                                         finding(own, 1.25)};
     for (const JudgedAssertion& one : judge_assertions(
              [&](std::string_view truth) { return truth == claim.truth ? &findings : nullptr; })) {
-      if (one.section != claim.section || one.assertion != claim.assertion) continue;
+      if (one.source != claim.source || one.assertion != claim.assertion) continue;
       EXPECT_EQ(one.figure, "bullet: " + own + " of it 0.75 (1 +- 0.5)") << "the first that is";
       EXPECT_EQ(one.verdict, to_string(claim.verdict));
       ++quoted;

@@ -55,6 +55,12 @@ class Contributing(CommandLine):
         record = json.loads(self.taut("case", "ball", "toy", "--json", program="taut-toy").out)
         self.assertEqual(record["status"]["kind"], "unsupported")
 
+    def test_the_truths_for_every_solver_bind_it(self):
+        for solver in ("toy", "toy-pass"):
+            done = self.taut("verify", "--solver", solver, program="taut-toy")
+            self.assertIn("any-solver", done.out)
+            self.assertRegex(done.err, r"4 numbers: 4 passed, 0 deviate as explained, 0 not applicable, 0 broken")
+
     def test_the_scene_and_the_study_run(self):
         files = blocks("toml", "#")
         self.assertEqual(sorted(files), ["mine.toml", "sweeps.toml"])

@@ -10,7 +10,7 @@
 #include "experiments/report/report.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/truths/vasilovici/assertions.hpp"
+#include "experiments/truths/assertions/assertions.hpp"
 #include "tests/report/made_up.hpp"
 #include "tests/support/synthetic_records.hpp"
 
@@ -105,7 +105,7 @@ ReportInput full() {
   row.update({{"verdict", "deviates"}, {"why", "?"}});
   input.truths = Truths{{{"truths", 1}, {"findings", 1}, {"verdicts", {{"deviates", 1}}}}};
   input.truths->shown["rows"] = {row};
-  input.truths->assertions[std::string(vasilovici_assertions()[0].assertion)] = {"holds", "1"};
+  input.truths->assertions[std::string(assertions()[0].assertion)] = {"holds", "1"};
   for (unsigned seed = 0; !input.bench; ++seed) input.bench = made_up::Maker(seed).input().bench;
   input.regressions = {{"cases", 1}, {"values", 1}};
   (*input.regressions)["rows"] = {object({"study", "case", "change"})};

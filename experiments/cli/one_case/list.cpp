@@ -5,7 +5,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/truths/vasilovici/assertions.hpp"
+#include "experiments/truths/assertions/assertions.hpp"
 
 namespace taut::verb::list {
 
@@ -81,14 +81,19 @@ void list_studies(Answer& all) {
   all.add(std::move(table));
 }
 
-/// What Vasilovici's report asserts.
+/// What publications assert.
 void list_assertions(Answer& all) {
   Table table{"assertions",
-              "assertions of Vasilovici's report",
-              {{"name", "section"}, {"summary", "assertion"}, {"verdict"}, {"because"}, {"truth"}}};
-  for (const VasiloviciAssertion& assertion : vasilovici_assertions())
-    table.rows.push_back({assertion.section, assertion.assertion, to_string(assertion.verdict),
-                          assertion.because,
+              "what publications assert",
+              {{"source"},
+               {"name", "section"},
+               {"summary", "assertion"},
+               {"verdict"},
+               {"because"},
+               {"truth"}}};
+  for (const Assertion& assertion : assertions())
+    table.rows.push_back({assertion.source, assertion.place, assertion.assertion,
+                          to_string(assertion.verdict), assertion.because,
                           assertion.truth.empty() ? Cell() : Cell(assertion.truth)});
   all.add(std::move(table));
 }

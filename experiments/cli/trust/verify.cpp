@@ -1,6 +1,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <fstream>
 #include <mutex>
 #include <thread>
 
@@ -11,9 +12,11 @@
 #include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/clock.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
+#include "experiments/truths/assertions/assertions.hpp"
 #include "experiments/truths/truth.hpp"
-#include "experiments/truths/vasilovici/assertions.hpp"
 
 namespace taut::verb::verify {
 
@@ -23,6 +26,7 @@ struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
   bool assertions = false, update = false, list = false, record = false;
+  bool here = false;  ///< in this process
   Format format;
   std::string baselines, out;
 
@@ -41,10 +45,7 @@ std::vector<const TruthEntry*> choose(const Options& options) {
     if (solver != "reference") parse_solver(solver);
   std::vector<const TruthEntry*> chosen;
   for (const TruthEntry* truth : truths()) {
-    if (options.assertions &&
-        std::ranges::none_of(vasilovici_assertions(), [&](const VasiloviciAssertion& assertion) {
-          return assertion.truth == truth->name;
-        }))
+    if (options.assertions && std::ranges::count(assertions(), truth->name, &Assertion::truth) == 0)
       continue;
     const bool named = options.names.empty() || std::ranges::count(options.names, truth->name) > 0;
     if (named && (options.section == 0 || truth->section == options.section))
@@ -54,8 +55,54 @@ std::vector<const TruthEntry*> choose(const Options& options) {
   return chosen;
 }
 
-/// Checks the truths on `jobs` threads; outcomes stay in the order of the truths. Throws what a
-/// truth threw first, as InputError of a shipped scene that is missing.
+/// What one truth may use: it costs a second or two.
+constexpr ProcessLimits kLimits{.cpu_seconds = 600, .memory = std::size_t{4} << 30};
+
+std::vector<Finding> findings_in(const Answer& answer) {
+  std::vector<Finding> all;
+  const Table& table = answer.table("findings");
+  for (const auto& row : table.rows) {
+    const auto at = [&](std::string_view column) { return table.at(row, column); };
+    Finding f{at("subject").text(),
+              at("quantity").text(),
+              at("unit").text(),
+              at("measured").number(),
+              at("expected").number(),
+              at("tolerance").number(),
+              at("uncertainty").number(),
+              {},
+              at("why").text()};
+    f.verdict = verdict_of(at("verdict").text());
+    all.push_back(std::move(f));
+  }
+  return all;
+}
+
+/// A truth in a process of its own: whatever its solver does costs this truth alone. Throws
+/// InputError of a shipped scene that is missing.
+std::vector<Finding> findings_of(const TruthEntry& truth, const Options& options) {
+  const Scratch scratch;
+  std::vector<std::string> words{sibling_program(""), "verify", std::string(truth.name), "--here",
+                                 "--json"};
+  for (const std::string& solver : options.solvers) words.insert(words.end(), {"--solver", solver});
+  Process process(words, {.output = ProcessOptions::Stream::piped,
+                          .errors_file = scratch.path() / "errors",
+                          .limits = kLimits});
+  const std::string out = process.read_all(5 * kLimits.cpu_seconds);
+  const std::optional<ProcessEnd> end = process.wait(1);
+  const std::string said = last_line(std::ifstream(scratch.path() / "errors"));
+  if (end && end->exit_code == kUsage) throw InputError(said);
+  if (end && out.ends_with("}\n"))
+    return findings_in(answer_from_json(out, std::string(truth.name)));
+  Finding f;
+  f.subject = options.solvers.empty() ? "taut" : options.solvers.front();
+  f.quantity = "the check ends", f.unit = "1", f.expected = 1, f.verdict = TruthVerdict::broken;
+  f.why = (end ? end->text() : "it took too long") + (said.empty() ? "" : ": " + said);
+  return {f};
+}
+
+/// Checks the truths, `jobs` at a time; outcomes stay in the order of the truths. Throws what a
+/// truth threw first.
 std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const Options& options) {
   std::vector<Outcome> outcomes(chosen.size());
   std::atomic<std::size_t> next{0};
@@ -67,9 +114,13 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
     try {
       for (std::size_t i = next++; i < chosen.size(); i = next++) {
         const auto start = SteadyClock::now();
-        Findings findings(options.solvers);
-        chosen[i]->check(findings);
-        outcomes[i] = {chosen[i], findings.all(), seconds_since(start)};
+        if (options.here) {
+          Findings findings(options.solvers);
+          chosen[i]->check(findings);
+          outcomes[i] = {chosen[i], findings.all(), seconds_since(start)};
+        } else {
+          outcomes[i] = {chosen[i], findings_of(*chosen[i], options), seconds_since(start)};
+        }
         const std::lock_guard lock(mutex);
         countdown(++done, chosen.size());
       }
@@ -171,10 +222,10 @@ Table findings_of(const std::vector<Outcome>& outcomes) {
 
 Table table_of(const std::vector<JudgedAssertion>& assertions) {
   Table table{"assertions",
-              "assertions of Vasilovici's report",
-              {{"section"}, {"verdict"}, {"assertion"}, {"figure"}}};
-  for (const auto& [section, assertion, verdict, figure] : assertions)
-    table.rows.push_back({section, verdict, assertion, figure});
+              "what publications assert",
+              {{"source"}, {"section"}, {"verdict"}, {"assertion"}, {"figure"}}};
+  for (const auto& [source, section, assertion, verdict, figure] : assertions)
+    table.rows.push_back({source, section, verdict, assertion, figure});
   return table;
 }
 
@@ -237,10 +288,10 @@ int compare_with_baseline(const Answer& answer, const Options& options) {
   // Figures may differ: the truth's tolerance judges them.
   const auto changes =
       differences(answer_from_json(read_text(file), file.string()).table("assertions"), now,
-                  {"section", "assertion"}, {"verdict"});
+                  {"source", "assertion"}, {"verdict"});
   for (const Difference& change : changes)
     std::cerr << "assertion " << printable(change.text) << '\n';
-  progress() << now.rows.size() << " assertions of Vasilovici's report: "
+  progress() << now.rows.size() << " assertions of publications: "
              << (changes.empty() ? "every verdict is as it was"
                                  : std::to_string(changes.size()) + " changed")
              << '\n';
@@ -283,17 +334,19 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--section", options.section, "Only one section of the truths")
       ->check(CLI::Range(1, 10));
   app.add_option("-j,--jobs", options.jobs,
-                 "Threads (default: " + std::to_string(options.jobs) + ")")
+                 "Truths at a time, each in a process of its own (default: " +
+                     std::to_string(options.jobs) + ")")
       ->check(CLI::Range(1, 64));
   app.add_flag("--record", options.record, "Also keep the findings for the report");
   add_results(app, options.out);
   app.add_flag("--assertions", options.assertions,
-               "Only what holds the assertions of Vasilovici's report, and their verdicts");
+               "Only what holds the assertions of publications, and their verdicts");
   add_baselines(app, options.baselines);
   app.add_flag("--update", options.update,
                "With --assertions: keep their verdicts as the baseline");
   add_format(app, options.format, "Every number, with sources and times");
   app.add_flag("--list", options.list, "Only name the truths");
+  app.add_flag("--here", options.here, "Check in this process (internal)")->group("");
 }
 
 }  // namespace

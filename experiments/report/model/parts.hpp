@@ -31,8 +31,8 @@ Json json_of_cost(const StudyBench&, Citations&, Json& charts, Json& tables);
 Json json_of(const Differences&, Citations&, Json& tables);
 /// What scenes require and how far solvers go; null without either. Its tables go to the model's.
 Json json_of_limits(const ReportInput&, Json& tables);
-/// What Vasilovici's report asserts, with verdicts: as its truths say now, if they were checked.
-Json json_of_vasilovici(const std::optional<Truths>&);
+/// What publications assert, with verdicts: as its truths say now, if they were checked.
+Json json_of_assertions(const std::optional<Truths>&);
 /// Settings of every solver on a scene, row by row; null without a case.
 Json json_of_resolved_settings(const QuotedScene&, const ComparedSolvers&, Citations&);
 

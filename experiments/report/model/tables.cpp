@@ -7,7 +7,7 @@
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/distinct.hpp"
-#include "experiments/truths/vasilovici/assertions.hpp"
+#include "experiments/truths/assertions/assertions.hpp"
 
 namespace taut::report {
 
@@ -146,10 +146,10 @@ Json json_of(const Differences& differences, Citations& refs, Json& tables) {
   return one;
 }
 
-Json json_of_vasilovici(const std::optional<Truths>& truths) {
+Json json_of_assertions(const std::optional<Truths>& truths) {
   Json all = Json::array();
-  for (const VasiloviciAssertion& assertion : vasilovici_assertions()) {
-    Json one{{"section", assertion.section},
+  for (const Assertion& assertion : assertions()) {
+    Json one{{"section", std::string(assertion.source) + ", " + std::string(assertion.place)},
              {"assertion", typeset(assertion.assertion)},
              {"verdict", to_string(assertion.verdict)},
              {"because", typeset(assertion.because)}};

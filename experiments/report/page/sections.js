@@ -79,7 +79,7 @@ function methodSection() {
     tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver)),
     method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,
     el('p', {}, 'This makes it all again:'), command(model.meta.command)),
-    method.assertions && folded("Assertions of Vasilovici's report", tableOf('Assertions', ['section', 'assertion', 'verdict', 'because', 'measured'],
+    method.assertions && folded('What publications assert', tableOf('Assertions', ['source', 'assertion', 'verdict', 'because', 'measured'],
       method.assertions.map((a) => row(a.section, a.assertion, a.verdict, a.because, a.figure ?? '–')))),
     folded('Metrics, build and machine', tableOf('Metrics', ['metric', 'definition', 'unit', 'window'], glossary),
            factList([...(method.facts ?? []), ...build])),

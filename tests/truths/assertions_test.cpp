@@ -1,18 +1,19 @@
-// What Vasilovici's report asserts: every verdict that can be held is held by a truth.
+// What publications assert: every verdict that can be held is held by a truth.
+#include "experiments/truths/assertions/assertions.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 
 #include "experiments/truths/truth.hpp"
-#include "experiments/truths/vasilovici/assertions.hpp"
 
-namespace taut::vasilovici_assertions_test {
+namespace taut::assertions_test {
 namespace {
 
-TEST(VasiloviciAssertions, EachIsHeldByATruthUnlessItCannotBeTested) {
+TEST(Assertions, EachIsHeldByATruthUnlessItCannotBeTested) {
   std::map<AssertionVerdict, int> verdicts;
-  for (const VasiloviciAssertion& assertion : vasilovici_assertions()) {
+  for (const Assertion& assertion : assertions()) {
     ++verdicts[assertion.verdict];
     EXPECT_FALSE(assertion.because.empty()) << assertion.assertion;
     EXPECT_EQ(assertion.truth.empty(), assertion.verdict == AssertionVerdict::cannot_be_tested)
@@ -21,10 +22,10 @@ TEST(VasiloviciAssertions, EachIsHeldByATruthUnlessItCannotBeTested) {
         truths(), [&](const TruthEntry* t) { return t->name == assertion.truth; });
     EXPECT_EQ(known, !assertion.truth.empty()) << assertion.truth;
   }
-  EXPECT_EQ(verdicts.size(), 4u) << "a report that is right, or wrong, in everything";
+  EXPECT_EQ(verdicts.size(), 4u) << "publications that are right, or wrong, in everything";
 }
 
-TEST(VasiloviciAssertions, TheTruthsBehindBoxesAndOctreesHold) {
+TEST(Assertions, TheTruthsBehindBoxesAndOctreesHold) {
   for (const TruthEntry* truth : truths()) {
     if (truth->section != 8 || truth->row < 6 || truth->name == "octree-crossings") continue;
     Findings findings({"jakobsen", "closed form"});
@@ -37,4 +38,4 @@ TEST(VasiloviciAssertions, TheTruthsBehindBoxesAndOctreesHold) {
 }
 
 }  // namespace
-}  // namespace taut::vasilovici_assertions_test
+}  // namespace taut::assertions_test
