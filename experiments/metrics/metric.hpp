@@ -63,6 +63,8 @@ enum class Role {
   contact_error,    ///< distance from a law of contact: over sweeps and time steps
 };
 
+/// Distance from the dynamic reference over the way: 1 of a cloth that stands still.
+inline constexpr std::string_view kMotionError = "motion.error";
 /// RMS strain that the rounding of a file of positions makes. No metric gives it: a case that plays
 /// such a file says it.
 inline constexpr std::string_view kStrainFloor = "strain.floor";

@@ -46,7 +46,7 @@ class Distance final : public Metric {
        .window = Window::none,
        .title = "share of the way travelled",
        .role = Role::motion},
-      {.name = "motion.error",
+      {.name = kMotionError,
        .unit = kErrorShare,
        .help = "distance of the free vertices from the dynamic reference at its moments, RMS, over "
                "the reference's distance from the start; 1 of a cloth that stands still",

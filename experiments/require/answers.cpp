@@ -164,6 +164,7 @@ std::vector<KeptAnswer> default_limits(const Scene& scene) {
       const bool depth = value.role == Role::vertex_depth;
       if (depth || value.role == Role::passages || (value.kept && is_count(value.unit)))
         all.push_back({std::string(value.name), depth ? 0.001 * extent(scene) : 0});
+      if (value.name == kMotionError) all.push_back({std::string(value.name), 0.25});
     }
   }
   return all;

@@ -128,7 +128,8 @@ std::string name_of_answer(const std::string& asked);
 /// InputError.
 KeptAnswer parse_limit(const std::string&, const Scene&);
 /// What is accepted unless something is asked for: no passage and no crossing, depths below 0.1 %
-/// of the cloth's extent; as far as the scene has them.
+/// of the cloth's extent, and, for a strain alone is small of a cloth that stands still, a motion
+/// within 25 % of its way from the dynamic reference; as far as the scene has them.
 std::vector<KeptAnswer> default_limits(const Scene&);
 
 /// What is kept unless something is asked for: shape, largest stretch, depth of vertices (and of

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "core/model/input_error.hpp"
 #include "experiments/require/require.hpp"
@@ -76,6 +77,20 @@ TEST(KeptAnswers, HaveToleranceByTheirKind) {
       "--keep stretch.max:x: expected a number of at least 0 after ':' and then '%' or nothing");
   EXPECT_EQ(wrong("area.max"), "--keep area.max: has no value on this scene");
   EXPECT_EQ(wrong("shpae"), "--keep shpae: unknown metric value 'shpae'; did you mean 'shape'?");
+}
+
+// A strain is small of a cloth that stands still, too: so a motion is kept where one is known.
+TEST(KeptAnswers, LimitsByDefaultAreOfContactAndOfMotion) {
+  const auto limits = [](const char* scene) {
+    std::map<std::string, double> all;
+    for (const KeptAnswer& limit : default_limits(*make_case({scene, {}, "jakobsen"}).scene))
+      all[limit.name] = limit.tolerance;
+    return all;
+  };
+  EXPECT_EQ(limits("swing"), (std::map<std::string, double>{{"motion.error", 0.25}}));
+  EXPECT_EQ(limits("ball").count("motion.error"), 0u);
+  EXPECT_GT(limits("ball").at("penetration.peak"), 0);
+  EXPECT_EQ(limits("ball").at("tunnelling.count"), 0);
 }
 
 TEST(KeptAnswers, ByDefaultAreThoseThatTheCaseHas) {
