@@ -115,9 +115,6 @@ std::string label(const Column&);
 
 /// For a terminal: the subject, a line for every fact, tables in columns.
 std::string to_text(const Answer&, bool details = false);
-/// Rows in columns, two blanks before each: the first `names` columns and the last are flush left,
-/// the others flush right. All rows are as long as the first. Widths count characters of UTF-8.
-std::string in_columns(const std::vector<std::vector<std::string>>& rows, std::size_t names);
 
 /// The schema of all verbs (experiments/cli/README.md): every number in SI, to the bit.
 std::string to_json(const Answer&);

@@ -58,12 +58,6 @@ std::string text_of(const Table& table, bool details) {
 
 }  // namespace
 
-std::string in_columns(const std::vector<std::vector<std::string>>& rows, std::size_t names) {
-  std::vector<bool> left(rows.front().size());
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i < names || i + 1 == left.size();
-  return lines_of(rows, left);
-}
-
 std::string to_text(const Answer& answer, bool details) {
   std::string out = answer.subject.empty() ? "" : answer.subject + '\n';
   std::size_t width = 0;

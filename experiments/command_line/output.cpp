@@ -50,10 +50,6 @@ std::string coloured(std::string_view text, Colour colour) {
   return "\033[" + std::to_string(static_cast<int>(colour)) + "m" + std::string(text) + "\033[0m";
 }
 
-void print_columns(const std::vector<Row>& rows, std::size_t names) {
-  std::cout << in_columns(rows, names);
-}
-
 void print(const Answer& answer, const Format& format) {
   if (format.json)
     std::cout << to_json(answer);

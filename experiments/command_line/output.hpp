@@ -17,11 +17,6 @@ enum class Colour { red = 31, green = 32, yellow = 33 };
 /// The text in a colour if stdout is a terminal and $NO_COLOR is not set; else as it is.
 std::string coloured(std::string_view text, Colour);
 
-using Row = std::vector<std::string>;
-
-/// Rows on stdout, in_columns().
-void print_columns(const std::vector<Row>&, std::size_t names);
-
 /// How an answer is printed: add_format().
 struct Format {
   bool json = false, markdown = false;

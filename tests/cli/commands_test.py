@@ -253,15 +253,15 @@ class Verbs(CommandLine):
         study = self.study(solvers=["jakobsen:iterations=2", "xpbd"])
         out = self.taut("run", study, "--table", "stretch.rms").out
         head, first, second = out.splitlines()[:3]
-        self.assertEqual(head.split(), ["stretch.rms", "small"])
+        self.assertEqual(head.split(), ["stretch.rms", "small", "[%]"])
         self.assertEqual(first.split()[0], "jakobsen:iterations=2")
-        rows = json.loads(self.taut("run", study, "--table", "stretch.rms", "--json").out)
-        self.assertEqual(f"{rows[0]['values']['stretch.rms']:.3g}", f"{float(first.split()[1]):.3g}")
+        rows = rows_of(self.answer("run", study, "--table", "stretch.rms"), "stretch.rms")
+        self.assertEqual(f"{100 * rows[0]['small']:.3g}", f"{float(first.split()[1]):.3g}")
         self.assertIn("did you mean 'stretch.rms'?", self.taut("run", study, "--table", "strech.rms", expect=2).err)
 
     def test_json_says_how_a_run_went(self):
-        said = json.loads(self.taut("run", self.study(), "--json").out)
-        self.assertEqual((said["cases"], said["ran"], said["statuses"]), (1, 1, {"ok": 1}))
+        said = self.answer("run", self.study())
+        self.assertEqual((facts_of(said)["cases"], facts_of(said)["ran"], rows_of(said, "statuses")), (1, 1, [{"status": "ok", "cases": 1}]))
 
     def test_a_full_disk_behind_stdout_is_an_error(self):
         with open("/dev/full", "w") as full:

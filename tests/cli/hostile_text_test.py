@@ -7,7 +7,7 @@ import html.parser
 import json
 import os
 
-from command_line import SCENE, CommandLine, main
+from command_line import SCENE, CommandLine, main, rows_of
 
 MARKUP = "<img src=x onerror=alert(1)></script><script>alert(1)</script>"
 SHELL = "$(touch canary)`touch canary`;touch canary"
@@ -59,7 +59,7 @@ class HostileText(CommandLine):
         study = self.hostile_study()
         run = self.taut("run", study, "--table", "stretch.rms")
         self.assertIn("'./a study; touch canary `touch canary`.toml'", run.err)  # what to type next
-        self.assertEqual(json.loads(self.taut("run", study, "--json").out)["statuses"], {"ok": 28})
+        self.assertEqual(rows_of(self.answer("run", study), "statuses"), [{"status": "ok", "cases": 28}])
         rows = list(csv.DictReader(self.taut("export", study).out.splitlines()))
         self.assertEqual(len(rows), 28)
         self.assertEqual({row["scene"] for row in rows}, {name if name[0] not in "=-" else "'" + name for name in NAMES})

@@ -13,7 +13,8 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::vector<std::string> scenes;
-  bool all = false, replace = false, json = false;
+  bool all = false, replace = false;
+  Format format;
   std::string output = (results_folder() / "references").string();
 };
 
@@ -86,19 +87,17 @@ std::vector<Outcome> write_motion(const Scene& scene, const Options& options) {
   return outcomes;
 }
 
-void print(const Outcome& o) {
-  std::cout << o.scene << '\t' << o.kind;
-  if (o.t > 0) std::cout << " at " << o.t << " s";
-  std::cout << '\t';
-  if (o.refused.empty())
-    std::cout << "floor " << o.floor << " m\t" << o.derivation << '\n';
-  else
-    std::cout << "refused: " << o.refused << '\n';
-}
-
 int run(const Options& options) {
   int written = 0;
-  Json all = Json::array();
+  Answer answer{"reference"};
+  Table& table = answer.add(Table{"references",
+                                  "",
+                                  {{"scene"},
+                                   {"kind"},
+                                   {"t", "at", kTime},
+                                   {"floor", "", kLength},
+                                   {"derivation"},
+                                   {"refused", "why there is none"}}});
   const std::vector<fs::path> files = chosen(options);
   const Countdown countdown("scene");
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -107,17 +106,12 @@ int run(const Options& options) {
     outcomes.insert(outcomes.begin(), write_static(scene, options));
     for (const Outcome& o : outcomes) {
       written += o.refused.empty();
-      all.push_back({{"scene", o.scene},
-                     {"kind", o.kind},
-                     {"t", o.t > 0 ? Json(o.t) : Json()},
-                     {"floor", o.refused.empty() ? Json(o.floor) : Json()},
-                     {"derivation", o.derivation},
-                     {"refused", o.refused}});
-      if (!options.json) print(o);
+      table.rows.push_back({o.scene, o.kind, o.t > 0 ? Cell(o.t) : Cell(),
+                            o.refused.empty() ? Cell(o.floor) : Cell(), o.derivation, o.refused});
     }
     countdown(i + 1, files.size());
   }
-  if (options.json) print_json(all);
+  print(answer, options.format);
   progress() << written << " references in " << options.output << '\n';
   return written > 0 || options.all ? kPass : kNothing;
 }
@@ -127,7 +121,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--all", options.all, "Every shipped scene");
   add_output(app, options.output, "Where references are kept (default: " + options.output + ")");
   app.add_flag("--replace", options.replace, "Compute again what is there of the same scene");
-  add_json(app, options.json, "What became of each");
+  add_json(app, options.format.json, "What became of each");
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include <iterator>
-#include <map>
 
 #include "experiments/case/record_io.hpp"
 #include "experiments/cli/calls.hpp"
@@ -63,13 +62,6 @@ int finish_main_job(const MainJob& job, const Options& options) {
   return kPass;
 }
 
-Json to_json(const CampaignProgress& campaign, const Options& options, const Store& store) {
-  Json all{{"results", options.out}, {"store", store.digest()},   {"cases", campaign.cases},
-           {"ran", campaign.ran},    {"stored", campaign.reused}, {"statuses", Json::object()}};
-  for (const auto& [kind, count] : campaign.by_status) all["statuses"][to_string(kind)] = count;
-  return all;
-}
-
 /// What tells the cases of one scene apart: "jakobsen:iterations=4 dt=1/120".
 std::string setting_of(const Case& one, const Study& study) {
   std::string text = one.choice.brief();
@@ -78,55 +70,56 @@ std::string setting_of(const Case& one, const Study& study) {
   return text;
 }
 
-std::string cell(const Record& record, const std::string& value) {
-  if (!completed(record.status)) return std::string(to_string(record.status.kind));
-  return number_text(record.value(value)) +
-         (record.status.kind == Status::Kind::unsettled ? " ~" : "");
+/// A failure, and an extreme, is its status; a value of an unsettled case has a note.
+Cell cell(const Record& record, const std::string& value) {
+  if (!completed(record.status)) return to_string(record.status.kind);
+  Cell number(record.value(value));
+  number.key = record.key;
+  return record.status.kind == Status::Kind::unsettled ? number.with("~") : number;
 }
 
-/// The cases of a study by setting and scene.
-using ByCell = std::map<std::pair<std::string, std::string>, Record>;
-
-/// A metric's value with three digits: a line per setting, a column per scene, both in the order of
-/// the study. A failure, and an extreme, prints its status, a value without a meaning "-", one of
-/// an unsettled case a "~".
-void print_table(const Study& study, const std::vector<Case>& cases, const ByCell& records,
-                 const std::string& value) {
-  std::vector<Row> rows{{value}};
-  for (const std::string& scene : distinct(cases, [](const Case& c) { return c.scene->name; }))
-    rows[0].push_back(scene);
-  for (const auto& setting : distinct(cases, [&](const Case& c) { return setting_of(c, study); })) {
-    Row row{setting};
-    for (std::size_t i = 1; i < rows[0].size(); ++i) {
-      const auto at = records.find({row[0], rows[0][i]});
-      row.push_back(at == records.end() ? "" : cell(at->second, value));
-    }
-    rows.push_back(std::move(row));
+/// A metric's value: a row per setting, a column per scene, both in the order of the study.
+Table table_of(const Study& study, const Store& store, const std::string& value,
+               const std::string& name) {
+  const std::vector<Case> cases = cases_of(study);
+  Table table{name, "", {{"setting", value}}};
+  const auto scenes = distinct(cases, [](const Case& c) { return c.scene->name; });
+  for (const std::string& scene : scenes)
+    table.columns.emplace_back(scene, scene, unit_of_value(value));
+  const auto settings = distinct(cases, [&](const Case& c) { return setting_of(c, study); });
+  for (const std::string& setting : settings) {
+    table.rows.emplace_back(scenes.size() + 1);
+    table.rows.back()[0] = setting;
   }
-  print_columns(rows, 1);
-  std::cout << '\n';
+  for (const Case& one : cases)
+    if (const auto record = store.find(one)) {
+      const auto row = std::ranges::find(settings, setting_of(one, study)) - settings.begin();
+      const auto column = std::ranges::find(scenes, one.scene->name) - scenes.begin();
+      table.rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column) + 1] =
+          cell(*record, value);
+    }
+  return table;
 }
 
-/// The values that were asked for, of every study.
-void print_tables(const std::vector<Study>& studies, const Options& options, const Store& store) {
-  Json all = Json::array();
-  for (const Study& study : studies) {
-    ByCell records;
-    const std::vector<Case> cases = cases_of(study);
-    for (const Case& one : cases)
-      if (auto record = store.find(one)) records[{setting_of(one, study), record->scene}] = *record;
-    if (!options.json)
-      for (const std::string& value : options.values) print_table(study, cases, records, value);
-    for (const auto& [where, record] : records) {
-      all.push_back({{"setting", where.first},
-                     {"scene", where.second},
-                     {"status", to_string(record.status.kind)}});
-      for (const std::string& value : options.values)
-        if (record.values.contains(value))
-          all.back()["values"][value] = record.value(value);  // NaN becomes null
-    }
-  }
-  if (options.json) print_json(all);
+/// How the cases ended, and the values that were asked for of every study.
+Answer answer_of(const CampaignProgress& campaign, const std::vector<Study>& studies,
+                 const Options& options, const Store& store) {
+  Answer answer{"run", ""};
+  answer.add(Column("results").in_detail(), options.out);
+  answer.add(Column("store").in_detail(), store.digest());
+  answer.add(Column("cases").in_detail(), campaign.cases);
+  answer.add(Column("ran").in_detail(), campaign.ran);
+  answer.add(Column("stored").in_detail(), campaign.reused);
+  Table statuses{"statuses", "", {{"status"}, {"cases"}}};
+  for (const auto& [kind, count] : campaign.by_status)
+    statuses.rows.push_back({to_string(kind), count});
+  statuses.detail = true;
+  answer.add(std::move(statuses));
+  for (const Study& study : studies)
+    for (const std::string& value : options.values)
+      answer.add(
+          table_of(study, store, value, studies.size() > 1 ? study.name + " " + value : value));
+  return answer;
 }
 
 void print_unequal_work(const std::vector<Study>& studies, const Store& store) {
@@ -183,10 +176,8 @@ int run(Options options) {
     progress() << "no stored failure to run again\n";
   if (bare && !options.no_report)
     if (const int code = finish_main_job(job, options); code != kPass) return code;
-  if (!options.values.empty())
-    print_tables(studies, options, store);
-  else if (options.json)
-    print_json(to_json(campaign, options, store));
+  if (!options.values.empty() || options.json)
+    print(answer_of(campaign, studies, options, store), {.json = options.json});
   else if (!bare || options.no_report)
     std::cout << options.out << '\n';
   print_unequal_work(studies, store);
@@ -210,7 +201,7 @@ void add_options(CLI::App& app, Options& options) {
       ->allow_extra_args(false)
       ->check(metric_value());
   app.add_flag("--no-report", options.no_report, "Run the main job without its report");
-  add_json(app, options.json, "How the cases ended, or the tables,");
+  add_json(app, options.json, "How the cases ended, and the tables,");
 }
 
 }  // namespace
