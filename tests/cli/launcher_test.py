@@ -129,6 +129,16 @@ class Launcher(unittest.TestCase):
         self.assertEqual(self.started(), [])
         self.assertLess(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 0.3)
 
+    def test_a_long_build_says_how_far_it_is_and_how_long_it_will_take(self):
+        progress = re.search(r"^show_progress\(\) \{.*?^\}", (REPOSITORY / "taut").read_text(), re.MULTILINE | re.DOTALL)[0]
+        feed = ["[1/40] Building a", "[2/40] Building b", "[10/40] Linking c", "[11/40] Building d", "[39/40] Building e"]
+        seconds = [0, 5, 60, 61, 200]  # told by a clock of the test's own: SECONDS of bash
+        progress = progress.replace("while IFS= read -r line; do", 'while IFS="|" read -r SECONDS line; do')
+        script = 'say() { echo "$1"; }\nSECONDS=0\n' + progress + "\nshow_progress default 2>&1"
+        lines = "".join(f"{s}|taut: building default {line}\n" for s, line in zip(seconds, feed))
+        said = subprocess.run(["bash", "-c", script], input=lines, capture_output=True, text=True, check=True).stdout
+        self.assertEqual(said.splitlines(), ["building default", "building default [10/40], about 4 min left", "building default [39/40], about 1 min left"])
+
     def test_an_edit_is_built_and_a_new_file_seen(self):
         self.call("run")
         self.edit("version 1", "version 2")
