@@ -61,6 +61,8 @@ void Store::begin_session(const std::string& command, const std::vector<StudyCas
     std::size_t cases = 0;
     for (const auto& [study, planned] : studies) {
       cases += planned.size();
+      if (study.empty()) continue;
+      database.run("DELETE FROM planned WHERE study = ?", study);  // of another build, or preset
       for (const Case& one : planned)
         database.run(
             "INSERT OR IGNORE INTO planned (study, key, id, shard, shards) VALUES (?, ?, ?, ?, ?)",

@@ -22,7 +22,7 @@ struct Shard {
 
 /// What a study plans.
 struct StudyCases {
-  std::string study;  ///< its name
+  std::string study;  ///< its name; "": cases of no study
   std::vector<Case> cases;
 };
 

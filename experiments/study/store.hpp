@@ -90,7 +90,8 @@ class Store {
   /// Keys of which this store was given another result, too; one for each such result.
   std::vector<std::string> conflicts() const;
 
-  /// Notes who runs what: command, host and time, and every case that is planned, of all shards.
+  /// Notes who runs what: command, host and time, and every case that is planned, of all shards, in
+  /// place of what was planned of the study before.
   /// Throws InputError; then nothing is noted.
   void begin_session(const std::string& command, const std::vector<StudyCases>& = {},
                      const Shard& = {}) const;

@@ -153,7 +153,8 @@ std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
 
 StudyBench bench(const std::string& name, const std::vector<Case>& cases, const Options& options) {
   StudyBench result = StudyBench::here(name);
-  for (const auto& [scene, records] : by_scene(physics({name, cases}, options))) {
+  for (const auto& [scene, records] :
+       by_scene(physics({options.solvers.empty() ? name : "", cases}, options))) {
     progress() << scene << ": timing " << records.size() << " cases\n";
     result.scenes.push_back(bench_scene(scene, records,
                                         {.rounds = options.rounds,
