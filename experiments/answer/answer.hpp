@@ -17,8 +17,9 @@ namespace taut {
 /// interval in SI units, yes or no.
 struct Cell {
   std::variant<std::monostate, std::string, double, Interval, bool> value;
-  std::string note;  ///< what a reader has to know of it
-  std::string key;   ///< of the case that it comes from
+  std::string note;   ///< what a reader has to know of it
+  std::string key;    ///< of the case that it comes from
+  bool best = false;  ///< of its row, by more than what is noise
 
   Cell() = default;
   Cell(std::string text) : value(std::move(text)) {}

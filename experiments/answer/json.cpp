@@ -19,6 +19,7 @@ Json json_of(const Cell& cell) {
 void add_notes(Json& json, const Cell& cell) {
   if (!cell.note.empty()) json["note"] = cell.note;
   if (!cell.key.empty()) json["key"] = cell.key;
+  if (cell.best) json["best"] = true;
 }
 
 /// Without what is as it is by default.
@@ -46,7 +47,7 @@ Json json_of(const Table& table) {
     for (std::size_t c = 0; c < table.rows[r].size(); ++c) {
       const Cell& cell = table.rows[r][c];
       row.push_back(json_of(cell));
-      if (cell.note.empty() && cell.key.empty()) continue;
+      if (cell.note.empty() && cell.key.empty() && !cell.best) continue;
       json["notes"].push_back({{"row", r}, {"column", table.columns[c].name}});
       add_notes(json["notes"].back(), cell);
     }
@@ -69,6 +70,7 @@ Cell read_cell(const JsonReader& json) {
 void read_notes(Cell& cell, const JsonReader& json) {
   if (const auto note = json.find("note")) cell.note = note->text();
   if (const auto key = json.find("key")) cell.key = key->text();
+  cell.best = json.find("best").has_value();
 }
 
 Column read_column(std::string name, const JsonReader& json) {

@@ -5,10 +5,11 @@
 #include <stdexcept>
 
 #include "core/model/input_error.hpp"
+#include "experiments/metrics/metric.hpp"
+#include "experiments/report/answer/answer.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/claim.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/distinct.hpp"
@@ -33,33 +34,19 @@ std::string report_title(const ReportInput& input) {
 class Builder {
  public:
   explicit Builder(const ReportInput& input)
-      : input_(input), compared_(compared_solvers_of(input)), refs_(input) {
-    for (const Claim& claim : difference_claims(input)) claims_.push_back(claim);
-    for (const Claim& claim : physics_claims(compared_)) claims_.push_back(claim);
-    for (const Claim& claim : cost_claims(input)) claims_.push_back(claim);
-  }
+      : input_(input), compared_(compared_solvers_of(input)), refs_(input) {}
 
   Json build() {
+    const Answer answer = answer_of(input_, compared_, refs_);
     Json scenes = Json::array();
     for (const QuotedScene& quoted : compared_.scenes) scenes.push_back(scene(quoted));
-    std::size_t filmed = 0;
     for (const SceneMedia& media : input_.media)
-      if (!compared_.quoted(media.scene)) scenes.push_back(filmed_scene(media)), ++filmed;
-    Json cost;
-    if (input_.bench) {
-      cost = json_of_cost(*input_.bench, refs_, charts_, tables_);
-      for (const Claim& claim : claims_)
-        if ((claim.about == "cost" || claim.about == "only") && claim.kind != ClaimKind::tile)
-          cost["claims"].push_back(claim.id);
-    }
-    Json differences;
-    if (input_.differences) {
-      differences = json_of(*input_.differences, refs_, tables_);
-      for (const Claim& claim : claims_)
-        if (claim.about == "differences") differences["claims"].push_back(claim.id);
-    }
-    Json claims;
-    for (const Claim& claim : claims_) claims.push_back(with_film(claim));
+      if (!compared_.quoted(media.scene)) scenes.push_back(filmed_scene(media));
+    Json cost, differences;
+    if (input_.bench) cost = json_of_cost(*input_.bench, refs_, charts_, tables_);
+    if (input_.differences) differences = json_of(*input_.differences, refs_, tables_);
+    Json limits = json_of_limits(input_, tables_);
+    Json method = this->method();
     Json cases;
     std::map<std::string, const BenchedCase*> timed;
     if (input_.bench)
@@ -73,23 +60,23 @@ class Builder {
       cases.push_back(std::move(one));
     }
     for (const char* name : {kSweeps, kSubsteps, "dt", "t", "projections"}) refs_.use(name);
-    Json model{{"schema", "taut-report/2"},
+    Json model{{"schema", "taut-report/3"},
                {"meta", meta(cases.size())},
                {"solvers", solvers()},
                {"statuses", statuses()},
                {"metrics", metrics()}};
-    add_if(model, "claims", std::move(claims));
+    model["answer"] = parse_json(to_json(answer));
     add_if(model, "scenes", std::move(scenes));
     add_if(model, "charts", std::move(charts_));
     add_if(model, "maps", std::move(maps_));
     add_if(model, "films", std::move(films_));
-    add_if(model, "limits", json_of_limits(input_, tables_));
-    add_if(model, "tables", std::move(tables_));
+    add_if(model, "limits", std::move(limits));
+    add_if(model, "tables", json_of_tables(tables_));
     add_if(model, "cost", std::move(cost));
     if (input_.truths) add_if(model, "truths", input_.truths->shown);
     if (input_.regressions) add_if(model, "regressions", *input_.regressions);
     add_if(model, "differences", std::move(differences));
-    model["method"] = method();
+    model["method"] = std::move(method);
     add_if(model, "missing", missing());
     if (maps_left_out_ > 0)
       model["left_out"].push_back(
@@ -119,9 +106,6 @@ class Builder {
       planned += std::max(study.planned, study.records.size()) - study.records.size();
     one["cases"] = refs_.cases().size(), one["planned"] = refs_.cases().size() + planned;
     if (listed < refs_.cases().size()) one["listed"] = listed;
-    for (const Certainty sure : {Certainty::clear, Certainty::likely, Certainty::too_noisy,
-                                 Certainty::none, Certainty::single_run})
-      one["policy"][std::string(to_string(sure))] = meaning(sure);
     return one;
   }
 
@@ -168,7 +152,8 @@ class Builder {
                      {"title", name},
                      {"glyph", style.glyph},
                      {"help", style.help},
-                     {"failed", kind != Status::Kind::ok && kind != Status::Kind::unsettled},
+                     {"failed", kind != Status::Kind::ok && kind != Status::Kind::unsettled &&
+                                    kind != Status::Kind::unsupported},
                      {"colour", json_of(style.colour)},
                      {"ink", json_of(style.ink)}});
     }
@@ -185,6 +170,8 @@ class Builder {
                    {"axis", q.unit.logarithmic ? "log" : "linear"},
                    {"window", to_string(q.window)},
                    {"better", q.unit.less_is_better ? "less" : ""}};
+    for (const ValueSpec* value : values_with_role())
+      if (const auto at = all.find(value->name); at != all.end()) (*at)["role"] = true;
     return all;
   }
 
@@ -193,8 +180,6 @@ class Builder {
     Json one{{"id", name}, {"title", solver_title(name)}, {"summary", ""}, {"studied", true}};
     for (const SceneInfo& info : input_.scenes)
       if (info.name == name) one["summary"] = info.summary;
-    for (const Claim& claim : claims_)
-      if (claim.about == name) one["claims"].push_back(claim.id);
     for (const SceneMedia& media : input_.media)
       if (media.scene == name) add_media(one, media);
     for (const Chart& chart : scene_charts(input_, name))
@@ -212,18 +197,17 @@ class Builder {
       add_by_id(one, "maps", json_of(map, id, refs_), maps_);
     }
     std::set<std::pair<std::string, std::string>> refusals;
-    for (const auto& [solver, cases] : compared_.by_solver)
-      for (const Record* r : cases) {
-        if (r->scene != name) continue;
-        Json& count = one["statuses"][solver][std::string(to_string(r->status.kind))];
-        count = count.is_null() ? 1 : count.get<int>() + 1;
-        if (r->status.kind == Status::Kind::unsupported)
-          refusals.insert({solver, r->status.reason});
-      }
-    one["facts"] = facts_of(input_, name);
+    for (const Record* r : refs_.cases()) {
+      if (r->scene != name) continue;
+      Json& count = one["statuses"][r->solver][std::string(to_string(r->status.kind))];
+      count = count.is_null() ? 1 : count.get<int>() + 1;
+      if (r->status.kind == Status::Kind::unsupported)
+        refusals.insert({r->solver, r->status.reason});
+    }
+    one["facts"] = facts_of(refs_, name);
     for (const auto& [solver, reason] : refusals)
       one["refusals"].push_back({{"solver", solver}, {"reason", reason}});
-    add_if(one, "resolved_settings", json_of_resolved_settings(quoted, compared_, refs_));
+    add_table(one, resolved_settings_table(quoted, compared_, refs_), tables_);
     return one;
   }
 
@@ -244,12 +228,9 @@ class Builder {
         scene["material"] = film["material"];
         film.erase("material");
       }
-      std::set<std::string>& cases = film_cases_[media.scene];
-      for (const Json& panel : film["panels"]) {
-        const std::string key = panel.value("case", "");
-        cases.insert(key);
-        if (!key.empty()) film_of_.emplace(key, film["id"].get<std::string>());
-      }
+      for (const Json& panel : film["panels"])
+        if (const std::string key = panel.value("case", ""); !key.empty())
+          film_of_.emplace(key, film["id"].get<std::string>());
       add_by_id(scene, "films", std::move(film), films_);
     }
   }
@@ -275,27 +256,7 @@ class Builder {
     }
   }
 
-  /// The claim, and whether a film shows just what it speaks of.
-  Json with_film(const Claim& claim) {
-    Json one = json_of(claim, refs_);
-    std::set<std::string> looked_at, scenes;
-    for (const Json& basis : one["basis"]) {
-      for (const Json& key : basis["cases"]) looked_at.insert(key.get<std::string>());
-      for (const Json& scene : basis["scenes"]) scenes.insert(scene.get<std::string>());
-    }
-    bool filmed = false;
-    for (const std::string& scene : scenes)
-      if (const auto film = film_cases_.find(scene); film != film_cases_.end()) {
-        filmed = true;
-        if (claim.quotes && std::ranges::includes(looked_at, film->second) && !one.contains("film"))
-          one["film"] = "film-" + scene;
-      }
-    if (filmed && !one.contains("film") && claim.about != "failures")
-      one["film_note"] = "The films show " + compared_.work_text() + ".";
-    return one;
-  }
-
-  Json method() const {
+  Json method() {
     Json one{{"studies", Json::array()}};
     for (const StudyResult& study : input_.studies) {
       Json at{{"name", study.name},
@@ -306,12 +267,12 @@ class Builder {
         at["unequal"] = "Unequal work: " + unequal + ".";
       one["studies"].push_back(std::move(at));
     }
-    one["assertions"] = json_of_assertions(input_.truths);
+    add_table(one, assertions_table(input_.truths), tables_);
     for (const auto& [what, value] : input_.provenance)
       one["facts"].push_back({{"name", what}, {"value", value}});
     for (const std::string& host : input_.cost_hosts)
       one["facts"].push_back({{"name", "cost measured on"}, {"value", host}});
-    one["limits"] = caveats(input_);
+    one["limits"] = limits_of(input_, refs_);
     return one;
   }
 
@@ -339,12 +300,11 @@ class Builder {
 
   const ReportInput& input_;
   ComparedSolvers compared_;
-  Citations refs_;
-  std::vector<Claim> claims_;
-  Json charts_, maps_, films_, tables_;
-  std::map<std::string, std::set<std::string>> film_cases_;  ///< by scene
-  std::map<std::string, std::string> film_of_;               ///< by short key of the case
-  std::size_t budget_ = 6'000'000;                           ///< bytes of pictures in a page
+  CaseList refs_;
+  Json charts_, maps_, films_;
+  Answer tables_{"report", ""};
+  std::map<std::string, std::string> film_of_;  ///< by short key of the case
+  std::size_t budget_ = 6'000'000;              ///< bytes of pictures in a page
   std::size_t cells_ = kMostCells, maps_left_out_ = 0;
 };
 
@@ -366,16 +326,6 @@ std::string_view page_file(std::string_view name) {
   return at->text;
 }
 
-/// The headlines and how sure they are, a line each: what there is to read without JavaScript.
-std::string headlines(const std::string& model) {
-  std::string text;
-  for (const Json& claim : parse_json(model).value("claims", Json::array()))
-    if (claim["kind"] == "headline")
-      text +=
-          claim["sentence"].get<std::string>() + " (" + claim["sure"].get<std::string>() + ")\n";
-  return escape_html(text);
-}
-
 }  // namespace
 
 std::string make_model(const ReportInput& input, int indent) {
@@ -385,7 +335,10 @@ std::string make_model(const ReportInput& input, int indent) {
 }
 
 std::string make_report(const ReportInput& input) {
-  const std::string json = make_model(input), model = for_script(json), answer = headlines(json);
+  const std::string model = for_script(make_model(input));
+  CaseList list(input);
+  const std::string answer =
+      escape_html(to_text(answer_of(input, compared_solvers_of(input), list)));
   const std::string title = escape_html(report_title(input));
   const std::string_view page = page_file("index.html");
   std::string html;
@@ -394,10 +347,10 @@ std::string make_report(const ReportInput& input) {
     html += page.substr(at, open - at);
     if (open == std::string_view::npos) break;
     const std::string_view name = page.substr(open + 2, close - open - 2);
-    html += name == "model"       ? model
-            : name == "title"     ? title
-            : name == "headlines" ? answer
-                                  : page_file(name);
+    html += name == "model"    ? model
+            : name == "title"  ? title
+            : name == "answer" ? answer
+                               : page_file(name);
     at = close + 2;
   }
   return html;

@@ -8,8 +8,8 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/report/answer/compared_solvers.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/claim.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {

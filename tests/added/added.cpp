@@ -91,23 +91,14 @@ TEST(Added, AMetricsRoleDrawsItsCharts) {
   }
 }
 
-TEST(Added, AMetricsRoleMakesItsSentencesAndTheirBasis) {
-  const Json& claim = by_id("claims", "sag");
-  const std::string sentence = claim["sentence"];
-  EXPECT_TRUE(sentence.starts_with("RMS sag in the last second at 1 × 16 (substeps × sweeps)"));
-  EXPECT_NE(sentence.find("cm with Made up"), std::string::npos) << sentence;
-  const Json& basis = claim["basis"][0];
-  EXPECT_EQ(basis["metric"], "sag.rms");
-  EXPECT_EQ(basis["window"], "last second");
-  EXPECT_EQ(basis["rule"],
-            "geometric mean over scenes; less than 0.1\u00A0cm counts as 0.1\u00A0cm");
-  EXPECT_EQ(basis["settings"][1], (Json{{"solver", "Made up"}, {"text", "1 × 16"}}));
-  for (const Json& value : basis["values"]) {
-    EXPECT_TRUE(value["text"].get<std::string>().ends_with("\u00A0cm")) << value;
-    EXPECT_GT(value["value"], 0);
-  }
-  EXPECT_EQ(by_id("claims", "tile-sag")["heading"], "RMS sag, last second");
-  EXPECT_EQ(by_id("claims", "sag-hang")["basis"][0]["metric"], "sag.rms");
+TEST(Added, AMetricsRoleMakesItsQuestion) {
+  const Json& table = made()["answer"]["tables"]["sag.rms"];
+  EXPECT_EQ(table["title"], "RMS sag at equal work");
+  EXPECT_TRUE(
+      table["caption"].get<std::string>().starts_with("last second; 1 × 16 (substeps × sweeps)"));
+  EXPECT_EQ(table["columns"][2]["heading"], "Made up");
+  EXPECT_EQ(table["columns"][2]["shown"], "cm");
+  EXPECT_GT(table["rows"][0][2].get<double>(), 0);
   EXPECT_TRUE(find_value("sag.rms").second->kept);
 }
 
@@ -152,22 +143,15 @@ TEST(Added, ASolversOwnParametersAreItsSweepsAndSubsteps) {
 }
 
 TEST(Added, ASolverIsComparedAtEqualErrorWithWhatBothHave) {
-  const std::string work = by_id("claims", "work-made-up")["sentence"];
-  EXPECT_TRUE(
-      work.starts_with("For a step of the same substeps × sweeps (1 × 1, 1 × 4, 1 × 16 and "
-                       "1 × 64): Jakobsen uses 1/3.0 of the CPU time of Made up"))
-      << work;
-  const Json& claim = by_id("claims", "cost-made-up");
-  const std::string cost = claim["sentence"];
-  EXPECT_NE(cost.find("Jakobsen uses 1/3.0 of the CPU time of Made up"), std::string::npos) << cost;
-  for (const Json& value : claim["basis"][0]["values"])
-    for (const Json& one : made()["cases"])
-      if (one["key"] == value["case"]) {
-        EXPECT_EQ(one["parameters"].value("boost", "off"), "off");
-      }
-  const std::string only = by_id("claims", "only-made-up-jakobsen")["sentence"];
-  EXPECT_TRUE(only.starts_with("With boost, which Jakobsen does not have, Made up reaches"))
-      << only;
+  std::map<std::string, std::string> boost;
+  for (const Json& one : made()["cases"])
+    boost[one["key"]] = one["parameters"].value("boost", "off");
+  for (const char* name : {"price", "equal_cost"})
+    for (const Json& cell : made()["answer"]["tables"][name]["notes"])
+      if (cell.contains("key")) EXPECT_EQ(boost.at(cell["key"]), "off") << name;
+  const Json& price = made()["answer"]["tables"]["price"];
+  EXPECT_NEAR(price["rows"][0][2][1].get<double>() / price["rows"][0][1][1].get<double>(), 3, 0.01);
+  EXPECT_EQ(price["notes"][0]["best"], true) << "Jakobsen";
 }
 
 TEST(Added, WhatTakesLongestIsKnownBeforehand) {

@@ -1,9 +1,7 @@
 """What the browser's tests share: a page that is opened, findings that are counted, what a page requests and logs."""
 
+import json
 import os
-
-import assemble
-import sample
 
 SEEN = "e => e.getClientRects().length && e.checkVisibility({visibilityProperty: true, opacityProperty: true})"
 VISIBLE = "(selector => [...document.querySelectorAll(selector)].filter(" + SEEN + "))"
@@ -11,20 +9,27 @@ SCENES = VISIBLE + "('.scene').map(s => s.ariaLabel)"
 
 
 class Checks:
-    """A browser, a folder for its pages, and what failed. `report`: the page that is used, else the sample's; `change` may
-    damage a part of the sample's page on the way, to see whether a check notices."""
+    """A browser, a folder for its pages, the report that is used, and what failed."""
 
-    def __init__(self, browser, out, change=lambda name, text: text, report=None):
-        self.browser, self.out, self.change, self.report, self.failures = browser, out, change, report, []
+    def __init__(self, browser, out, report):
+        self.browser, self.out, self.report, self.failures = browser, out, report, []
+
+    def model(self):
+        """The model in the report, and the page without it: before and behind."""
+        with open(self.report, encoding="utf-8") as read:
+            before, rest = read.read().split('id="model">', 1)
+        model, behind = rest.split("</script>", 1)
+        return json.loads(model), before + 'id="model">', "</script>" + behind
 
     def open(self, model=None, address="", width=1280):
-        """Anew at `#address`: a page of `model`; without one the report."""
+        """Anew at `#address`: the report, or its page with another model."""
         self.browser.size(width, 900)
         self.file = self.report
-        if model or not self.report:
+        if model:
             self.file = os.path.join(self.out, "page.html")
+            _, before, behind = self.model()
             with open(self.file, "w", encoding="utf-8") as write:
-                write.write(assemble.assemble(model or sample.make(), self.change))
+                write.write(before + json.dumps(model).replace("<", "\\u003c") + behind)
         self.browser.open("about:blank")
         self.browser.open("file://" + os.path.abspath(self.file) + ("#" + address if address else ""))
         self.browser.settle()

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Uses a report that taut wrote, without a network, as a reader would: what holds of every report, the sample among them.
+"""Uses a report that taut wrote, without a network, as a reader would: what holds of every report.
 
     report.py REPORT.html OUT [CHECK...]        exit 0: all is well; 1: it is not; 77: there is no Chromium
 """
 
 import bisect
 import csv
+import json
 import os
 import sys
 import time
@@ -14,7 +15,7 @@ import accessibility
 import chromium
 from checks import SCENES, SEEN, VISIBLE, Checks
 
-EMPTY = """[...document.querySelectorAll('section, .card, figure, ul, dl, tbody, .claims')]
+EMPTY = """[...document.querySelectorAll('section, .card, figure, ul, dl, tbody')]
     .filter(e => e.checkVisibility() && !e.textContent.trim()).map(e => e.outerHTML.slice(0, 80))"""
 HEIGHT, WIDTH = "document.documentElement.scrollHeight", "document.documentElement.scrollWidth"
 
@@ -33,8 +34,6 @@ def drawn(checks):
     for scene in page.run("model.scenes.map(scene => scene.id)"):
         page.run(f"state.set({{scene: {scene!r}}})")
     page.settle()
-    placed = "model.claims.filter(c => !document.getElementById('claim-' + c.id)).map(c => c.id)"
-    checks.empty(page.run(placed), "every claim is on the page")
     checks.quiet("the report")
 
 
@@ -104,15 +103,21 @@ def table(checks):
     for name, value in (("in", scene), ("ended", status)):
         page.run(f"""(s => {{ if (s) {{ s.value = {value!r}; s.dispatchEvent(new Event('change')); }} }})
             (document.querySelector('#cases select[name={name}]'))""")
-    column = f"caseColumns.findIndex(c => c.name === {metric!r})"
+    page.run("document.querySelector('#cases details').open = true")
+    head = f"document.querySelector('#cases thead [data-column={json.dumps(metric)}]')"
+    if not page.run(f"!!{head}"):
+        page.run(f"[...document.querySelectorAll('#cases .chooser label')][caseColumns.filter(c => c.extra).findIndex(c => c.name === {metric!r})].click()")
+        page.settle()
+    checks.true(page.run(f"!!{head}"), f"the column {metric} is shown when it is chosen")
     for _ in range(2):  # rising, falling
-        page.run(f"document.querySelectorAll('#cases thead button')[{column}].click()")
+        page.run(head + ".click()")
+        page.settle()
     page.settle()
     wanted = [c for c in every if c["scene"] == scene and c["status"] == status]
     said = page.run("document.querySelector('#cases [role=status]').innerText")
     checks.true(said.startswith(f"{len(wanted)} of {len(every)} case"), f"the table says how many of {scene} are {status}", said)
     page.run("document.querySelector('#cases .tall + button').click()")  # all of them
-    shown = page.run("[...document.querySelectorAll('#cases tbody th')].map(th => th.textContent)")
+    shown = page.run("[...document.querySelectorAll('#cases tbody tr')].map(tr => tr.dataset.key)")
     values = {c["key"]: c["values"].get(metric) for c in wanted}
     falling = [values[key] for key in shown if values.get(key) is not None]
     checks.true(sorted(shown) == sorted(values), f"the table is of {scene}, {status}", f"{len(shown)} of {len(values)}")
@@ -256,14 +261,14 @@ def films(checks):
 
 
 def prints(checks):
-    """On paper: every scene, every basis, what is folded; afterwards as it was."""
+    """On paper: every scene, every question with its scenes, what is folded; afterwards as it was."""
     page = checks.open()
     titles = page.run("model.scenes.map(s => s.title)")
     page.size(688, 900)
     page.media("print")
     checks.true(page.run(SCENES) == titles, "all scenes are printed", page.run(SCENES))
-    hidden = page.run(f"[...document.querySelectorAll('.claim:not(.said) > .basis')].filter(e => !({SEEN})(e)).length")
-    checks.true(hidden == 0 and page.run("document.querySelectorAll('.basis').length === model.claims.length"), "with the basis of every claim", hidden)
+    hidden = page.run(f"[...document.querySelectorAll('.answer tr')].filter(e => !({SEEN})(e)).length")
+    checks.true(hidden == 0, "every question has its scenes", hidden)
     checks.true(page.run("[...document.querySelectorAll('main details')].every(d => d.open)"), "and all that is folded")
     checks.true(page.run("[...document.querySelectorAll('.plot svg')].every(s => s.childElementCount)"), "every chart is drawn")
     checks.empty(page.run(accessibility.CROWDED), "paper: no text of a chart is cut off or lies on another")
@@ -277,17 +282,137 @@ def prints(checks):
     checks.true(page.run(SCENES) == titles[:1], "after a real print, too")
 
 
-ALL = {f.__name__: f for f in (drawn, layout, permalinks, table, switches, keyboard, films, prints)}
+def answer(checks):
+    """The first screen: every question with all its cells within 1280 x 800 and, without their notes, on a phone; a click unfolds
+    its scenes; a number leads to its case and its command."""
+    page = checks.open()
+    tables = checks.model()[0]["answer"]["tables"]
+    page.size(1280, 800)
+    page.settle()
+    bottom = "document.querySelector('.answer').getBoundingClientRect().bottom"
+    checks.true(page.run(bottom) <= 800, "the answer is one screen", page.run(bottom))
+    page.size(390, 844)
+    page.run("state.set({open: 'none'})")
+    page.settle()
+    checks.true(page.run(bottom) <= 844, "and one of a phone", page.run(bottom))
+    page.size(1280, 800)
+    for name, table in tables.items():
+        page.run(f"state.set({{open: {name!r}}})")
+        page.settle()
+        body = f"document.getElementById('answer-{name}')"
+        rows = page.run(f"[...{body}.querySelectorAll('tr:not(.folded)')].map(tr => [...tr.querySelectorAll('td:not([colspan])')].map(td => td.innerText))")
+        each = len(table["rows"]) - 1 if len(table["rows"]) > 2 else 0
+        checks.true(len(rows) == 2 + each, f"{name}: it unfolds to its scenes", len(rows))
+        cells = [cell for row in rows for cell in row]
+        values = [value for row in table["rows"][-1:] + table["rows"][:each] for value in row[1:]]
+        scale = table["columns"][1].get("scale", 1)
+        wrong = []
+        for said, value in zip(cells, values, strict=True):
+            first = said.split("\u00a0")[0].split()[0].replace("−", "-").replace("\u202f", "") if said else ""
+            if isinstance(value, str):
+                wrong += [] if value[:40] in said else [[said, value]]
+            elif value is not None:
+                value = (value[1] if isinstance(value, list) else value) * scale
+                number = float(first.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")).replace("×10", "e"))
+                wrong += [] if abs(number - value) <= 0.06 * abs(value) + 1e-12 else [[said, value]]
+        checks.empty(wrong, f"{name}: each cell says its value")
+        marked = page.run(f"{body}.querySelectorAll('tr:not(.folded) .best').length")
+        best = sum(n.get("best", False) and (n["row"] == len(table["rows"]) - 1 or each > 0) for n in table["notes"])
+        checks.true(marked == best, f"{name}: the best are marked", [marked, best])
+    link = "document.querySelector('.answer .fold:not(.folded) .to-case')"
+    page.run("state.set({open: 'stretch.rms'})")
+    page.settle()
+    label = page.run(f"{link}.ariaLabel")
+    page.run(f"{link}.click()")
+    page.settle()
+    entry = page.run("cases.get(state.get('case'))")
+    dialog = page.run("document.querySelector('dialog').innerText")
+    checks.true(entry["command"] in dialog and entry["key"] in label, "a click opens its case with the command", [label, dialog[:99]])
+    page.press("Escape")
+
+
+def points(checks):
+    """A chart's points say value, status and case, arrows move between them, Enter opens the case; so do cells of maps."""
+    page = checks.open()
+    spec = page.run("(c => ({id: c.id, scene: c.scene, series: c.series}))(model.charts.find(c => c.kind === 'convergence'))")
+    page.run(f"state.set({{scene: {spec['scene']!r}}})")
+    page.settle()
+    chart = f"document.getElementById('chart-{spec['id']}')"
+    labels = page.run(f"[...{chart}.querySelectorAll('.point')].map(p => p.getAttribute('aria-label'))")
+    every = [p for s in spec["series"] for p in s["points"]]
+    lacking = [p["case"] for p, label in zip(every, labels, strict=True) if p["case"] not in label or "status: " + p["status"] not in label]
+    checks.empty(lacking, "each point says its status and its case")
+    here = "document.activeElement.getAttribute('aria-label') || ''"
+    page.run(f"{chart}.querySelector('.point[tabindex=\"0\"]').focus()")
+    page.press("ArrowRight")
+    checks.true(every[1]["case"] in page.run(here), "arrows move along the curve", page.run(here))
+    page.press("Enter")
+    checks.true(page.run("state.get('case')") == every[1]["case"], "Enter opens the case", page.run("location.hash"))
+    page.press("Escape")
+    checks.true(every[1]["case"] in page.run(here), "and the focus is where it was")
+    map_ = page.run("(m => m && ({id: m.id, scene: m.scene, cells: m.cells}))(model.maps?.[0])")
+    checks.true(bool(map_), "there is a map")
+    page.run(f"state.set({{scene: {map_['scene']!r}}})")
+    page.settle()
+    shown = page.run(f"[...document.querySelectorAll('#map-{map_['id']} .cell')].map(c => [c.textContent, c.getAttribute('aria-label')])")
+    glyphs = page.run("Object.fromEntries(model.statuses.map(s => [s.id, s.glyph]))")
+    by_case = {c["case"]: c for c in map_["cells"]}
+    wrong = [label for glyph, label in shown if not any(key in label and glyphs[c["status"]] == glyph for key, c in by_case.items())]
+    checks.true(len(shown) == len(by_case), "every cell is there")
+    checks.empty(wrong, "and has its glyph and its case")
+
+
+HOSTILE = ["<img src=x onerror='window.harmed = 1'>", "</script><script>window.harmed = 1</script>", "=HYPERLINK(1)",
+           "\u202eright to left", "w" * 3000]
+
+
+def hostile(checks):
+    """Texts of users stay texts and do not break the layout."""
+    model = checks.model()[0]
+    for i, case in enumerate(model["cases"]):
+        case.update(brief=HOSTILE[i % 5], reason=HOSTILE[(i + 1) % 5])
+    for i, scene in enumerate(model["scenes"]):
+        scene.update(summary=HOSTILE[i % 5])
+    for table in list(model["answer"]["tables"].values()) + list(model["tables"].values()):
+        table["title"], table["caption"] = HOSTILE[0] + table["title"], HOSTILE[4]
+        for i, row in enumerate(table["rows"]):
+            row[1:] = [HOSTILE[(i + 1) % 5] if isinstance(value, str) else value for value in row[1:]]
+    model["meta"]["question"] = HOSTILE[0] + HOSTILE[4]
+    page = checks.open(model)
+    checks.true(page.run("window.harmed === undefined && !document.querySelector('main img[onerror]')"), "markup in a text stays text")
+    for width in (1280, 390):
+        page.size(width, 900)
+        page.settle()
+        checks.true(page.run(WIDTH) <= width, f"hostile texts, {width} px: no sideways scrolling", page.run(WIDTH))
+    page.size(1280, 900)
+    page.settle()
+    checks.quiet("hostile texts")
+
+
+def without_script(checks):
+    """Without JavaScript the answer is there, and what is missing is said."""
+    page = checks.browser
+    page.call("Emulation.setScriptExecutionDisabled", value=True)
+    page.open(checks.report)
+    tree = page.call("Accessibility.getFullAXTree")["nodes"]
+    page.call("Emulation.setScriptExecutionDisabled", value=False)
+    text = " ".join(n.get("name", {}).get("value", "") for n in tree if n.get("role", {}).get("value") in ("StaticText", "heading"))
+    lacking = [t["title"] for t in checks.model()[0]["answer"]["tables"].values() if t["title"] not in text]
+    checks.empty(lacking, "without JavaScript the answer is there")
+    checks.true("JavaScript is off" in text and "taut report --json" in text, "and what is missing is said", text[:300])
+
+
+ALL = {f.__name__: f for f in (drawn, answer, layout, permalinks, table, points, switches, keyboard, films, prints, hostile, without_script)}
 
 
 def use(report, out, every, names=()):
-    """Runs checks (all of `every` without names) on a report, on the sample without one; the exit code."""
+    """Runs checks (all of `every` without names) on a report; the exit code."""
     program = chromium.find()
     if program is None:
         print("SKIPPED: no chromium on this machine")
         return 77
     os.makedirs(out, exist_ok=True)
-    checks = Checks(chromium.Browser(program), out, report=report)
+    checks = Checks(chromium.Browser(program), out, os.path.abspath(report))
     checks.browser.call("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=-1, uploadThroughput=-1)
     try:
         for name in names or every:

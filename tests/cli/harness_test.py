@@ -143,7 +143,7 @@ class FaultySolvers(CommandLine):
         model = json.loads(self.taut("report", study, "--json", program="taut-faulty").out)
         shown, = [status for status in model["statuses"] if status["id"] == "extreme"]
         self.assertTrue(shown["failed"])
-        self.assertIn("1 of 2 (1 extreme)", json.dumps(model["claims"]))
+        self.assertIn("of 2: 1 extreme", json.dumps(model["answer"]["tables"]["failures"]))
 
     def test_printing_without_end(self):
         status = self.run_modes("print")["print"]

@@ -238,9 +238,9 @@ class Everywhere(Programs):
         self.assertEqual([r["status"]["kind"] for r in self.records()], ["ok"] * 4)
         self.taut("plot", study)
         model, page = self.report(study)
-        headline, = [c["sentence"] for c in model["claims"] if c["id"] == "stretch"]
-        self.assertIn("at 1 \u00d7 2 (substeps \u00d7 sweeps)", headline)
-        self.assertIn("Relax perl", headline)
+        stretch = model["answer"]["tables"]["stretch.rms"]
+        self.assertIn("1 \u00d7 2 (substeps \u00d7 sweeps)", stretch["caption"])
+        self.assertIn("Relax perl", [column["heading"] for column in stretch["columns"]])
         self.assertIn("relax-perl", page)
 
     def test_an_axis_is_not_taken_for_fixed_by_a_command_that_names_it(self):

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "experiments/report/answer/case_list.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/claim.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::curves_test {
@@ -217,6 +217,25 @@ TEST(Settings, LabelsHaveWhatVariesAndNoMore) {
   EXPECT_EQ(labels.of(all[3]), "") << "nothing varies of Bullet's";
 }
 
+TEST(Charts, ACurveThatLiesOnAnotherIsSaid) {
+  std::vector<Record> records = synthetic::iterations("hang");
+  std::erase_if(records, [](const Record& r) { return r.status.kind != Status::Kind::ok; });
+  const auto same = [&](double factor) {
+    std::vector<Record> all;
+    for (Record r : records) {
+      if (r.solver == "bullet") continue;
+      all.push_back(r);
+      r.solver = "xpbd", r.values["stretch.rms"] *= factor;
+      all.push_back(r);
+    }
+    return coincident_curves(make_chart("convergence", all, kSweeps, "stretch.rms", kSweeps));
+  };
+  EXPECT_EQ(same(1), (std::vector<std::string>{"XPBD lies on Jakobsen: the same"}));
+  EXPECT_EQ(same(1.002),
+            (std::vector<std::string>{"XPBD lies on Jakobsen: the same to 0.2\u00A0%"}));
+  EXPECT_TRUE(same(1.02).empty());
+}
+
 TEST(Charts, ATheoryLineLiesBelowTheLowestPointAndAFrontAboveNone) {
   std::vector<Record> all = at_work({{"jakobsen", {{1, 1}, {1, 2}, {1, 4}}}});
   for (const auto& [i, y] : {std::pair{0, 8.0}, {1, 3.0}, {2, 2.0}})
@@ -295,7 +314,7 @@ TEST(Keys, AreAsShortAsTellsThemApartInStepsOfFour) {
   const auto length = [](const std::string& a, const std::string& b) {
     ReportInput input{.studies = {{"one", "?", {at_step(0.01), at_step(0.02)}, 0, {}}}};
     input.studies[0].records[0].key = a, input.studies[0].records[1].key = b;
-    Citations refs(input);
+    CaseList refs(input);
     const std::string key = refs.key(a);
     EXPECT_EQ(key, a.substr(0, key.size()));
     EXPECT_EQ(refs.key("no such"), "");

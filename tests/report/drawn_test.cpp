@@ -11,12 +11,13 @@
 #include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
-#include "tests/report/raw_records.hpp"
 
 namespace taut::report::drawn_test {
 namespace {
 
-bool fails(const std::string& status) { return status != "ok" && status != "unsettled"; }
+bool fails(const std::string& status) {
+  return status != "ok" && status != "unsettled" && status != "unsupported";
+}
 
 /// One made-up report, its model and its cases by their short keys.
 struct Made {
@@ -97,31 +98,6 @@ TEST(Drawn, APointIsOfItsSolverMarkedAsItEndedAndInsideItsInterval) {
   EXPECT_GT(intervals, 10U);
 }
 
-TEST(Drawn, NoClaimContradictsAChart) {
-  std::size_t compared = 0;
-  for (const Made& made : sets()) {
-    std::map<std::pair<std::string, std::string>, Json> drawn;  // (case, metric) -> y
-    for (const Json& chart : made.model.value("charts", Json::array()))
-      for (const Json& series : chart["series"])
-        for (const Json& p : series["points"]) {
-          EXPECT_EQ(p["status"], made.cases.at(p["case"])["status"]);
-          EXPECT_EQ(p["failed"].get<bool>(), p["y"].is_null());
-          drawn[{p["case"], chart["y"]["metric"]}] = p["y"];
-        }
-    for (const Json& claim : made.model["claims"])
-      for (const Json& basis : claim["basis"])
-        for (const Json& value : basis["values"]) {
-          if (!value.contains("case")) continue;  // of another results folder
-          EXPECT_EQ(value["status"], made.cases.at(value["case"])["status"]) << claim["id"];
-          const auto at = drawn.find({value["case"], basis["metric"]});
-          if (at == drawn.end()) continue;
-          ++compared;
-          EXPECT_EQ(at->second, value["value"]) << claim["sentence"];
-        }
-  }
-  EXPECT_GT(compared, 100U);
-}
-
 TEST(Drawn, CountsOfStatusesAreOfAllCases) {
   for (const Made& made : sets()) {
     for (const Json& map : made.model.value("maps", Json::array())) {
@@ -131,10 +107,14 @@ TEST(Drawn, CountsOfStatusesAreOfAllCases) {
     }
     std::map<std::string, std::map<std::string, std::map<std::string, int>>> ended;
     std::set<std::string> keys;
-    for (const StudyResult& study : made.input.studies)
-      for (const Record& r : study.records)
-        if (keys.insert(r.key).second)
-          ++ended[r.scene][r.solver][std::string(to_string(r.status.kind))];
+    const auto count = [&](const Record& r) {
+      if (keys.insert(r.key).second)
+        ++ended[r.scene][r.solver][std::string(to_string(r.status.kind))];
+    };
+    for (const StudyResult& study : made.input.studies) std::ranges::for_each(study.records, count);
+    if (made.input.bench)
+      for (const SceneBench& scene : made.input.bench->scenes)
+        for (const BenchedCase& c : scene.cases) count(c.record);
     for (const Json& scene : made.model["scenes"]) {
       EXPECT_EQ((scene["statuses"].get<std::map<std::string, std::map<std::string, int>>>()),
                 ended.at(scene["id"]));
@@ -146,50 +126,7 @@ TEST(Drawn, CountsOfStatusesAreOfAllCases) {
     }
     for (const Json& status : made.model["statuses"])
       EXPECT_EQ(status["failed"], fails(status["id"]));
-    for (const Json& claim : made.model["claims"])
-      for (const Json& basis : claim["basis"]) {
-        std::map<std::string, std::map<std::string, int>> seen;
-        for (const Json& value : basis["values"]) ++seen[value["label"]][value["status"]];
-        if (!basis.contains("unlisted")) {
-          EXPECT_EQ((basis["statuses"].get<std::map<std::string, std::map<std::string, int>>>()),
-                    seen)
-              << claim["id"];
-        }
-      }
   }
-}
-
-TEST(Drawn, ABasisNamesTheWindowOfItsMetricAndOrderedIntervals) {
-  std::size_t intervals = 0;
-  for (const Made& made : sets()) {
-    for (const auto& [name, metric] : made.model["metrics"].items())
-      EXPECT_EQ(metric["scale"], quantity(name).unit.scale) << name;
-    for (const Json& claim : made.model["claims"])
-      for (const Json& basis : claim["basis"]) {
-        const Window window = quantity(basis["metric"].get<std::string>()).window;
-        EXPECT_EQ(basis["window"], window == Window::none ? "whole run" : to_string(window))
-            << basis["metric"];
-        for (const Json& value : basis["values"]) {
-          const std::string label = value["label"];
-          EXPECT_TRUE(claim["about"] == "differences" ||
-                      label.starts_with(solver_title(value["solver"].get<std::string>())))
-              << claim["id"] << ": " << value;
-          if (value.contains("case")) {
-            const Json& one = made.cases.at(value["case"]);
-            EXPECT_EQ(one["solver"], value["solver"]) << claim["id"];
-            EXPECT_EQ(one["scene"], value["scene"]) << claim["id"];
-            if (!value["value"].is_null()) {
-              EXPECT_EQ(value_in(one, basis["metric"]), value["value"]) << claim["id"];
-            }
-          }
-          if (!value.contains("low")) continue;
-          EXPECT_LE(value["low"], value["value"]);
-          EXPECT_LE(value["value"], value["high"]);
-          ++intervals;
-        }
-      }
-  }
-  EXPECT_GT(intervals, 10U);
 }
 
 TEST(Drawn, ACaseHasItsSettingsItsCommandAndItsCost) {
@@ -304,75 +241,6 @@ TEST(Drawn, TheReferencesOwnErrorIsTheFloorOfItsChart) {
       ++seen;
     }
   EXPECT_GT(seen, 0);
-}
-
-TEST(Drawn, APanelMarksWhatDiffersUnderItsSolver) {
-  int seen = 0;
-  for (unsigned seed = 0; seed < 10; ++seed) {
-    ReportInput input = made_up::Maker(seed).input();
-    for (StudyResult& study : input.studies)
-      for (Record& r : study.records)
-        r.resolved_settings = {{"made by", r.solver}, {"gravity", "9.81"}};
-    const Json model = parse_json(make_model(input));
-    for (const Json& scene : model["scenes"]) {
-      if (!scene.contains("resolved_settings")) continue;
-      const Json &columns = scene["resolved_settings"]["columns"],
-                 &rows = scene["resolved_settings"]["rows"];
-      EXPECT_EQ(rows[0]["differs"], columns.size() > 1);
-      EXPECT_FALSE(rows[1]["differs"]);
-      for (std::size_t i = 0; i < columns.size(); ++i, ++seen)
-        EXPECT_EQ(rows[0]["values"][i], columns[i]["solver"]);
-    }
-  }
-  EXPECT_GT(seen, 10);
-}
-
-TEST(Drawn, ATableOfCostsSaysWhatItsCasesCostAndABenchWhetherItWasNoisy) {
-  std::size_t cells = 0, noisy = 0;
-  for (const Made& made : sets()) {
-    if (!made.input.bench) continue;
-    for (const Json& table : made.model["tables"])
-      for (const Json& row : table["rows"])
-        for (const Json& cell : row) {
-          if (!cell.contains("low")) continue;
-          const Json& cost = made.cases.at(cell["case"]).at("cost").at("cpu.per_second");
-          EXPECT_EQ(cell["low"], cost["low"]);
-          EXPECT_EQ(cell["value"], cost["mid"]);
-          EXPECT_EQ(cell["high"], cost["high"]);
-          ++cells;
-        }
-    for (const Json& scene : made.model["cost"]["scenes"]) {
-      const double low = scene["control"]["low"], high = scene["control"]["high"];
-      EXPECT_EQ(scene["noisy"], std::max(1 / low, high) > 1.05);
-      noisy += scene["noisy"].get<bool>();
-    }
-  }
-  EXPECT_GT(cells, 10U);
-  EXPECT_GT(noisy, 0U);
-}
-
-TEST(Drawn, ChangesBetweenTwoFoldersStandTheLargestFirstAndAreJudgedByTheirSign) {
-  int judged = 0;
-  for (const Made& made : sets())
-    for (const Json& table : made.model.value("tables", Json::array())) {
-      if (table["id"] != "differences-values") continue;
-      double before = 2;
-      for (const Json& row : table["rows"]) {
-        if (row[1] == "status") {
-          EXPECT_EQ(before, 2) << "another end comes before another value";
-          continue;
-        }
-        const double a = reading::number_in(row[2]), b = reading::number_in(row[3]);
-        const double size = std::abs(b - a) / std::max(a, b);
-        EXPECT_LE(size, before + 2e-3) << row;
-        before = size;
-        if (row[5] != "") {
-          EXPECT_EQ(row[5], b < a ? "better" : "worse") << row;
-          ++judged;
-        }
-      }
-    }
-  EXPECT_GT(judged, 20);
 }
 
 }  // namespace

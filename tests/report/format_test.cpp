@@ -8,9 +8,9 @@
 #include <set>
 
 #include "experiments/case/record_io.hpp"
+#include "experiments/report/answer/answer.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/claim.hpp"
 
 namespace taut::report::format_test {
 namespace {
@@ -100,18 +100,9 @@ TEST(Words, AreJoinedAndCapitalisedAsInASentence) {
                                        {"{a", "{a"},
                                        {"é", "é"}})
     EXPECT_EQ(capitalised(plain), capital);
-  EXPECT_EQ(sentence_if("Not: ", {}), "");
-  EXPECT_EQ(sentence_if("Not: ", {"a", "b"}), "Not: a and b.");
   EXPECT_EQ(typeset("1e99999999999 2e-07 3e+00"), "1×10⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹ 2×10⁻⁷ 3×10⁰");
   EXPECT_EQ(typeset("(-3) x^3 <= 1e+06, e-5, 2e5x, 3-4, a - b"),
             "(−3) x³ ≤ 1×10⁶, e-5, 2e5x, 3-4, a − b");
-}
-
-TEST(Shares, AreFractionsUpToALittleOverHalf) {
-  EXPECT_EQ(share_text(0.55), "1/1.8");
-  EXPECT_EQ(share_text(0.56), "56\u00A0%");
-  EXPECT_EQ(share_text(0.1), "1/10");
-  EXPECT_EQ(share_text(0.994), "99\u00A0%");
 }
 
 /// 2^n.
@@ -124,7 +115,6 @@ TEST(GeometricMean, AddsErrorsAsSquaresOfLogarithms) {
   EXPECT_NEAR(mean.low, power(0.5), 1e-12);
   EXPECT_NEAR(mean.mid, power(3), 1e-12);
   EXPECT_NEAR(mean.high, power(8), 1e-9);
-  EXPECT_NEAR(geometric_mean(std::vector<double>{1, 4, 16}), 4, 1e-12);
 }
 
 TEST(Places, AreSpreadFromTheFirstToTheLast) {

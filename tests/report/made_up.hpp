@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/input.hpp"
 
 // Result sets that never were: failures that left values behind, ties, noise, one solver alone,
@@ -41,11 +42,30 @@ class Maker {
     return input;
   }
 
- private:
-  double uniform() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }
+  /// How it ended and what it measured. Failures keep values that would flatter them.
+  void fill(Record& r) {
+    end(r);
+    const bool failure = !completed(r.status);
+    double stretch = between(1e-5, 0.3);
+    if (chance(0.3)) stretch = chance(0.5) ? 0.02 : 0.0205;
+    if (r.scene == "fall") stretch = between(1e-17, 1e-12);
+    if (failure) stretch = 1e-6;
+    if (!chance(0.05)) r.values["stretch.rms"] = chance(0.02) ? std::nan("") : stretch;
+    if (r.scene == "swing" && !chance(0.1)) r.values["motion.share"] = 1.5 * uniform() - 0.3;
+    if (r.scene == "hang" || r.scene == "fall" || r.scene == "swing") return;
+    const double peak = failure || chance(0.2) ? 0 : between(1e-6, 0.2);
+    r.values["penetration.peak"] = peak;
+    r.values["penetration.max"] = chance(0.4) ? 0 : peak * uniform();  // 0: it has left
+    if (!chance(0.1)) r.values["face.peak"] = failure ? 0 : peak + between(1e-5, 0.1);
+    r.values["face.max"] = 0;
+    r.values["tunnelling.events"] = failure ? 0 : static_cast<double>(random_() % 3 * 28);
+    r.values["tunnelling.count"] = 0;
+  }
   bool chance(double p) { return uniform() < p; }
+  double uniform() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }
   double between(double low, double high) { return low * std::pow(high / low, uniform()); }
 
+ private:
   /// At least one of them, in any order.
   std::vector<std::string> some(std::vector<std::string> all) {
     std::shuffle(all.begin(), all.end(), random_);
@@ -81,27 +101,10 @@ class Maker {
                                  : Status::Kind::unsupported;
   }
 
-  /// Failures keep values that would flatter them.
   void add(StudyResult& study, const std::string& scene, const std::string& solver, double dt,
            int substeps, int sweeps) {
     Record r = record(scene, solver, dt, substeps, sweeps);
-    end(r);
-    const bool failure =
-        r.status.kind != Status::Kind::ok && r.status.kind != Status::Kind::unsettled;
-    double stretch = between(1e-5, 0.3);
-    if (chance(0.3)) stretch = chance(0.5) ? 0.02 : 0.0205;
-    if (scene == "fall") stretch = between(1e-17, 1e-12);
-    if (failure) stretch = 1e-6;
-    if (!chance(0.05)) r.values["stretch.rms"] = chance(0.02) ? std::nan("") : stretch;
-    if (scene != "hang" && scene != "fall") {
-      const double peak = failure || chance(0.2) ? 0 : between(1e-6, 0.2);
-      r.values["penetration.peak"] = peak;
-      r.values["penetration.max"] = chance(0.4) ? 0 : peak * uniform();  // 0: it has left
-      if (!chance(0.1)) r.values["face.peak"] = failure ? 0 : peak + between(1e-5, 0.1);
-      r.values["face.max"] = 0;
-      r.values["tunnelling.events"] = failure ? 0 : static_cast<double>(random_() % 3 * 28);
-      r.values["tunnelling.count"] = 0;
-    }
+    fill(r);
     study.records.push_back(r);
   }
 

@@ -10,8 +10,8 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "experiments/report/answer/compared_solvers.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/claim.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -88,12 +88,11 @@ TEST(Report, NamesFromOutsideStayText) {
 
 TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   const Json model = model_of(example());
-  EXPECT_EQ(model["schema"], "taut-report/2");
-  for (const char* part : {"meta", "solvers", "statuses", "metrics", "claims", "scenes", "charts",
-                           "maps", "method", "missing", "cases"})
+  EXPECT_EQ(model["schema"], "taut-report/3");
+  for (const char* part : {"meta", "solvers", "statuses", "metrics", "answer", "scenes", "charts",
+                           "maps", "tables", "method", "missing", "cases"})
     EXPECT_TRUE(model.contains(part) && !model[part].empty()) << part;
-  for (const char* part :
-       {"cost", "limits", "truths", "regressions", "films", "tables", "left_out"})
+  for (const char* part : {"cost", "limits", "truths", "regressions", "films", "left_out"})
     EXPECT_FALSE(model.contains(part)) << part;
   EXPECT_EQ(model["missing"].size(), 4U);
   EXPECT_EQ(model["meta"]["title"], "Jakobsen and Bullet");
@@ -103,9 +102,10 @@ TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
 /// Every id that something names exists, once; every quantity has its entry in the glossary.
 void check_references(const Json& model) {
   std::map<std::string, int> ids;
-  for (const char* part : {"claims", "charts", "maps", "films", "tables", "scenes"})
+  for (const char* part : {"charts", "maps", "films", "scenes"})
     for (const Json& one : model.value(part, Json::array())) ++ids[one["id"]];
   for (const auto& [id, n] : ids) EXPECT_EQ(n, 1) << id;
+  for (const auto& [name, table] : model["tables"].items()) ++ids[name];
   std::map<std::string, int> cases;
   for (const Json& one : model["cases"]) ++cases[one["key"]];
   for (const auto& [key, n] : cases) EXPECT_EQ(n, 1) << key;
@@ -114,18 +114,15 @@ void check_references(const Json& model) {
       EXPECT_TRUE(ids.contains(id.get<std::string>())) << id;
   };
   for (const Json& scene : model["scenes"])
-    for (const char* list : {"claims", "films", "charts", "maps"}) named(scene, list);
-  if (model.contains("cost"))
-    for (const char* list : {"claims", "tables"}) named(model["cost"], list);
+    for (const char* list : {"films", "charts", "maps", "tables"}) named(scene, list);
+  if (model.contains("cost")) named(model["cost"], "tables");
   const auto known_case = [&](const Json& key) {
     EXPECT_TRUE(cases.contains(key.get<std::string>())) << key;
   };
-  for (const Json& claim : model["claims"])
-    for (const Json& basis : claim["basis"]) {
-      EXPECT_TRUE(model["metrics"].contains(basis["metric"].get<std::string>())) << basis["metric"];
-      EXPECT_FALSE(basis["cases"].empty());
-      for (const Json& key : basis["cases"]) known_case(key);
-    }
+  for (const Json& tables : {model["answer"]["tables"], model["tables"]})
+    for (const Json& table : tables)
+      for (const Json& cell : table["notes"])
+        if (cell.contains("key")) known_case(cell["key"]);
   for (const Json& chart : model.value("charts", Json::array())) {
     for (const char* axis : {"x", "y"})
       EXPECT_TRUE(model["metrics"].contains(chart[axis]["metric"].get<std::string>()));
@@ -163,27 +160,6 @@ TEST(Model, WithoutAnyRecordIsAnInputError) {
   EXPECT_THROW(make_report(input), InputError);
 }
 
-TEST(Model, AFilmSaysWhetherItShowsWhatTheSentenceIsAbout) {
-  ReportInput input = example();
-  Clip clip{.type = "image/png", .bytes = "x", .alt = "two sheets", .panels = {}};
-  for (const Record& r : input.studies[0].records)
-    if (r.scene == "ball" && r.params.at("iterations") == "16")
-      clip.panels.push_back({r.solver, "16 sweeps", r.key});
-  input.media = {{.scene = "ball", .clips = {clip}, .duration = 2.5}};
-  const auto claim = [&](const std::string& id) {
-    const Json model = model_of(input);
-    for (const Json& one : model["claims"])
-      if (one["id"] == id) return one;
-    return Json();
-  };
-  EXPECT_EQ(claim("stretch")["film"], "film-ball");
-  EXPECT_FALSE(claim("stretch").contains("film_note"));
-  EXPECT_TRUE(claim("step").contains("film_note"));
-  input.media[0].clips[0].panels[0].key = input.studies[0].records[0].key;  // another setting
-  EXPECT_FALSE(claim("stretch").contains("film"));
-  EXPECT_TRUE(claim("stretch").contains("film_note"));
-}
-
 TEST(Model, WhatIsMissingNamesTheCommandThatMakesIt) {
   ReportInput input = example();
   const auto commands = [&] {
@@ -218,7 +194,6 @@ TEST(Model, FiguresOfTheWholeAreCounted) {
   EXPECT_EQ(meta["planned"], cases + 40 - input.studies[0].records.size());
   EXPECT_FALSE(meta.contains("listed"));
   EXPECT_EQ(meta["build"], (Json{{"program", "0123456789"}, {"toolchain", "g++ 12.2.0"}}));
-  EXPECT_EQ(meta["policy"].size(), 5u);
   input.truths = Truths{{{"truths", 2}, {"findings", 3}}};
   input.regressions = {{"cases", 7}, {"values", 90}};
   const Json model = model_of(input);
@@ -244,28 +219,6 @@ TEST(Model, AFilmShowsTheScenesOwnQuantityFirstAndWhatStaysZeroLast) {
   std::vector<std::string> shown;
   for (const Json& track : model["films"][0]["tracks"]) shown.push_back(track["metric"]);
   EXPECT_EQ(shown, (std::vector<std::string>{"slip.distance", "stretch.rms", "penetration.max"}));
-}
-
-TEST(Model, CostTablesCompareWhatAllSolversOfASceneHave) {
-  int seen = 0;
-  for (unsigned seed = 0; seed < 60; ++seed) {
-    const ReportInput input = made_up::Maker(seed).input();
-    if (!input.bench) continue;
-    const Json model = model_of(input);
-    std::map<std::string, Json> cases;
-    for (const Json& one : model["cases"]) cases[one["key"]] = one;
-    for (const Json& table : model["tables"]) {
-      const std::string id = table["id"];
-      const bool several = table["columns"].size() > 2;  // of one solver alone all is compared
-      for (const Json& row : table["rows"])
-        for (const Json& cell : row) {
-          if (!id.starts_with("cost-levels-") || !several || !cell.contains("case")) continue;
-          EXPECT_NE(cases.at(cell["case"])["parameters"].value("tethers", "off"), "on") << id;
-          ++seen;
-        }
-    }
-  }
-  EXPECT_GT(seen, 20);
 }
 
 TEST(Model, PicturesThatWouldBurstThePageAreLeftOutAndSaidSo) {
@@ -299,7 +252,7 @@ TEST(ComparedSolvers, OnlyWhatAnswersTheSameQuestionIsQuotedSideBySide) {
   for (const QuotedScene& quoted : compared.scenes)
     EXPECT_EQ(std::ranges::count(quoted.cases, nullptr), 1) << "another grid is another question";
   for (const ComparedSolver& solver : compared.all) EXPECT_EQ(solver.work.sweeps, 16);
-  EXPECT_EQ(compared.work_text(), "1 × 16 (substeps × sweeps)");
+  EXPECT_EQ(compared.common_work(), "1 × 16 (substeps × sweeps)");
 }
 
 TEST(Files, WhatCannotBeWrittenIsSaidBeforeAnythingIsDone) {

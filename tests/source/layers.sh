@@ -35,9 +35,9 @@ experiments/render/picture | (core/model|experiments/(answer|system|case|render/
 experiments/render/film  | (core/(model|io)|experiments/(system|case|study|render/(picture|film)|report))/
 experiments/report       | (core/model|experiments/(answer|system|metrics|case|study|timing|baseline|truths|report))/
 experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|report/chart))/|experiments/report/input
-experiments/report/claims | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|claims)))/|experiments/report/input
+experiments/report/answer | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|answer)))/|experiments/report/input
 experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|report/(chart|plot)))/
-experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|baseline|truths|report/(chart|claims|model)))/|experiments/report/input
+experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|baseline|truths|report/(chart|answer|model)))/|experiments/report/input
 '
 # what is included | files that may include it
 owners='
@@ -131,9 +131,9 @@ experiments/timing/bench/planted.cpp|"experiments/study/store.hpp"
 experiments/render/picture/planted.cpp|"experiments/render/film/film.hpp"
 experiments/require/planted.cpp|"experiments/report/chart/format.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
-experiments/report/chart/planted.hpp|"experiments/report/claims/claim.hpp"
-experiments/report/claims/planted.cpp|"experiments/report/model/parts.hpp"
-experiments/report/plot/planted.cpp|"experiments/report/claims/claim.hpp"
+experiments/report/chart/planted.hpp|"experiments/report/answer/answer.hpp"
+experiments/report/answer/planted.cpp|"experiments/report/model/parts.hpp"
+experiments/report/plot/planted.cpp|"experiments/report/answer/answer.hpp"
 experiments/report/model/planted.cpp|"experiments/report/plot/plot.hpp"
 experiments/render/image/planted.cpp|"experiments/render/opengl/camera.hpp"
 experiments/render/opengl/planted.cpp|"experiments/render/picture/figure.hpp"

@@ -188,5 +188,5 @@ TAUT_VERB(report) = {
     .summary = "Writes the comparison of stored results as one HTML page",
     .example =
         "taut report\n  taut report iterations --preset quick -o hang.html\n  taut "
-        "report iterations --json | jq .claims\n  taut report results/before results/after",
+        "report iterations --json | jq .answer\n  taut report results/before results/after",
     .bind = taut::bind_verb<taut::verb::reporting::add_options, taut::verb::reporting::run>};

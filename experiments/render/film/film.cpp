@@ -12,8 +12,8 @@
 #include "core/model/text.hpp"
 #include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/render/picture/media.hpp"
+#include "experiments/report/answer/compared_solvers.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/compared_solvers.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
@@ -44,7 +44,7 @@ struct Film {
   }
 };
 
-/// The cases that are quoted: pictures show what sentences speak of.
+/// The cases at equal work: pictures show what the answer's tables have.
 Film studied_film(const report::ComparedSolvers& compared, const report::QuotedScene& quoted) {
   Film film{.scene = quoted.question.scene};
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {

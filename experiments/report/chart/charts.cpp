@@ -209,7 +209,37 @@ void add_floor(Chart& chart) {
   if (highest > 0) chart.floor = {highest, std::string(value->floor.text)};
 }
 
-bool failed(const Point& p) { return !completed(p.record->status); }
+bool failed(const Point& p) {
+  const Status& status = p.record->status;
+  return !completed(status) && status.kind != Status::Kind::unsupported;
+}
+
+std::vector<std::string> coincident_curves(const Chart& chart) {
+  constexpr double kSame = 0.01;  // of the value: less is the width of a line
+  const auto values = [](const Curve& curve) {
+    std::map<double, double> y;
+    for (const Point& p : curve.points)
+      if (p.measured()) y[p.x] = p.y;
+    return y;
+  };
+  std::vector<std::string> texts;
+  for (std::size_t j = 1; j < chart.curves.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i) {
+      const auto a = values(chart.curves[i]), b = values(chart.curves[j]);
+      double apart = a.size() == b.size() && a.size() > 1 ? 0 : 1;
+      for (auto one = a.begin(), other = b.begin(); apart < kSame && one != a.end(); ++one, ++other)
+        apart = one->first != other->first ? 1
+                : one->second == other->second
+                    ? apart
+                    : std::max(apart, std::abs(one->second - other->second) /
+                                          std::max(std::abs(one->second), std::abs(other->second)));
+      if (apart >= kSame) continue;
+      texts.push_back(chart.curves[j].label + " lies on " + chart.curves[i].label + ": the same" +
+                      (apart > 0 ? " to " + shown(kShare, apart, 1) : ""));
+      break;
+    }
+  return texts;
+}
 
 Chart make_chart(std::string kind, const Records& records, const std::string& x,
                  const std::string& y, const std::string& along) {

@@ -79,7 +79,11 @@ Chart make_chart(std::string kind, const Records&, const std::string& x, const s
 /// Draws into the chart below what its y says nothing (ValueSpec::floor), if it says so.
 void add_floor(Chart&);
 
-/// Whether the point has no value to be drawn: it failed.
+/// Which curves lie within a hundredth of an earlier one at every point, a sentence each: one would
+/// hide the other.
+std::vector<std::string> coincident_curves(const Chart&);
+
+/// Whether the point has no value to be drawn: it failed. What a solver cannot run is no failure.
 bool failed(const Point&);
 
 /// c of a theory line y = c x^slope below the lowest curve; NaN: there is none.

@@ -6,6 +6,7 @@
 
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/distinct.hpp"
@@ -27,32 +28,38 @@ std::string range_of(const std::set<double>& values, const Quantity& q) {
 
 }  // namespace
 
-Json json_of_resolved_settings(const QuotedScene& quoted, const ComparedSolvers& compared,
-                               Citations& refs) {
-  Json panel{{"caption", "Settings each solver used for this scene"}};
+Table resolved_settings_table(const QuotedScene& quoted, const ComparedSolvers& compared,
+                              CaseList& refs) {
+  Table table{"settings-" + slug(quoted.question.scene),
+              "Settings each solver used for this scene",
+              {Column("setting")},
+              {},
+              "What differs between solvers says so."};
   std::vector<const Record*> cases;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
     const Record* r = quoted.cases[i];
     if (!r) continue;
     cases.push_back(r);
-    panel["columns"].push_back({{"solver", r->solver},
-                                {"case", refs.key(*r)},
-                                {"text", compared.all[i].label + " " + work_of(*r).text()}});
+    table.columns.emplace_back(r->solver, compared.all[i].label);
     for (const auto& [name, value] : r->resolved_settings) push_unique(names, name);
   }
-  if (cases.empty()) return {};
-  const auto row = [&](const std::string& name, const auto& cell) {
-    std::vector<std::string> values;
-    for (const Record* r : cases) values.push_back(typeset(cell(*r)));
+  const auto row = [&](const std::string& name, const auto& cell) -> std::vector<Cell>& {
+    std::vector<Cell> cells{name};
+    for (const Record* r : cases) cells.emplace_back(typeset(cell(*r)));
     // A dash says that the solver has no such setting, not that it differs; what follows the same
     // beginning is a remark.
-    const std::string& first = values.front();
-    const bool same = std::ranges::all_of(values, [&](const std::string& v) {
-      return v == "–" || first == "–" || v.starts_with(first) || first.starts_with(v);
-    });
-    panel["rows"].push_back({{"name", name}, {"values", values}, {"differs", !same}});
+    const std::string first = cells[1].text();
+    if (!std::ranges::all_of(cells.begin() + 1, cells.end(), [&](const Cell& c) {
+          const std::string v = c.text();
+          return v == "–" || first == "–" || v.starts_with(first) || first.starts_with(v);
+        }))
+      cells[0].note = "differs";
+    return table.rows.emplace_back(std::move(cells));
   };
+  if (cases.empty()) return table;
+  auto& work = row("substeps × sweeps", [](const Record& r) { return work_of(r).text(); });
+  for (std::size_t i = 0; i < cases.size(); ++i) work[i + 1].key = refs.key(*cases[i]);
   for (const std::string& name : names)
     row(name, [&](const Record& r) {
       const auto at =
@@ -66,10 +73,10 @@ Json json_of_resolved_settings(const QuotedScene& quoted, const ComparedSolvers&
   });
   row("work: constraint projections per step",
       [](const Record& r) { return std::to_string(r.projections); });
-  return panel;
+  return table;
 }
 
-Json json_of_case(const Record& r, const BenchedCase* timed, Citations& refs) {
+Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
   CaseSpec spec = r.spec;
   if (spec.scene.find('/') != std::string::npos)
     spec.scene = std::filesystem::absolute(spec.scene).lexically_normal().string();
@@ -105,17 +112,16 @@ Json json_of_case(const Record& r, const BenchedCase* timed, Citations& refs) {
   return one;
 }
 
-Json facts_of(const ReportInput& input, const std::string& scene) {
+Json facts_of(const CaseList& refs, const std::string& scene) {
   std::map<std::string, std::set<double>> seen;
   std::size_t cases = 0;
-  for (const StudyResult& study : input.studies)
-    for (const Record& r : study.records) {
-      if (r.scene != scene) continue;
-      ++cases;
-      for (const char* name : {"vertices", "links", "dt", kSubsteps, kSweeps})
-        if (const double value = value_of(r, name); std::isfinite(value)) seen[name].insert(value);
-      seen["t"].insert(std::round(r.steps * r.dt * 100) / 100);
-    }
+  for (const Record* r : refs.cases()) {
+    if (r->scene != scene) continue;
+    ++cases;
+    for (const char* name : {"vertices", "links", "dt", kSubsteps, kSweeps})
+      if (const double value = value_of(*r, name); std::isfinite(value)) seen[name].insert(value);
+    seen["t"].insert(std::round(r->steps * r->dt * 100) / 100);
+  }
   Json facts;
   for (const auto& [name, values] : seen) {
     const Quantity q = quantity(name);

@@ -2,11 +2,11 @@
 #include <cmath>
 
 #include "core/model/text.hpp"
+#include "experiments/case/question.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
-#include "experiments/report/claims/claim.hpp"
 #include "experiments/report/model/parts.hpp"
 
 namespace taut::report {
@@ -25,7 +25,7 @@ Json json_of_axis(const Quantity& q, const std::vector<double>& ticks) {
   return axis;
 }
 
-Json json_of(const Point& p, const Chart& chart, Citations& refs) {
+Json json_of(const Point& p, const Chart& chart, CaseList& refs) {
   const bool none = failed(p);
   Json point{{"x", json_number(p.x)},
              {"y", none ? Json() : json_number(p.y)},
@@ -40,7 +40,7 @@ Json json_of(const Point& p, const Chart& chart, Citations& refs) {
 }
 
 /// Times and values of a series.
-Json json_of(const TimeSeries& series, Citations& refs) {
+Json json_of(const TimeSeries& series, CaseList& refs) {
   Json one{{"solver", series.solver}, {"label", series.label}, {"t", series.t}};
   for (const double y : series.y) one["y"].push_back(json_number(y));
   add_if(one, "case", refs.key(series.key));
@@ -48,7 +48,7 @@ Json json_of(const TimeSeries& series, Citations& refs) {
 }
 
 Json json_of_tracks(const std::string& scene, double until, const ReportInput& input,
-                    Citations& refs) {
+                    CaseList& refs) {
   std::map<std::string, Json> by_value;
   for (const TimeSeries& series : input.series) {
     if (series.scene != scene) continue;
@@ -97,7 +97,7 @@ Json json_interval(const Interval& i, std::size_t n) {
           {"n", n}};
 }
 
-Json json_of(const Chart& chart, Citations& refs) {
+Json json_of(const Chart& chart, CaseList& refs) {
   Json one{{"id", chart.id},
            {"scene", chart.scene},
            {"kind", chart.kind},
@@ -148,11 +148,14 @@ Json json_of(const Chart& chart, Citations& refs) {
   if (chart.front)
     for (const Point& p : pareto_front(chart))
       one["front"].push_back({{"x", p.x}, {"y", p.y}, {"case", refs.key(*p.record)}});
-  if (zeros && !chart.curves.empty()) one["zeros"] = true;
+  if (zeros && !chart.curves.empty())
+    one["zeros"] = true;
+  else
+    add_if(one, "same", coincident_curves(chart));
   return one;
 }
 
-Json json_of(const StatusMap& map, const std::string& id, Citations& refs) {
+Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
   Json one{{"id", id},
            {"scene", map.scene},
            {"solver", map.solver},
@@ -161,6 +164,13 @@ Json json_of(const StatusMap& map, const std::string& id, Citations& refs) {
            {"study", map.study},
            {"x", json_of_axis(refs.use(map.x.name), map.columns)},
            {"y", json_of_axis(refs.use(map.y.name), map.rows)}};
+  std::vector<std::string> common = question_of(*map.cells.front().record).overrides;
+  for (const StatusMap::Cell& cell : map.cells)
+    std::erase_if(common, [&](const std::string& setting) {
+      const auto own = question_of(*cell.record).overrides;
+      return std::ranges::find(own, setting) == own.end();
+    });
+  add_if(one, "scene_settings", join(common, ", "));
   std::map<Status::Kind, int> counts;
   for (const StatusMap::Cell& cell : map.cells) {
     const Status& status = cell.record->status;
@@ -176,7 +186,7 @@ Json json_of(const StatusMap& map, const std::string& id, Citations& refs) {
   return one;
 }
 
-Json json_of(const SceneMedia& media, const ReportInput& input, Citations& refs,
+Json json_of(const SceneMedia& media, const ReportInput& input, CaseList& refs,
              std::size_t& budget) {
   Json films;
   for (std::size_t k = 0; k < media.clips.size(); ++k) {

@@ -31,11 +31,11 @@ const row = (head, ...cells) =>
   el('tr', {}, el('th', {scope: 'row'}, head), cells.map((cell) => el('td', {}, cell)));
 
 /** A table that scrolls in its box where it is too wide. */
-function tableOf(title, columns, rows) {
-  return el('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': short(title, 100)},
-    el('table', {}, el('caption', {className: 'hidden'}, short(title, 120)),
-       el('thead', {}, el('tr', {}, columns.map((text) => el('th', {scope: 'col'}, text)))), el('tbody', {}, rows)));
-}
+const scrolling = (title, heads, rows) =>
+  el('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': short(title, 100)},
+    el('table', {}, el('caption', {className: 'hidden'}, short(title, 120)), el('thead', {}, heads), el('tbody', {}, rows)));
+const tableOf = (title, columns, rows) =>
+  scrolling(title, el('tr', {}, columns.map((text) => el('th', {scope: 'col'}, text))), rows);
 
 /** Names and values. */
 const factList = (facts) => facts?.length
@@ -88,16 +88,19 @@ function csvField(value) {
   return /[",\r\n]/.test(text) ? '"' + text.replaceAll('"', '""') + '"' : text;
 }
 
-/** A button that hands a text to the clipboard; where that is refused, the text is selected. */
-function copyButton(source) {
+/** A button that hands a text to the clipboard; where that is refused, the text is shown to be copied by hand. */
+function copyButton(text) {
   const button = el('button', {type: 'button', className: 'copy'}, 'copy');
   button.onclick = async () => {
     try {
-      await navigator.clipboard.writeText(source.textContent);
+      await navigator.clipboard.writeText(text());
       button.textContent = 'copied';
     } catch {
-      getSelection().selectAllChildren(source);
-      button.textContent = 'selected: press Ctrl+C';
+      const area = el('textarea', {value: text(), 'aria-label': 'text to copy'});
+      button.after(area);
+      area.select();
+      button.textContent = document.execCommand('copy') ? 'copied' : 'press Ctrl+C';
+      if (button.textContent === 'copied') area.remove();
     }
     setTimeout(() => { button.textContent = 'copy'; }, 2500);
   };
@@ -106,14 +109,13 @@ function copyButton(source) {
 
 function command(text) {
   const code = el('code', {}, text);
-  return el('div', {className: 'command'}, el('pre', {tabIndex: 0}, code), copyButton(code));
+  return el('div', {className: 'command'}, el('pre', {tabIndex: 0}, code), copyButton(() => text));
 }
 
 const model = JSON.parse(document.getElementById('model').textContent);
 
 const index = (list, key = 'id') => new Map((list ?? []).map((entry) => [entry[key], entry]));
-const cases = index(model.cases, 'key'), claims = index(model.claims), charts = index(model.charts);
-const maps = index(model.maps), films = index(model.films), tables = index(model.tables);
+const cases = index(model.cases, 'key'), charts = index(model.charts), maps = index(model.maps), films = index(model.films);
 const scenes = index(model.scenes), statuses = index(model.statuses);
 const solvers = new Map(model.solvers.map((solver, order) => [solver.id, {...solver, order}]));
 

@@ -1,22 +1,26 @@
 'use strict';
 // The table of all cases: sorted, filtered, taken away as CSV; and the dialog of one case.
 
-/** Columns: `value` sorts and goes into the CSV (SI), `text` is shown. */
+/** Columns in the order of importance: `value` sorts and goes into the CSV (SI); `extra` ones are shown if asked for. */
 const caseColumns = (() => {
   const plain = (name, title, value, cell) => ({name, title, value, cell: cell ?? ((c) => short(value(c) ?? '', 60))});
   const measured = (name, value) => ({name, title: titled(metric(name)), help: metric(name).help, numeric: true, value,
     scale: metric(name).scale, cell: (c) => number(value(c) === undefined ? NaN : value(c) * metric(name).scale)});
   const used = (name) => model.cases.some((c) => Number.isFinite(c.values[name]));
+  const values = Object.keys(model.metrics).filter(used), told = (name) => model.metrics[name].role;
+  const cost = measured('cpu.per_second', (c) => c.cost?.['cpu.per_second']?.mid);
+  const extra = (column) => ({...column, extra: true});
   return [
-    {...plain('case', 'case', (c) => c.key, (c) => caseLink(c.key, c.key)), head: true},
     plain('scene', 'scene', (c) => c.scene), plain('solver', 'solver', (c) => c.solver, (c) => named(c.solver)),
-    plain('brief', 'setting', (c) => c.brief), measured('dt', (c) => c.dt),
+    {...plain('brief', 'setting', (c) => c.brief, (c) => caseLink(c.key, short(c.brief || 'defaults', 48))), head: true},
+    measured('dt', (c) => c.dt),
     plain('status', 'status', (c) => c.status, (c) => [glyphBox(c.status), ' ', statusOf(c.status).title]),
-    ...Object.keys(model.metrics).filter(used).map((name) => measured(name, (c) => c.values[name])),
-    ...(model.cases.some((c) => c.cost) ? [measured('cpu.per_second', (c) => c.cost?.['cpu.per_second']?.mid)] : []),
-    measured('projections', (c) => c.projections),
-    plain('studies', 'studies', (c) => c.studies.join(' ')), plain('reason', 'reason', (c) => c.reason),
-    plain('settings', 'all settings', (c) => c.settings),
+    ...values.filter(told).map((name) => measured(name, (c) => c.values[name])),
+    ...(model.cases.some((c) => c.cost) ? [cost] : []),
+    ...values.filter((name) => !told(name)).map((name) => extra(measured(name, (c) => c.values[name]))),
+    extra(measured('projections', (c) => c.projections)), extra(plain('case', 'case', (c) => c.key)),
+    extra(plain('studies', 'studies', (c) => c.studies.join(' '))), extra(plain('reason', 'reason', (c) => c.reason)),
+    extra(plain('settings', 'all settings', (c) => c.settings)),
   ];
 })();
 
@@ -60,6 +64,20 @@ function casesCsv(rows) {
 }
 
 const rowsAtFirst = 100;
+const shownColumns = () => caseColumns.filter((c) => !c.extra || state.params().getAll('column').includes(c.name));
+
+/** Which of the further columns are shown. */
+function columnChooser() {
+  const boxes = caseColumns.filter((c) => c.extra).map(({name, title}) => {
+    const box = el('input', {type: 'checkbox', onchange: () => {
+      const now = state.params().getAll('column');
+      state.set({column: box.checked ? [...now, name] : now.filter((other) => other !== name)}, false);
+    }});
+    state.watch(() => { box.checked = state.params().getAll('column').includes(name); });
+    return el('label', {}, box, ' ', short(title, 60));
+  });
+  return el('details', {}, el('summary', {}, `further columns (${boxes.length})`), el('div', {className: 'chooser'}, boxes));
+}
 
 function casesSection() {
   const body = el('tbody'), said = el('p', {className: 'note', role: 'status'});
@@ -68,18 +86,19 @@ function casesSection() {
        el('option', {value: ''}, 'all'), values.map((value) => el('option', {value}, short(value, 40)))));
   const find = el('input', {type: 'search', name: 'find', placeholder: 'words, or dt<=5', autocomplete: 'off',
                             oninput: () => state.set({find: find.value}, false)});
-  const heads = caseColumns.map((column) => el('th', {scope: 'col', className: column.numeric ? 'numeric' : ''},
-    el('button', {type: 'button', title: column.help ?? '', onclick: () => {
+  const headOf = (column) => el('th', {scope: 'col', className: column.numeric ? 'numeric' : '',
+    'aria-sort': {[column.name]: 'ascending', ['-' + column.name]: 'descending'}[state.get('sort')] ?? 'none'},
+    el('button', {type: 'button', title: column.help ?? '', 'data-column': column.name, onclick: () => {
       const now = state.get('sort');
       state.set({sort: now === column.name ? '-' + column.name : now === '-' + column.name ? '' : column.name}, false);
-    }}, short(column.title, 48))));
-  const table = el('table', {}, el('caption', {className: 'hidden'}, 'All cases'),
-                   el('thead', {}, el('tr', {}, heads)), body);
+    }}, short(column.title, 48)));
+  const heads = el('tr');
+  const table = el('table', {}, el('caption', {className: 'hidden'}, 'All cases'), el('thead', {}, heads), body);
   const more = el('button', {type: 'button'});
   const save = el('a', {className: 'button', href: '#cases', download: 'cases.csv'},
                   'download what is shown (CSV, SI units)');
   let rows = [];
-  const line = (entry) => el('tr', {}, caseColumns.map((column) => el(column.head ? 'th' : 'td',
+  const line = (entry) => el('tr', {'data-key': entry.key}, shownColumns().map((column) => el(column.head ? 'th' : 'td',
     {scope: column.head && 'row', className: column.numeric ? 'numeric' : ''}, column.cell(entry))));
   const fill = (upTo) => {
     body.replaceChildren(...rows.slice(0, upTo).map(line));
@@ -95,23 +114,24 @@ function casesSection() {
     choose('study', 'study', [...new Set(model.cases.flatMap((c) => c.studies))])];
   let last = null;
   state.watch(() => {
-    const asked = JSON.stringify([...['find', 'in', 'ended', 'study', 'sort'].map(state.get), ...state.params().getAll('off')]);
+    const asked = JSON.stringify([...['find', 'in', 'ended', 'study', 'sort'].map(state.get), state.params().getAll('off'), state.params().getAll('column')]);
     if (asked === last) return;
     last = asked;
     rows = chosenCases();
+    const focused = document.activeElement?.dataset?.column;
+    heads.replaceChildren(...shownColumns().map(headOf));
+    if (focused) heads.querySelector(`[data-column="${CSS.escape(focused)}"]`)?.focus();
     fill(rowsAtFirst);
     said.textContent = `${rows.length} of ${count(model.cases.length, 'case')}: ` +
       d3.nest().key((c) => c.status).rollup((group) => group.length).entries(rows)
           .map(({key, value}) => `${value} ${statusOf(key).title}`).join(', ');
     if (document.activeElement !== find) find.value = state.get('find');
     for (const select of selects.filter(Boolean)) select.lastChild.value = state.get(select.lastChild.name);
-    caseColumns.forEach(({name}, i) => heads[i].setAttribute('aria-sort',
-      {[name]: 'ascending', ['-' + name]: 'descending'}[state.get('sort')] ?? 'none'));
   });
   return el('section', {id: 'cases'}, el('h2', {}, 'All cases'),
     model.meta.listed && note(`${model.meta.listed} of ${model.meta.cases} cases are here: those that this page names, and `,
       'others spread evenly. All of them: ', el('code', {}, `taut export ${model.method.studies[0].name} -o cases.csv`)),
-    el('div', {className: 'filters'}, el('label', {}, 'find ', find), selects, save), said,
+    el('div', {className: 'filters'}, el('label', {}, 'find ', find), selects, save), columnChooser(), said,
     el('div', {className: 'card scroll tall', tabIndex: 0, role: 'region', 'aria-label': 'Table of cases'}, table),
     more,
     el('p', {className: 'print-only'}, 'The table of all cases is on the screen; it is too wide for paper.'));

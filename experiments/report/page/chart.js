@@ -90,14 +90,16 @@ function swatch(series) {
 const floorShown = ({floor, series}) => floor.y > d3.min(series.flatMap((s) => s.points)
     .map((p) => p.failed ? 0 : p.y).filter((v) => v > 0)) / 30;
 
-/** The key: series, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
+/** The key, without what the solvers' switches say for the whole page: further settings of a solver, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
 function chartKey(spec, kind) {
   const points = spec.series.flatMap((s) => s.points), grey = (dash) => swatch({colour: 'var(--muted)', dash});
   const statusesOf = (which) => [...new Set(points.filter(which).map((p) => p.status))].map(statusOf);
   const failed = statusesOf((p) => p.failed), unfinished = statusesOf((p) => !p.failed && p.status !== 'ok');
   const entry = (sign, text, order) => el('li', {'data-s': order}, sign, el('span', {}, text));
-  return el('ul', {className: 'key'},
-    spec.series.map((s) => entry(swatch(s), short(s.label, 60), solverOf(s.solver).order)),
+  const list = el('ul', {className: 'key'},
+    spec.series.filter((s) => s.variant || s.label !== solverOf(s.solver).title)
+        .map((s) => entry(swatch(s), short(s.label, 60), solverOf(s.solver).order)),
+    (spec.same ?? []).map((text) => entry('', text)),
     spec.theory && entry(grey('4 3'), spec.theory.text),
     spec.floor && entry(floorShown(spec) ? grey('1 3') : '', spec.floor.text + (floorShown(spec) ? '' : ': below the plot')),
     spec.front && entry(swatch({className: 'front', colour: 'var(--stair)', dash: ''}), 'no setting is better in both'),
@@ -106,6 +108,7 @@ function chartKey(spec, kind) {
     kind === 'log' && points.some((p) => p.y < 0) && entry(el('b', {}, '!'),
       `${points.filter((p) => p.y < 0).length} below zero: linear scale only`),
     unfinished.length > 0 && entry(el('b', {}, '○'), `hollow: ${unfinished.map((s) => s.title).join(', ')}`));
+  return list.children.length ? list : '';
 }
 
 /** The figure of a chart. It is drawn when it gets a width, and again when that changes. */

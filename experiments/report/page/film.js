@@ -50,7 +50,9 @@ function timeChart(track, seek, until) {
     if (cursor) cursor.attr('d', `M${xs(Math.min(t, span))},6V${h - foot}`);
     track.series.forEach((s, i) => {
       const at = Math.max(0, d3.bisectRight(s.t, t + 1e-9) - 1);
-      outputs[i].textContent = shown(s.y[at], quantity);
+      // A run that ended early has no last value: how it ended stands there.
+      const over = t > s.t[s.t.length - 1] + 0.1 && cases.get(s.case)?.status;
+      outputs[i].textContent = over ? statusOf(over).title : shown(s.y[at], quantity);
     });
   };
   const point = (event) => {
@@ -88,7 +90,9 @@ function colourBar(bar) {
 
 function panels(film) {
   return el('div', {className: 'panels'}, film.panels.map(({solver, settings, case: key}) =>
-    el('div', {}, named(solver), el('small', {}, caseLink(key, short(settings, 120))))));
+    el('div', {}, named(solver), el('small', {}, caseLink(key, short(settings, 60)),
+      cases.has(key) && cases.get(key).status !== 'ok' && [' ', glyphBox(cases.get(key).status), ' ',
+        statusOf(cases.get(key).status).title]))));
 }
 
 /** All films of a scene in one player: the first one leads, the others follow it. */

@@ -50,6 +50,7 @@ function mapsOf(scene) {
   return el('section', {className: 'part'}, el('h3', {}, 'Stability'),
     statusKey(used),
     d3.nest().key((map) => map.study + '\n' + map.title).entries(shown).map(({values}) => [
-      el('h4', {}, short(values[0].title, 140), ' ', el('small', {}, `study ${short(values[0].study, 40)}`)),
+      el('h4', {}, short(values[0].title, 140), ' ', el('small', {}, `study ${short(values[0].study, 40)}`,
+        values[0].scene_settings && `: ${short(values[0].scene_settings, 100)}`)),
       el('div', {className: 'grid'}, values.map(mapFigure))]));
 }

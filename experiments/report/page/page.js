@@ -16,7 +16,7 @@ function contents(sections) {
   };
   const ids = [...solvers.keys()];
   const switches = ids.map((id) =>
-    el('button', {type: 'button', className: 'switch', onclick: () => flip(id)}, named(id)));
+    el('button', {type: 'button', className: 'switch', onclick: () => flip(id)}, swatch({solver: id}), ' ', short(solverOf(id).title, 40)));
   state.watch(() => ids.forEach((id, i) => switches[i].setAttribute('aria-pressed', !isOff(id))));
   const group = el('div', {className: 'switches', role: 'group', 'aria-label': 'Solvers shown'}, switches);
   document.getElementById('contents').append(el('ul', {}, links.map((link) => item(link))), ids.length > 1 ? group : '');
@@ -45,7 +45,7 @@ function watchPrinting() {
   matchMedia('print').addEventListener('change', (event) => (event.matches ? begin : end)());
 }
 
-/** A section, a claim or a chart by its id, or the part of that name of the scene shown ("film"). */
+/** A section, a table or a chart by its id, or the part of that name of the scene shown ("film"). */
 const placeOf = (id) => document.getElementById(id) ??
   [...document.querySelectorAll(`[data-at="${CSS.escape(id)}"]`)].find((node) => node.checkVisibility());
 

@@ -1,39 +1,25 @@
 'use strict';
-// The sections about all scenes but the answer, which is in claim.js. One without content is not made.
+// The sections about all scenes but the answer, which is in table.js. One without content is not made.
 
 const section = (id, title, ...content) => el('section', {id}, el('h2', {}, title), content);
 const list = (title, items) => items?.length ? [el('h3', {}, title), el('ul', {}, items)] : null;
 
-/** A cell of a table of the model: a text, or one with a case, a note and how sure it is. */
-function tableCell(cell) {
-  if (typeof cell !== 'object' || cell === null) return String(cell);
-  return [cell.case ? caseLink(cell.case, cell.text) : cell.text, cell.note && el('small', {}, ' ', cell.note),
-          cell.sure && [' ', el('small', {className: 'sure', 'data-sure': cell.sure}, cell.sure)]];
-}
-
-function tableNode(table, heading = 'h4') {
-  const rows = table.rows.map((cells) => row(...cells.map(tableCell)));
-  return el('div', {className: 'card', id: `table-${table.id}`}, el(heading, {}, short(table.title, 120)),
-            note(table.caption), tableOf(`${table.title} (${table.id})`, table.columns.map((c) => c.title), rows));
-}
-
 function differencesSection() {
-  const both = model.differences, told = claimList(all(both?.claims, claims));  // headlines are above already
-  return told || both?.tables ? section('differences', 'What differs', note(`A: ${both.a}; B: ${both.b}`), told,
+  const both = model.differences;
+  return both?.tables ? section('differences', 'What differs', note(`A: ${both.a}; B: ${both.b}`),
     all(both.tables, tables).map((table) => tableNode(table, 'h3'))) : null;
 }
 
 function costSection() {
-  const {cost} = model;
-  return cost && section('cost', 'What accuracy costs',
-    note(`CPU time on ${cost.machine}; the charts stand with their scenes.`),
-    claimList(all(cost.claims, claims).filter((claim) => claim.kind === 'note')),
-    all(cost.tables, tables).map((table) => tableNode(table, 'h3')));
+  const shown = all(model.cost?.tables, tables);
+  return shown.length ? section('cost', 'What accuracy costs',
+    note(`CPU time on ${model.cost.machine}; charts and tables of single scenes stand with these.`),
+    shown.map((table) => tableNode(table, 'h3'))) : null;
 }
 
 function limitsSection() {
   const shown = all(model.limits?.tables, tables);
-  return shown?.length ? section('limits', 'What scenes require, and how far solvers go',
+  return shown.length ? section('limits', 'What scenes require, and how far solvers go',
     shown.map((table) => tableNode(table, 'h3'))) : null;
 }
 
@@ -79,8 +65,8 @@ function methodSection() {
     tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver)),
     method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,
     el('p', {}, 'This makes it all again:'), command(model.meta.command)),
-    method.assertions && folded('What publications assert', tableOf('Assertions', ['source', 'assertion', 'verdict', 'because', 'measured'],
-      method.assertions.map((a) => row(a.section, a.assertion, a.verdict, a.because, a.figure ?? '–')))),
+    all(method.tables, tables).map((table) => folded(table.title,
+      scrolling(table.title, tableHeads(table), table.rows.map((cells) => tableRow(table, cells))))),
     folded('Metrics, build and machine', tableOf('Metrics', ['metric', 'definition', 'unit', 'window'], glossary),
            factList([...(method.facts ?? []), ...build])),
     list('What this does not show', method.limits?.map((text) => item(text))),

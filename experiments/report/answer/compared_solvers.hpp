@@ -1,6 +1,6 @@
 #pragma once
 
-#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,7 +11,7 @@
 namespace taut::report {
 
 /// One solver with the settings under which it is compared: of several choices the one with most
-/// cases, so that its name means one thing in every sentence.
+/// cases, so that its name means one thing in every table.
 struct ComparedSolver {
   std::string name;
   std::string label;  ///< "Bullet", or "Bullet float" if other choices were run too
@@ -32,11 +32,14 @@ struct ComparedSolvers {
   std::vector<QuotedScene> scenes;  ///< every scene that a study ran
   std::vector<std::string> studies;
 
-  const QuotedScene* quoted(const std::string& scene_or_title) const;
-  /// Every case of every solver and choice, each once.
-  std::map<std::string, std::vector<const Record*>> by_solver;
-  /// "1 × 16 (substeps × sweeps)", or that it is unequal and what it is of each.
-  std::string work_text() const;
+  const QuotedScene* quoted(const std::string& scene) const;
+  /// "1 × 16 (substeps × sweeps)"; "": it is not the same for all.
+  std::string common_work() const;
+  /// The scene's name with the settings that not all questions on it share; how long they last is
+  /// none.
+  std::string title(Question) const;
+
+  std::set<Question> asked;  ///< for titles
 };
 ComparedSolvers compared_solvers_of(const ReportInput&);
 

@@ -1,4 +1,4 @@
-#include "experiments/report/claims/compared_solvers.hpp"
+#include "experiments/report/answer/compared_solvers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -108,51 +108,52 @@ QuotedScene quote(const std::string& scene, const std::vector<ComparedSolver>& c
 
 }  // namespace
 
-const QuotedScene* ComparedSolvers::quoted(const std::string& scene_or_title) const {
-  const auto at = std::ranges::find_if(scenes, [&](const QuotedScene& q) {
-    return q.title == scene_or_title || q.question.scene == scene_or_title;
-  });
+const QuotedScene* ComparedSolvers::quoted(const std::string& scene) const {
+  const auto at =
+      std::ranges::find_if(scenes, [&](const QuotedScene& q) { return q.question.scene == scene; });
   return at == scenes.end() ? nullptr : &*at;
 }
 
-std::string ComparedSolvers::work_text() const {
-  std::string own;
+std::string ComparedSolvers::common_work() const {
   std::set<Work> works;
-  for (const ComparedSolver& solver : all) {
-    works.insert(solver.work);
-    own += (own.empty() ? "" : ", ") + solver.label + " " + solver.work.text();
-  }
-  const bool both = std::ranges::any_of(
-      works, [](const Work& work) { return work.sweeps > 0 && work.substeps > 0; });
-  const std::string order = "substeps × sweeps";
-  if (works.size() == 1) return works.begin()->text() + (both ? " (" + order + ")" : "");
-  return "unequal work (" + own + (both ? "; " + order : "") + ")";
+  for (const ComparedSolver& solver : all) works.insert(solver.work);
+  if (works.size() != 1) return "";
+  const Work& work = *works.begin();
+  return work.text() + (work.sweeps > 0 && work.substeps > 0 ? " (substeps × sweeps)" : "");
+}
+
+namespace {
+
+Question untimed(Question question) {
+  std::erase_if(question.overrides, [](const auto& s) { return s.starts_with("time."); });
+  question.dt = 0;
+  return question;
+}
+
+}  // namespace
+
+std::string ComparedSolvers::title(Question question) const {
+  return title_among(untimed(std::move(question)), asked);
 }
 
 ComparedSolvers compared_solvers_of(const ReportInput& input) {
   ComparedSolvers compared;
   std::vector<std::string> solvers, scenes;
   std::set<std::string_view> keys;
-  std::set<Question> asked;
-  const auto untimed = [](Question question) {  // how long it lasts is no part of a scene's title
-    std::erase_if(question.overrides, [](const auto& s) { return s.starts_with("time."); });
-    return question;
-  };
-  for (const StudyResult& study : input.studies) {
-    push_unique(compared.studies, study.name);
+  std::map<std::string, std::vector<const Record*>> by_solver;
+  for (const StudyResult& study : input.studies)
     for (const Record& r : study.records) {
       if (!keys.insert(r.key.empty() ? r.id : r.key).second) continue;
       push_unique(solvers, r.solver), push_unique(scenes, r.scene);
-      asked.insert(untimed(question_of(r)));
-      compared.by_solver[r.solver].push_back(&r);
+      compared.asked.insert(untimed(question_of(r)));
+      by_solver[r.solver].push_back(&r);
     }
-  }
   for (const std::string& solver : solvers)
-    compared.all.push_back(choose(solver, compared.by_solver[solver]));
+    compared.all.push_back(choose(solver, by_solver[solver]));
   choose_work(compared.all);
   for (const std::string& scene : scenes) {
     QuotedScene& quoted = compared.scenes.emplace_back(quote(scene, compared.all));
-    quoted.title = title_among(untimed(quoted.question), asked);
+    quoted.title = compared.title(quoted.question);
   }
   return compared;
 }

@@ -1,0 +1,397 @@
+#include "experiments/report/answer/answer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/model/text.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/metrics/metric.hpp"
+
+namespace taut::report {
+
+Interval geometric_mean(const std::vector<Interval>& ratios) {
+  double mid = 0, below = 0, above = 0;
+  for (const Interval& r : ratios) {
+    mid += std::log(r.mid);
+    below += std::pow(std::log(r.mid / r.low), 2);
+    above += std::pow(std::log(r.high / r.mid), 2);
+  }
+  const auto n = static_cast<double>(ratios.size());
+  return {std::exp((mid - std::sqrt(below)) / n), std::exp(mid / n),
+          std::exp((mid + std::sqrt(above)) / n)};
+}
+
+std::vector<Column> columns_of(const std::vector<Column>& solvers, const Unit& unit, int digits) {
+  std::vector<Column> columns{Column("scene")};
+  for (const Column& solver : solvers)
+    columns.emplace_back(solver.name, solver.heading, unit, digits);
+  return columns;
+}
+
+void mark_best(std::vector<Cell>& row, Better better, double nothing) {
+  Cell *best = nullptr, *second = nullptr;
+  const auto value = [&](const Cell& cell) { return std::max(cell.number(), nothing); };
+  const auto beats = [&](const Cell& a, const Cell& b) {
+    return better == Better::less ? value(a) < value(b) : value(a) > value(b);
+  };
+  for (Cell& cell : row) {
+    if (std::isnan(cell.number())) continue;
+    if (!best || beats(cell, *best))
+      second = std::exchange(best, &cell);
+    else if (!second || beats(cell, *second))
+      second = &cell;
+  }
+  if (better == Better::neither || !second) return;
+  const double least = std::min(value(*best), value(*second)),
+               most = std::max(value(*best), value(*second));
+  best->best = most > (1 + kTolerance) * least;
+}
+
+Common common_of(const Table& table, double nothing) {
+  Common common;
+  for (std::size_t c = 1; c < table.columns.size(); ++c)
+    if (std::ranges::any_of(table.rows,
+                            [&](const auto& row) { return !std::isnan(row[c].number()); }))
+      common.columns.push_back(c);
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    const auto& row = table.rows[r];
+    if (std::ranges::all_of(common.columns,
+                            [&](std::size_t c) { return !std::isnan(row[c].number()); }) &&
+        (nothing <= 0 || std::ranges::any_of(common.columns, [&](std::size_t c) {
+           return row[c].number() >= nothing;
+         })))
+      common.rows.push_back(r);
+  }
+  return common;
+}
+
+Cell Common::label(const Table& table, const std::string& what) const {
+  if (rows.size() == 1 && table.rows.size() == 1) return table.rows[0][0].text();
+  std::string without;
+  for (std::size_t r = 0; r < table.rows.size(); ++r)
+    if (std::ranges::find(rows, r) == rows.end())
+      without += (without.empty() ? "without " : ", ") + table.rows[r][0].text();
+  return Cell(what + " " + std::to_string(rows.size()) + (rows.size() == 1 ? " scene" : " scenes"))
+      .with(without);
+}
+
+Cell why_empty(const Table& table, std::size_t column) {
+  std::set<std::string> all;
+  for (const auto& row : table.rows) all.insert(row[column].text());
+  return all.size() == 1 ? *all.begin() : Cell("no value");
+}
+
+namespace {
+
+/// A micrometre: a depth below it is rounding.
+constexpr double kNoDepth = 1e-6;
+
+/// A map needs at least this many time steps, over at least this range, to have a largest one.
+constexpr std::size_t kLeastSteps = 3;
+constexpr double kLeastRange = 4;
+
+bool is_failure(const Status& status) {
+  return !completed(status) && status.kind != Status::Kind::unsupported;
+}
+
+/// What stands in a cell instead of a value.
+std::string why_none(const Record* r) {
+  if (!r) return "not run";
+  if (completed(r->status)) return "no value";
+  if (r->status.kind == Status::Kind::unsupported) return "cannot: " + r->status.reason;
+  return std::string(to_string(r->status.kind));
+}
+
+bool is_depth(Role role) { return role == Role::vertex_depth || role == Role::face_depth; }
+
+/// What the last row has of all scenes.
+enum class Over { mean, largest, sum };
+Over over_of(Role role) {
+  return is_depth(role) ? Over::largest : role == Role::passages ? Over::sum : Over::mean;
+}
+
+class Questions {
+ public:
+  Questions(const ReportInput& input, const ComparedSolvers& compared, CaseList& list)
+      : input_(input), compared_(compared), list_(list) {
+    for (const ComparedSolver& solver : compared.all)
+      solvers_.emplace_back(solver.name, solver.label);
+    if (!input.bench) return;
+    for (const SceneBench& scene : input.bench->scenes)
+      for (const std::string& solver : solvers_of(scene))
+        if (std::ranges::find(solvers_, solver, &Column::name) == solvers_.end())
+          solvers_.emplace_back(solver, solver_title(solver));
+  }
+
+  Answer answer() {
+    const auto values = [&](bool errors) {
+      for (const ValueSpec* value : values_with_role())
+        if ((value->role == Role::error) == errors) add_value(*value);
+    };
+    values(true);
+    add_costs(answer_, input_, solvers_, list_);
+    values(false);
+    add_steps();
+    add_failures();
+    answer_.subject = caption();
+    return std::move(answer_);
+  }
+
+ private:
+  /// What all of it rests on, one line.
+  std::string caption() const {
+    std::set<double> steps;
+    for (const QuotedScene& quoted : compared_.scenes)
+      if (quoted.question.dt > 0) steps.insert(quoted.question.dt);
+    const std::string work = compared_.common_work();
+    return "Equal work: " + (work.empty() ? "unequal, in each cell" : work) +
+           (steps.empty() ? "" : ", time step " + range_text(steps)) +
+           ". Scenes: " + join(compared_.scenes, ", ", &QuotedScene::title) +
+           ". Means are geometric where all values are positive. Marked: better than every other "
+           "by more than " +
+           shown(kShare, kTolerance, 1) +
+           ", of CPU times also beyond what identical code differed by.";
+  }
+  static std::string range_text(const std::set<double>& steps) {
+    const Quantity dt = quantity("dt");
+    return dt.text(*steps.begin(), 3) +
+           (steps.size() > 1 ? " to " + dt.text(*steps.rbegin(), 3) : "");
+  }
+
+  /// The cases at equal work, scene by scene.
+  void add_value(const ValueSpec& spec) {
+    const std::string metric(spec.name), work = compared_.common_work();
+    const Quantity& q = list_.use(metric);
+    Table table{metric, capitalised(q.title) + (spec.role == Role::error ? " at equal work" : ""),
+                columns_of(solvers_, q.unit)};
+    std::set<double> steps;
+    for (const QuotedScene& quoted : compared_.scenes) {
+      std::vector<Cell> row{quoted.title};
+      for (std::size_t i = 0; i < solvers_.size(); ++i)
+        row.push_back(value_cell(i < quoted.cases.size() ? quoted.cases[i] : nullptr, metric));
+      if (std::ranges::all_of(row, [](const Cell& c) { return std::isnan(c.number()); })) continue;
+      steps.insert(quoted.question.dt);
+      table.rows.push_back(std::move(row));
+    }
+    if (table.rows.empty()) return;
+    const Over over = over_of(spec.role);
+    const double nothing = is_depth(spec.role) ? kNoDepth : spec.negligible;
+    const Better better = q.unit.less_is_better ? Better::less : Better::neither;
+    for (auto& row : table.rows) mark_best(row, better, nothing);
+    table.rows.push_back(last_row(table, over, over == Over::mean ? nothing : 0));
+    mark_best(table.rows.back(), better, nothing);
+    table.caption = std::string(to_string(q.window)) + (q.window == Window::none ? "" : "; ") +
+                    (work.empty() ? "unequal work, in each cell" : work) + "; time step " +
+                    range_text(steps) +
+                    (over == Over::mean && nothing > 0
+                         ? "; less than " + q.text(nothing, 1) + " counts as " + q.text(nothing, 1)
+                         : "");
+    answer_.add(std::move(table));
+  }
+
+  Cell value_cell(const Record* r, const std::string& metric) {
+    const double value = r && completed(r->status) ? value_of(*r, metric) : std::nan("");
+    Cell cell = std::isfinite(value) ? Cell(value) : Cell(why_none(r));
+    if (!r) return cell;
+    cell.key = list_.key(*r);
+    if (compared_.common_work().empty()) cell.note = work_of(*r).text();
+    return cell;
+  }
+
+  /// `nothing` of a mean: what is less counts as that, and scenes where all are less do not count.
+  std::vector<Cell> last_row(const Table& table, Over over, double nothing) const {
+    const Common common = common_of(table, nothing);
+    const auto value = [&](std::size_t r, std::size_t c) {
+      const double own = table.rows[r][c].number();
+      return nothing > 0 ? std::max(own, nothing) : own;
+    };
+    bool positive = true;  // only then is there a geometric mean
+    for (const std::size_t r : common.rows)
+      for (const std::size_t c : common.columns) positive = positive && value(r, c) > 0;
+    std::vector<Cell> last{common.label(table, over == Over::largest ? "largest of"
+                                               : over == Over::sum   ? "sum of"
+
+                                                                   : "mean of")};
+    for (std::size_t c = 1; c < table.columns.size(); ++c) {
+      if (std::ranges::find(common.columns, c) == common.columns.end()) {
+        last.push_back(why_empty(table, c));
+        continue;
+      }
+      if (common.rows.empty()) {
+        last.emplace_back("no scene that all have");
+        continue;
+      }
+      double sum = 0;
+      std::size_t largest = common.rows.front();
+      for (const std::size_t r : common.rows) {
+        sum += over == Over::mean && positive ? std::log(value(r, c)) : value(r, c);
+        if (value(r, c) > value(largest, c)) largest = r;
+      }
+      const auto n = static_cast<double>(common.rows.size());
+      if (over == Over::largest || common.rows.size() == 1)
+        last.push_back(table.rows[largest][c]), last.back().best = false;
+      else
+        last.emplace_back(over == Over::sum ? sum : positive ? std::exp(sum / n) : sum / n);
+    }
+    return last;
+  }
+
+  /// Time steps and works that each solver tried on a scene with the same settings.
+  using Tried = std::map<std::pair<Work, double>, const Record*>;
+
+  void add_steps() {
+    Table table{"largest_step",
+                "Largest stable time step",
+                columns_of(solvers_, quantity("dt").unit, 3),
+                {},
+                "up to it every case completed, at every work that all of the row's solvers tried"};
+    std::map<std::pair<std::string, std::vector<std::string>>, std::vector<Tried>> scenes;
+    for (std::size_t i = 0; i < compared_.all.size(); ++i)
+      for (const Record* r : compared_.all[i].cases) {
+        if (work_of(*r).sweeps <= 0) continue;
+        auto& tried = scenes[{r->scene, question_of(*r).overrides}];
+        tried.resize(compared_.all.size());
+        tried[i].try_emplace({work_of(*r), r->dt}, r);
+      }
+    for (const auto& [scene, tried] : scenes) add_step_row(table, scene, tried);
+    if (table.rows.empty()) return;
+    const Common common = common_of(table, 0);
+    std::vector<Cell> last{common.label(table, "mean of")};
+    for (std::size_t c = 1; c < table.columns.size(); ++c) {
+      std::vector<Interval> steps;
+      for (const std::size_t r : common.rows) {
+        const double dt = table.rows[r][c].number();
+        steps.push_back({dt, dt, dt});
+      }
+      const bool has = std::ranges::find(common.columns, c) != common.columns.end();
+      if (!has)
+        last.push_back(why_empty(table, c));
+      else if (steps.empty())
+        last.emplace_back("no scene that all have");
+      else
+        last.emplace_back(geometric_mean(steps).mid);
+      if (has && steps.size() == 1) last.back() = table.rows[common.rows[0]][c];
+    }
+    mark_best(last, Better::more, 0);
+    table.rows.push_back(std::move(last));
+    list_.use("dt");
+    answer_.add(std::move(table));
+  }
+
+  void add_step_row(Table& table, const std::pair<std::string, std::vector<std::string>>& scene,
+                    const std::vector<Tried>& tried) {
+    const auto steps_of = [](const Tried& own) {
+      std::set<double> steps;
+      for (const auto& [at, record] : own) steps.insert(at.second);
+      return steps;
+    };
+    std::vector<const Tried*> here;
+    for (const Tried& own : tried)
+      if (steps_of(own).size() >= kLeastSteps) here.push_back(&own);
+    if (here.empty()) return;
+    Tried shared = *here.front();
+    std::erase_if(shared, [&](const auto& one) {
+      return std::ranges::any_of(here, [&](const Tried* own) { return !own->contains(one.first); });
+    });
+    const std::set<double> steps = steps_of(shared);
+    if (steps.size() < kLeastSteps || *steps.rbegin() < kLeastRange * *steps.begin()) return;
+    std::vector<Cell> row{compared_.title({scene.first, scene.second, 0})};
+    for (std::size_t i = 0; i < solvers_.size(); ++i) {
+      const bool ran = i < tried.size() && std::ranges::find(here, &tried[i]) != here.end();
+      row.push_back(ran ? largest_stable(tried[i], shared, steps) : Cell("not run"));
+    }
+    mark_best(row, Better::more, 0);
+    table.rows.push_back(std::move(row));
+  }
+
+  /// The largest step up to which (itself included) every case completed.
+  Cell largest_stable(const Tried& own, const Tried& shared, const std::set<double>& steps) {
+    Cell cell(Cell("below " + quantity("dt").text(*steps.begin(), 3)));
+    for (const double dt : steps) {
+      const Record* one = nullptr;
+      for (const auto& [at, any] : shared) {
+        if (at.second != dt) continue;
+        one = own.at(at);
+        if (completed(one->status)) continue;
+        if (cell.key.empty()) cell.key = list_.key(*one);
+        return cell.with("then " + why_none(one));
+      }
+      cell = Cell(dt), cell.key = list_.key(*one);
+    }
+    return cell.with("the largest tried");
+  }
+
+  /// Of all cases of the page, whatever ran them.
+  void add_failures() {
+    Table table{"failures",
+                "Cases that failed",
+                columns_of(solvers_, kErrorCount),
+                {},
+                "all cases of this page: studies, maps and timed ones"};
+    struct Count {
+      int cases = 0, failed = 0;
+      std::map<std::string, int> kinds;
+      std::string key;
+    };
+    std::map<std::string, std::vector<Count>> scenes;
+    std::vector<Count> all(solvers_.size());
+    std::map<std::string, Count> others;  ///< solvers of maps alone
+    std::vector<std::string> order;
+    for (const Record* r : list_.cases()) {
+      const auto at = std::ranges::find(solvers_, r->solver, &Column::name);
+      if (at == solvers_.end()) {
+        ++others[r->solver].cases, others[r->solver].failed += is_failure(r->status);
+        continue;
+      }
+      const auto i = static_cast<std::size_t>(at - solvers_.begin());
+      const auto [scene, fresh] = scenes.try_emplace(r->scene, solvers_.size());
+      if (fresh) order.push_back(r->scene);
+      for (Count* count : {&scene->second[i], &all[i]}) {
+        ++count->cases;
+        if (completed(r->status)) continue;
+        const bool fails = is_failure(r->status);
+        count->failed += fails;
+        ++count->kinds[fails ? std::string(to_string(r->status.kind)) : "unsupported"];
+        if (fails && count->key.empty()) count->key = r->key;
+      }
+    }
+    const auto add = [&](const std::string& label, const std::vector<Count>& counts) {
+      std::vector<Cell> row{label};
+      std::set<int> tried;
+      for (const Count& count : counts) {
+        if (count.cases > 0) tried.insert(count.cases);
+        const std::string kinds = join(count.kinds, ", ", [](const auto& kind) {
+          return std::to_string(kind.second) + " " + kind.first;
+        });
+        row.push_back(count.cases == 0 ? Cell("not run")
+                                       : Cell(count.failed)
+                                             .with("of " + std::to_string(count.cases) +
+                                                   (kinds.empty() ? "" : ": " + kinds)));
+        if (!count.key.empty()) row.back().key = list_.key(count.key);
+      }
+      if (tried.size() == 1) mark_best(row, Better::less, 0);
+      table.rows.push_back(std::move(row));
+    };
+    for (const std::string& scene : order) add(scene, scenes.at(scene));
+    for (const auto& [solver, count] : others)
+      table.caption += "; " + solver_title(solver) + ", in maps alone, " +
+                       std::to_string(count.failed) + " of " + std::to_string(count.cases);
+    add("sum of " + std::to_string(order.size()) + (order.size() == 1 ? " scene" : " scenes"), all);
+    answer_.add(std::move(table));
+  }
+
+  const ReportInput& input_;
+  const ComparedSolvers& compared_;
+  CaseList& list_;
+  std::vector<Column> solvers_;
+  Answer answer_{"report", ""};
+};
+
+}  // namespace
+
+Answer answer_of(const ReportInput& input, const ComparedSolvers& compared, CaseList& list) {
+  return Questions(input, compared, list).answer();
+}
+
+}  // namespace taut::report

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "experiments/answer/answer.hpp"
+#include "experiments/report/answer/case_list.hpp"
+#include "experiments/report/answer/compared_solvers.hpp"
+
+namespace taut::report {
+
+/// The value of kErrorMetric whose price the page says.
+inline constexpr double kPricedError = 0.01;
+
+/// What a run says of its solvers: a table for each question, whose columns are the scene and every
+/// solver of the run and whose rows are scenes; the last row is all scenes that have a value of
+/// every solver that has one anywhere. A cell is a value or why there is none: "not run", "cannot:
+/// friction", "exploded". Its note is the setting where that is not the same for all. The best of a
+/// row is marked only if it is better by more than kTolerance and, of costs, beyond what identical
+/// code differed by (judge()).
+Answer answer_of(const ReportInput&, const ComparedSolvers&, CaseList&);
+
+/// The questions of costs; none without a bench.
+void add_costs(Answer&, const ReportInput&, const std::vector<Column>& solvers, CaseList&);
+
+/// Without the cases that use a parameter which another solver of the scene lacks.
+SceneBench with_shared_parameters(SceneBench);
+/// "4 × 2, coloured": of cases of one scene those parameters that take several values.
+std::string setting_text(const SceneBench&, std::size_t at);
+
+/// Geometric mean of independent ratios: their errors add as squares of logarithms.
+Interval geometric_mean(const std::vector<Interval>&);
+
+// Of a table whose first column is the scene.
+
+/// Its columns: "scene", then the solvers with this unit.
+std::vector<Column> columns_of(const std::vector<Column>& solvers, const Unit&, int digits = 2);
+
+enum class Better { less, more, neither };
+/// Marks the best number of the row if the second is worse by more than kTolerance; numbers below
+/// `nothing` count as that.
+void mark_best(std::vector<Cell>& row, Better, double nothing);
+
+/// Scenes whose values make up the last row, and who has values at all.
+struct Common {
+  std::vector<std::size_t> rows, columns;
+  /// "mean of 3 scenes", with the others and why in its note.
+  Cell label(const Table&, const std::string& what) const;
+};
+/// Rows that have a number in every column that has one somewhere; rows with all numbers below
+/// `nothing` are none.
+Common common_of(const Table&, double nothing);
+
+/// What a column without a number says: the same in all rows, else "no value".
+Cell why_empty(const Table&, std::size_t column);
+
+}  // namespace taut::report

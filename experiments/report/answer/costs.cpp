@@ -1,0 +1,330 @@
+// Questions of costs: every setting was timed in turns with the others of its scene.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "experiments/report/answer/answer.hpp"
+#include "experiments/timing/recommendation.hpp"
+
+namespace taut::report {
+
+SceneBench with_shared_parameters(SceneBench bench) {
+  std::map<std::string, std::map<std::string, std::string>> params;
+  for (const BenchedCase& c : bench.cases) params[c.record.solver] = c.record.params;
+  std::erase_if(bench.cases, [&](const BenchedCase& c) {
+    return std::ranges::any_of(params, [&](const auto& other) {
+      return other.first != c.record.solver && !extras(c.record, other.second).empty();
+    });
+  });
+  return bench;
+}
+
+std::string setting_text(const SceneBench& bench, std::size_t at) {
+  Records records;
+  for (const BenchedCase& c : bench.cases) records.push_back(&c.record);
+  const Record& one = bench.cases[at].record;
+  const std::string label = SettingLabels(records).of(one);
+  return label.empty() ? work_of(one).text() : label;
+}
+
+namespace {
+
+/// One scene of a bench with its errors and costs: an interval is a bootstrap, made once.
+struct Timed {
+  SceneBench bench;
+  std::vector<Candidate> candidates = bench.candidates(kErrorMetric);
+
+  std::optional<std::size_t> best(const Target& target, const std::string& solver) const {
+    return best_for(target, candidates, solver);
+  }
+  bool has(const std::string& solver) const {
+    return std::ranges::find(candidates, solver, &Candidate::solver) != candidates.end();
+  }
+  /// "at best 0.12 %": why no setting reaches an error.
+  std::string nearest(const std::string& solver) const {
+    const auto at = best({.budget = std::numeric_limits<double>::infinity()}, solver);
+    if (!at) return "no case completed";
+    return std::string("at best ") + quantity(kErrorMetric).text(candidates[*at].error) +
+           (bench.searched_to_the_end(solver) ? ", to the end of its accuracy parameters" : "");
+  }
+};
+
+using Chosen = std::vector<std::optional<std::size_t>>;  ///< case of each solver
+
+/// Marks the cheapest if it is cheaper than each other by a difference that can be told.
+void mark_cheapest(std::vector<Cell>& row, const std::vector<std::vector<Interval>>& over,
+                   const Interval& control) {
+  for (std::size_t i = 0; i < over.size(); ++i) {
+    bool any = false, cheapest = true;
+    for (std::size_t j = 0; j < over.size(); ++j) {
+      if (i == j || over[i][j].mid == 0) continue;
+      any = true;
+      cheapest = cheapest && over[i][j].mid < 1 && is_difference(judge(over[i][j], control));
+    }
+    row[i + 1].best = any && cheapest;
+  }
+}
+
+class Costs {
+ public:
+  Costs(const StudyBench& study, const std::vector<Column>& solvers, CaseList& list)
+      : solvers_(solvers), list_(list) {
+    for (const SceneBench& bench : study.scenes)
+      all_.push_back({bench}), shared_.push_back({with_shared_parameters(bench)});
+    list.use(kErrorMetric), list.use("cpu.per_second");
+  }
+
+  void add_to(Answer& answer) {
+    add_equal_cost(answer);
+    add_price(answer);
+    add_setting(answer);
+  }
+
+ private:
+  Cell cell_of(const Timed& scene, std::size_t at, Cell cell) {
+    cell.note = setting_text(scene.bench, at), cell.key = list_.key(scene.bench.cases[at].record);
+    return cell;
+  }
+
+  /// The least budget within which every solver has a setting on every scene, else the largest.
+  double common_budget() const {
+    for (const double budget : kFrameBudgets)
+      if (std::ranges::all_of(shared_, [&](const Timed& scene) {
+            return std::ranges::all_of(solvers_of(scene.bench), [&](const std::string& solver) {
+              return scene.best({.budget = budget / kFrame}, solver).has_value();
+            });
+          }))
+        return budget;
+    return std::end(kFrameBudgets)[-1];
+  }
+
+  void add_equal_cost(Answer& answer) {
+    const Quantity q = quantity(kErrorMetric);
+    const double budget = common_budget(), nothing = find_value(kErrorMetric).second->negligible;
+    Table table{"equal_cost",
+                capitalised(q.title) + " at equal cost",
+                columns_of(solvers_, q.unit),
+                {},
+                std::string(to_string(q.window)) + "; least of the settings timed within " +
+                    significant(1e3 * budget, 2) + "\u00A0ms of CPU time a frame of 1/60\u00A0s (" +
+                    quantity("cpu.per_second").text(budget / kFrame) +
+                    " per simulated second), with what all solvers of the scene have"};
+    for (const Timed& scene : shared_) {
+      std::vector<Cell> row{scene.bench.scene};
+      for (const Column& solver : solvers_) {
+        const auto at = scene.best({.budget = budget / kFrame}, solver.name);
+        row.push_back(at ? cell_of(scene, *at, Cell(scene.candidates[*at].error))
+                         : Cell(scene.has(solver.name) ? "nothing that cheap" : "not timed"));
+      }
+      mark_best(row, Better::less, nothing);
+      table.rows.push_back(std::move(row));
+    }
+    const Common common = common_of(table, nothing);
+    std::vector<Cell> last{common.label(table, "mean of")};
+    for (std::size_t c = 1; c < table.columns.size(); ++c) {
+      double logs = 0;
+      for (const std::size_t r : common.rows)
+        logs += std::log(std::max(table.rows[r][c].number(), nothing));
+      const bool has = std::ranges::find(common.columns, c) != common.columns.end();
+      last.push_back(!has                  ? why_empty(table, c)
+                     : common.rows.empty() ? Cell("no scene that all have")
+                     : common.rows.size() == 1
+                         ? table.rows[common.rows[0]][c]
+                         : Cell(std::exp(logs / static_cast<double>(common.rows.size()))));
+      last.back().best = false;
+    }
+    mark_best(last, Better::less, nothing);
+    table.rows.push_back(std::move(last));
+    answer.add(std::move(table));
+  }
+
+  /// Ratios of the chosen cases on one scene; mid 0: not both were chosen.
+  std::vector<std::vector<Interval>> ratios_of(const Timed& scene, const Chosen& chosen) const {
+    std::vector<std::vector<Interval>> over(chosen.size(), std::vector<Interval>(chosen.size()));
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      for (std::size_t j = 0; j < chosen.size(); ++j)
+        if (i != j && chosen[i] && chosen[j])
+          over[i][j] = scene.bench.ratio(*chosen[i], *chosen[j]).value_or(Interval{});
+    return over;
+  }
+
+  void add_price(Answer& answer) {
+    Table table{"price",
+                "CPU time of " + priced(),
+                columns_of(solvers_, quantity("cpu.per_second").unit),
+                {},
+                "per simulated second, 95\u00A0% interval; each at the cheapest setting timed with "
+                "what all solvers of the scene have"};
+    std::vector<Chosen> chosen;
+    std::vector<std::vector<std::vector<Interval>>> ratios;
+    for (const Timed& scene : shared_) {
+      std::vector<Cell> row{scene.bench.scene};
+      Chosen& own = chosen.emplace_back();
+      for (const Column& solver : solvers_) {
+        own.push_back(scene.best({.error = kPricedError}, solver.name));
+        row.push_back(
+            own.back() ? cell_of(scene, *own.back(), Cell(scene.candidates[*own.back()].cost))
+            : scene.has(solver.name) ? Cell("not reached").with(scene.nearest(solver.name))
+                                     : Cell("not timed"));
+      }
+      mark_cheapest(row, ratios.emplace_back(ratios_of(scene, own)), scene.bench.control);
+      table.rows.push_back(std::move(row));
+    }
+    table.rows.push_back(mean_price(table, ratios));
+    table.caption +=
+        "; two runs of identical code differed by up to " + shown(kShare, noise(shared_));
+    answer.add(std::move(table));
+  }
+
+  static double noise(const std::vector<Timed>& scenes) {
+    double most = 0;
+    for (const Timed& scene : scenes) most = std::max(most, spread(scene.bench.control));
+    return most;
+  }
+  Interval control() const { return {1 / (1 + noise(shared_)), 1, 1 + noise(shared_)}; }
+
+  std::vector<Cell> mean_price(const Table& table,
+                               const std::vector<std::vector<std::vector<Interval>>>& ratios) {
+    const Common common = common_of(table, 0);
+    std::vector<Cell> last{common.label(table, "mean of")};
+    const std::size_t n = solvers_.size();
+    std::vector<std::vector<Interval>> over(n, std::vector<Interval>(n));
+    for (std::size_t i = 0; i < n; ++i) {
+      if (std::ranges::find(common.columns, i + 1) == common.columns.end()) {
+        last.push_back(why_empty(table, i + 1));
+        continue;
+      }
+      std::vector<Interval> costs;
+      for (const std::size_t r : common.rows)
+        costs.push_back(std::get<Interval>(table.rows[r][i + 1].value));
+      last.push_back(costs.empty()       ? Cell("no scene that all have")
+                     : costs.size() == 1 ? table.rows[common.rows[0]][i + 1]
+                                         : Cell(geometric_mean(costs)));
+      last.back().best = false;
+      for (std::size_t j = 0; j < n && !common.rows.empty(); ++j) {
+        std::vector<Interval> both;
+        for (const std::size_t r : common.rows)
+          if (ratios[r][i][j].mid > 0) both.push_back(ratios[r][i][j]);
+        if (both.size() == common.rows.size()) over[i][j] = geometric_mean(both);
+      }
+    }
+    mark_cheapest(last, over, control());
+    return last;
+  }
+
+  static std::string priced() {
+    const Quantity q = quantity(kErrorMetric);
+    return q.text(kPricedError, 1) + " " + q.title;
+  }
+
+  /// What to take: of a solver's settings the one that reaches the error on most scenes, of equals
+  /// the cheapest, with all that the solver has.
+  void add_setting(Answer& answer) {
+    Table table{"setting",
+                "Recommended setting",
+                columns_of(solvers_, kNumber),
+                {},
+                "the cheapest timed that reaches " + priced() +
+                    ", accelerators that only one solver has included, and its CPU time per "
+                    "simulated second; of all scenes: on most of them, then least geometric mean"};
+    for (const Timed& scene : all_) {
+      std::vector<Cell> row{scene.bench.scene};
+      Chosen chosen;
+      for (const Column& solver : solvers_) {
+        chosen.push_back(scene.best({.error = kPricedError}, solver.name));
+        row.push_back(chosen.back()            ? setting_cell(scene, *chosen.back(),
+                                                              scene.candidates[*chosen.back()].cost.mid, "")
+                      : scene.has(solver.name) ? Cell("none").with(scene.nearest(solver.name))
+                                               : Cell("not timed"));
+      }
+      mark_cheapest(row, ratios_of(scene, chosen), scene.bench.control);
+      table.rows.push_back(std::move(row));
+    }
+    table.rows.push_back(overall_setting(table));
+    answer.add(std::move(table));
+  }
+
+  Cell setting_cell(const Timed& scene, std::size_t at, double cost, const std::string& on) {
+    Cell cell(setting_text(scene.bench, at));
+    cell.key = list_.key(scene.bench.cases[at].record);
+    return cell.with(quantity("cpu.per_second").text(cost) + on);
+  }
+
+  /// A setting of a solver with the cases that reach the error, by scene.
+  struct Reached {
+    std::map<std::size_t, std::size_t> cases;
+    double mean_log_cost(const std::vector<Timed>& all) const {
+      double logs = 0;
+      for (const auto& [scene, at] : cases) logs += std::log(all[scene].candidates[at].cost.mid);
+      return logs / static_cast<double>(cases.size());
+    }
+  };
+  /// That of a solver on most scenes, of equals the cheapest; without cases: none reaches it.
+  Reached most_reaching(const std::string& solver) const {
+    std::map<std::string, Reached> settings;
+    for (std::size_t k = 0; k < all_.size(); ++k)
+      for (std::size_t i = 0; i < all_[k].candidates.size(); ++i)
+        if (const Candidate& one = all_[k].candidates[i];
+            one.solver == solver && Target{.error = kPricedError}.meets(one))
+          settings[one.setting].cases[k] = i;
+    const auto best = std::ranges::max_element(settings, {}, [&](const auto& one) {
+      return std::pair(one.second.cases.size(), -one.second.mean_log_cost(all_));
+    });
+    return best == settings.end() ? Reached{} : best->second;
+  }
+
+  std::vector<Cell> overall_setting(const Table& table) {
+    const std::string of = " of " + std::to_string(all_.size());
+    std::vector<Cell> last{all_.size() == 1 ? table.rows[0][0] : Cell("on most" + of + " scenes")};
+    std::vector<Reached> reached;
+    for (std::size_t s = 0; s < solvers_.size(); ++s) {
+      const Reached& own = reached.emplace_back(most_reaching(solvers_[s].name));
+      if (own.cases.empty()) {
+        last.push_back(why_empty(table, s + 1));
+        continue;
+      }
+      const auto& [scene, at] = *own.cases.begin();
+      last.push_back(
+          setting_cell(all_[scene], at, std::exp(own.mean_log_cost(all_)),
+                       all_.size() == 1 ? "" : ", on " + std::to_string(own.cases.size()) + of));
+    }
+    mark_cheapest(last, ratios_of(reached), {1 / (1 + noise(all_)), 1, 1 + noise(all_)});
+    return last;
+  }
+
+  /// One that reaches the error on more scenes is the cheaper one.
+  std::vector<std::vector<Interval>> ratios_of(const std::vector<Reached>& reached) const {
+    const std::size_t n = reached.size();
+    std::vector<std::vector<Interval>> over(n, std::vector<Interval>(n));
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) {
+        const auto &a = reached[i].cases, &b = reached[j].cases;
+        if (i == j || a.empty() || b.empty()) continue;
+        if (a.size() != b.size()) {
+          over[i][j] = a.size() > b.size() ? Interval{1e-9, 1e-9, 1e-9} : Interval{1e9, 1e9, 1e9};
+          continue;
+        }
+        std::vector<Interval> both;
+        for (const auto& [scene, at] : a)
+          if (const auto other = b.find(scene); other != b.end())
+            if (const auto ratio = all_[scene].bench.ratio(at, other->second))
+              both.push_back(*ratio);
+        over[i][j] = both.empty() ? Interval{1, 1, 1} : geometric_mean(both);
+      }
+    return over;
+  }
+
+  const std::vector<Column>& solvers_;
+  CaseList& list_;
+  std::vector<Timed> all_, shared_;
+};
+
+}  // namespace
+
+void add_costs(Answer& answer, const ReportInput& input, const std::vector<Column>& solvers,
+               CaseList& list) {
+  if (input.bench) Costs(*input.bench, solvers, list).add_to(answer);
+}
+
+}  // namespace taut::report

@@ -1,0 +1,126 @@
+'use strict';
+// Tables, of whichever answer: a cell is a number with its unit, a text or an interval; it may be the best of its row, have
+// a bar, and lead to its case. The answer on the first screen is such tables, a row each, which unfold to their scenes.
+
+/** Tables by name; their cells are {value, note, key, best}. */
+function unpacked(tables) {
+  for (const table of Object.values(tables ?? {})) {
+    table.rows = table.rows.map((cells) => cells.map((value) => ({value})));
+    const place = new Map(table.columns.map(({name}, i) => [name, i]));
+    for (const {row: at, column, ...more} of table.notes) Object.assign(table.rows[at][place.get(column)], more);
+  }
+  return new Map(Object.entries(tables ?? {}).map(([name, table]) => [name, {...table, name}]));
+}
+const tables = unpacked(model.tables), questions = unpacked(model.answer?.tables);
+
+/** A solver's mark: its colour and its marker, so that hue is not the only carrier. */
+function mark(id) {
+  const svg = d3.create('svg').attr('class', 'mark').attr('viewBox', '-7 -7 14 14').attr('aria-hidden', 'true');
+  svg.append('path').attr('d', markerPath(solverOf(id).marker, 60)).style('fill', solverColour(id));
+  return svg.node();
+}
+const named = (id, title) => el('span', {className: 'solver'}, mark(id), short(title ?? solverOf(id).title, 40));
+
+/** A link that opens a case and says at the pointer how it ended. */
+function caseLink(key, ...text) {
+  if (!cases.has(key)) return el('span', {}, ...text);
+  const link = choice({case: key}, {className: 'to-case'}, ...text);
+  describe(link, [link.textContent, ...caseLines(cases.get(key).status, undefined, key)]);
+  return link;
+}
+
+/** Entries of an object by solver, in the order of the solvers. */
+const bySolver = (counts) => Object.entries(counts).sort(([a], [b]) => solverOf(a).order - solverOf(b).order);
+
+const middle = (value) => Array.isArray(value) ? value[1] : typeof value === 'number' ? value : NaN;
+const unitOf = (column) => ({unit: column.shown ?? '', scale: column.scale ?? 1});
+
+/** What a cell says, the interval of a cost apart. */
+function cellText({value}, column) {
+  if (Number.isFinite(middle(value))) return shown(middle(value), unitOf(column), column.digits);
+  return value === null ? '–' : typeof value === 'boolean' ? value ? 'yes' : 'no' : value;
+}
+
+/** `most`: the number of a full bar; without it there is no bar. */
+function cellContent(cell, column, most) {
+  const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value);
+  const spread = Array.isArray(cell.value) && interval(cell.value[0], cell.value[2], unitOf(column));
+  const said = cell.best ? el('b', {className: 'best'}, text) : text;
+  const failed = entry && entry.status !== 'ok' && !/^\d/.test(text) && glyphBox(entry.status);
+  return [el('span', {className: 'said'}, failed, failed && ' ', entry ? caseLink(cell.key, said) : said, cell.best && el('span', {className: 'hidden'}, ' best'),
+    spread && el('small', {}, ` (${spread})`), cell.note && el('small', {}, ' ', short(cell.note, 90))),
+    most > 0 && Number.isFinite(value) && el('span', {className: 'bar', 'aria-hidden': 'true'},
+      el('i', {style: `width:${100 * Math.max(0, value) / most}%;background:${solverColour(column.name)}`}))];
+}
+
+/** A row: its head, then a cell for each column; those of solvers vanish with them. */
+function tableRow(table, cells, props, head, bars) {
+  const most = bars ? d3.max(cells, (cell) => middle(cell.value)) : 0;
+  return el('tr', props, el('th', {scope: 'row'}, head ?? cellContent(cells[0], table.columns[0])),
+    cells.slice(1).map((cell, i) => {
+      const column = table.columns[i + 1], solver = solvers.get(column.name);
+      const text = typeof cell.value === 'string';
+      return el('td', {'data-s': solver?.order, className: solver && text ? 'none' : ''}, cellContent(cell, column, most));
+    }));
+}
+const tableHeads = (table, first) => el('tr', {}, table.columns.map((column, i) => el('th', {scope: 'col',
+  'data-s': solvers.get(column.name)?.order}, i === 0 && first !== undefined ? first :
+  [solvers.has(column.name) && i > 0 ? named(column.name, column.heading) : column.heading,
+   column.shown && first === undefined && ` [${column.shown}]`])));
+
+/** What is copied: the table for a spreadsheet, numbers in SI. */
+function tableCsv(table) {
+  const field = ({value}) => csvField(Array.isArray(value) ? value[1] : value);
+  return [table.columns.map((c) => csvField(c.heading + (c.unit && c.unit !== '1' ? ` [${c.unit}]` : ''))),
+    ...table.rows.map((cells) => cells.map(field))].map((fields) => fields.join(',')).join('\r\n') + '\r\n';
+}
+
+function tableNode(table, heading = 'h4') {
+  return el('div', {className: 'card', id: `table-${table.name}`},
+    el(heading, {}, short(table.title, 120), ' ', copyButton(() => tableCsv(table))), note(table.caption),
+    scrolling(`${table.title} (${table.name})`, tableHeads(table), table.rows.map((cells) => tableRow(table, cells))));
+}
+
+/** Questions whose scenes are shown; where there is room, those of the first one, unless the reader chose. */
+function unfolded() {
+  const chosen = state.params().getAll('open').filter((name) => name !== 'none');
+  return state.get('open') || innerWidth < 1000 ? chosen : [...questions.keys()].slice(0, 1);
+}
+
+/** Rows of one question: what all scenes say together, then each of them, unfolded by a click. */
+function questionRows(table) {
+  const last = table.rows[table.rows.length - 1], each = table.rows.slice(0, -1), id = `answer-${table.name}`;
+  const scenesOf = each.length > 1 ? each : [];
+  const sceneCell = ({value, note: why}) => {
+    const name = String(value).split(' (')[0];
+    return [scenes.has(name) ? choice({scene: name, at: 'scenes'}, {}, value) : value, why && el('small', {}, ' ', why)];
+  };
+  const folds = [
+    el('tr', {className: 'fold'}, el('td', {colSpan: table.columns.length},
+      el('small', {}, table.caption, ' '), copyButton(() => tableCsv(table)))),
+    ...scenesOf.map((cells) => tableRow(table, cells, {className: 'fold'}, sceneCell(cells[0]), true))];
+  const button = el('button', {type: 'button', className: 'unfold'}, table.title);
+  button.onclick = () => {
+    const open = unfolded().filter((name) => name !== table.name);
+    state.set({open: open.length < unfolded().length ? open.length ? open : 'none' : [...open, table.name]}, false);
+  };
+  state.watch(() => {
+    const open = unfolded().includes(table.name);
+    button.setAttribute('aria-expanded', open);
+    for (const fold of folds) fold.classList.toggle('folded', !open);
+  });
+  const head = [button, el('small', {title: last[0].note ?? ''}, last[0].value)];
+  return el('tbody', {id}, tableRow(table, last, {className: 'question'}, head, true), folds);
+}
+
+/** The first screen: a row for each question. */
+function answerSection() {
+  const {meta} = model, of = meta.cases < meta.planned ? ` of ${meta.planned}` : '', asked = [...questions.values()];
+  return el('section', {id: 'answer'},
+    note(el('b', {}, 'taut'), ' report · ',
+         [`${meta.cases}${of} cases`, meta.preset, meta.made, meta.machine].filter(Boolean).join(' · ')),
+    el('h1', {}, meta.question || meta.title),
+    asked.length ? el('div', {className: `card scroll answer ${asked[0].columns.length < 5 ? 'few' : ''}`, tabIndex: 0, role: 'region', 'aria-label': 'The answer'},
+      el('table', {}, el('caption', {}, model.answer.subject),
+         el('thead', {}, tableHeads(asked[0], 'question')), asked.map(questionRows))) : null);
+}

@@ -1,0 +1,344 @@
+#!/usr/bin/env python3
+"""Made-up results (failures that left values behind, ties, noise, one solver alone, metrics missing, unequal work) go
+through `taut report`, and every cell of the answer is made again from the raw rows by other code.
+
+    answer_test.py BINARIES
+"""
+
+import collections
+import csv
+import json
+import math
+import os
+import sqlite3
+import statistics
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TAUT = MADE_UP = ""
+SEEDS = range(1, 25)
+# Metric: what the last row is, what less counts as.
+METRICS = {"stretch.rms": ("mean", 1e-3), "motion.share": ("mean", 0), "penetration.peak": ("largest", 1e-6),
+           "face.peak": ("largest", 1e-6), "tunnelling.events": ("sum", 0)}
+BUDGETS = [0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3]
+Raw = collections.namedtuple("Raw", "key scene solver work dt status values text")
+
+
+def ended(status):
+    return status in ("ok", "unsettled")
+
+
+def raw_rows(folder):
+    """Every stored case; numbers that a failure left behind are among its values."""
+    base = sqlite3.connect(os.path.join(folder, "results", "results.db"))
+    values = collections.defaultdict(dict)
+    for case, name, value in base.execute("select case_id, name, value from numbers join metrics using (metric_id)"):
+        if value is not None:
+            values[case][name] = value
+    rows = []
+    for case, key, scene, solver, parameters, dt, status, text in base.execute(
+            "select case_id, key, scene, solver, parameters, dt, status, solver_text from cases order by case_id"):
+        own = json.loads(parameters)
+        rows.append(Raw(key, scene, solver, (int(own.get("substeps", 1)), int(own["iterations"])), dt, status, values[case], text))
+    base.close()
+    return rows
+
+
+def timed_rows(folder):
+    """What was timed, by scene: rows with their median cost per simulated second."""
+    scenes, path = collections.defaultdict(list), os.path.join(folder, "bench.csv")
+    if not os.path.exists(path):
+        return scenes
+    with open(path, newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            row["cost"] = statistics.median(map(float, row["samples"].split())) / float(row["dt"])
+            row["usable"] = row["stable"] == "1" and row["error"] != ""
+            row["error"] = float(row["error"] or "nan")
+            scenes[row["scene"]].append(row)
+    return scenes
+
+
+class Table:
+    """A table of the answer: its rows by label, the last one apart."""
+
+    def __init__(self, json_table):
+        self.columns = [c["name"] for c in json_table["columns"]][1:]
+        notes = {(n["row"], n["column"]): n for n in json_table["notes"]}
+        rows = []
+        for i, row in enumerate(json_table["rows"]):
+            rows.append((row[0], {c: (value, notes.get((i, c), {})) for c, value in zip(self.columns, row[1:])}))
+        self.rows, self.last = dict(rows[:-1]), rows[-1]
+
+
+class Report:
+    """One made-up run: what it holds and what the program makes of it."""
+
+    def __init__(self, seed):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([MADE_UP, folder, str(seed)], check=True)
+            said = subprocess.run([TAUT, "report", os.path.join(folder, "made-up.toml"), "--out", os.path.join(folder, "results"),
+                                   "--json"], check=True, capture_output=True, text=True, cwd=folder).stdout
+            self.raw, self.timed = raw_rows(folder), timed_rows(folder)
+        self.model = json.loads(said)
+        self.tables = {name: Table(t) for name, t in self.model["answer"]["tables"].items()}
+        self.solvers = list(dict.fromkeys(r.solver for r in self.raw))
+        self.works = self.compared_works()
+
+    def compared_works(self):
+        """At which work each solver is compared: the one that all ran nearest to 1 x 16, else each its commonest of 16 sweeps."""
+        own = {s: collections.Counter(r.work for r in self.raw if r.solver == s) for s in self.solvers}
+
+        def far(work):
+            return abs(math.log(max(1, work[1]) / 16)) + math.log(max(1, work[0]))
+        common = set.intersection(*(set(w) for w in own.values()))
+        if common:
+            return {s: min(common, key=far) for s in self.solvers}
+        sweeps = set.intersection(*({w[1] for w in works} for works in own.values()))
+        best = min(sweeps, key=lambda n: far((1, n)))
+        return {s: max((w for w in own[s] if w[1] == best), key=lambda w: (own[s][w], -far(w))) for s in self.solvers}
+
+    def compared(self, scene):
+        """The case of each solver at the time step that most ran, of equals the one nearest to 1/64 s."""
+        at = collections.defaultdict(dict)
+        for r in self.raw:
+            if r.scene == scene and r.work == self.works[r.solver]:
+                at[r.dt].setdefault(r.solver, r)
+        return at[min(at, key=lambda dt: (-len(at[dt]), abs(math.log(dt * 64))))] if at else {}
+
+
+def why_none(row):
+    if row is None:
+        return "not run"
+    if ended(row.status):
+        return "no value"
+    return "cannot: made up" if row.status == "unsupported" else row.status
+
+
+def best_of(values, nothing, more=False):
+    """Who is better than all others by more than a twentieth; None: nobody."""
+    ranked = sorted(((max(v, nothing), s) for s, v in values.items()), reverse=more)
+    if len(ranked) < 2:
+        return None
+    (a, first), (b, _) = ranked[:2]
+    return first if max(a, b) > 1.05 * min(a, b) else None
+
+
+class Answer(unittest.TestCase):
+    seen = collections.Counter()
+
+    def one(self, table, name, cells, last, label, marks):
+        """Holds a table against its cells {row: {solver: value or text}}, its last row and who is marked."""
+        self.assertEqual(set(table.rows), set(cells), name)
+        for row, values in list(cells.items()) + [(None, last)]:
+            shown = table.last[1] if row is None else table.rows[row]
+            for solver, (value, note) in shown.items():
+                with self.subTest(table=name, row=row, solver=solver):
+                    wanted = values[solver]
+                    if isinstance(wanted, str):
+                        self.assertEqual(value, wanted)
+                    else:
+                        number = value[1] if isinstance(value, list) else value
+                        self.assertAlmostEqual(number, wanted, delta=1e-12 + 1e-9 * abs(wanted))
+                        self.seen[name] += 1
+                    if marks is not None:
+                        self.assertEqual(note.get("best", False), marks(values) == solver)
+        self.assertTrue(table.last[0] == label or len(cells) == 1, f"{table.last[0]}, not {label}")
+
+    def last_row(self, cells, columns, kind, nothing):
+        """The last row by its definition, and what it is called."""
+        having = [c for c in columns if any(not isinstance(row[c], str) for row in cells.values())]
+        common = [row for row in cells.values() if all(not isinstance(row[c], str) for c in having) and
+                  (nothing == 0 or kind != "mean" or any(row[c] >= nothing for c in having))]
+        last = {}
+        for c in columns:
+            texts = {row[c] for row in cells.values()}
+            if c not in having:
+                last[c] = texts.pop() if len(texts) == 1 else "no value"
+            elif not common:
+                last[c] = "no scene that all have"
+            elif kind == "largest":
+                last[c] = max(row[c] for row in common)
+            elif kind == "sum" or len(common) == 1:
+                last[c] = sum(row[c] for row in common)
+            else:
+                raised = [[max(row[d], nothing) if nothing else row[d] for row in common] for d in having]
+                mine = [max(row[c], nothing) if nothing else row[c] for row in common]
+                positive = all(v > 0 for column in raised for v in column)
+                last[c] = math.exp(statistics.fmean(map(math.log, mine))) if positive else statistics.fmean(mine)
+        return last, f"{kind} of {len(common)} scene{'' if len(common) == 1 else 's'}"
+
+    def values_at_equal_work(self, report, metric):
+        kind, nothing = METRICS[metric]
+        cells = {}
+        for scene in dict.fromkeys(r.scene for r in report.raw):
+            here, row = report.compared(scene), {}
+            for solver in report.columns:
+                case = here.get(solver)
+                value = case.values.get(metric) if case and ended(case.status) else None
+                row[solver] = why_none(case) if value is None else value
+            if any(not isinstance(v, str) for v in row.values()):
+                cells[scene] = row
+        if not cells:
+            self.assertNotIn(metric, report.tables)
+            return
+        table = report.tables[metric]
+        last, label = self.last_row(cells, report.columns, kind, nothing)
+
+        def marks(row):
+            numbers = {s: v for s, v in row.items() if not isinstance(v, str)}
+            return None if metric == "motion.share" else best_of(numbers, nothing)
+        self.one(table, metric, cells, last, label, marks)
+        for scene, row in table.rows.items():  # each cell leads to its case
+            for solver, case in report.compared(scene).items():
+                self.assertTrue(case.key.startswith(row[solver][1]["key"]), metric)
+        if len(set(report.works.values())) > 1:
+            self.assertTrue(all("note" in note for row in table.rows.values() for v, note in row.values() if not isinstance(v, str)))
+            self.seen["unequal work"] += 1
+
+    def steps(self, report):
+        cells = {}
+        for scene in dict.fromkeys(r.scene for r in report.raw):
+            tried = {s: {(r.work, r.dt): r for r in report.raw if (r.scene, r.solver) == (scene, s)} for s in report.solvers}
+            here = [s for s in report.solvers if len({dt for _, dt in tried[s]}) >= 3]
+            shared = set.intersection(*(set(tried[s]) for s in here)) if here else set()
+            steps = sorted({dt for _, dt in shared})
+            if len(steps) < 3 or steps[-1] < 4 * steps[0]:
+                continue
+            row = {s: "not run" for s in report.columns}
+            for s in here:
+                row[s] = "below 4.17\u00a0ms"
+                for dt in steps:
+                    if not all(ended(tried[s][at].status) for at in shared if at[1] == dt):
+                        break
+                    row[s] = dt
+            cells[scene] = row
+        if not cells:
+            self.assertNotIn("largest_step", report.tables)
+            return
+        last, label = self.last_row(cells, report.columns, "mean", 0)
+        self.one(report.tables["largest_step"], "largest_step", cells, last, label,
+                 lambda row: best_of({s: v for s, v in row.items() if not isinstance(v, str)}, 0, True))
+
+    def failures(self, report):
+        cases = {r.key: (r.scene, r.solver, r.status) for r in report.raw}
+        for rows in report.timed.values():
+            for row in rows:
+                cases.setdefault(row["key"], (row["scene_id"], row["solver"], row["status"]))
+        counts, of, last, all_of = collections.defaultdict(dict), collections.Counter(), {}, collections.Counter()
+        for scene, solver, status in cases.values():
+            counts[scene][solver] = counts[scene].get(solver, 0) + (not ended(status) and status != "unsupported")
+            of[scene, solver] += 1
+            all_of[solver] += 1
+        table = report.tables["failures"]
+        cells = {scene: {s: row.get(s, "not run") for s in report.columns} for scene, row in counts.items()}
+        last = {s: sum(row.get(s, 0) for row in counts.values()) for s in report.columns}
+        self.one(table, "failures", cells, last, f"sum of {len(cells)} scene{'' if len(cells) == 1 else 's'}", None)
+        for scene, row in table.rows.items():
+            for solver, (value, note) in row.items():
+                if not isinstance(value, str):
+                    self.assertEqual(int(note["note"].split(":")[0].split()[1]), of[scene, solver])
+        for solver, (value, note) in table.last[1].items():
+            self.assertEqual(int(note["note"].split(":")[0].split()[1]), all_of[solver])
+        # The page counts the same elsewhere.
+        for scene in report.model["scenes"]:
+            for solver, statuses in scene.get("statuses", {}).items():
+                self.assertEqual(sum(statuses.values()), of[scene["id"], solver])
+
+    def costs(self, report):
+        scenes = report.timed
+        if not scenes:
+            self.assertFalse({"price", "equal_cost", "setting"} & set(report.tables))
+            return
+        who = {scene: list(dict.fromkeys(r["solver"] for r in rows)) for scene, rows in scenes.items()}
+
+        def within(scene, solver, budget):
+            rows = [r for r in scenes[scene] if r["solver"] == solver and r["usable"] and r["cost"] <= budget * 60]
+            return min(rows, key=lambda r: (r["error"], r["cost"]), default=None)
+
+        def cheapest(scene, solver):
+            rows = [r for r in scenes[scene] if r["solver"] == solver and r["usable"] and r["error"] <= 0.01]
+            return min(rows, key=lambda r: r["cost"], default=None)
+        budget = next((b for b in BUDGETS if all(within(s, v, b) for s in scenes for v in who[s])), BUDGETS[-1])
+        for name, choose, value, lacking, nothing in (
+                ("equal_cost", lambda s, v: within(s, v, budget), "error", "nothing that cheap", 1e-3),
+                ("price", cheapest, "cost", "not reached", 0), ("setting", cheapest, None, "none", 0)):
+            table, cells = report.tables[name], {}
+            for scene in scenes:
+                row = {}
+                for solver in report.columns:
+                    case = choose(scene, solver)
+                    row[solver] = ("not timed" if solver not in who[scene] else lacking) if case is None else case[value or "cost"]
+                    if case:
+                        self.assertTrue(case["key"].startswith(table.rows[scene][solver][1]["key"]), f"{name}: {scene}, {solver}")
+                cells[scene] = row
+            if name == "setting":
+                self.setting(report, table, cheapest)
+                continue
+            last, label = self.last_row(cells, report.columns, "mean", nothing)
+            marks = None if name == "price" else lambda row: best_of({s: v for s, v in row.items() if not isinstance(v, str)}, 1e-3)
+            self.one(table, name, cells, last, label, marks)
+            if name == "price":
+                for scene, row in table.rows.items():
+                    self.price_marks(row, float(scenes[scene][0]["noise"]))
+                self.price_marks(table.last[1], max(float(rows[0]["noise"]) for rows in scenes.values()))
+
+    def price_marks(self, row, noise):
+        """Intervals hold their middle; only a cost that is less beyond tolerance and noise is marked."""
+        numbers = {s: v for s, (v, _) in row.items() if isinstance(v, list)}
+        for low, mid, high in numbers.values():
+            self.assertLessEqual(low, mid)
+            self.assertLessEqual(mid, high)
+        marked = [s for s, (_, note) in row.items() if note.get("best")]
+        ranked = sorted(numbers, key=lambda s: numbers[s][1])
+        if len(ranked) < 2:
+            self.assertEqual(marked, [])
+            return
+        over = numbers[ranked[1]][1] / numbers[ranked[0]][1]
+        self.assertTrue(marked in ([], [ranked[0]]))
+        if over < 0.9 * (1 + max(noise, 0.05)):  # the ratio's middle is not that of the medians
+            self.assertEqual(marked, [], f"{over}, noise {noise}")
+            self.seen["not marked"] += 1
+        if over > 2.5:  # samples of one case spread by half at most
+            self.assertEqual(marked, ranked[:1], f"{over}, noise {noise}")
+            self.seen["marked"] += 1
+
+    def setting(self, report, table, cheapest):
+        """Of all scenes: the setting that reaches the error on most of them, of equals the cheapest in the mean."""
+        for solver, (value, note) in table.last[1].items():
+            reached = collections.defaultdict(list)
+            for rows in report.timed.values():
+                for r in rows:
+                    if r["solver"] == solver and r["usable"] and r["error"] <= 0.01:
+                        reached[r["setting"]].append(r)
+            if not reached:
+                self.assertIn(value, ("none", "not timed", "no value"))
+                continue
+            best = max(reached.values(), key=lambda rows: (len(rows), -statistics.fmean(math.log(r["cost"]) for r in rows)))
+            self.assertIn(True, [r["key"].startswith(note["key"]) for r in best], solver)
+            self.assertTrue(len(report.timed) == 1 or note["note"].endswith(f"on {len(best)} of {len(report.timed)}"), note)
+            self.seen["setting"] += 1
+
+    def test_every_cell_is_what_the_raw_rows_say(self):
+        for seed in SEEDS:
+            with self.subTest(seed=seed):
+                report = Report(seed)
+                timed = dict.fromkeys(r["solver"] for rows in report.timed.values() for r in rows)
+                report.columns = report.solvers + [s for s in timed if s not in report.solvers]
+                for table in report.tables.values():
+                    self.assertEqual(table.columns, report.columns)
+                for metric in METRICS:
+                    self.values_at_equal_work(report, metric)
+                self.steps(report)
+                self.failures(report)
+                self.costs(report)
+                self.seen["one solver"] += len(report.columns) == 1
+        for what in (*METRICS, "largest_step", "failures", "price", "equal_cost", "setting", "marked", "not marked",
+                     "one solver", "unequal work"):
+            self.assertGreater(self.seen[what], 0, f"no made-up run shows: {what}")
+
+
+if __name__ == "__main__":
+    TAUT, MADE_UP = (os.path.join(os.path.abspath(sys.argv[1]), name) for name in ("taut", "taut_made_up"))
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,102 @@
+// The answer of results whose values are chosen; answer_test.py makes every cell of made-up ones
+// again.
+#include <gtest/gtest.h>
+
+#include "experiments/report/answer/answer.hpp"
+#include "experiments/report/input.hpp"
+#include "tests/support/synthetic_records.hpp"
+
+namespace taut::report::answers_test {
+namespace {
+
+/// One study of two solvers at 1 x 16.
+struct Reported {
+  Record& add(const std::string& scene, const std::string& solver,
+              const std::map<std::string, double>& values) {
+    Record r = synthetic::record(scene, solver, 16, 1.0 / 64);
+    r.values = values;
+    return input.studies.front().records.emplace_back(r);
+  }
+  Answer answer() const {
+    CaseList list(input);
+    return answer_of(input, compared_solvers_of(input), list);
+  }
+  ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
+};
+
+TEST(Answers, HaveAValueOrWhyThereIsNoneAndMarkWhatIsBetterByMoreThanTheTolerance) {
+  Reported made;
+  const auto stretch = [&](const std::string& scene, const char* solver, double value) -> Record& {
+    return made.add(scene, solver, {{"stretch.rms", value}});
+  };
+  stretch("hang", "jakobsen", 0.04), stretch("hang", "bullet", 0.01);
+  stretch("ball", "jakobsen", 0.0100), stretch("ball", "bullet", 0.0104);
+  stretch("box", "jakobsen", 0.02);
+  stretch("box", "bullet", 1e-9).status = {Status::Kind::exploded, "energy", 3, 1};
+  stretch("drape", "jakobsen", 1e-12), stretch("drape", "bullet", 1e-5);
+  stretch("swing", "jakobsen", 0.03);
+  const Answer answer = made.answer();
+  const Table& table = answer.table("stretch.rms");
+  ASSERT_EQ(table.rows.size(), 6u);
+  const auto best = [&](std::size_t row) {
+    return std::pair(bool(table.rows[row][1].best), bool(table.rows[row][2].best));
+  };
+  EXPECT_EQ(best(0), std::pair(false, true));
+  EXPECT_EQ(best(1), std::pair(false, false)) << "within the tolerance";
+  EXPECT_EQ(table.rows[2][2].text(), "exploded");
+  EXPECT_EQ(best(2), std::pair(false, false)) << "alone";
+  EXPECT_EQ(best(3), std::pair(false, false)) << "both as good as nothing";
+  EXPECT_EQ(table.rows[4][2].text(), "not run");
+  EXPECT_EQ(table.rows[5][0].text(), "mean of 2 scenes");
+  EXPECT_EQ(table.rows[5][0].note, "without box, drape, swing");
+  EXPECT_NEAR(table.rows[5][1].number(), 0.02, 1e-12);
+  EXPECT_NEAR(table.rows[5][2].number(), std::sqrt(0.01 * 0.0104), 1e-12);
+  EXPECT_EQ(best(5), std::pair(false, true));
+  const Table& failures = answer.table("failures");
+  EXPECT_EQ(failures.rows.back()[1].number(), 0);
+  EXPECT_EQ(failures.rows.back()[2].number(), 1);
+  EXPECT_EQ(failures.rows.back()[2].note, "of 4: 1 exploded");
+}
+
+TEST(Answers, SayTheDeepestOfTheWholeRunAndWhatASolverCannot) {
+  Reported made;
+  for (const char* scene : {"ball", "box"}) {
+    made.add(scene, "jakobsen", {{"penetration.peak", 0.002}, {"penetration.max", 0}});
+    made.add(scene, "bullet", {{"penetration.peak", 0.005}, {"penetration.max", 1}});
+    made.add(scene, "xpbd", {}).status = {Status::Kind::unsupported, "no balls", -1, -1};
+  }
+  made.input.studies[0].records[3].values["penetration.peak"] = 0.03;
+  const Answer answer = made.answer();
+  const auto& last = answer.table("penetration.peak").rows.back();
+  EXPECT_EQ(last[0].text(), "largest of 2 scenes");
+  EXPECT_EQ(last[1].number(), 0.002);
+  EXPECT_EQ(last[2].number(), 0.03);
+  EXPECT_EQ(last[3].text(), "cannot: no balls");
+  EXPECT_FALSE(last[3].best);
+  EXPECT_TRUE(last[1].best);
+  EXPECT_EQ(answer.table("failures").rows.back()[3].number(), 0) << "no failure";
+}
+
+TEST(Answers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
+  Reported made;
+  const Record& ours = made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
+  const Record cheap = ours;
+  const Record dear = made.add("hang", "bullet", {{"stretch.rms", 0.004}});
+  const auto price = [&](double ratio, double noise) {
+    const std::vector<double> one(12, 1e-3), other(12, 1e-3 * ratio);
+    made.input.bench =
+        StudyBench{"one",
+                   "a machine",
+                   {{"hang",
+                     {1 / (1 + noise), 1, 1 + noise},
+                     {{cheap, {one, one, 0, "", ""}}, {dear, {other, other, 0, "", ""}}}}}};
+    return made.answer().table("price").rows[0];
+  };
+  EXPECT_TRUE(price(1.3, 0.02)[1].best);
+  EXPECT_FALSE(price(1.3, 0.4)[1].best) << "noise";
+  EXPECT_FALSE(price(1.03, 0.001)[1].best) << "the tolerance";
+  EXPECT_NEAR(price(1.3, 0.02)[2].number(), 1.3e-3 * 64, 1e-9);
+}
+
+}  // namespace
+}  // namespace taut::report::answers_test
