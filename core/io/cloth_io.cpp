@@ -59,13 +59,14 @@ Lumping read_lumping(Section& cloth) {
   return name == "area" ? Lumping::area : Lumping::equal;
 }
 
-/// Total mass [kg], from `mass` or `area_density`; `area` [m^2].
-std::optional<double> read_mass(Section& cloth, double area) {
+/// Total mass [kg], from the fabric, `mass` or `area_density`; `area` [m^2].
+std::optional<double> read_mass(Section& cloth, const Fabric* fabric, double area) {
   const bool both = cloth.find("mass") && cloth.find("area_density");
   if (both) cloth.report("area_density", "excludes 'mass': give one of them");
   const auto mass = cloth.number("mass", {1e-9, 1e9});
   const double density = cloth.number("area_density", {1e-9, 1e9}, 0.2);
   if (both) return std::nullopt;
+  if (fabric && area > 0) return fabric->mass * area;
   if (cloth.find("mass")) return mass;
   if (area > 0) return density * area;
   cloth.report(cloth.find("area_density") ? "area_density" : "size",
@@ -121,7 +122,7 @@ void start_sheet(Section& cloth, const SheetShape& shape, Scene& scene) {
       x = shape.origin + Eigen::AngleAxisd(tilt, shape.u) * (x - shape.origin);
 }
 
-bool read_sheet(Section& cloth, const LinkChoice& links, Scene& scene) {
+bool read_sheet(Section& cloth, const LinkChoice& links, const Fabric* fabric, Scene& scene) {
   SheetShape shape;
   shape.origin = cloth.vec3("origin", kFar, Vec3::Zero());
   shape.u = cloth.direction("u", Vec3::UnitX());
@@ -132,7 +133,7 @@ bool read_sheet(Section& cloth, const LinkChoice& links, Scene& scene) {
   const auto grid = read_grid(cloth);
   if (grid) shape.nu = grid->nu, shape.nv = grid->nv;
   const bool sized = read_size(cloth, shape);
-  const auto mass = read_mass(cloth, grid && sized ? shape.width * shape.height * sine : 1);
+  const auto mass = read_mass(cloth, fabric, grid && sized ? shape.width * shape.height * sine : 1);
   if (!grid || !sized || !mass || sine < 1e-3) return false;
   shape.mass = *mass;
   scene.mesh = make_sheet(shape);
@@ -145,7 +146,7 @@ bool read_sheet(Section& cloth, const LinkChoice& links, Scene& scene) {
 /// The surface in an OBJ file, scaled, turned and moved. False and the file's own errors if it is
 /// none.
 bool read_surface(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
-                  Scene& scene) {
+                  const Fabric* fabric, Scene& scene) {
   const double scale = cloth.number("scale", {1e-6, 1e6}, 1);
   const Eigen::Quaterniond rotation = read_rotation(cloth);
   const Vec3 origin = cloth.vec3("origin", kFar, Vec3::Zero());
@@ -167,7 +168,7 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Lin
     cloth.report("mesh", "reaches farther than " + shortest(kFar) + " m from the origin");
     return false;
   }
-  const auto mass = read_mass(cloth, surface.faces.empty() ? 1 : area(surface));
+  const auto mass = read_mass(cloth, fabric, surface.faces.empty() ? 1 : area(surface));
   if (!mass || surface.faces.empty()) return false;
   scene.mesh = make_mesh(surface, *mass, lumping);
   scene.links = mesh_links(surface, links);
@@ -204,7 +205,7 @@ class VertexReader {
     else if (value.is_table() && value.find("edge"))
       add_along(value);
     else if (value.is_table())
-      add_box(value);
+      value.find("radius") ? add_ball(value) : add_box(value);
     else if (value.is_number())
       add_number(value);
     else if (value.is_array())
@@ -212,7 +213,7 @@ class VertexReader {
     else
       report(value,
              "must name vertices: a number, [i, j], an edge such as \"top\", a place "
-             "{ edge, at } or a box { min, max }; not " +
+             "{ edge, at }, a box { min, max } or a ball { center, radius }; not " +
                  describe(value));
   }
   std::vector<int> take() {
@@ -294,15 +295,29 @@ class VertexReader {
     const auto low = box.vec3("min", kFar), high = box.vec3("max", kFar);
     box.finish();
     if (!low || !high) return;
-    const std::size_t before = all_.size();
-    const Eigen::AlignedBox3d inside(*low - Vec3::Constant(kBoxSlack),
-                                     *high + Vec3::Constant(kBoxSlack));
-    for (int v = 0; v < mesh_.size(); ++v)
-      if (inside.contains(mesh_.rest[static_cast<std::size_t>(v)])) all_.push_back(v);
-    if (all_.size() == before) report(value, "has a box that holds no vertex");
+    const Eigen::AlignedBox3d box_of(*low - Vec3::Constant(kSlack), *high + Vec3::Constant(kSlack));
+    add_if(value, "box", [&](const Vec3& x) { return box_of.contains(x); });
   }
 
-  static constexpr double kBoxSlack = 1e-9;  ///< m, so that a vertex on the face is inside
+  void add_ball(const Value& value) {
+    Section ball(section_.diagnostics(), value, "a ball of '" + key_ + "' in " + section_.name());
+    ball.need({"center"});
+    const auto center = ball.vec3("center", kFar);
+    const auto radius = ball.number("radius", Range::positive(kFar));
+    ball.finish();
+    if (!center || !radius) return;
+    add_if(value, "ball", [&](const Vec3& x) { return (x - *center).norm() <= *radius + kSlack; });
+  }
+
+  template <class Inside>
+  void add_if(const Value& value, const std::string& what, const Inside& inside) {
+    const std::size_t before = all_.size();
+    for (int v = 0; v < mesh_.size(); ++v)
+      if (inside(mesh_.rest[to_index(v)])) all_.push_back(v);
+    if (all_.size() == before) report(value, "has a " + what + " that holds no vertex");
+  }
+
+  static constexpr double kSlack = 1e-9;  ///< m, so that a vertex on the surface is inside
   Section& section_;
   std::string key_;
   const Mesh& mesh_;
@@ -354,7 +369,7 @@ void refuse(Section& cloth, const std::vector<std::string>& keys, const std::str
 }  // namespace
 
 bool read_cloth(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
-                Scene& scene) {
+                const Fabric* fabric, Scene& scene) {
   const bool surface = cloth.find("mesh");
   if (surface)
     refuse(cloth, {"grid", "size", "u", "v", "span", "tilt"}, "belongs to a grid, not to a mesh");
@@ -362,8 +377,8 @@ bool read_cloth(Section& cloth, const std::filesystem::path& folder, const LinkC
     refuse(cloth, {"scale", "rotation"}, "belongs to a mesh, not to a grid");
   scene.thickness = cloth.number("thickness", Range::non_negative(kFar), 0);
   const Vec3 velocity = cloth.vec3("velocity", kFar, Vec3::Zero());
-  const bool built =
-      surface ? read_surface(cloth, folder, links, scene) : read_sheet(cloth, links, scene);
+  const bool built = surface ? read_surface(cloth, folder, links, fabric, scene)
+                             : read_sheet(cloth, links, fabric, scene);
   for (const char* key : {"span", "tilt", "stretch", "weights", "pins", "placed"})
     cloth.find(key);  // known in any case
   if (!built) return false;

@@ -172,6 +172,16 @@ void read_stiffness(Section& links, Scene& scene) {
   stiffness.finish();
 }
 
+/// Null: the scene names none.
+const Fabric* read_fabric(Section& root) {
+  const auto name = root.string("fabric");
+  if (!name) return nullptr;
+  std::string problem;
+  const Fabric* fabric = find_fabric(*name, problem);
+  if (!fabric) root.report("fabric", problem);
+  return fabric;
+}
+
 LinkChoice read_links(Section& links, Scene& scene) {
   LinkChoice choice;
   choice.structural = links.boolean("structural", true);
@@ -182,10 +192,11 @@ LinkChoice read_links(Section& links, Scene& scene) {
   return choice;
 }
 
-/// One stiffness [N m], or those of warp and weft; the warp's direction is a grid's v unless given.
-Bending read_bending(Section& section) {
+/// One stiffness [N m], or those of warp and weft, unless the fabric's; the warp's direction is a
+/// grid's v unless given.
+Bending read_bending(Section& section, const Fabric* fabric) {
   Bending bending;
-  section.need({"stiffness"});
+  if (!fabric) section.need({"stiffness"});
   const Range range{1e-12, 1e6};
   const Value* value = section.find("stiffness");
   if (value && value->is_table()) {
@@ -196,6 +207,7 @@ Bending read_bending(Section& section) {
   } else {
     bending.warp = bending.weft = section.number("stiffness", range, 1);
   }
+  if (fabric) bending.warp = fabric->warp, bending.weft = fabric->weft;
   bending.direction = section.direction("warp", Vec3::Zero());
   section.finish();
   return bending;
@@ -378,15 +390,17 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   Section links(diagnostics, part(root, "links"), "[links]");
   const LinkChoice choice = read_links(links, scene);
   Section cloth(diagnostics, part(root, "cloth"), "[cloth]");
-  const bool built = root.table("cloth") && read_cloth(cloth, path.parent_path(), choice, scene);
+  const Fabric* fabric = read_fabric(root);
+  const bool built =
+      root.table("cloth") && read_cloth(cloth, path.parent_path(), choice, fabric, scene);
   ContactRules rules;
   rules.resolve = cloth.choice("start_inside", {"error", "resolve"}, "error") == "resolve";
   if (root.table("cloth")) cloth.finish();
   Section forces(diagnostics, part(root, "forces"), "[forces]");
   read_forces(forces, scene);
-  if (const Value* table = root.table("bending")) {
-    Section bending(diagnostics, *table, "[bending]");
-    scene.bending = read_bending(bending);
+  if (root.table("bending") || fabric) {
+    Section bending(diagnostics, part(root, "bending"), "[bending]");
+    scene.bending = read_bending(bending, fabric);
   }
   if (const Value* table = root.table("wind")) {
     Section wind(diagnostics, *table, "[wind]");

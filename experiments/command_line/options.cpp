@@ -68,6 +68,11 @@ CLI::Option* add_preset(CLI::App& app, std::string& preset) {
 }
 
 CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
+  app.add_option_function<std::string>(
+      "--fabric",
+      [&settings](const std::string& name) { settings.push_back("fabric=\"" + name + "\""); },
+      "Mass and bending stiffness of a measured fabric in place of the scene's (taut list "
+      "fabrics)");
   return app
       .add_option("--set", settings,
                   "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'; repeat it for each")

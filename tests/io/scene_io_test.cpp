@@ -11,6 +11,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "core/io/fabrics.hpp"
 #include "core/model/input_error.hpp"
 
 namespace taut::scene_io_test {
@@ -327,6 +328,35 @@ TEST(SceneFiles, BendingIsOneStiffnessOrThatOfWarpAndWeft) {
   EXPECT_NE(error("stiffness = 1\nstifness = 1", cloth).find("stifness"), std::string::npos);
   EXPECT_NE(error("stiffness = 1", "cloth = { grid = [1, 9], size = [0, 1], mass = 1 }\n")
                 .find("[bending] acts on faces"),
+            std::string::npos);
+}
+
+TEST(SceneFiles, AFabricIsMassAndBendingInPlaceOfTheScenes) {
+  const Scene s = shipped("hang", {"fabric=\"petrak-m1\"", "bending.stiffness=1"});
+  double mass = 0;
+  for (const double m : s.mesh.mass) mass += m;
+  EXPECT_NEAR(mass, 0.135, 1e-12) << "of 1 m^2";
+  EXPECT_EQ(s.bending->warp, 1950e-9);
+  EXPECT_EQ(s.bending->weft, 610e-9);
+  EXPECT_EQ(s.bending->direction, -Vec3::UnitY());
+  for (const Fabric& fabric : fabrics()) {
+    EXPECT_EQ(shipped("drape-disc", {"fabric=\"" + std::string(fabric.name) + "\""}).bending->warp,
+              fabric.warp);
+    EXPECT_TRUE(fabric.drape > 0 && fabric.drape < 1) << fabric.name;
+  }
+  EXPECT_NE(errors_of("fabric = \"petrak-m\"\ncloth = { grid = [2, 2], size = [1, 1] }")
+                .find("unknown fabric 'petrak-m'; did you mean 'petrak-m1'"),
+            std::string::npos);
+}
+
+TEST(SceneFiles, ABallNamesTheVerticesInsideIt) {
+  EXPECT_EQ(
+      shipped("hang", {"cloth.grid=[3, 3]", "cloth.pins=[{ center = [0, 0, 0], radius = 0.5 }]"})
+          .pins,
+      (std::vector{0, 1, 3}));
+  EXPECT_NE(errors_of("[cloth]\ngrid = [2, 2]\nsize = [1, 1]\n"
+                      "pins = [{ center = [9, 0, 0], radius = 1 }]")
+                .find(":4:9: 'pins' in [cloth] has a ball that holds no vertex"),
             std::string::npos);
 }
 

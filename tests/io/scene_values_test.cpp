@@ -205,8 +205,8 @@ TEST(SceneValues, WhatNamesNoVertexIsRefusedAtTheBorder) {
   EXPECT_EQ(refused("'tap'"), "names no edge or corner: \"tap\"; did you mean 'top'?");
   EXPECT_EQ(
       refused("true"),
-      "must name vertices: a number, [i, j], an edge such as \"top\", a place { edge, at } or "
-      "a box { min, max }; not true");
+      "must name vertices: a number, [i, j], an edge such as \"top\", a place { edge, at }, a box "
+      "{ min, max } or a ball { center, radius }; not true");
   EXPECT_EQ(refused("{ edge = 'tap', at = 0.5 }"),
             "names no edge or corner: \"tap\"; did you mean 'top'?");
   EXPECT_NE(refused("{ edge = 'top', at = 1.5 }").find("at"), std::string::npos);

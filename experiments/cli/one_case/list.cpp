@@ -1,3 +1,4 @@
+#include "core/io/fabrics.hpp"
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
@@ -81,6 +82,21 @@ void list_studies(Answer& all) {
   all.add(std::move(table));
 }
 
+void list_fabrics(Answer& all) {
+  Table table{"fabrics",
+              "measured fabrics",
+              {{"name"},
+               {"mass", "mass", {"kg/m^2", "g/m\u00B2", 1e3}},
+               {"warp", "bending, warp", {"N m", "\u00B5N m", 1e6}},
+               {"weft", "weft", {"N m", "\u00B5N m", 1e6}},
+               {"drape", "drape coefficient", kShare},
+               {"source"},
+               {"licence"}}};
+  for (const Fabric& f : fabrics())
+    table.rows.push_back({f.name, f.mass, f.warp, f.weft, f.drape, f.source, f.licence});
+  all.add(std::move(table));
+}
+
 /// What publications assert.
 void list_assertions(Answer& all) {
   Table table{"assertions",
@@ -98,11 +114,9 @@ void list_assertions(Answer& all) {
   all.add(std::move(table));
 }
 
-constexpr std::pair<const char*, void (*)(Answer&)> kKinds[] = {{"scenes", list_scenes},
-                                                                {"solvers", list_solvers},
-                                                                {"metrics", list_metrics},
-                                                                {"studies", list_studies},
-                                                                {"assertions", list_assertions}};
+constexpr std::pair<const char*, void (*)(Answer&)> kKinds[] = {
+    {"scenes", list_scenes},   {"solvers", list_solvers}, {"metrics", list_metrics},
+    {"studies", list_studies}, {"fabrics", list_fabrics}, {"assertions", list_assertions}};
 
 int run(const Options& options) {
   Answer all{"list"};
@@ -113,8 +127,9 @@ int run(const Options& options) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("WHAT", o.what, "scenes | solvers | metrics | studies | assertions (default: all)")
-      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies", "assertions"}));
+  app.add_option("WHAT", o.what,
+                 "scenes | solvers | metrics | studies | fabrics | assertions (default: all)")
+      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies", "fabrics", "assertions"}));
   add_format(app, o.format);
 }
 
@@ -124,6 +139,7 @@ void add_options(CLI::App& app, Options& o) {
 TAUT_VERB(list) = {
     .name = "list",
     .group = VerbGroup::one_case,
-    .summary = "Names scenes, solvers with their parameters, metrics, studies and assertions",
+    .summary =
+        "Names scenes, solvers with their parameters, metrics, studies, fabrics and assertions",
     .example = "taut list solvers",
     .bind = taut::bind_verb<taut::verb::list::add_options, taut::verb::list::run>};

@@ -1,0 +1,73 @@
+#include <numbers>
+
+#include "experiments/metrics/metric.hpp"
+
+namespace taut {
+
+namespace {
+
+/// A level sheet held by its first two rows alone, its clamp in the middle between them.
+class Cantilever final : public Metric {
+ public:
+  static constexpr Unit kDegrees{"rad", "\u00B0", 180 / std::numbers::pi, false};
+  static constexpr ValueSpec kValues[] = {
+      {.name = "cantilever.angle",
+       .unit = kDegrees,
+       .help = "angle below the level at which the middle of the last row is seen from the clamp, "
+               "mean over the last second; of a sheet that starts across gravity and whose pins "
+               "are its first two rows, the clamp in the middle between them",
+       .in_series = true,
+       .title = "angle of a cantilever"},
+      {.name = "cantilever.bending_length",
+       .unit = kLength,
+       .help = "bending length (B/w)^(1/3) after Peirce from that angle and the overhang L: "
+               "L (cos(angle/2)/(8 tan(angle)))^(1/3), 1.9 % too long at 41.5 degrees",
+       .title = "bending length"}};
+  static bool measures(const Scene& scene) {
+    if (!scene.mesh.grid || scene.mesh.grid->nv < 3 || scene.gravity.isZero(0)) return false;
+    const Cantilever c(scene);
+    const int clamped = 2 * scene.mesh.grid->nu;
+    return static_cast<int>(scene.pins.size()) == clamped && scene.pins.back() == clamped - 1 &&
+           std::abs(c.out_.dot(c.down_)) < 1e-3 && scene.colliders.empty();
+  }
+  explicit Cantilever(const Scene& scene)
+      : grid_(*scene.mesh.grid), down_(scene.gravity.normalized()), end_(scene) {
+    const Vec3 out = end_of(scene.mesh.rest);
+    overhang_ = out.norm(), out_ = out / overhang_;
+  }
+
+  void observe(const Snapshot& m) override { angle_.add(m.step, end_.contains(m.step), now(m)[0]); }
+  std::vector<double> finish() override {
+    const double angle = angle_.mean();
+    const double cube = std::cos(angle / 2) / (8 * std::tan(angle));
+    return {angle, angle > 0 ? overhang_ * std::cbrt(cube) : Summary::kNone};
+  }
+  std::vector<double> now(const Snapshot& m) const override {
+    const Vec3 end = end_of(m.state.x);
+    return {std::atan2(end.dot(down_), end.dot(out_)), Summary::kNone};
+  }
+
+ private:
+  /// From the clamp.
+  Vec3 end_of(const std::vector<Vec3>& x) const {
+    const auto row = [&](int j) {
+      Vec3 sum = Vec3::Zero();
+      for (int i = 0; i < grid_.nu; ++i) sum += x[to_index(grid_.index(i, j))];
+      return Vec3(sum / grid_.nu);
+    };
+    return row(grid_.nv - 1) - (row(0) + row(1)) / 2;
+  }
+
+  Grid grid_;
+  Vec3 down_, out_ = Vec3::Zero();
+  double overhang_ = 0;  ///< m
+  LastSecond end_;
+  Summary angle_;
+};
+
+}  // namespace
+
+TAUT_METRIC(cantilever, Cantilever, "How far a clamped strip bends down: its bending length",
+            "Peirce 1930; ISO 9073-7, ASTM D1388");
+
+}  // namespace taut

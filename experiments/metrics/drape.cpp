@@ -1,0 +1,127 @@
+#include <utility>
+
+#include "experiments/metrics/metric.hpp"
+
+namespace taut {
+
+namespace {
+
+/// Faces whose corners are all pinned lie on the support, in a plane across gravity.
+class Drape final : public Metric {
+ public:
+  static constexpr ValueSpec kValues[] = {
+      {.name = "drape.coefficient",
+       .unit = kSignedShare,
+       .help = "(shadow - support)/(cloth - support), mean over the last second: the area that the "
+               "cloth covers seen along gravity, that of the faces whose corners are all pinned, "
+               "and that of all faces at rest; 100 %: flat, 0 %: hangs straight down. Of scenes "
+               "whose pinned faces lie across gravity",
+       .in_series = true,
+       .title = "drape coefficient"}};
+  static bool measures(const Scene& scene) {
+    if (scene.gravity.isZero(0)) return false;
+    const double supported = area_of_pinned(scene), all = area_if(scene, kAll);
+    return supported > 0 && supported < all * (1 - 1e-9);
+  }
+  explicit Drape(const Scene& scene)
+      : faces_(scene.mesh.triangles),
+        support_(area_of_pinned(scene)),
+        cloth_(area_if(scene, kAll)),
+        end_(scene) {
+    const Vec3 down = scene.gravity.normalized();
+    across_ = down.unitOrthogonal(), other_ = down.cross(across_);
+  }
+
+  void observe(const Snapshot& m) override {
+    if (end_.samples(m.step)) coefficient_.add(m.step, true, now(m)[0]);
+  }
+  std::vector<double> finish() override { return {coefficient_.mean()}; }
+  std::vector<double> now(const Snapshot& m) const override {
+    return {(shadow(m.state.x) - support_) / (cloth_ - support_)};
+  }
+
+ private:
+  static Vec3 doubled_area(const Scene& s, const Triangle& t) {
+    const auto x = [&](std::size_t k) -> const Vec3& { return s.mesh.rest[to_index(t[k])]; };
+    return (x(1) - x(0)).cross(x(2) - x(0));
+  }
+  template <class Chosen>
+  static double area_if(const Scene& scene, const Chosen& chosen) {
+    double sum = 0;
+    for (const Triangle& t : scene.mesh.triangles)
+      if (chosen(t)) sum += doubled_area(scene, t).norm() / 2;
+    return sum;
+  }
+  /// 0 if one of them does not lie across gravity.
+  static double area_of_pinned(const Scene& scene) {
+    bool level = true;
+    const double area = area_if(scene, [&](const Triangle& t) {
+      const bool pinned =
+          std::ranges::all_of(t, [&](int vertex) { return is_pinned(scene, vertex); });
+      const Vec3 normal = doubled_area(scene, t).normalized();
+      if (pinned) level = level && normal.cross(scene.gravity.normalized()).norm() < 1e-3;
+      return pinned;
+    });
+    return level ? area : 0;
+  }
+
+  /// Union of the projected faces [m^2]: exact along each of kLines lines, which are equally far
+  /// from each other.
+  double shadow(const std::vector<Vec3>& x) const {
+    double low = Summary::kInfinity, high = -Summary::kInfinity;
+    std::vector<std::pair<double, double>> p;  // along lines, across them
+    for (const Vec3& one : x) {
+      p.emplace_back(across_.dot(one), other_.dot(one));
+      low = std::min(low, p.back().second), high = std::max(high, p.back().second);
+    }
+    const double width = (high - low) / kLines;
+    if (!(width > 0)) return 0;
+    std::vector<std::vector<std::pair<double, double>>> covered(kLines);
+    for (const Triangle& t : faces_) cover(t, p, low, width, covered);
+    double sum = 0;
+    for (auto& line : covered) {
+      std::ranges::sort(line);
+      double reached = -Summary::kInfinity;
+      for (const auto& [from, to] : line) {
+        if (to > reached) sum += to - std::max(from, reached);
+        reached = std::max(reached, to);
+      }
+    }
+    return sum * width;
+  }
+
+  /// Adds to each line, `width` apart from `low` on, what a face covers of it.
+  static void cover(const Triangle& t, const std::vector<std::pair<double, double>>& p, double low,
+                    double width, std::vector<std::vector<std::pair<double, double>>>& covered) {
+    const auto [first, last] =
+        std::minmax({p[to_index(t[0])].second, p[to_index(t[1])].second, p[to_index(t[2])].second});
+    const int begin = std::max(0, static_cast<int>(std::ceil((first - low) / width - 0.5)));
+    for (int n = begin; n < kLines && low + (n + 0.5) * width < last; ++n) {
+      const double at = low + (n + 0.5) * width;
+      double from = Summary::kInfinity, to = -from;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& [ax, ay] = p[to_index(t[k])];
+        const auto& [bx, by] = p[to_index(t[(k + 1) % 3])];
+        if ((ay <= at) == (by <= at)) continue;
+        const double crossing = ax + (at - ay) / (by - ay) * (bx - ax);
+        from = std::min(from, crossing), to = std::max(to, crossing);
+      }
+      if (from < to) covered[to_index(n)].emplace_back(from, to);
+    }
+  }
+
+  static constexpr auto kAll = [](const Triangle&) { return true; };
+  static constexpr int kLines = 1000;
+  std::vector<Triangle> faces_;
+  double support_, cloth_;  ///< m^2
+  Vec3 across_, other_;     ///< of the plane across gravity
+  LastSecond end_;
+  Summary coefficient_;
+};
+
+}  // namespace
+
+TAUT_METRIC(drape, Drape, "How much of a cloth on a support hangs: Cusick's drape coefficient",
+            "ISO 9073-9, BS 5058; the shadow by 1000 lines, exact along each");
+
+}  // namespace taut

@@ -1,0 +1,109 @@
+// The drape coefficient and the bending length of states whose answer is known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/metrics/measured.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut::drape_test {
+namespace {
+
+/// A level square of 9 x 9 whose inner 5 x 5 vertices, half a side, are the support.
+Scene table() {
+  Scene s = hanging_sheet(9, 9, {true, false, false});
+  for (Vec3& x : s.mesh.rest) x = Vec3(x.x(), 0, x.y());
+  s.start.x = s.mesh.rest;
+  s.pins.clear();
+  for (int j = 2; j <= 6; ++j)
+    for (int i = 2; i <= 6; ++i) s.pins.push_back(s.mesh.grid->index(i, j));
+  s.steps = 4;
+  return s;
+}
+
+/// A value of a cloth that stays where it is.
+double standing(const Scene& s, const std::vector<Vec3>& x, const std::string& value) {
+  return measure(s,
+                 [&](int) {
+                   return State{x, std::vector<Vec3>(x.size(), Vec3::Zero())};
+                 })
+      .at(value);
+}
+
+double coefficient(const Scene& s, const std::vector<Vec3>& x) {
+  return standing(s, x, "drape.coefficient");
+}
+
+TEST(Drape, IsWhatTheShadowCoversBesideTheSupport) {
+  const Scene s = table();
+  std::vector<Vec3> x = s.mesh.rest;
+  EXPECT_NEAR(coefficient(s, x), 1, 1e-9) << "flat";
+  const auto inside = [](double c, double low, double high) { return std::clamp(c, low, high); };
+  for (Vec3& p : x) p = Vec3(inside(p.x(), 0.25, 0.75), p.y(), inside(p.z(), -0.75, -0.25));
+  EXPECT_NEAR(coefficient(s, x), 0, 1e-9) << "straight down";
+  x = s.mesh.rest;
+  for (Vec3& p : x)
+    if (p.x() > 0.75) p.x() = 0.75 - (p.x() - 0.75);  // folded under: covered twice
+  EXPECT_NEAR(coefficient(s, x), (0.75 - 0.25) / 0.75, 1e-9) << "a flap under the support";
+  for (Vec3& p : x) p.y() += 3 * p.x();
+  EXPECT_NEAR(coefficient(s, x), (0.75 - 0.25) / 0.75, 1e-9) << "heights cast no shadow";
+  x = s.mesh.rest;
+  for (Vec3& p : x) p = Vec3(p.x() - p.z(), 0, p.x() + p.z()) / std::sqrt(2.0);
+  EXPECT_NEAR(coefficient(s, x), 1, 1e-5) << "turned by 45 degrees: lines cut corners";
+}
+
+TEST(Drape, IsOfScenesWithALevelSupportAlone) {
+  const auto has = [](const Scene& s) {
+    return find_value("drape.coefficient").first->make(s) != nullptr;
+  };
+  Scene s = table();
+  EXPECT_TRUE(has(s));
+  s.gravity = Vec3(0, -9, 1);
+  EXPECT_FALSE(has(s)) << "aslant";
+  s.gravity = Vec3::Zero();
+  EXPECT_FALSE(has(s));
+  EXPECT_FALSE(has(hanging_sheet(5, 5))) << "no face is pinned";
+}
+
+/// 0.2 m from the clamp, which is between the first two rows.
+Scene strip() {
+  Scene s = hanging_sheet(3, 9, {true, false, false});
+  const double l = 0.2 / 7.5;
+  for (int j = 0; j < 9; ++j)
+    for (int i = 0; i < 3; ++i) s.mesh.rest[to_index(3 * j + i)] = Vec3(i * l, 0, j * l);
+  s.start.x = s.mesh.rest;
+  s.pins = {0, 1, 2, 3, 4, 5};
+  s.steps = 4;
+  return s;
+}
+
+TEST(Cantilever, SeesItsEndFromBetweenTheTwoRows) {
+  const Scene s = strip();
+  std::vector<Vec3> x = s.mesh.rest;
+  const double angle = 0.7243, l = 0.2 / 7.5;
+  for (std::size_t v = 6; v < x.size(); ++v) {
+    const double out = s.mesh.rest[v].z() - l / 2;
+    x[v] = Vec3(x[v].x(), -out * std::sin(angle), l / 2 + out * std::cos(angle));
+  }
+  EXPECT_NEAR(standing(s, x, "cantilever.angle"), angle, 1e-12);
+  EXPECT_NEAR(standing(s, x, "cantilever.bending_length"),
+              0.2 * std::cbrt(std::cos(angle / 2) / (8 * std::tan(angle))), 1e-12);
+  EXPECT_NEAR(standing(s, x, "cantilever.bending_length") / 0.2, 0.50932, 1e-4) << "41.5 degrees";
+}
+
+TEST(Cantilever, IsOfLevelStripsHeldByTwoRowsAlone) {
+  const auto has = [](const Scene& s) {
+    return find_value("cantilever.angle").first->make(s) != nullptr;
+  };
+  Scene s = strip();
+  EXPECT_TRUE(has(s));
+  s.pins.pop_back();
+  EXPECT_FALSE(has(s)) << "a row and a half";
+  s = strip(), s.gravity = Vec3(0, 0, -9.81);
+  EXPECT_FALSE(has(s)) << "it hangs";
+  s = strip(), s.mesh.grid.reset();
+  EXPECT_FALSE(has(s));
+}
+
+}  // namespace
+}  // namespace taut::drape_test
