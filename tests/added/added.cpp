@@ -148,7 +148,9 @@ TEST(Added, ASolverIsComparedAtEqualErrorWithWhatBothHave) {
     boost[one["key"]] = one["parameters"].value("boost", "off");
   for (const char* name : {"price", "equal_cost"})
     for (const Json& cell : made()["answer"]["tables"][name]["notes"])
-      if (cell.contains("key")) EXPECT_EQ(boost.at(cell["key"]), "off") << name;
+      if (cell.contains("key")) {
+        EXPECT_EQ(boost.at(cell["key"]), "off") << name;
+      }
   const Json& price = made()["answer"]["tables"]["price"];
   EXPECT_NEAR(price["rows"][0][2][1].get<double>() / price["rows"][0][1][1].get<double>(), 3, 0.01);
   EXPECT_EQ(price["notes"][0]["best"], true) << "Jakobsen";

@@ -68,7 +68,7 @@ void write_bench(Maker& make, const std::vector<Case>& cases,
     csv << '\n';
     scene->cases.push_back(std::move(c));
   }
-  if (!bench.scenes.empty()) keep(folder / "results", bench);
+  if (!bench.scenes.empty()) keep(Store(folder / "results"), bench);
 }
 
 void write(const std::filesystem::path& folder, unsigned seed) {

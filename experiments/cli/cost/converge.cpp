@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "core/io/scene_io.hpp"
+#include "experiments/answer/answer.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/chart/format.hpp"
 #include "experiments/report/plot/convergence_plot.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/convergence.hpp"
@@ -138,7 +138,7 @@ int run(const Options& options) {
   if (!options.figures.empty())
     answer.add({"picture"},
                report::plot_convergence(all, options.kind, answer.subject, options.figures,
-                                        report::slug("converge-" + scene.name + "-" + options.kind))
+                                        slug("converge-" + scene.name + "-" + options.kind))
                    .string());
   print(answer, options.format);
   return std::ranges::any_of(all, [](const Convergence& c) { return c.refused.empty(); })
