@@ -168,8 +168,7 @@ class Builder {
                    {"unit", q.unit.shown},
                    {"scale", q.unit.scale},
                    {"axis", q.unit.logarithmic ? "log" : "linear"},
-                   {"window", to_string(q.window)},
-                   {"better", q.unit.less_is_better ? "less" : ""}};
+                   {"window", to_string(q.window)}};
     for (const ValueSpec* value : values_with_role())
       if (const auto at = all.find(value->name); at != all.end()) (*at)["role"] = true;
     return all;

@@ -72,7 +72,6 @@ TEST(Added, AMetricIsShownInItsUnitWithItsWindow) {
   EXPECT_EQ(metric["unit"], "cm");
   EXPECT_EQ(metric["scale"], 100);
   EXPECT_EQ(metric["window"], "last second");
-  EXPECT_EQ(metric["better"], "less");
   for (const Json& one : made()["cases"]) EXPECT_GT(one["values"]["sag.rms"], 0);
 }
 

@@ -240,7 +240,7 @@ class Everywhere(Programs):
         model, page = self.report(study)
         stretch = model["answer"]["tables"]["stretch.rms"]
         self.assertIn("1 \u00d7 2 (substeps \u00d7 sweeps)", stretch["caption"])
-        self.assertIn("Relax perl", [column["heading"] for column in stretch["columns"]])
+        self.assertTrue(any(column["heading"].startswith("Relax perl") for column in stretch["columns"]))
         self.assertIn("relax-perl", page)
 
     def test_an_axis_is_not_taken_for_fixed_by_a_command_that_names_it(self):

@@ -24,7 +24,7 @@ struct Reported {
   ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
 };
 
-TEST(Answers, HaveAValueOrWhyThereIsNoneAndMarkWhatIsBetterByMoreThanTheTolerance) {
+TEST(PageAnswers, HaveAValueOrWhyThereIsNoneAndMarkWhatIsBetterByMoreThanTheTolerance) {
   Reported made;
   const auto stretch = [&](const std::string& scene, const char* solver, double value) -> Record& {
     return made.add(scene, solver, {{"stretch.rms", value}});
@@ -58,14 +58,14 @@ TEST(Answers, HaveAValueOrWhyThereIsNoneAndMarkWhatIsBetterByMoreThanTheToleranc
   EXPECT_EQ(failures.rows.back()[2].note, "of 4: 1 exploded");
 }
 
-TEST(Answers, SayTheDeepestOfTheWholeRunAndWhatASolverCannot) {
+TEST(PageAnswers, SayTheDeepestOfTheWholeRunAndWhatASolverCannot) {
   Reported made;
   for (const char* scene : {"ball", "box"}) {
     made.add(scene, "jakobsen", {{"penetration.peak", 0.002}, {"penetration.max", 0}});
     made.add(scene, "bullet", {{"penetration.peak", 0.005}, {"penetration.max", 1}});
     made.add(scene, "xpbd", {}).status = {Status::Kind::unsupported, "no balls", -1, -1};
   }
-  made.input.studies[0].records[3].values["penetration.peak"] = 0.03;
+  made.input.studies[0].records[4].values["penetration.peak"] = 0.03;
   const Answer answer = made.answer();
   const auto& last = answer.table("penetration.peak").rows.back();
   EXPECT_EQ(last[0].text(), "largest of 2 scenes");
@@ -77,7 +77,7 @@ TEST(Answers, SayTheDeepestOfTheWholeRunAndWhatASolverCannot) {
   EXPECT_EQ(answer.table("failures").rows.back()[3].number(), 0) << "no failure";
 }
 
-TEST(Answers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
+TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   Reported made;
   const Record& ours = made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
   const Record cheap = ours;

@@ -56,49 +56,6 @@ const Json& by_id(const Json& list, const std::string& id) {
   return none;
 }
 
-TEST(Chosen, ACaseHasItsOwnNumbersAndItsCostOfTheBench) {
-  ReportInput input = chosen();
-  Record& r = input.studies[0].records[1];
-  r.spec = {"hang", {"cloth.grid=[4, 4]"}, "bullet:iterations=4"};
-  r.steps = 7, r.vertices = 5, r.links = 6, r.projections = 9;
-  r.params = {{"iterations", "4"}, {"precision", "double"}};
-  r.status = {Status::Kind::unsettled, "speed", 3, 2};
-  r.values["none"] = std::nan("");
-  input.bench = StudyBench{"trade", "a machine", {{"hang", {0.97, 1, 1.04}, {{r, {}}}}}};
-  input.bench->scenes[0].cases[0].timing.samples = {0.002, 0.002, 0.002};
-  const Json model = model_of(input);
-  EXPECT_EQ(model["cases"][1],
-            (Json{{"key", short_key("hang", "bullet", 4)},
-                  {"id", "hangbullet4"},
-                  {"scene", "hang"},
-                  {"solver", "bullet"},
-                  {"settings", "bullet:iterations=4"},
-                  {"parameters", {{"iterations", "4"}, {"precision", "double"}}},
-                  {"brief", "1 × 4"},
-                  {"studies", {"sweeps", "trade"}},
-                  {"dt", 0.01},
-                  {"steps", 7},
-                  {"vertices", 5},
-                  {"links", 6},
-                  {"projections", 9},
-                  {"status", "unsettled"},
-                  {"reason", "speed"},
-                  {"step", 3},
-                  {"vertex", 2},
-                  {"values", {{"stretch.rms", 0.09}}},
-                  {"cost",
-                   {{"cpu.per_second", {{"low", 0.2}, {"mid", 0.2}, {"high", 0.2}, {"n", 3}}},
-                    {"cpu.per_step", {{"low", 0.002}, {"mid", 0.002}, {"high", 0.002}, {"n", 3}}}}},
-                  {"overrides", {"cloth.grid=[4, 4]"}},
-                  {"command", "taut case hang bullet:iterations=4 --set 'cloth.grid=[4, 4]'"}}));
-  EXPECT_FALSE(model["cases"][0].contains("cost") || model["cases"][0].contains("step"));
-  const Json& noise = model["cost"]["scenes"][0];
-  EXPECT_EQ(noise["control"], (Json{{"low", 0.97}, {"mid", 1}, {"high", 1.04}, {"n", 3}}));
-  EXPECT_EQ(noise["noise"],
-            "Timing noise: two runs of identical code differed by up to 4.0\u00A0%.");
-  EXPECT_EQ(model["meta"]["machine"], "a machine");
-}
-
 TEST(Chosen, ASceneHasItsFactsItsStatusesAndWhoRefusesIt) {
   const Json model = model_of(chosen());
   const Json &hang = by_id(model["scenes"], "hang"), &ball = by_id(model["scenes"], "ball");
@@ -116,7 +73,8 @@ TEST(Chosen, ASceneHasItsFactsItsStatusesAndWhoRefusesIt) {
   ReportInput more = chosen();
   for (const int sweeps : {2, 1024})
     more.studies[0].records.push_back(more.studies[0].records[0]),
-        more.studies[0].records.back().params["iterations"] = std::to_string(sweeps);
+        more.studies[0].records.back().params["iterations"] = more.studies[0].records.back().key =
+            std::to_string(sweeps);
   EXPECT_EQ(fact(by_id(model_of(more)["scenes"], "hang"), "sweeps per substep"),
             "2 to 1024 (5 values)");
   EXPECT_EQ(hang["statuses"], (Json{{"jakobsen", {{"ok", 3}}}, {"bullet", {{"ok", 3}}}}));
@@ -125,8 +83,7 @@ TEST(Chosen, ASceneHasItsFactsItsStatusesAndWhoRefusesIt) {
                                     {"xpbd", {{"unsupported", 1}}}}));
   EXPECT_EQ(ball["refusals"], (Json{{{"solver", "xpbd"}, {"reason", "no balls"}}}));
   EXPECT_FALSE(hang.contains("refusals"));
-  for (const Json& status : model["statuses"])
-    EXPECT_EQ(status["failed"], status["id"] == "unsupported") << status;
+  for (const Json& status : model["statuses"]) EXPECT_FALSE(status["failed"]) << status;
   EXPECT_EQ(model["meta"]["cases"], 9);
   EXPECT_EQ(model["meta"]["planned"], 12) << "six of nine of the first study were run";
   EXPECT_EQ(model["method"]["studies"][0],
@@ -175,7 +132,6 @@ TEST(Chosen, AChartHasItsPointsItsTicksItsFitAndItsTheory) {
                                      {"failed", false},
                                      {"zero", false},
                                      {"name", "1 × 16"}}}));
-  EXPECT_FALSE(chart.contains("fits")) << "from the middle on two points of each are left";
   const Json& work = by_id(model["charts"], "hang-work");
   EXPECT_EQ(work["x"]["metric"], "projections");
   ASSERT_EQ(work["front"].size(), 3u);
@@ -277,7 +233,10 @@ TEST(Chosen, TablesHaveWhatWasFoundRowByRow) {
   EXPECT_EQ(values["rows"][2][4], -0.25);
   EXPECT_EQ(values["notes"][2]["key"], short_key("hang", "jakobsen", 8));
   EXPECT_EQ(tables["differences-ends"]["rows"], (Json{{"ok", "crash", 1}, {"ok", "ok", 3}}));
-  EXPECT_EQ(tables["differences"]["rows"], (Json{{"RMS stretch", 3.0, 1.0, 1.0, 0.03 / 0.04 - 1}}));
+  const Json& stretch = tables["differences"]["rows"][0];
+  EXPECT_EQ((Json{stretch[0], stretch[1], stretch[2], stretch[3]}),
+            (Json{"RMS stretch", 3.0, 1.0, 1.0}));
+  EXPECT_NEAR(stretch[4].get<double>(), -0.25, 1e-12);
   EXPECT_EQ(
       model["differences"]["a"].get<std::string>() + model["differences"]["b"].get<std::string>(),
       "xy");

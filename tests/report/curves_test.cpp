@@ -50,25 +50,6 @@ TEST(Slices, KeepWhatHasNoSuchSetting) {
   EXPECT_EQ(slice.records[2], &all[5]);
 }
 
-TEST(Fits, AreOfTheMeasuredPositivePointsFromAPlaceOn) {
-  Record fine = at_step(0.01), bad = fine;
-  bad.status.kind = Status::Kind::exploded;
-  Curve curve{"", "jakobsen", 0, {}};
-  const auto add = [&](double x, double y, const Record& r) {
-    curve.points.push_back({x, y, x, &r});
-  };
-  for (const double x : {2.0, 4.0, 8.0}) add(x, 3 * std::pow(x, -0.7), fine);
-  add(1, 1000, fine);
-  add(16, 1000, bad);
-  add(16, 0, fine);
-  add(16, std::nan(""), fine);
-  EXPECT_NEAR(fitted_slope(curve, 2), -0.7, 1e-12);
-  EXPECT_TRUE(std::isnan(fitted_slope(curve, 3))) << "two are no fit";
-  EXPECT_LT(fitted_slope(curve, 0), -2);
-  for (Point& p : curve.points) p.x = 1;
-  EXPECT_TRUE(std::isnan(fitted_slope(curve, 0))) << "all above one place";
-}
-
 TEST(Curves, NameASettingWhereItsValueAloneSaysNothing) {
   std::vector<Record> all;
   const auto add = [&](const char* name, const char* value, const char* override_) {

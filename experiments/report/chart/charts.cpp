@@ -185,18 +185,6 @@ Slice hold(const Records& records, const std::string& setting, double preferred)
   return slice;
 }
 
-double fitted_slope(const Curve& curve, double from) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (const Point& p : curve.points) {
-    if (!p.measured() || p.x < from || p.x <= 0 || p.y <= 0) continue;
-    const double u = std::log(p.x), v = std::log(p.y);
-    n += 1, sx += u, sy += v, sxx += u * u, sxy += u * v;
-  }
-  const double spread = n * sxx - sx * sx;
-  if (n < 3 || spread <= 0) return std::numeric_limits<double>::quiet_NaN();
-  return (n * sxy - sx * sy) / spread;
-}
-
 void add_floor(Chart& chart) {
   const ValueSpec* value = find_value(chart.y.name).second;
   if (!value || value->floor.value.empty()) return;
@@ -223,6 +211,8 @@ std::vector<std::string> coincident_curves(const Chart& chart) {
     return y;
   };
   std::vector<std::string> texts;
+  constexpr std::size_t kMost = 12;  // of more curves nobody follows one
+  if (chart.curves.size() > kMost) return texts;
   for (std::size_t j = 1; j < chart.curves.size(); ++j)
     for (std::size_t i = 0; i < j; ++i) {
       const auto a = values(chart.curves[i]), b = values(chart.curves[j]);

@@ -46,10 +46,6 @@ struct Slice {
 };
 Slice hold(const Records&, const std::string& setting, double preferred);
 
-/// Fitted exponent p of y ~ x^p over the measured, positive points with x >= from; NaN with fewer
-/// than three.
-double fitted_slope(const Curve&, double from);
-
 /// Curves over two quantities, in SI units: what a page or a plot draws.
 struct Chart {
   std::string id, scene, kind, title;
@@ -80,7 +76,7 @@ Chart make_chart(std::string kind, const Records&, const std::string& x, const s
 void add_floor(Chart&);
 
 /// Which curves lie within a hundredth of an earlier one at every point, a sentence each: one would
-/// hide the other.
+/// hide the other. None of more than a dozen curves.
 std::vector<std::string> coincident_curves(const Chart&);
 
 /// Whether the point has no value to be drawn: it failed. What a solver cannot run is no failure.

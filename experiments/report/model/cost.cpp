@@ -76,28 +76,6 @@ Table levels_table(const CostScene& scene) {
   return table;
 }
 
-Table budgets_table(const CostScene& scene) {
-  const Quantity q = quantity(kErrorMetric);
-  Table table{
-      "cost-budgets-" + slug(scene.bench.scene),
-      capitalised(q.title) + " within a budget of a frame",
-      scene.columns(Column("budget", "CPU time of a frame of 1/60 s", kMilliseconds, 2), q.unit),
-      {},
-      "The least of the settings timed with what all solvers have."};
-  for (const double budget : kFrameBudgets) {
-    std::vector<Cell> row{budget};
-    for (const std::string& solver : solvers_of(scene.bench)) {
-      const auto at = best_for({.budget = budget / kFrame}, scene.candidates, solver);
-      row.push_back(at ? scene.of(*at, Cell(scene.candidates[*at].error))
-                       : Cell("nothing that cheap"));
-    }
-    mark_best(row, Better::less, find_value(kErrorMetric).second->negligible);
-    row[0].best = false;
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
 /// Dolan and More's performance profiles at a few factors.
 Table profile_table(const std::vector<SceneBench>& scenes) {
   const std::vector<PerformanceProfile> profiles = performance_profiles(scenes, kErrorMetric);
@@ -135,20 +113,16 @@ Json json_of_cost(const StudyBench& study, CaseList& refs, Json& charts, Answer&
     const std::vector<Record> records = StudyBench{"", "", {bench}}.records();
     shared.push_back(with_shared_parameters(bench));
     const CostScene scene{shared.back(), refs};
-    Json one{
-        {"scene", bench.scene},
-        {"control", json_interval(bench.control,
-                                  bench.cases.empty() ? 0 : bench.cases[0].timing.samples.size())},
-        {"noisy", spread(bench.control) > kTolerance},
-        {"noise", "Timing noise: two runs of identical code differed by up to " +
-                      shown(kShare, spread(bench.control)) + "."}};
+    Json one{{"scene", bench.scene},
+             {"noisy", spread(bench.control) > kTolerance},
+             {"noise", "Timing noise: two runs of identical code differed by up to " +
+                           shown(kShare, spread(bench.control)) + "."}};
     try {
       add_by_id(one, "charts", json_of(cost_chart(bench, records), refs), charts);
     } catch (const InputError&) {
       // nothing completed: the tables say so
     }
     add_table(one, levels_table(scene), tables);
-    add_table(one, budgets_table(scene), tables);
     cost["scenes"].push_back(std::move(one));
   }
   add_table(cost, profile_table(shared), tables);

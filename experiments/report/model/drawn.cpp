@@ -126,11 +126,6 @@ Json json_of(const Chart& chart, CaseList& refs) {
       ++drawn, failures -= failed(curve.points[k]);
     }
     one["series"].push_back(std::move(series));
-    const auto& points = curve.points;
-    if (chart.kind != "convergence") continue;
-    const double slope = fitted_slope(curve, points[points.size() / 2].x);
-    if (std::isfinite(slope))
-      one["fits"].push_back({{"solver", curve.solver}, {"label", curve.label}, {"slope", slope}});
   }
   if (drawn < all)
     one["thinned"] = "Drawn: " + std::to_string(drawn) + " of " + std::to_string(all) +
@@ -171,7 +166,6 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
       return std::ranges::find(own, setting) == own.end();
     });
   add_if(one, "scene_settings", join(common, ", "));
-  std::map<Status::Kind, int> counts;
   for (const StatusMap::Cell& cell : map.cells) {
     const Status& status = cell.record->status;
     Json at{{"column", cell.column},
@@ -179,10 +173,8 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
             {"status", to_string(status.kind)},
             {"case", refs.key(*cell.record)}};
     add_if(at, "reason", status.reason);
-    ++counts[status.kind];
     one["cells"].push_back(std::move(at));
   }
-  for (const auto& [kind, n] : counts) one["counts"][std::string(to_string(kind))] = n;
   return one;
 }
 

@@ -120,7 +120,7 @@ function chartFigure(spec) {
   if (points.length && points.every((p) => p.zero))
     return el('figure', {className: 'card chart flat', id: `chart-${spec.id}`}, el('figcaption', {}, heading, note),
               el('p', {}, `Every value is exactly zero (${count(points.length, 'case')}).`));
-  const view = {kind: spec.y.axis, transform: d3.zoomIdentity, clip: `clip-${drawn.size}`};
+  const view = {kind: spec.y.axis, clip: `clip-${drawn.size}`};
   const plot = el('div', {className: 'plot'}), key = el('div'), bar = el('div', {className: 'tools'});
   const svg = d3.select(plot).append('svg').attr('role', 'group')
       .attr('aria-label', short(`${spec.title}: points`, 160));
@@ -134,34 +134,20 @@ function chartFigure(spec) {
     reset();
   };
   const again = () => draw(plot.clientWidth);
-  const zoom = d3.zoom().scaleExtent([1, 40])
-      .filter(() => {
-        const {type, ctrlKey, touches} = d3.event;
-        return type === 'wheel' ? ctrlKey : touches ? touches.length > 1 : view.transform.k > 1 && type !== 'dblclick';
-      })
-      .on('zoom', () => { view.transform = d3.event.transform; again(); });
-  svg.call(zoom).style('touch-action', 'pan-x pan-y');
-  const tool = (text, label, act) =>
-    el('button', {type: 'button', title: label, 'aria-label': label, onclick: act}, text);
-  bar.append(tool('+', 'Zoom in', () => svg.call(zoom.scaleBy, 1.6)),
-             tool('−', 'Zoom out', () => svg.call(zoom.scaleBy, 1 / 1.6)),
-             tool('⟲', 'Whole range', () => svg.call(zoom.transform, d3.zoomIdentity)));
   const keyOf = () => key.replaceChildren(chartKey(spec, view.kind));
   if (points.some((p) => p.y > 0)) {
     const other = () => view.kind === 'log' ? 'linear' : 'log';
-    const flip = tool(other(), 'Vertical scale: ' + other(), () => {
+    const flip = el('button', {type: 'button', title: 'other vertical scale', onclick: () => {
       view.kind = other();
       flip.textContent = other();
-      flip.title = 'Vertical scale: ' + other();
-      flip.setAttribute('aria-label', flip.title);
       keyOf();
       again();
-    });
+    }}, other());
     bar.append(flip);
   }
   keyOf();
   watchWidth(plot, again);
-  drawn.add({plot, draw, zoom, svg});
+  drawn.add({plot, draw});
   return el('figure', {className: 'card chart', id: `chart-${spec.id}`}, el('figcaption', {}, heading, bar, note), key,
             el('div', {className: 'y-title'}, titled(spec.y)), plot, el('div', {className: 'x-title'}, titled(spec.x)));
 }
@@ -177,7 +163,7 @@ function drawChart(svg, spec, view, width) {
   if (spec.floor && floorShown(spec)) measured.push(spec.floor.y);
   const up = numbers(measured, y.scale);
   const across = numbers(flat.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale);
-  const ys = view.transform.rescaleY(scaleOf(view.kind, up, [yLow, yHigh]));
+  const ys = scaleOf(view.kind, up, [yLow, yHigh]);
   svg.attr('viewBox', `0 0 ${width} ${box.height}`).attr('width', width).attr('height', box.height);
   svg.selectAll('*').remove();
   const axisY = svg.append('g').attr('class', 'axis y');
@@ -187,7 +173,7 @@ function drawChart(svg, spec, view, width) {
   axisY.attr('transform', `translate(${left},0)`);
   const axisX = svg.append('g').attr('class', 'axis x').attr('transform', `translate(0,${box.height - box.bottom})`);
   const drawX = (margin) => {
-    const scale = view.transform.rescaleX(scaleOf(x.axis, across, [left + 8, width - margin]));
+    const scale = scaleOf(x.axis, across, [left + 8, width - margin]);
     axisX.call(d3.axisBottom(scale).tickValues(ticksOf(scale, x, x.axis, width / 90))
         .tickFormat((v) => number(v)).tickSize(4).tickPadding(4));
     return scale;
@@ -214,7 +200,6 @@ function drawChart(svg, spec, view, width) {
         .attr('d', d3.line()(ends.map((v) => [px(v), py(spec.theory.factor * v ** spec.theory.slope)])));
   }
   if (spec.floor && floorShown(spec)) area.append('path').attr('class', 'floor').attr('d', `M${left},${py(spec.floor.y)}H${width - right}`);
-  const inside = (v) => v >= left && v <= width - right + 1;
   spec.series.forEach((s, order) => {
     const solver = solverOf(s.solver), colour = solverColour(s.solver);
     const dodge = (order - (spec.series.length - 1) / 2) * 7;
@@ -229,7 +214,6 @@ function drawChart(svg, spec, view, width) {
       const cx = px(p.x) + (floored ? dodge : 0);
       const cy = p.failed ? box.top + 4 + failing.indexOf(s) * box.row
                           : floored ? box.height - box.bottom - 5 : py(p.y);
-      if (!inside(cx) || (!p.failed && !floored && (cy < yHigh - 4 || cy > yLow + 4))) return;
       drawPoint(group, {spec, series: s, point: p, place: `${order}-${i}`, order, cx, cy, floored});
     });
   });

@@ -31,7 +31,6 @@ function watchPrinting() {
     sceneView.showAll();
     closed = [...document.querySelectorAll('main details:not([open])')];
     for (const part of closed) part.open = true;
-    for (const {svg, zoom} of drawn) if (zoom) svg.call(zoom.transform, d3.zoomIdentity);
     for (const {draw} of drawn) draw(330);
   };
   const end = () => {

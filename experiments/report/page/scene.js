@@ -84,7 +84,7 @@ function overview() {
   const least = d3.max(good) / 1e4;  // rounding of a free fall would flatten the others
   const xs = scaleOf('log', points.map((p) => p.x * x.scale), [4, w - 4]);
   const ys = scaleOf('log', good.filter((v) => v >= least), [h - 4, 4]);
-  const drawable = shown.filter((chart) => chart.series.some((s) => s.points.some((p) => usable(p) && p.y * y.scale >= least)));
+  const drawable = shown.filter((chart) => chart.series.some((s) => s.points.filter((p) => usable(p) && p.y * y.scale >= least).length > 1));
   if (drawable.length < 2) return null;
   const one = (chart) => {
     const svg = d3.create('svg').attr('viewBox', `0 0 ${w} ${h}`).attr('aria-hidden', 'true');
