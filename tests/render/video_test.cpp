@@ -297,7 +297,8 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableS
   input.studies[0].records.push_back(
       ran(small, "mass-spring:substeps=1", {Status::Kind::unsupported, "no reason", -1, -1}));
   std::multiset<std::string> news;
-  film_scenes(input, others, [&](const std::string& said) { news.insert(said); });
+  film_scenes(input, others, scratch.path() / "films",
+              [&](const std::string& said) { news.insert(said); });
   EXPECT_EQ(news, (std::multiset<std::string>{"small filmed", "thrown2 filmed", "thrown4 filmed",
                                               "thrown4.01 filmed", "thrown8.01 filmed"}));
   ASSERT_EQ(input.media.size(), 5u);
@@ -352,6 +353,34 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableS
   ASSERT_FALSE(input.series.empty());
   for (const report::TimeSeries& series : input.series)
     EXPECT_TRUE(series.scene.starts_with("thrown")) << "a study has its own";
+  // Made once: the second report takes what the first one kept.
+  report::ReportInput again;
+  again.studies = input.studies;
+  film_scenes(again, others, scratch.path() / "films",
+              [](const std::string& said) { ADD_FAILURE() << said; });
+  ASSERT_EQ(again.media.size(), input.media.size());
+  for (std::size_t k = 0; k < again.media.size(); ++k) {
+    const report::SceneMedia &a = input.media[k], &b = again.media[k];
+    EXPECT_EQ(std::tie(a.scene, a.summary, a.duration, a.speed, a.aspect, a.frame, a.poster, a.bar,
+                       a.refused),
+              std::tie(b.scene, b.summary, b.duration, b.speed, b.aspect, b.frame, b.poster, b.bar,
+                       b.refused));
+    EXPECT_EQ(a.clips[0].bytes, b.clips[0].bytes);
+    EXPECT_EQ(a.clips[0].alt, b.clips[0].alt);
+    EXPECT_EQ(a.clips[0].panels.size(), b.clips[0].panels.size());
+    ASSERT_EQ(a.material.size(), b.material.size());
+    for (std::size_t i = 0; i < a.material.size(); ++i)
+      EXPECT_EQ(a.material[i].stills[3].png, b.material[i].stills[3].png);
+  }
+  ASSERT_EQ(again.series.size(), input.series.size());
+  for (std::size_t k = 0; k < again.series.size(); ++k)
+    EXPECT_EQ(again.series[k].t, input.series[k].t);
+  // Another case is another film.
+  again.studies[0].records[0] = ran(small, "xpbd:substeps=1,iterations=3");
+  std::vector<std::string> made;
+  film_scenes(again, {}, scratch.path() / "films",
+              [&](const std::string& said) { made.push_back(said); });
+  EXPECT_EQ(made, (std::vector<std::string>{"small filmed"}));
 }
 
 }  // namespace

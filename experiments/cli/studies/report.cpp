@@ -148,10 +148,11 @@ int run(Options options) {
     for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);
     std::size_t filmed = 0;
     const Countdown countdown("filmed scene");
-    film_scenes(input, options.films, [&](const std::string& news) {
-      progress() << news << '\n';
-      countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());
-    });
+    film_scenes(input, options.films, std::filesystem::path(options.results) / "films",
+                [&](const std::string& news) {
+                  progress() << news << '\n';
+                  countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());
+                });
   }
   return put_out(input, options);
 }

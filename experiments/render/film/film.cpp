@@ -10,6 +10,8 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/case/digest.hpp"
+#include "experiments/render/film/kept_film.hpp"
 #include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/render/picture/media.hpp"
 #include "experiments/report/answer/compared_solvers.hpp"
@@ -135,9 +137,8 @@ Json bar_of(const ColourScale& scale) {
   return bar;
 }
 
-report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
+report::Clip clip_of(const RunSet& set, const Media& media) {
   report::Clip clip;
-  clip.panels = film.panels;
   const std::string who = join(set.runs, " and ", [](const RecordedRun& run) {
     return run.title + " (" + run.settings + ")";
   });
@@ -151,25 +152,30 @@ report::Clip clip_of(const Film& film, const RunSet& set, const Media& media) {
   return clip;
 }
 
-/// What a film gives a report.
-struct FilmResult {
-  report::SceneMedia media;
-  std::vector<report::TimeSeries> series;  ///< of a scene that no study ran
-};
+/// Of all that its pictures depend on: cases, size, speed, the length of the beginning that is
+/// shown, this program.
+std::string key_of(const Film& film) {
+  const MediaOptions options = options_of(film, film.request.solvers.size());
+  std::string all = program_digest() + "\n" + film.scene + "\n" + join(film.labels, "\n");
+  const auto add = [&](const auto&... values) { ((all += "\n" + std::to_string(values)), ...); };
+  CaseMaker maker;
+  for (const std::string& solver : film.request.solvers)
+    all += "\n" + maker.make({film.request.scene, film.request.overrides, solver}).key;
+  add(options.width, options.height, options.duration, options.speed, options.fps, options.crf,
+      film.studied);
+  return sha256(all);
+}
 
 FilmResult make_film(const Film& film) {
   const RunSet set = record_runs(film.request, [](const std::string&) {});
   const Media media = render_media(set.scene, set.runs, options_of(film, set.runs.size()));
-  FilmResult result{{.scene = film.scene,
-                     .clips = {clip_of(film, set, media)},
+  FilmResult result{{.clips = {clip_of(set, media)},
                      .duration = media.t.back(),
                      .speed = film.speed,
                      .bar = bar_of(media.scale),
                      .aspect = media.aspect,
-                     .summary = film.summary,
                      .frame = media.t[1] - media.t[0],
-                     .poster = media.poster_t,
-                     .refused = film.refused},
+                     .poster = media.poster_t},
                     {}};
   for (std::size_t k = 0; k < media.material.size(); ++k) {
     report::MaterialRow& row = result.media.material.emplace_back();
@@ -186,9 +192,23 @@ FilmResult make_film(const Film& film) {
   return result;
 }
 
+/// The film that is kept, else a new one, which is kept; with the names by which this report calls
+/// what is in it.
+FilmResult kept_or_made(const Film& film, const std::filesystem::path& folder, bool& made) {
+  const std::filesystem::path file = folder / (key_of(film) + ".json");
+  std::optional<FilmResult> kept = kept_film(file);
+  made = !kept;
+  if (!kept) keep_film(file, kept.emplace(make_film(film)));
+  report::SceneMedia& media = kept->media;
+  media.scene = film.scene, media.summary = film.summary, media.refused = film.refused;
+  media.clips.front().panels = film.panels;
+  return std::move(*kept);
+}
+
 }  // namespace
 
 void film_scenes(report::ReportInput& input, const std::vector<std::string>& others,
+                 const std::filesystem::path& folder,
                  const std::function<void(const std::string&)>& say) {
   const std::vector<Film> films = all_films(input, others);
   std::vector<std::optional<FilmResult>> results(films.size());
@@ -197,13 +217,14 @@ void film_scenes(report::ReportInput& input, const std::vector<std::string>& oth
   const auto work = [&] {
     for (std::size_t k = next++; k < films.size(); k = next++) {
       std::string news = films[k].scene + " filmed";
+      bool made = true;
       try {
-        results[k] = make_film(films[k]);
+        results[k] = kept_or_made(films[k], folder, made);
       } catch (const InputError& error) {
         news = films[k].scene + " not filmed: " + error.what();
       }
       const std::lock_guard lock(telling);
-      say(news);
+      if (made) say(news);
     }
   };
   {
