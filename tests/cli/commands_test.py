@@ -196,6 +196,10 @@ class Verbs(CommandLine):
             said(words if study == unequal else "unequal", self.taut("run", study).err)
             figure = self.folder / self.taut("plot", study).out.split()[0]
             said("unequal work", figure.with_suffix(".gp").read_text())
+            self.assertIn("title 'Jakobsen", figure.with_suffix(".gp").read_text())
+            self.taut("plot", study, "--solver", "bullet")
+            self.assertNotIn("title 'Jakobsen", figure.with_suffix(".gp").read_text())
+            self.assertIn("bullet", self.taut("plot", study, "--solver", "bulet", expect=2).err)
             method = json.loads(self.taut("report", study, "--no-media", "--json").out)["method"]
             said("U" + words[1:] if study == unequal else "nequal", method["studies"][0].get("unequal", ""))
 

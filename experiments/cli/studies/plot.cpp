@@ -1,5 +1,6 @@
 #include "experiments/report/plot/plot.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/io/text_file.hpp"
@@ -9,6 +10,7 @@
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/stored.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::verb::plot {
@@ -19,6 +21,7 @@ using report::PlotSpec;
 
 struct Options {
   std::string study, preset, kind, x, y, title, results, output;
+  std::vector<std::string> solvers;
   bool json = false;
 };
 
@@ -101,15 +104,30 @@ report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const st
   return report::make_plot(spec, records, series, out);
 }
 
+/// Of all solvers, without names; throws InputError if one is none of the study's.
+void keep_solvers(std::vector<Record>& records, const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const Record& r : records) push_unique(known, r.solver);
+  for (const std::string& name : names)
+    if (std::ranges::find(known, name) == known.end())
+      throw InputError("--solver: the study has no results of '" + name + "'" +
+                       suggestion(name, known));
+  if (!names.empty())
+    std::erase_if(records, [&](const Record& r) {
+      return std::ranges::find(names, r.solver) == names.end();
+    });
+}
+
 int run(const Options& options) {
   const Study study = load_study_to_plot(options.study, options.preset);
   const Store store(options.results);
-  const report::ReportInput input = report::stored_results({study}, store);
-  const report::StudyResult& result = input.studies.front();
+  report::ReportInput input = report::stored_results({study}, store);
+  report::StudyResult& result = input.studies.front();
   if (result.records.empty())
     throw InputError("none of the " + std::to_string(result.planned) + " cases of study '" +
                      study.name + "' is in " + options.results +
                      " as this build would run them; taut run makes them");
+  keep_solvers(result.records, options.solvers);
   const std::filesystem::path out =
       options.output.empty() ? std::filesystem::path(options.results) / "figures" /
                                    (study.name + (study.preset.empty() ? "" : "-" + study.preset))
@@ -157,6 +175,8 @@ void add_options(CLI::App& app, Options& options) {
       ->check(known("kind of plot", names));
   app.add_option("--x", options.x, "Value on x: dt, iterations, projections or a metric's value");
   app.add_option("--y", options.y, "Value on y, such as stretch.rms");
+  app.add_option("--solver", options.solvers, "Only this solver; repeat it for each")
+      ->allow_extra_args(false);
   app.add_option("--title", options.title, "Title above the figure");
   add_output(app, options.output,
              "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
@@ -106,6 +107,11 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
   }
   sheet.csv = "curve,solver,label,x,y,status,reason,failed,setting,case\n";
   std::map<std::string, int> variants;
+  std::vector<std::string> ends;  // of the points on the upper edge
+  for (const Curve& curve : chart.curves)
+    for (const Point& p : curve.points)
+      if (failed(p)) push_unique(ends, std::string(to_string(p.record->status.kind)));
+  bool failures_named = false, zeros_named = false;
   for (std::size_t i = 0; i < chart.curves.size(); ++i) {
     const Curve& curve = chart.curves[i];
     bool failures = false, zeros = false;
@@ -131,13 +137,15 @@ Sheet curves_sheet(const Chart& chart, const std::string& title) {
                gnuplot_string(curve.label));
     if (failures)
       sheet.draw(only(i, true, x.c_str(), ("(" + exact(top) + ")").c_str()) +
-                 " with points pt 2 ps 1.2 lw 2 lc rgb '" + colour_of(curve.solver) + "' title " +
-                 gnuplot_string(curve.label + ": failed"));
+                 " with points pt 2 ps 1.2 lw 2 lc rgb '" + colour_of(curve.solver) + "' " +
+                 (std::exchange(failures_named, true)
+                      ? "notitle"
+                      : "title " + gnuplot_string("above: " + joined(ends))));
     if (zeros && log_y)
       sheet.draw(
           only(i, false, x.c_str(), ("(column(5) == 0 ? " + exact(floor) + " : NaN)").c_str()) +
-          " with points pt 10 ps 1.2 lc rgb '" + colour_of(curve.solver) + "' title " +
-          gnuplot_string(curve.label + ": exactly zero"));
+          " with points pt 10 ps 1.2 lc rgb '" + colour_of(curve.solver) + "' " +
+          (std::exchange(zeros_named, true) ? "notitle" : "title 'below: exactly zero'"));
   }
   if (const double factor = theory_factor(chart); std::isfinite(factor) && left < right)
     sheet.draw("[" + exact(left) + ":" + exact(right) + "] " + exact(factor * chart.y.unit.scale) +
@@ -257,13 +265,25 @@ Sheet profile_sheet(const std::vector<PerformanceProfile>& profiles, const std::
   return sheet;
 }
 
+/// Whether the key has so many rows that it stands beside the plot, not above it.
+bool has_long_key(const Sheet& sheet) {
+  constexpr std::size_t kMost = 5;
+  std::size_t titles = 0;
+  for (auto at = sheet.plot.find(" title "); at != std::string::npos;
+       at = sheet.plot.find(" title ", at + 1))
+    ++titles;
+  return titles > kMost && !sheet.settings.starts_with("set multiplot");
+}
+
 std::string script(const PlotSpec& spec, const Sheet& sheet, const std::string& stem) {
   std::string text = "# " + spec.kind + ": " + spec.y + " over " + spec.x +
                      "\n# Again: gnuplot -e \"set terminal svg noenhanced; set output '" + stem +
                      ".svg'\" " + stem +
                      ".gp\n"
-                     "set encoding utf8\nset datafile separator ','\nset key tmargin "
-                     "center horizontal\nset offsets graph 0.04, graph 0.04, 0, 0\nset grid lc rgb "
+                     "set encoding utf8\nset datafile separator ','\nset key " +
+                     (has_long_key(sheet) ? "rmargin top left vertical Left reverse"
+                                          : "tmargin center horizontal") +
+                     "\nset offsets graph 0.04, graph 0.04, 0, 0\nset grid lc rgb "
                      "'#E5E7EB'\nset border 3\nset tics nomirror\n" +
                      sheet.settings + sheet.plot + "\n";
   for (std::size_t at; (at = text.find("@CSV@")) != std::string::npos;)
@@ -278,9 +298,14 @@ PlotFiles write_plot(const PlotSpec& spec, const Sheet& sheet,
   const PlotFiles files{path(".svg"), path(".pdf"), path(".gp"), path(".csv")};
   write_file(files.csv, sheet.csv);
   write_file(files.gp, script(spec, sheet, spec.file));
-  run_gnuplot(files.gp, "svg noenhanced size 760,520 font 'sans-serif,13' background '#ffffff'",
+  const bool wide = has_long_key(sheet);
+  run_gnuplot(files.gp,
+              "svg noenhanced size " + std::string(wide ? "1000" : "760") +
+                  ",520 font 'sans-serif,13' background '#ffffff'",
               files.svg);
-  run_gnuplot(files.gp, "pdfcairo noenhanced size 7.6in,5.2in font 'sans,13' fontscale 0.72",
+  run_gnuplot(files.gp,
+              "pdfcairo noenhanced size " + std::string(wide ? "10" : "7.6") +
+                  "in,5.2in font 'sans,13' fontscale 0.72",
               files.pdf);
   return files;
 }
