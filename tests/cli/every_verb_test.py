@@ -148,7 +148,6 @@ class EveryVerb(CommandLine):
         for words, says in (
                 (["bench", "./study.toml", *FEW], r"timing round 1/2  left \d+:\d\d"),
                 (["bench", "effects", "chain", *FEW], r"timing round 1/2  left \d+:\d\d"),
-                (["bench", "effects", "chain", *FEW], r"timing round 1/2  left \d+:\d\d"),
                 (ADVICE, r"  [\d.]+ of 120 s  jakobsen"),
                 (["verify", "free-fall", "damping-factor"], r"truth 1/2  left \d+:\d\d"),
                 (["render", "./small.toml", "--solver", "jakobsen", "--video", "--quality", "draft", "--size", "320x240"], r"frame \d+/\d+  left \d+:\d\d")):
@@ -160,7 +159,7 @@ class EveryVerb(CommandLine):
         (self.folder / "taut.bash").write_text(completion)
         verbs = self.verbs()
         questions = [[*verb.split(), "--"] for verb in verbs]
-        questions += [["re"], ["bench", "ke"], ["advise", "mov"], ["case", "hang", "jak"], ["baseline", ""], ["new", "st"]]
+        questions += [["re"], ["bench", "ef"], ["advise", "mov"], ["case", "hang", "jak"], ["baseline", ""], ["new", "st"]]
         script = "source ./taut.bash\n" + "".join(
             "COMP_WORDS=(taut %s); COMP_CWORD=%d; _taut; echo ${COMPREPLY[@]}\n" % (" ".join(f"'{w}'" for w in words), len(words))
             for words in questions)

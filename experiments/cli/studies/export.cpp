@@ -128,7 +128,10 @@ int run(const Options& options) {
   const Study study = load_study(options.study, options.preset);
   const Store store(options.results);
   std::optional<Asked> asked;
-  if (store.reading()) asked.emplace(study, store);
+  if (store.reading())
+    asked.emplace(study, store);
+  else
+    each_case(study, [](Case&&) {});  // what is wrong with it is said first
   if (!asked || asked->count("FROM asked JOIN cases USING (key)") == 0)
     throw InputError("no case of study '" + study.name + "' is in " + options.results +
                      " as this build would run it; taut run makes them");
