@@ -275,9 +275,9 @@ class Everywhere(Programs):
         for drawn in ("small-convergence-stretch.rms-over-iterations.svg", "small-series-stretch.rms-over-t.svg"):
             self.assertIn("rounding of the file of positions", (figures / drawn).read_text())
         model, page = self.report(study)
-        settings = model["scenes"][0]["resolved_settings"]
-        place = [column["solver"] for column in settings["columns"]].index(file)
-        self.assertEqual([row["values"][place] for row in settings["rows"] if row["name"] == "cost"], ["not measured"])
+        settings = model["tables"]["settings-small"]
+        place = [column["name"] for column in settings["columns"]].index(file)
+        self.assertEqual([row[place] for row in settings["rows"] if row[0] == "cost"], ["not measured"])
         self.assertIn(file, page)
         floors = [chart["floor"] for chart in model["charts"] if "floor" in chart]
         self.assertTrue(any("rounding of the file" in one["text"] for one in floors), floors)

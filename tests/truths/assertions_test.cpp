@@ -27,7 +27,9 @@ TEST(Assertions, EachIsHeldByATruthUnlessItCannotBeTested) {
 
 TEST(Assertions, TheTruthsBehindBoxesAndOctreesHold) {
   for (const TruthEntry* truth : truths()) {
-    if (truth->section != 8 || truth->row < 6 || truth->row > 16 || truth->name == "octree-crossings") continue;
+    if (truth->section != 8 || truth->row < 6 || truth->row > 16 ||
+        truth->name == "octree-crossings")
+      continue;
     Findings findings({"jakobsen", "closed form"});
     truth->check(findings);
     EXPECT_GE(findings.all().size(), 1u) << truth->name;
