@@ -74,8 +74,12 @@ CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
       "Mass and bending stiffness of a measured fabric in place of the scene's (taut list "
       "fabrics)");
   return app
-      .add_option("--set", settings,
-                  "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'; repeat it for each")
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&settings](const std::vector<std::string>& all) {  // beside what --fabric has set
+            settings.insert(settings.end(), all.begin(), all.end());
+          },
+          "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'; repeat it for each")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }

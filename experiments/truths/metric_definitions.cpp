@@ -154,6 +154,9 @@ TAUT_TRUTH(metric_tunnelling, 10, 6,
   s.colliders = {{Capsule{Vec3(-1, 0, 0), Vec3(1, 0, 0), 0.3}, {}, 0}};
   findings.equal("metric:tunnelling", "the same of a capsule", "1",
                  measured("tunnelling.count", s, states), 1, 0);
+  s.colliders = {{Capsule{Vec3(0, -0.4, 0), Vec3(0, 0.4, 0), 0.3}, {}, 0}};
+  findings.equal("metric:tunnelling", "the same along its axis", "1",
+                 measured("tunnelling.count", s, states), 1, 0);
 }
 
 TAUT_TRUTH(metric_crossings, 10, 7, "crossing faces that share no vertex are counted",

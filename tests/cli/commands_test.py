@@ -543,6 +543,12 @@ class Verbs(CommandLine):
         out = self.taut("bench", "effects", "ball", "--solver", solver, "--rounds", "1").out
         self.assertIn("not timed: in float, gravity's move", out)
 
+    def test_a_fabric_stands_beside_other_settings(self):
+        words = ["case", "./small.toml", "jakobsen", "--set", "time.duration=0.1", "--fabric", "petrak-m1", "--json"]
+        spec = json.loads(self.taut(*words).out)["spec"]
+        self.assertEqual(sorted(spec["set"] if "set" in spec else spec["overrides"]), ['fabric="petrak-m1"', "time.duration=0.1"])
+        self.assertIn("petrak-m1", self.taut(*words[:-2], "petrak", expect=2).err)
+
     def test_the_curves_of_a_step_are_drawn_from_its_points(self):
         words = ["converge", "./small.toml", "--solver", "pd", "--solver", "jakobsen:order=mesh", "--most", "16", "-o", "figures"]
         answer = self.answer(*words, "--kind", "gap")
