@@ -3,7 +3,9 @@
 
 #include <csignal>
 #include <optional>
+#include <span>
 #include <sstream>
+#include <streambuf>
 #include <system_error>
 
 #include "core/model/solver.hpp"
@@ -40,6 +42,38 @@ class DiscardedOutput {
 
  private:
   int stdout_;
+};
+
+/// What stderr shows of names, files and other programs holds no control character that a terminal
+/// would obey, for as long as this lives: only what taut itself writes, "\r" and "\033[K".
+class PrintableErrors : public std::streambuf {
+ public:
+  PrintableErrors() : stderr_(std::cerr.rdbuf(this)) {}
+  ~PrintableErrors() override { std::cerr.rdbuf(stderr_); }
+  PrintableErrors(const PrintableErrors&) = delete;
+  PrintableErrors& operator=(const PrintableErrors&) = delete;
+
+ protected:
+  std::streamsize xsputn(const char* text, std::streamsize size) override {
+    constexpr std::string_view kErased = "\r\033[K";
+    const std::string_view all(text, static_cast<std::size_t>(size));
+    if (all == kErased) return stderr_->sputn(text, size);
+    std::string shown;
+    for (std::size_t end, begin = 0; begin < all.size(); begin = end) {
+      end = std::min(all.find('\n', begin), all.size() - 1) + 1;
+      shown += printable(all.substr(begin, end - begin));  // which cuts what is very long: a line
+    }
+    stderr_->sputn(shown.data(), static_cast<std::streamsize>(shown.size()));
+    return size;
+  }
+  int_type overflow(int_type c) override {
+    const char one = traits_type::to_char_type(c);
+    return xsputn(&one, 1), c;
+  }
+  int sync() override { return stderr_->pubsync(); }
+
+ private:
+  std::streambuf* stderr_;
 };
 
 /// A verb with its parser.
@@ -179,6 +213,13 @@ void flush_output() {
     throw InputError("standard output cannot be written");
 }
 
+/// CLI11 takes the word after "--out=" for its value, an option too.
+void refuse_empty_values(int argc, char** argv) {
+  for (const std::string_view word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1))
+    if (word.starts_with("--") && word.find('=') == word.size() - 1)
+      throw InputError(std::string(word) + ": a value is missing");
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("taut: runs cloth solvers side by side on identical scenes and measures them");
   app.require_subcommand(1);
@@ -190,6 +231,7 @@ int parse_and_run(int argc, char** argv) {
   });
   app.footer("`taut VERB --help` shows the options and an example of each verb.");
   const std::vector<Verb> all = add_verbs(app);
+  refuse_empty_values(argc, argv);
   const std::string first = argc == 2 ? argv[1] : "";  // for `cmake --install`
   if (first == "--man") return std::cout << man_page(app, TAUT_VERSION), flush_output(), kPass;
   if (first == "--bash-completion") return std::cout << bash_completion(app), flush_output(), kPass;
@@ -198,7 +240,7 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::ostringstream complaint;
     const int code = app.exit(error, std::cout, complaint);
-    std::cerr << printable(complaint.str());
+    std::cerr << complaint.str();
     if (code != 0) return kUsage;
     flush_output();
     return kPass;
@@ -230,11 +272,12 @@ const VerbEntry* find_verb(const std::string& name) {
 
 int command_line(int argc, char** argv) {
   open_standard_descriptors();
+  const PrintableErrors printable_errors;
   std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit on files a write fails, and says so
   if (argc > 1 && argv[1][0] != '-' && !find_verb(argv[1])) {
     std::vector<std::string> names;
     for (const VerbEntry* verb : verbs()) names.emplace_back(verb->name);
-    std::cerr << "unknown verb '" << printable(argv[1]) << "'" << suggestion(argv[1], names)
+    std::cerr << "unknown verb '" << argv[1] << "'" << suggestion(argv[1], names)
               << " (`taut --help` names all)\n";
     return kUsage;
   }
@@ -249,12 +292,12 @@ int command_line(int argc, char** argv) {
   } catch (const SolverFailure& failure) {
     std::cerr << failure.status << ": " << failure.what() << '\n' << failure.log;
   } catch (const std::filesystem::filesystem_error& error) {
-    std::cerr << printable(error.path1().string()) << ": " << error.code().message() << '\n';
+    std::cerr << error.path1().string() << ": " << error.code().message() << '\n';
   } catch (const std::system_error& error) {  // as of a thread that cannot be started
     std::cerr << error.what() << '\n';
   } catch (const std::exception& error) {
-    std::cerr << "taut" << (argc > 1 ? " " + printable(argv[1]) : "")
-              << ": what was not foreseen: " << printable(error.what()) << '\n';
+    std::cerr << "taut" << (argc > 1 ? std::string(" ") + argv[1] : "")
+              << ": what was not foreseen: " << error.what() << '\n';
   }
   return kUsage;
 }

@@ -33,6 +33,8 @@ ASKED = {
     "external scene": ["./small.toml", "-o", "scene.json"],
 }
 ALSO_ASKED = [("new", ["scene", "bN"])]
+HOSTILE = ("-1", "1e300", "", "no/such\x1b[31m/x")
+EXIT_CODES = range(7)  # experiments/command_line/verb.hpp
 WITHOUT_RESULTS = {"external scene", "export"}  # one writes a file, the other prints CSV
 
 
@@ -118,6 +120,43 @@ class EveryVerb(CommandLine):
                 words = [re.sub(f"(?<=[abc]){number}$", f"{number}q", word) for word in words]
                 quiet = self.taut(*words, "--quiet")
                 self.assertEqual((quiet.out, quiet.err), ("", ""))
+
+    def options(self, text):
+        """(option, whether it takes a value) of a verb's help, but what only prints help."""
+        found = re.findall(r"^  (?:-\w,)?(--[\w-]+)(?: ([A-Z]+)(?![a-z]))?", text.split("Options:")[1], re.MULTILINE)
+        return [(name, bool(kind)) for name, kind in found if not name.startswith("--help")]
+
+    def test_every_option_of_every_verb_under_values_that_make_no_sense(self):
+        """A documented exit code, in time, and JSON on stdout; or 2, an error and nothing on stdout."""
+        self.prepare()
+        for verb, text in self.verbs().items():
+            asked = [*verb.split(), *ASKED[verb]]
+            for count, (option, takes) in enumerate(self.options(text)):
+                if (verb, option) == ("reference", "--all"):  # minutes
+                    continue
+                for which, hostile in enumerate(HOSTILE if takes else [None]):
+                    words = [re.sub("(?<=[abc])N$", f"{count}{which}", word) for word in asked]
+                    words.append(option if hostile is None else f"{option}={hostile}")
+                    with self.subTest(words=words):
+                        form = ["--json"] if "--json" in text and option not in ("--json", "--csv", "--markdown", "--quiet") else []
+                        said = self.taut(*words, *form, expect=None)
+                        self.assertIn(said.returncode, EXIT_CODES, said.err)
+                        self.assertNotIn("\x1b", said.err)
+                        if said.returncode == 2:
+                            self.assertNotEqual(said.err, "")
+                        if form:
+                            self.assertEqual(said.returncode == 2, not said.out)
+                            self.assertTrue(not said.out or json.loads(said.out))
+
+    def test_an_answer_that_cannot_be_written_is_an_error(self):
+        self.prepare()
+        for number, (verb, words) in enumerate(ASKED.items(), 1):
+            if verb == "external scene":  # prints nothing
+                continue
+            words = [re.sub("(?<=[abc])N$", f"{number}f", word) for word in [*verb.split(), *words]]
+            with self.subTest(words=words), open("/dev/full", "w") as full:
+                asked = subprocess.run([BINARIES / "taut", *words], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True, timeout=120)
+                self.assertEqual((asked.returncode, asked.stderr.splitlines()[-1:]), (2, ["standard output cannot be written"]))
 
     def on_a_terminal(self, *words, **environment):
         """What the verb writes to stdout where that is a terminal."""

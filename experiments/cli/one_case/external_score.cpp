@@ -45,12 +45,14 @@ int run(const Options& o) {
   for (const auto& [name, value] : scored.record.resolved_settings)
     read.rows.push_back({name, value});
   answer.add(std::move(read));
-  if (!o.picture.empty()) answer.add({"picture"}, o.picture);
+  if (!o.picture.empty()) {
+    RunRequest both{
+        .scene = o.scene, .overrides = one.spec.overrides, .solvers = {one.spec.solver}};
+    both.solvers.insert(both.solvers.end(), o.solvers.begin(), o.solvers.end());
+    render::draw_end(both, o.picture);
+    answer.add({"picture"}, o.picture);
+  }
   print(answer, o.format);
-  if (o.picture.empty()) return kPass;
-  RunRequest both{.scene = o.scene, .overrides = one.spec.overrides, .solvers = {one.spec.solver}};
-  both.solvers.insert(both.solvers.end(), o.solvers.begin(), o.solvers.end());
-  render::draw_end(both, o.picture);
   return kPass;
 }
 

@@ -141,6 +141,7 @@ int run(const Options& options) {
       }
   make_folder(out);  // what cannot be written is said once, not for every scene
   std::vector<std::string> files;
+  bool drawn = true;
   try {
     for (PlotSpec spec : specs) {
       if (spec.kind == "profile") {
@@ -159,10 +160,10 @@ int run(const Options& options) {
     }
   } catch (const report::PlotError& error) {
     std::cerr << error.what() << '\n';
-    return kEnvironment;
+    drawn = false;
   }
   print_files(files, options.json);
-  return files.empty() ? kNothing : kPass;
+  return !drawn ? kEnvironment : files.empty() ? kNothing : kPass;
 }
 
 void add_options(CLI::App& app, Options& options) {
