@@ -268,20 +268,6 @@ bool polish_active(const Problem& p, std::vector<int>& pulling, Point& point) {
   return true;  // solve() judges what it has become
 }
 
-/// Does the energy grow in every direction that the pulling links leave open?
-bool strictly_convex(const Problem& p, const std::vector<int>& pulling, const Point& point) {
-  const double scale = point.lambda.maxCoeff();
-  std::vector<Triplet> entries;
-  double shortest = 1e300;
-  for (const int j : pulling) shortest = std::min(shortest, p.link(j).rest);
-  for (const int j : pulling) p.add_hessian(point.y, j, point.lambda[j], scale / shortest, entries);
-  Matrix h(p.unknowns(), p.unknowns());
-  h.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SimplicialLDLT<Matrix> ldlt(h);
-  if (ldlt.info() != Eigen::Success) return false;
-  return ldlt.vectorD().minCoeff() > 1e-9 * ldlt.vectorD().maxCoeff();
-}
-
 struct Solution {
   Point point;
   std::string reason;  ///< "" if it is one
@@ -319,7 +305,6 @@ Solution solve(const Problem& p, const std::vector<Vec3>& start, double mu_facto
       return s;
     }
   }
-  if (!strictly_convex(p, pulling, s.point)) s.reason = "the minimum is not isolated";
   return s;
 }
 

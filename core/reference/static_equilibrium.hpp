@@ -33,8 +33,10 @@ std::vector<std::string> refuse_static(const Scene&);
 ///    Rockafellar) with positive-definite Newton steps and a sparse LDLT, then Newton on the KKT
 ///    system of the links that pull, regularised to be quasi-definite, with iterative refinement.
 ///    By convexity a stationary point with tensions >= 0 is a global minimum; it is also the
-///    cloth's if every link, pulling or not, has its full length there. If not - a sheet whose
-///    shear links lock, links that would have to push - there is no unique truth.
+///    cloth's if every link, pulling or not, has its full length there. It is the only one: halfway
+///    to another minimum a pulling link that differs between them would be slack, and pulling links
+///    join every vertex, which has weight, to a pin. If not - a sheet whose shear links lock, links
+///    that would have to push - there is no unique truth.
 /// Never throws; a numerical failure is a reason.
 Equilibrium static_equilibrium(const Scene&);
 

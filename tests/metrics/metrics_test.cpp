@@ -272,6 +272,35 @@ TEST(SelfIntersection, OfAFlapThatFoldsThroughTheSheet) {
   EXPECT_NEAR(measure_at_rest(scene, state).at("self.gap"), 0.03 - 0.1, 1e-12);
 }
 
+// 192 steps: the run is looked at each 9 steps, the last second (64 steps) each 6 back from the
+// end.
+TEST(SelfIntersection, IsLookedForAtTwentyMomentsOfTheRunAndTenOfTheLastSecond) {
+  Scene scene = sheet(5);
+  scene.self_collision = SelfCollision{.radius = 0.05};
+  State folded = scene.start;
+  for (std::size_t i = 15; i < 25; ++i)
+    folded.x[i] += Vec3(0.01, i < 20 ? 0.2 : -0.2, i < 20 ? -0.3 : -0.9);
+  const auto folded_at = [&](int when) {
+    return measure(scene, [&](int step) { return step == when ? folded : scene.start; });
+  };
+  const double crossed = measure_at_rest(scene, folded).at("self.crossings");
+  ASSERT_GT(crossed, 0);
+  const std::pair<int, const char*> seen[] = {{192, "self.crossings"},
+                                              {192 - 6, "self.crossings.max"},
+                                              {192 - 54, "self.crossings.max"},
+                                              {27, "self.crossings.peak"},
+                                              {9, "self.crossings.peak"}};
+  for (const auto& [when, name] : seen) {
+    const Values v = folded_at(when);
+    EXPECT_EQ(v.at(name), crossed) << when;
+    EXPECT_EQ(v.at("self.crossings.peak"), crossed) << when;
+    EXPECT_EQ(v.at("self.crossings"), when == 192 ? crossed : 0) << when;
+    EXPECT_EQ(v.at("self.crossings.max"), when > 128 ? crossed : 0) << when;
+    EXPECT_EQ(v.at("self.contour") > 0, when == 192) << when;
+  }
+  EXPECT_EQ(folded_at(28).at("self.crossings.peak"), 0) << "between two of those moments";
+}
+
 // Layers in one plane cross nowhere: without collision a fold that has come to rest would look
 // like a cloth that never passed through itself.
 TEST(SelfIntersection, CountsLayersThatCoincide) {

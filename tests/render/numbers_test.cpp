@@ -140,6 +140,13 @@ Seen seen(Rgb8 c) {
           hue < 0 ? hue + 360 : hue};
 }
 
+TEST(ColourMap, WhatIsNoNumberLooksAsBadAsTheLargest) {
+  for (const double no_number : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+    EXPECT_EQ(ColourMap::violet().at(no_number), ColourMap::violet().at(1)) << no_number;
+  EXPECT_EQ(ColourMap::violet().at(7), ColourMap::violet().at(1));
+  EXPECT_EQ(ColourMap::violet().at(-7), ColourMap::violet().at(0));
+}
+
 TEST(ColourMap, LightnessIsLinearInTheValueAndHueChangesEvenly) {
   EXPECT_EQ(linear_of(0), 0);
   EXPECT_EQ(linear_of(255), 1);

@@ -50,6 +50,34 @@ TEST(Slices, KeepWhatHasNoSuchSetting) {
   EXPECT_EQ(slice.records[2], &all[5]);
 }
 
+// Positions that another program computed have no sweeps, but a step; rounding is their floor.
+TEST(Curves, PositionsFromAFileAreALevelOverSweepsAndPointsOverTheStep) {
+  StudyResult study{"iterations", "?", synthetic::iterations("hang"), 0, {}};
+  for (const double dt : {1.0 / 64, 1.0 / 32}) {
+    Record file = synthetic::record("hang", "file", 1, dt);
+    file.params.erase("iterations");
+    file.values = {{"stretch.rms", dt}};
+    file.resolved_settings = {{"floor of strain", "1e-7"}};
+    study.records.push_back(file);
+  }
+  const auto of_file = [](const Chart& chart) {
+    std::vector<std::pair<double, double>> points;
+    for (const Curve& curve : chart.curves)
+      if (curve.solver == "file")
+        for (const Point& p : curve.points) points.emplace_back(p.x, p.y);
+    return points;
+  };
+  using Points = std::vector<std::pair<double, double>>;
+  ReportInput input;
+  input.studies = {study};
+  const std::vector<Chart> charts = scene_charts(input, "hang");
+  ASSERT_FALSE(charts.empty());
+  EXPECT_EQ(of_file(charts.front()),
+            (Points{{1, 1.0 / 64}, {256, 1.0 / 64}, {1, 1.0 / 32}, {256, 1.0 / 32}}));
+  EXPECT_EQ(of_file(make_chart("stability", input.studies[0].records, "dt", "stretch.rms", "dt")),
+            (Points{{1.0 / 64, 1.0 / 64}, {1.0 / 32, 1.0 / 32}}));
+}
+
 TEST(Curves, NameASettingWhereItsValueAloneSaysNothing) {
   std::vector<Record> all;
   const auto add = [&](const char* name, const char* value, const char* override_) {

@@ -166,6 +166,20 @@ TEST_F(Folder, AMergeTakesResultsBeforeFailuresAndSaysWhatIsMissing) {
   EXPECT_EQ(more.missing[0].id, "case 4");
 }
 
+// A case that failed in one folder and ran in two: the two are compared, in whatever order they
+// come.
+TEST_F(Folder, AFailureDoesNotHideThatTwoResultsDiffer) {
+  const fs::path folders[] = {make("a", {1}), make("b", {1}), make("c", {1})};
+  put(shard_folder(folders[0], 1), 0, 0, Kind::timeout);
+  put(shard_folder(folders[1], 1), 0, 1), put(shard_folder(folders[2], 1), 0, 2);
+  std::vector<fs::path> order(std::begin(folders), std::end(folders));
+  do {
+    const MergePlan plan = Merge(order).look(Store(root_.path() / "into"));
+    ASSERT_EQ(plan.conflicts.size(), 1u);
+    EXPECT_TRUE(plan.conflicts[0].ends_with("have different results")) << plan.conflicts[0];
+  } while (std::ranges::next_permutation(order).found);
+}
+
 TEST_F(Folder, AMergeNamesWhatDiffersAndWhatOneFolderAloneHas) {
   const auto sentences = [&](const std::vector<fs::path>& folders, const fs::path& into) {
     const MergePlan plan = Merge(folders).look(Store(into));

@@ -258,6 +258,13 @@ TEST(LinearStability, OneMassOnASpring) {
   const std::string spring = "mass-spring:substeps=1,structural=40";
   EXPECT_NEAR(margin(scene, spring, 2 / w), 1, 1e-9);
   EXPECT_NEAR(margin(scene, "mass-spring:substeps=4,structural=40", 8 / w), 1, 1e-9);
+  // With the share q of a velocity left by the air: w^2 h^2 = 2 (1 + q), q = e^(-damping h).
+  Scene in_air = scene;
+  in_air.damping = 3;
+  const double h = 1.9 / w, q = std::exp(-3 * h);
+  EXPECT_NEAR(margin(in_air, spring, h), w * w * h * h / (2 * (1 + q)), 1e-9);
+  EXPECT_NEAR(margin(in_air, "mass-spring:substeps=4,structural=40", 4 * h),
+              w * w * h * h / (2 * (1 + q)), 1e-9);
   const std::string drag = ",drag=" + std::to_string(2 * zeta * w * m);
   EXPECT_NEAR(margin(scene, spring + drag, 2 / w * (std::sqrt(1 + zeta * zeta) - zeta)), 1, 1e-5);
   EXPECT_NEAR(margin(scene, spring + drag + ",drag-at=central", 2 / w), 1, 1e-5);
@@ -303,6 +310,12 @@ TEST(LinearStability, SweepsOfRelaxation) {
                   ->stable());
   EXPECT_FALSE(linear_stability(hung_chain(1), parse_solver(listing("iterations=1,omega=1.3334")))
                    ->stable());
+  // One link in air: z^2 - (1 + q) mu z + q mu = 0, mu = 1 - omega; its roots multiply to q mu.
+  Scene in_air = hung_chain(1);
+  in_air.damping = 40;
+  const double mu = -0.7, q = std::exp(-40 * 0.01), half = (1 + q) * mu / 2;
+  EXPECT_NEAR(margin(in_air, listing("iterations=1,omega=1.7"), 0.01),
+              std::abs(half) + std::sqrt(half * half - q * mu), 1e-9);
   const double odd = margin(hung_chain(32), listing("iterations=1,method=jacobi"), 0.01);
   EXPECT_NEAR(odd, 2.402, 0.02);
   EXPECT_LT(odd, 1 + std::sqrt(2));
