@@ -4,48 +4,75 @@ namespace taut {
 
 namespace {
 
+/// An element as the pass reads it, in the precision of the particles.
+template <class Real>
+struct Projected {
+  std::uint32_t size, vertex[6];
+  Real weight[6];  ///< c_i [1/m^2]
+  Real move[6];    ///< w_i c_i [1/(kg m^2)]; 0: pinned
+  Real softness;   ///< a [1/(kg m^4)]
+  Real inverse;    ///< 1/(sum w_i c_i^2 + a) [kg m^4]
+};
+
 template <class Real>
 class BendingPass final : public Pass<Real> {
  public:
   using V = typename Points<Real>::Point;
-  BendingPass(const Scene& scene, std::span<const double> w) : elements_(make_bending(scene)) {
-    for (const BendingElement& e : elements_) {
-      double mobility = 0;  // sum w c^2
-      for (std::size_t i = 0; i < e.size; ++i)
-        mobility += w[to_index(e.vertex[i])] * e.weight[i] * e.weight[i];
-      mobility_.push_back(mobility);
-    }
-    lambda_.resize(elements_.size());
-  }
+  BendingPass(const Scene& scene, std::span<const double> w)
+      : elements_(make_bending(scene)), w_(w.begin(), w.end()), lambda_(elements_.size()) {}
 
-  void begin(Particles<Real>&, double, double) override {
+  void begin(Particles<Real>&, double, double h) override {
+    if (h != prepared_for_) prepare(h);
     std::ranges::fill(lambda_, V(V::Zero()));
   }
 
-  void apply(Particles<Real>& p, double, double h) override {
-    for (std::size_t k = 0; k < elements_.size(); ++k) {
-      const BendingElement& e = elements_[k];
-      const double softness = 1 / (e.stiffness * h * h);
-      const V g = e.value([&](std::size_t v) { return p.x[v]; });
-      const V change = (-g - static_cast<Real>(softness) * lambda_[k]) /
-                       static_cast<Real>(mobility_[k] + softness);
+  void apply(Particles<Real>& p, double, double) override {
+    for (std::size_t k = 0; k < projected_.size(); ++k) {
+      const Projected<Real>& e = projected_[k];
+      const V first = p.x[e.vertex[0]];  // differences: floats of nearby places keep them
+      V g = e.weight[1] * (p.x[e.vertex[1]] - first);
+      for (std::uint32_t i = 2; i < e.size; ++i) g += e.weight[i] * (p.x[e.vertex[i]] - first);
+      const V change = e.inverse * (-g - e.softness * lambda_[k]);
       lambda_[k] += change;
-      for (std::size_t i = 0; i < e.size; ++i)
-        if (const std::size_t v = to_index(e.vertex[i]); p.w[v] > 0)
-          p.x.add(v, p.w[v] * static_cast<Real>(e.weight[i]) * change);
+      for (std::uint32_t i = 0; i < e.size; ++i)
+        if (e.move[i] != 0) p.x.add(e.vertex[i], e.move[i] * change);
     }
   }
 
   std::vector<PassCost> cost() const override {
     return {{.pass = "bending",
              .items = elements_.size(),
-             .bytes = elements_.size() * (sizeof(BendingElement) + sizeof(double) + sizeof(V))}};
+             .bytes =
+                 elements_.size() * (sizeof(BendingElement) + sizeof(Projected<Real>) + sizeof(V)) +
+                 w_.size() * sizeof(double)}};
   }
 
  private:
+  /// For substeps of h [s].
+  void prepare(double h) {
+    projected_.clear();
+    for (const BendingElement& e : elements_) {
+      Projected<Real>& p = projected_.emplace_back();
+      const double softness = 1 / (e.stiffness * h * h);
+      double mobility = 0;  // sum w c^2
+      p.size = static_cast<std::uint32_t>(e.size);
+      for (std::size_t i = 0; i < e.size; ++i) {
+        const double w = w_[to_index(e.vertex[i])], c = e.weight[i];
+        mobility += w * c * c;
+        p.vertex[i] = static_cast<std::uint32_t>(e.vertex[i]);
+        p.weight[i] = static_cast<Real>(c), p.move[i] = static_cast<Real>(w * c);
+      }
+      p.softness = static_cast<Real>(softness);
+      p.inverse = static_cast<Real>(1 / (mobility + softness));
+    }
+    prepared_for_ = h;
+  }
+
   std::vector<BendingElement> elements_;
-  std::vector<double> mobility_;  ///< 1/(kg m^4)
-  std::vector<V> lambda_;         ///< kg m^3
+  std::vector<double> w_;  ///< 1/kg
+  std::vector<Projected<Real>> projected_;
+  double prepared_for_ = 0;  ///< s; 0: for no substep yet
+  std::vector<V> lambda_;    ///< kg m^3
 };
 
 }  // namespace

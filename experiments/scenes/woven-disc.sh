@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Writes woven-disc.obj: a disc of radius 0.15 m in the plane y = 0, a grid of squares of 1 cm along warp (z) and weft (x) whose
-# outermost vertices are moved to the circle.
-# Usage: woven-disc.sh > woven-disc.obj
-awk 'BEGIN {
-  side = 0.01; radius = 0.15; n = 15
-  print "# A disc of radius 0.15 m: squares of 1 cm, the outermost vertices on the circle, made by woven-disc.sh"
+# Writes a disc of radius 0.15 m in the plane y = 0: a grid of squares along warp (z) and weft (x) whose outermost vertices are
+# moved to the circle.
+# Usage: woven-disc.sh > woven-disc.obj (squares of 1 cm); woven-disc.sh 30 > woven-disc-fine.obj (30 in the radius, 5 mm)
+awk -v n="${1:-15}" 'BEGIN {
+  radius = 0.15; side = radius / n
+  printf "# A disc of radius 0.15 m: squares of %g cm, the outermost vertices on the circle, made by woven-disc.sh\n", 100 * side
   for (j = -n; j < n; ++j)
     for (i = -n; i < n; ++i)
       if (side * sqrt((i + 0.5) ^ 2 + (j + 0.5) ^ 2) < radius) {

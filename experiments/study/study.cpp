@@ -256,7 +256,7 @@ class StudyReader {
       Exclusion exclusion;
       for (std::size_t i = 0; i < item.items.size() && item.is_table(); ++i) {
         const std::string& key = item.keys[i].text;
-        const bool toml = key.find('.') != std::string::npos;
+        const bool toml = StudyAxis{key, {}}.of_scene();
         if (std::ranges::count(settings(), key) == 0)
           diagnostics_.report(item.keys[i].place, "nothing that this study varies is called '" +
                                                       key + "'" + suggestion(key, settings()) +

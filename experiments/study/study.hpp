@@ -11,12 +11,12 @@
 
 namespace taut {
 
-/// A setting that a study varies: a scene key ("time.dt") if its name has a dot, a parameter of one
-/// solver ("xpbd:structural"), or a parameter of all that have it.
+/// A setting that a study varies: a scene key ("fabric", or with a dot as "time.dt"), a parameter
+/// of one solver ("xpbd:structural"), or a parameter of all that have it.
 struct StudyAxis {
   std::string name;
   std::vector<std::string> values;  ///< as typed: TOML for scene keys ("\"1/64\"", "[16, 16]")
-  bool of_scene() const { return name.find('.') != std::string::npos; }
+  bool of_scene() const { return name == "fabric" || name.find('.') != std::string::npos; }
   std::string solver() const {  ///< "": all that have the parameter
     return of_solver() ? name.substr(0, name.find(':')) : "";
   }

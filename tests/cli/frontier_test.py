@@ -13,7 +13,7 @@ import stored
 from command_line import CommandLine, facts_of, main, rows_of
 
 PARAMETERS = ["time step", "sweeps", "stiffness", "mass ratio", "resolution", "speed of a collider", "size, up", "size, down",
-         "distance from the origin", "wind"]
+         "distance from the origin", "bending", "wind"]
 SYMPTOMS = {"NaN", "explodes", "crashes", "refuses", "tunnels", "overstretches", "freezes", "gains energy", "jitters",
             "asymmetric", "loses energy"}
 

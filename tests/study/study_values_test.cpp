@@ -44,6 +44,7 @@ time.dt = ["1/64", 0.02, 100000]
 "cloth.grid" = [[4, 5], [6, 7]]
 "links.bend" = [true, false]
 "cloth.mesh" = ['a"b\c']
+fabric = ["petrak-m1"]
 "forces.damping" = { from = 0, to = 1, steps = 5 }
 "wind.strength" = { from = 8, to = 0.5, steps = 5, scale = "log" }
 "cloth.mass" = [999999999999999, 1000000000000000]
@@ -69,6 +70,7 @@ kind = "scaling"
             "cloth.grid*: [4, 5] [6, 7]\n"
             "cloth.mass*: 999999999999999 1e+15\n"
             "cloth.mesh*: \"a\\\"b\\\\c\"\n"
+            "fabric*: \"petrak-m1\"\n"
             "forces.damping*: 0 0.25 0.5 0.75 1\n"
             "iterations: 3 1\n"
             "links.bend*: true false\n"
@@ -82,12 +84,12 @@ kind = "scaling"
   EXPECT_EQ(place("links.bend=true"), std::pair(8, 17)) << "the axis, which is read after it";
   EXPECT_EQ(place("time.duration=1"), std::pair(4, 8));
   EXPECT_EQ(place("time.dt=0.02"), std::pair(6, 20));
-  EXPECT_EQ(place("forces.damping=0.75"), std::pair(10, 20));
+  EXPECT_EQ(place("forces.damping=0.75"), std::pair(11, 20));
   ASSERT_EQ(study.plots.size(), 2u);
   EXPECT_EQ(study.plots[0].kind, "convergence");
   EXPECT_EQ(study.plots[0].options,
             (std::map<std::string, std::string>{{"y", "stretch.max"}, {"slope", "-0.5"}}));
-  EXPECT_EQ(study.plots[0].places.at("slope").line, 18);
+  EXPECT_EQ(study.plots[0].places.at("slope").line, 19);
   EXPECT_EQ(study.plots[1].kind, "scaling");
 }
 

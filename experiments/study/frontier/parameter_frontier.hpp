@@ -26,9 +26,10 @@ struct FrontierSetting {
 /// vertices for 2 s in steps of 1/240 s. It is passive and mirror-symmetric.
 ///
 /// Its settings: time step, sweeps, stiffness, mass ratio, resolution, speed of a collider, size
-/// (both ways), distance from the origin, wind; each from where it is easy to where it is absurd.
+/// (both ways), distance from the origin, bending, wind; each from where it is easy to where it is
+/// absurd.
 /// Theories:
-///   time step, stiffness, mass ratio: linear_stability, of springs
+///   time step, stiffness, bending, mass ratio: linear_stability, of springs
 ///   wind: c h/sigma < 2, explicit drag of a face across the wind; h: substep (truth wind-face)
 ///   distance: in float, g h^2 above half a unit in the last place (truth float-gravity)
 ///   speed: D/h, beyond which tests at step boundaries miss a plate of thickness D (truth

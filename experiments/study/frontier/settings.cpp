@@ -38,6 +38,8 @@ class FrontierSettings {
     add("size, up", "m", "cloth.size.0|cloth.size.1", 1, 1e5);
     add("size, down", "m", "cloth.size.0|cloth.size.1", 1, 1e5, Direction::down);
     add_distance();
+    linear(add("bending", "N m", "bending.stiffness", 1e-6, 1e4, Direction::up,
+               {"bending={ stiffness = 1e-6 }"}));
     FrontierSetting& wind = add("wind", "N s/m^3", "wind.strength", 0.01, 1e5, Direction::up,
                                 {"wind={ velocity = [0, 0, 5], strength = 0.01 }"});
     wind.theory = {Frontier::Kind::bracketed, 2 * kDensity / substep(), 0,

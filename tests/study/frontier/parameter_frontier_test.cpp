@@ -172,6 +172,7 @@ TEST(FrontierSettings, GoThisFar) {
       "size, up [m]: 1 to 100000\n"
       "size, down [m]: 1 to 1e-5\n"
       "distance from the origin [m]: 1 to 100000\n"
+      "bending [N m]: 1e-6 to 10000\n"
       "wind [N s/m^3]: 0.01 to 100000\n";
   EXPECT_EQ(all("jakobsen"),
             "time step [s]: 0.00417 to 1\nsweeps []: 64 to 1, whole\n"
