@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# The README's two commands on a Debian 12 that has nothing else: what they install is all that they, and the tests, use.
+# The bare system is a folder (debootstrap, from the mirror of this machine). In it stands this tree with BUILD, under an overlay:
+# it is configured anew, and compiled only where the compiler or a header is another one.
+# Usage: bare_root.sh BUILD [--whole]
+#   --whole: the whole main job and all tests; otherwise one study with its report, and the tests that call other programs.
+# Ends with 77, not run, where no such system can be made; says why.
+set -euo pipefail
+home=$(cd "$(dirname "$0")/../.." && pwd)
+build=$(readlink -f "$1")
+if [[ ${2:-} == --whole ]]; then study= tests=()
+else
+  study=regression
+  tests=(-R '^(browser|cluster.container|documents|external_test|format|install_test|launcher_test|layers$|pictures_test|VideoTest|Plots)')
+fi
+not_here() { echo "bare_root: not run: $1"; exit 77; }
+
+[[ $(id -u) == 0 ]] || not_here "needs root"
+command -v debootstrap >/dev/null || not_here "debootstrap is not installed"
+mirror=$(apt-get indextargets --format '$(RELEASE) $(COMPONENT) $(REPO_URI)' 2>/dev/null | awk '/^bookworm main /{ print $3; exit }')
+[[ -n $mirror ]] || not_here "this machine has no mirror of Debian 12"
+
+scratch=$(mktemp -d)
+trap 'rm -rf --one-file-system "$scratch"' EXIT
+root=$scratch/root
+mkdir "$root" "$scratch/changed" "$scratch/work"
+debootstrap --variant=minbase bookworm "$root" "$mirror" >"$scratch/log" 2>&1 || { tail -n 3 "$scratch/log"; not_here "debootstrap failed"; }
+mkdir -p "$root$home"
+cp /etc/resolv.conf /etc/hosts "$root/etc"
+
+# What is mounted is gone with the process.
+export root home build scratch study
+unshare --mount --pid --fork --kill-child bash -euc '
+  mount -t overlay overlay -o "lowerdir=$home,upperdir=$scratch/changed,workdir=$scratch/work" "$root$home" &&
+    mount -t proc proc "$root/proc" && mount --rbind /dev "$root/dev" || exit 77
+  rm -f "$root$build/CMakeCache.txt" "$root$build/build.ninja"
+  in_root() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TMPDIR=/tmp CI=1 "$@"; }
+  in_root "$home/taut" run $study --out /tmp/runs
+  [[ -z $study ]] || in_root "$home/taut" report $study --out /tmp/runs
+  in_root "$home/taut" test "$@"
+' bare_root "${tests[@]}" || { status=$?; [[ $status != 77 ]] || not_here "nothing can be mounted"; exit "$status"; }
