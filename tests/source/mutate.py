@@ -65,6 +65,13 @@ def chance(noticed, n, share):
     return sum(math.comb(n, k) * share**k * (1 - share)**(n - k) for k in range(noticed + 1))
 
 
+def interval(k, n):
+    """Where the share lies of which k of n were seen: Wilson's score interval, 95 %"""
+    z2 = 1.96**2
+    middle, half = (k + z2 / 2) / (n + z2), math.sqrt(z2 * (k * (n - k) / n + z2 / 4)) / (n + z2)
+    return f"{middle - half:.0%} to {middle + half:.0%}"
+
+
 class Mutant:
     def __init__(self, layer, file, line, planted, checks="*", tests=()):
         self.layer, self.file, self.line, self.planted, self.checks, self.tests = layer, file, line, planted, checks, tests
@@ -320,11 +327,13 @@ def main():
         return 0 if noticed == len(asked) else 1
     for layer in layers:
         of_layer = [mutant for mutant in judged if mutant.layer == layer]
-        print(f"{layer:22} {sum(m.by is not None for m in of_layer):3} of {len(of_layer):3}")
+        seen = sum(m.by is not None for m in of_layer)
+        if of_layer:
+            print(f"{layer:22} {seen:3} of {len(of_layer):3} ({interval(seen, len(of_layer))})")
     if not judged:
         sys.exit("mutate: not a single one was judged")
     n, noticed = len(judged), sum(mutant.by is not None for mutant in judged)
-    print(f"noticed: {noticed} of {n} ({noticed / n:.0%}); of {options.sample} that were asked for {n} were judged: {spent()}. So few or "
+    print(f"noticed: {noticed} of {n} ({noticed / n:.0%}, {interval(noticed, n)}); of {options.sample} that were asked for {n} were judged: {spent()}. So few or "
           f"fewer have a chance of {chance(noticed, n, options.goal):.3g} where {options.goal:.0%} of all errors are noticed; below "
           f"{CHANCE} this fails")
     if chance(noticed, n, options.goal) < CHANCE:
