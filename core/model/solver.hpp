@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
@@ -32,7 +33,7 @@ class Solver {
   virtual ~Solver() = default;
   virtual void load(const State&) = 0;         ///< start or restart here (untimed)
   virtual void step(double t, double dt) = 0;  ///< advance [t, t + dt]: the only timed call
-  virtual void store(State&) const = 0;        ///< copy out (untimed); step() leaves no debt behind
+  virtual void store(State&) const = 0;  ///< copy out (untimed): step() has done all of the work
   virtual std::vector<PassCost> step_cost() const = 0;  ///< the passes of one step, in order
 
   /// What step() has cost so far, from any origin; by default this process's CPU clock and the
@@ -43,8 +44,8 @@ class Solver {
   /// The end of what the solver's own program, if it has one, wrote to standard error.
   virtual std::string log() const;
 
-  /// Calls `visit` with the time at the end of every substep inside a step, where store() gives the
-  /// state: for those who need the path between two step boundaries. Not while timing.
+  /// Calls `visit` with the time at the end of every substep inside a step, where store() returns
+  /// the state: for those who need the path between two step boundaries. Not while timing.
   void visit_substeps(std::function<void(double t)> visit) { visit_ = std::move(visit); }
 
  protected:
@@ -177,6 +178,14 @@ struct SolverChoice {
   std::string canonical() const;
   /// The same, but only the parameters that differ from their defaults: for people.
   std::string brief() const;
+  /// Substeps of a step, and sweeps of a substep, by the entry's AccuracyParameters: at least 1.
+  int substeps() const { return count(entry->accuracy.substeps); }
+  int sweeps() const { return count(entry->accuracy.sweeps); }
+
+ private:
+  int count(std::string_view parameter) const {
+    return parameter.empty() ? 1 : std::max(1, params.integer(parameter));
+  }
 };
 SolverChoice parse_solver(std::string_view text);
 

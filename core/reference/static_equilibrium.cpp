@@ -17,7 +17,7 @@ using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 using Triplet = Eigen::Triplet<double>;
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kUnreached = std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 1e-9;
 
 /// The rest position of every vertex [m] if straight lines decide it: a vertex on a shortest path
@@ -51,7 +51,7 @@ std::optional<std::vector<Vec3>> hanging_straight(const Scene& scene) {
     }
   // A vertex is at its lowest when, over all fixed ones, height - path length is largest.
   const Vec3 down = scene.gravity.normalized();
-  std::vector<double> lowest(n, kFar);
+  std::vector<double> lowest(n, kUnreached);
   std::vector<Vec3> place = x;
   for (std::size_t f = 0; f < n; ++f) {
     if (!fixed[f]) continue;
@@ -68,7 +68,7 @@ std::optional<std::vector<Vec3>> hanging_straight(const Scene& scene) {
           kTolerance * l.rest))
       return {};
   for (std::size_t i = 0; i < n; ++i)
-    if (!fixed[i] && lowest[i] == kFar) return {};
+    if (!fixed[i] && lowest[i] == kUnreached) return {};
   return place;
 }
 

@@ -39,7 +39,7 @@ class SheetWindPass final : public WindPass<Real> {
                 ThreadPool& pool)
       : WindPass<Real>(*scene.wind), items_(scene.mesh.triangles.size()), pool_(pool) {
     const auto [rows, columns, lanes, vectors, stride] = layout.sheet();
-    blow_ = lanes == kWide ? kernels<Real>(simd).wide_wind : kernels<Real>(simd).narrow_wind;
+    kernel_ = lanes == kWide ? kernels<Real>(simd).wide_wind : kernels<Real>(simd).narrow_wind;
     quad_rows_ = rows - 1;
     const std::size_t row = to_index(lanes * vectors);
     w_.resize(to_index(rows) * row), diagonals_.resize(2 * row);
@@ -62,7 +62,7 @@ class SheetWindPass final : public WindPass<Real> {
         p.layout->blocks(),
         [this, step](std::size_t block) {
           const auto [begin, end] = rows_of_block(block, quad_rows_);
-          blow_(step, faces_, begin, end);
+          kernel_(step, faces_, begin, end);
         },
         p.size() >= ThreadPool::kWorthSharing);
   }
@@ -76,7 +76,7 @@ class SheetWindPass final : public WindPass<Real> {
  private:
   std::size_t items_;
   ThreadPool& pool_;
-  void (*blow_)(const WindStep<Real>&, const SheetFaces<Real>&, int, int);
+  void (*kernel_)(const WindStep<Real>&, const SheetFaces<Real>&, int, int);
   int quad_rows_ = 0;
   std::vector<Real> w_, diagonals_;
   SheetFaces<Real> faces_{};
@@ -89,7 +89,7 @@ class FaceWindPass final : public WindPass<Real> {
   FaceWindPass(const Scene& scene, std::span<const double> w, const Layout& layout, Simd simd)
       : WindPass<Real>(*scene.wind),
         items_(scene.mesh.triangles.size()),
-        blow_(kernels<Real>(simd).wind_on_faces) {
+        kernel_(kernels<Real>(simd).wind_on_faces) {
     batches_.reserve((items_ + kLanes - 1) / kLanes);
     for (std::size_t f = 0; f < items_; ++f) {
       if (f % kLanes == 0) add_idle_batch(layout);
@@ -101,7 +101,9 @@ class FaceWindPass final : public WindPass<Real> {
     }
   }
 
-  void apply(Particles<Real>& p, double, double dt) override { blow_(this->step(p, dt), batches_); }
+  void apply(Particles<Real>& p, double, double dt) override {
+    kernel_(this->step(p, dt), batches_);
+  }
 
   std::vector<PassCost> cost() const override {
     return {{.pass = "wind", .items = items_, .bytes = batches_.size() * sizeof batches_[0]}};
@@ -116,7 +118,7 @@ class FaceWindPass final : public WindPass<Real> {
   }
 
   std::size_t items_;
-  void (*blow_)(const WindStep<Real>&, std::span<const FaceBatch<Real>>);
+  void (*kernel_)(const WindStep<Real>&, std::span<const FaceBatch<Real>>);
   std::vector<FaceBatch<Real>> batches_;
 };
 

@@ -62,15 +62,15 @@ void Answer::add(Column column, Cell cell) {
 Table& Answer::add(Table table) { return tables.emplace_back(std::move(table)); }
 
 const Cell& Answer::fact(std::string_view name) const {
-  static const Cell kNone;
+  static const Cell kEmpty;
   const auto at = std::ranges::find(facts, name, [](const Fact& f) { return f.column.name; });
-  return at == facts.end() ? kNone : at->cell;
+  return at == facts.end() ? kEmpty : at->cell;
 }
 
 const Table& Answer::table(std::string_view name) const {
-  static const Table kNone{};
+  static const Table kEmpty{};
   const auto at = std::ranges::find(tables, name, &Table::name);
-  return at == tables.end() ? kNone : *at;
+  return at == tables.end() ? kEmpty : *at;
 }
 
 const Cell& Table::at(const std::vector<Cell>& row, std::string_view column) const {

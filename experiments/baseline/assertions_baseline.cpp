@@ -16,7 +16,7 @@ std::string figure_text(const Finding& f) {
 
 /// What speaks for an assertion: a number that breaks it, else the first that is measured and
 /// begins so.
-const Finding* telling(const std::vector<Finding>& findings, std::string_view begins) {
+const Finding* beginning_with(const std::vector<Finding>& findings, std::string_view begins) {
   const Finding* told = nullptr;
   for (const Finding& f : findings) {
     if (f.verdict == TruthVerdict::broken) return &f;
@@ -37,7 +37,7 @@ std::vector<JudgedAssertion> judge_assertions(const FindingsOf& findings_of) {
     if (!assertion.truth.empty()) {
       const std::vector<Finding>* findings = findings_of(assertion.truth);
       if (!findings) continue;
-      const Finding* told = telling(*findings, assertion.figure);
+      const Finding* told = beginning_with(*findings, assertion.figure);
       if (!told || told->verdict == TruthVerdict::broken) judged.verdict = "overturned";
       if (told) judged.figure = figure_text(*told);
     }

@@ -10,7 +10,7 @@
 
 namespace taut {
 
-/// An assertion of a publication with the verdict that its truth gives now.
+/// An assertion of a publication with the verdict that its truth has now.
 struct JudgedAssertion {
   std::string source, section, assertion;
   std::string verdict;  ///< to_string(AssertionVerdict), or "overturned": its truth is broken

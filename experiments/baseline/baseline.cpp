@@ -160,9 +160,9 @@ std::string escaped(const std::string& text) {
 }
 
 double relative_change(const Change& c) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  const double share = c.before == 0 ? kNone : (c.now - c.before) / std::abs(c.before);
-  return std::isfinite(share) ? share : kNone;
+  constexpr double kFromZero = std::numeric_limits<double>::infinity();
+  const double share = c.before == 0 ? kFromZero : (c.now - c.before) / std::abs(c.before);
+  return std::isfinite(share) ? share : kFromZero;
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& s
 ///   exploded{energy}     kinetic energy above ten times EnergyBudget::available
 ///   exploded{box}        a coordinate beyond EnergyBudget::farthest
 ///   extreme{stretch}     a structural or shear link that is not between two pins was strained by
-///                        more than legitimate_strain(); it goes on, and what it gives is kept.
+///                        more than legitimate_strain(); it goes on, and its values are kept.
 ///                        "stretch, moves after five settling times": it would be unsettled, too
 ///   unsettled            the run lasted at least five settling times and yet, in its last settling
 ///                        time, a vertex is faster than 1e-3 sqrt(|g| L) (L: extent) and than the

@@ -12,21 +12,29 @@ namespace taut {
 
 namespace {
 
-Json status_json(const Status& status) {
-  return {{"kind", to_string(status.kind)},
-          {"reason", status.reason},
-          {"step", status.step},
-          {"vertex", status.vertex}};
-}
-
-Json result_json(const Record& r) {  // a value that is not finite is null
-  return {{"status", status_json(r.status)},
-          {"values", r.values},
-          {"projections", r.projections},
-          {"step_cost", r.step_cost},
-          {"resolved_settings", r.resolved_settings},
-          {"digest", r.digest}};
-}
+constexpr std::tuple kResult{Field{"status", &Record::status},
+                             Field{"values", &Record::values},
+                             Field{"projections", &Record::projections},
+                             Field{"step_cost", &Record::step_cost},
+                             Field{"resolved_settings", &Record::resolved_settings},
+                             Field{"digest", &Record::digest}};
+constexpr std::tuple kCase{Field{"key", &Record::key},
+                           Field{"id", &Record::id},
+                           Field{"spec", &Record::spec},
+                           Field{"scene", &Record::scene},
+                           Field{"solver", &Record::solver},
+                           Field{"params", &Record::params},
+                           Field{"dt", &Record::dt},
+                           Field{"steps", &Record::steps},
+                           Field{"vertices", &Record::vertices},
+                           Field{"links", &Record::links}};
+constexpr std::tuple kSpec{Field{"scene", &CaseSpec::scene},
+                           Field{"overrides", &CaseSpec::overrides},
+                           Field{"solver", &CaseSpec::solver}};
+constexpr std::tuple kPassCost{Field{"pass", &PassCost::pass}, Field{"items", &PassCost::items},
+                               Field{"repeats", &PassCost::repeats},
+                               Field{"bytes", &PassCost::bytes},
+                               Field{"projections", &PassCost::projections}};
 
 /// Doubles in shortest exact form, NaN as an empty field.
 template <class Values>
@@ -37,63 +45,33 @@ std::string csv_line(const Values& values) {
 
 }  // namespace
 
-void read_into(const JsonReader& j, CaseSpec& spec) {
-  spec = {j.at("scene").text(), j.at("overrides").texts(), j.at("solver").text()};
+void read_into(const JsonReader& j, CaseSpec& spec) { read_into(j, spec, kSpec); }
+
+void read_into(const JsonReader& j, Status& status) {
+  const JsonReader kind = j.at("kind");
+  if (!is_status(kind.text())) kind.fail("unknown status '" + kind.text() + "'");
+  status.kind = status_kind(kind.text());
+  read_into(j.at("reason"), status.reason);
+  read_into(j.at("step"), status.step), read_into(j.at("vertex"), status.vertex);
 }
 
-Status::Kind status_of(const JsonReader& j) {
-  if (!is_status(j.text())) j.fail("unknown status '" + j.text() + "'");
-  return status_kind(j.text());
+void read_into(const JsonReader& j, std::vector<PassCost>& all) {
+  for (const JsonReader& one : j.items()) all.push_back(read_as(one, kPassCost));
 }
 
-std::map<std::string, std::string> parameters_of(const JsonReader& j) {
-  std::map<std::string, std::string> parameters;
-  for (const auto& [name, value] : j.members()) parameters[name] = value.text();
-  return parameters;
-}
-
-std::vector<PassCost> step_cost_of(const JsonReader& j) {
-  std::vector<PassCost> all;
-  for (const JsonReader& p : j.items())
-    all.push_back({p.at("pass").text(), p.at("items").count(), p.at("repeats").count(),
-                   p.at("bytes").count(), p.at("projections").flag()});
-  return all;
-}
-
-ResolvedSettings resolved_settings_of(const JsonReader& j) {
-  ResolvedSettings all;
+void read_into(const JsonReader& j, ResolvedSettings& all) {
   for (const JsonReader& e : j.items()) {
     const std::vector<JsonReader> pair = e.items(2);
     all.emplace_back(pair[0].text(), pair[1].text());
   }
-  return all;
 }
 
 Record record_of(const JsonReader& j) {
-  constexpr int kNone = -1;
   j.require_schema(kRecordSchema);
-  Record r;
-  r.key = j.at("key").text();
+  Record r = read_as(j, kCase);
+  read_into(j, r, kResult);
   if (!is_key(r.key)) j.at("key").fail("expected 64 hexadecimal digits");
-  r.id = j.at("id").text();
-  read_into(j.at("spec"), r.spec);
-  r.scene = j.at("scene").text();
-  r.solver = j.at("solver").text();
-  r.params = parameters_of(j.at("params"));
-  r.dt = j.at("dt").number();
   if (!(r.dt > 0)) j.at("dt").fail("expected a time step greater than 0");
-  r.steps = j.at("steps").integer(0);
-  r.vertices = j.at("vertices").integer(0);
-  r.links = j.at("links").integer(0);
-  const JsonReader status = j.at("status");
-  r.status = {status_of(status.at("kind")), status.at("reason").text(),
-              status.at("step").integer(kNone), status.at("vertex").integer(kNone)};
-  for (const auto& [name, value] : j.at("values").members())
-    r.values[name] = value.number_or_null();
-  r.projections = j.at("projections").count();
-  r.step_cost = step_cost_of(j.at("step_cost"));
-  r.resolved_settings = resolved_settings_of(j.at("resolved_settings"));
-  r.digest = j.at("digest").text();
   if (const auto log = j.find("log")) r.log = log->text();
   return r;
 }
@@ -111,18 +89,9 @@ std::string describe(const Status& status) {
 }
 
 std::string to_json(const Record& r, int indent) {
-  Json j = result_json(r);
-  j.update({{"schema", kRecordSchema},
-            {"key", r.key},
-            {"id", r.id},
-            {"spec", r.spec},
-            {"scene", r.scene},
-            {"solver", r.solver},
-            {"params", r.params},
-            {"dt", r.dt},
-            {"steps", r.steps},
-            {"vertices", r.vertices},
-            {"links", r.links}});
+  Json j = json_of(r, kResult);
+  j["schema"] = kRecordSchema;
+  j.update(json_of(r, kCase));
   if (!r.log.empty()) j["log"] = r.log;
   return to_text(j, indent);
 }
@@ -135,7 +104,7 @@ bool is_key(std::string_view text) {
   return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == text.npos;
 }
 
-std::string result_digest(const Record& r) { return sha256(to_text(result_json(r))); }
+std::string result_digest(const Record& r) { return sha256(to_text(json_of(r, kResult))); }
 
 std::string to_csv(const Series& series) {
   std::string text = join(series.columns, ",") + '\n';

@@ -32,18 +32,25 @@ template <class Json>
 void to_json(Json& json, const CaseSpec& spec) {
   json = {{"scene", spec.scene}, {"overrides", spec.overrides}, {"solver", spec.solver}};
 }
-void read_into(const JsonReader&, CaseSpec&);  ///< throws InputError
-Status::Kind status_of(const JsonReader&);     ///< throws InputError
+template <class Json>
+void to_json(Json& json, const Status& status) {
+  json = {{"kind", to_string(status.kind)},
+          {"reason", status.reason},
+          {"step", status.step},
+          {"vertex", status.vertex}};
+}
+// These throw InputError.
+void read_into(const JsonReader&, CaseSpec&);
+void read_into(const JsonReader&, Status&);
+void read_into(const JsonReader&, std::vector<PassCost>&);
+void read_into(const JsonReader&, ResolvedSettings&);
 
 /// One JSON object; doubles in shortest exact form, NaN as null. indent < 0: one line.
 std::string to_json(const Record&, int indent = -1);
 /// Throws InputError that names `where` (a file) if the text is not a record of this schema.
 Record record_from_json(std::string_view text, const std::string& where);
-/// The same of a part of another JSON text, and of parts of it.
+/// The same of a part of another JSON text.
 Record record_of(const JsonReader&);
-std::map<std::string, std::string> parameters_of(const JsonReader&);
-std::vector<PassCost> step_cost_of(const JsonReader&);
-ResolvedSettings resolved_settings_of(const JsonReader&);
 
 /// Whether the text is a case's address, 64 hexadecimal digits: no other becomes part of a path.
 bool is_key(std::string_view);

@@ -89,12 +89,6 @@ Record describe(const Scene& scene, const SolverChoice& choice) {
 
 namespace {
 
-/// Steps that the solver makes of one of the scene's, as far as it says.
-int substeps_of(const SolverChoice& choice) {
-  const std::string_view name = choice.entry->accuracy.substeps;
-  return name.empty() ? 1 : std::max(1, choice.params.integer(name));
-}
-
 /// `step` is the one that is being computed.
 void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions& options,
                CaseRun& run, std::unique_ptr<Solver>& solver, int& step) {
@@ -110,7 +104,7 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
   record.projections = projections_per_step(*solver);
   record.resolved_settings = choice.entry->resolved_settings(scene, choice.params);
 
-  DivergenceDetector detector(scene, record.step_cost, substeps_of(choice));
+  DivergenceDetector detector(scene, record.step_cost, choice.substeps());
   SceneMetrics scene_metrics(scene, options.measure);
   if (options.series_rows > 0) run.series.columns = scene_metrics.series_columns();
   const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));

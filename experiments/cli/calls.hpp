@@ -29,7 +29,7 @@ Answer check_all(int jobs, const std::string& results);
 }  // namespace check
 
 namespace reporting {
-/// Writes the page of the main job, at this preset, and gives its file.
+/// Writes the page of the main job, at this preset, and returns its file.
 std::string report_main_job(const std::string& preset, const std::string& results);
 }  // namespace reporting
 

@@ -82,7 +82,7 @@ struct Verb {
   std::function<int()> run;
 };
 
-/// Adds the verb's options and --quiet to its parser; gives what to do once they are parsed.
+/// Adds the verb's options and --quiet to its parser; returns what to do once they are parsed.
 std::function<int()> bind(const VerbEntry& entry, CLI::App& app) {
   if (!entry.bind) app.require_subcommand(1);
   std::function<int()> run = entry.bind ? entry.bind(app) : [] { return int{kUsage}; };

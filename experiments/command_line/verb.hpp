@@ -42,7 +42,7 @@ struct VerbEntry {
   VerbGroup group = VerbGroup::studies;
   std::string_view summary;  ///< one line
   std::string_view example;  ///< one or more full command lines, shown below --help
-  /// Adds options to the verb's parser and gives what to do once they are parsed. It may throw
+  /// Adds options to the verb's parser and returns what to do once they are parsed. It may throw
   /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr. nullptr: it has
   /// verbs and does nothing by itself.
   std::function<int()> (*bind)(CLI::App&) = nullptr;
@@ -63,7 +63,7 @@ std::function<int()> bind_verb(CLI::App& app) {
 /// All verbs, sorted by identifier (generated; see cmake/registry.cmake).
 std::span<const VerbEntry* const> verbs();
 
-/// What main() does: finds the verb, parses its options, runs it; gives the exit code.
+/// What main() does: finds the verb, parses its options, runs it; returns the exit code.
 int command_line(int argc, char** argv);
 
 }  // namespace taut

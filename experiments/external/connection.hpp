@@ -42,9 +42,9 @@ class Connection {
  public:
   explicit Connection(Command);  ///< throws InputError if it cannot be started
 
-  /// Sends a request, and bytes after its line, and gives the answer: an object without "error".
+  /// Sends a request, and bytes after its line, and returns the answer: an object without "error".
   Json ask(const Json& request, std::string_view bytes = {});
-  /// Sends a line as it is and gives the answer, whatever it says: for bad requests.
+  /// Sends a line as it is and returns the answer, whatever it says: for bad requests.
   Json ask_line(const std::string& line);
   /// Exactly so many bytes, which follow an answer.
   std::string take(std::size_t bytes);

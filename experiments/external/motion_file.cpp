@@ -53,7 +53,7 @@ struct VertexMatch {
   bool same_order() const { return std::ranges::is_sorted(of_scene); }
 };
 
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kNoVertex = std::numeric_limits<std::size_t>::max();
 
 std::string coordinates(const Vec3& x) {
   return formatted("(%.6g, %.6g, %.6g)", x.x(), x.y(), x.z());
@@ -67,9 +67,9 @@ class Neighbours {
     std::ranges::sort(order_, {}, [&](std::size_t i) { return all_[i].x(); });
   }
 
-  /// The nearest within `radius`; kNone: there is none.
+  /// The nearest within `radius`; kNoVertex: there is none.
   std::size_t within(const Vec3& x, double radius) const {
-    std::size_t best = kNone;
+    std::size_t best = kNoVertex;
     auto at = std::ranges::lower_bound(order_, x.x() - radius, {},
                                        [&](std::size_t i) { return all_[i].x(); });
     for (; at != order_.end() && all_[*at].x() <= x.x() + radius; ++at)
@@ -109,14 +109,14 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
   match.farthest = farthest();
   if (match.farthest <= tolerance) return match;
 
-  match.of_scene.assign(file.size(), kNone);
+  match.of_scene.assign(file.size(), kNoVertex);
   const Neighbours neighbours(scene);
-  std::size_t strays = 0, first_stray = kNone;
+  std::size_t strays = 0, first_stray = kNoVertex;
   for (std::size_t i = 0; i < file.size(); ++i) {
     const std::size_t same = neighbours.within(file[i], tolerance);
-    if (same == kNone) {
+    if (same == kNoVertex) {
       ++strays, first_stray = std::min(first_stray, i);
-    } else if (match.of_scene[same] != kNone) {
+    } else if (match.of_scene[same] != kNoVertex) {
       match.mismatch = "its vertices " + std::to_string(match.of_scene[same]) + " and " +
                        std::to_string(i) + " both lie on the scene's vertex " +
                        std::to_string(same) + " " + coordinates(scene[same]);

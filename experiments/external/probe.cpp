@@ -57,7 +57,7 @@ class Prober {
       std::function<void(const Check&)> report = [](const Check&) {})
       : command_(command), params_(std::move(params)), report_(std::move(report)) {}
 
-  /// The sentence that `look` gives, or throws.
+  /// The sentence that `look` returns, or throws.
   void check(const std::string& name, const std::function<std::string()>& look) {
     Check one{name, Verdict::passed, {}};
     try {

@@ -31,7 +31,7 @@ struct SceneAnswer {
 /// wrong; members that nobody knows are ignored.
 std::unique_ptr<const Hello> read_hello(const Json&);
 SceneAnswer read_scene_answer(const Json&, int vertices);
-double read_step(const Json&);  ///< s of CPU time by its own word; NaN: it does not say
+double read_step(const Json&);  ///< s of CPU time as the program says; NaN: it does not say
 std::size_t read_store(const Json&, int vertices);  ///< bytes of a state that follow
 
 /// Says hello. Throws SolverFailure with what is wrong in the answer.
@@ -45,8 +45,8 @@ Json own_params(const Hello&, const Params&);
 
 /// load, step and store.
 void load_state(Connection&, const State&);
-/// Advances `count` steps of dt from t; gives the CPU seconds that the program says it took, NaN if
-/// it does not say.
+/// Advances `count` steps of dt from t; returns the CPU seconds that the program says it took, NaN
+/// if it does not say.
 double take_steps(Connection&, double t, double dt, int count);
 /// Whether a program's word about its time agrees with its CPU clock: within a tenth and two empty
 /// exchanges, what a busy machine's caches cost. [s] a step.

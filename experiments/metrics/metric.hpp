@@ -65,8 +65,8 @@ enum class Role {
 
 /// Distance from the dynamic reference over the way: 1 of a cloth that stands still.
 inline constexpr std::string_view kMotionError = "motion.error";
-/// RMS strain that the rounding of a file of positions makes. No metric gives it: a case that plays
-/// such a file says it.
+/// RMS strain that the rounding of a file of positions makes. No metric returns it: a case that
+/// plays such a file says it.
 inline constexpr std::string_view kStrainFloor = "strain.floor";
 
 /// A number that a metric yields.
@@ -90,7 +90,7 @@ struct ValueSpec {
 };
 
 /// Watches one run. `observe` sees every step boundary in order, the start included, and must be
-/// cheap or choose its own moments; `finish` is called once and gives the values in the entry's
+/// cheap or choose its own moments; `finish` is called once and returns the values in the entry's
 /// order. A value that has no meaning for this run is NaN (stored as null, drawn as absent).
 class Metric {
  public:

@@ -47,27 +47,19 @@ class Search {
                                                   double share) {
     std::vector<Case> cases;
     for (const CaseSpec& spec : specs) cases.push_back(maker_.make(spec));
-    const CampaignProgress campaign = run_cases(cases, store_,
-                                                {.jobs = options_.jobs,
-                                                 .frames = true,
-                                                 .deadline = at(share),
-                                                 .progress = options_.progress});
-    found_.interrupted = found_.interrupted || campaign.interrupted;
-    found_.cases += campaign.cases, found_.ran += campaign.ran;
-    if (campaign.conflicts > 0)
-      throw InputError("another result than the one stored; see table conflicts of " +
-                       store_.file().string());
-    std::vector<std::optional<Observation>> seen;
-    for (const Case& one : cases) {
-      const std::optional<Record> record = store_.find(one);
-      if (!record || (completed(record->status) && !store_.has_frames(one.key))) {
-        seen.emplace_back();
-        continue;
+    const CasesRun run = run_and_read(std::move(cases), store_,
+                                      {.jobs = options_.jobs,
+                                       .frames = true,
+                                       .deadline = at(share),
+                                       .progress = options_.progress});
+    found_.interrupted = found_.interrupted || run.campaign.interrupted;
+    found_.cases += run.campaign.cases, found_.ran += run.campaign.ran;
+    std::vector<std::optional<Observation>> seen(run.cases.size());
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      if (const auto& record = run.records[i]) {
+        seen[i] = Observation{run.cases[i], *record, {}};
+        if (completed(record->status)) seen[i]->frames = store_.motion(record->key).frames;
       }
-      Observation observed{one, *record, {}};
-      if (completed(record->status)) observed.frames = store_.motion(one.key).frames;
-      seen.emplace_back(std::move(observed));
-    }
     return seen;
   }
 
@@ -93,7 +85,7 @@ class Search {
     return !found_.interrupted;
   }
 
-  /// What is known of chaos holds none the less.
+  /// What is known of chaos still holds.
   bool give_up(const std::string& what) {
     found_.not_done.push_back(what);
     drop_shape();
@@ -263,7 +255,8 @@ class Search {
     found_.file = found_.smallest->spec.scene;
   }
 
-  /// Adds what still stays within, each as strongly as it may; gives what was added, and its trial.
+  /// Adds what still stays within, each as strongly as it may; returns what was added, and its
+  /// trial.
   Choice one_by_one(const Choice& wanted, ModelTrial& best) {
     Choice chosen;
     for (const auto& [effect, level] : wanted)
@@ -290,8 +283,8 @@ class Search {
     const Store apart(scratch.path());
     apart.prepare();
     const Case again = make_case(found_.smallest->spec);
-    run_cases({again}, apart, {.jobs = 1, .deadline = at(kVerifiedBy)});
-    const std::optional<Record> first = store_.find(again), second = apart.find(again);
+    const std::optional<Record> first = store_.find(again),
+                                second = run_stored(again, apart, {}, at(kVerifiedBy));
     if (!second) return found_.not_done.push_back("the verification");
     found_.verified = first && first->digest == second->digest;
   }

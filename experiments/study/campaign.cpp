@@ -6,19 +6,16 @@
 #include <deque>
 #include <iostream>
 #include <list>
-#include <thread>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/signals.hpp"
 
 namespace taut {
 
 double estimated_work(const Case& one) {
-  double sweeps = 1;
-  const AccuracyParameters& accuracy = one.choice.entry->accuracy;
-  for (const std::string_view parameter : {accuracy.substeps, accuracy.sweeps})
-    if (!parameter.empty()) sweeps *= std::max(1, one.choice.params.integer(parameter));
+  const double sweeps = 1.0 * one.choice.substeps() * one.choice.sweeps();
   return one.scene->steps *
          (20.0 * one.scene->mesh.size() + static_cast<double>(one.scene->links.size()) * sweeps);
 }
@@ -121,31 +118,7 @@ class Campaign {
   CampaignProgress progress_;
 };
 
-/// Nothing if it has not ended by then.
-std::optional<Record> wait_for(IsolatedCase& running, SteadyClock::time_point deadline) {
-  for (; SteadyClock::now() < deadline; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
-    if (const auto record = running.poll()) return record;
-  return std::nullopt;
-}
-
 }  // namespace
-
-std::optional<Record> run_stored(const Case& one, const Store& store, const Limits& limits,
-                                 SteadyClock::time_point deadline) {
-  if (const auto record = store.find(one)) return record;
-  const std::filesystem::path folder = store.stage(one.key);
-  std::optional<Record> record;
-  {
-    IsolatedCase running(one, folder, limits);
-    record = wait_for(running, deadline);
-  }
-  if (!record)
-    std::filesystem::remove_all(folder);
-  else if (store.commit(folder, *record) == Store::Commit::conflict)
-    throw InputError(one.id + ": another result than the one stored; see table conflicts of " +
-                     store.file().string());
-  return record;
-}
 
 Record run_again(const Case& one, const Store& store, const Limits& limits) {
   const std::filesystem::path folder = store.stage(one.key);
@@ -158,6 +131,28 @@ Record run_again(const Case& one, const Store& store, const Limits& limits) {
 CampaignProgress run_cases(const std::vector<Case>& cases, const Store& store,
                            const CampaignOptions& options) {
   return Campaign(store, options).run(cases);
+}
+
+CasesRun run_and_read(std::vector<Case> cases, const Store& store, const CampaignOptions& options) {
+  CasesRun run{std::move(cases), {}, {}};
+  run.campaign = run_cases(run.cases, store, options);
+  if (run.campaign.conflicts > 0)
+    throw InputError("another result than the one stored; see table conflicts of " +
+                     store.file().string());
+  for (const Case& one : run.cases) {
+    std::optional<Record> record = store.find(one);
+    if (record && options.frames && completed(record->status) && !store.has_frames(one.key))
+      record.reset();
+    run.records.push_back(std::move(record));
+  }
+  return run;
+}
+
+std::optional<Record> run_stored(const Case& one, const Store& store, const Limits& limits,
+                                 SteadyClock::time_point deadline) {
+  CasesRun run = run_and_read({one}, store, {.limits = limits, .deadline = deadline});
+  if (run.campaign.interrupted) throw Interrupted();
+  return std::move(run.records.front());
 }
 
 StudyRecords collect(const Study& study, const Store& store) {

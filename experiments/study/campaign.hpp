@@ -51,14 +51,24 @@ struct CampaignOptions {
 /// lost. Unfinished at the deadline: done() < cases.
 CampaignProgress run_cases(const std::vector<Case>&, const Store&, const CampaignOptions&);
 
-/// The stored record of a case, or the one that a process of its own gives and that is stored now;
-/// nothing if it has not ended by the deadline. Throws InputError if the result differs from one
-/// that is stored.
+/// Cases, and what is stored of each once they have run.
+struct CasesRun {
+  std::vector<Case> cases;
+  /// Nothing: not ended by the deadline, or without the motion that was asked for.
+  std::vector<std::optional<Record>> records;
+  CampaignProgress campaign;
+};
+
+/// run_cases(), and reads the records. Throws InputError if a result differs from one that is
+/// stored.
+CasesRun run_and_read(std::vector<Case>, const Store&, const CampaignOptions&);
+
+/// The same of one case. Throws Interrupted too.
 std::optional<Record> run_stored(
     const Case&, const Store&, const Limits& = {},
     std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max());
 
-/// The same without a deadline, without looking into the store and without leaving anything there.
+/// Runs a case in a process of its own, whatever is stored of it, and leaves nothing in the store.
 Record run_again(const Case&, const Store&, const Limits& = {});
 
 /// What the store knows of a study.

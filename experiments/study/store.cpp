@@ -52,20 +52,21 @@ int place(const Database::Rows& row, int column) {
 
 /// All but the values, of kCaseColumns. Throws InputError where a text is not what it has to be.
 Record record_in(const Database::Rows& row) {
-  const auto parsed = [&](int column, auto read) {
-    return read_json(row.text(column), "column " + std::to_string(column + 1), read);
+  const auto parse = [&](int column, auto& into) {
+    read_json(row.text(column), "column " + std::to_string(column + 1),
+              [&](const JsonReader& j) { return read_into(j, into), true; });
   };
   Record r;
   r.key = row.text(0), r.id = row.text(1), r.scene = row.text(2);
-  r.spec = {row.text(3), parsed(4, [](const JsonReader& j) { return j.texts(); }), row.text(6)};
+  r.spec = {row.text(3), {}, row.text(6)};
+  parse(4, r.spec.overrides);
   r.solver = row.text(5);
-  r.params = parsed(7, parameters_of);
+  parse(7, r.params);
   r.dt = row.number(8);
   r.steps = place(row, 9), r.vertices = place(row, 10), r.links = place(row, 11);
   r.status = {status_kind(row.text(12)), row.text(13), place(row, 14), place(row, 15)};
   r.projections = static_cast<std::size_t>(row.integer(16));
-  r.step_cost = parsed(17, step_cost_of);
-  r.resolved_settings = parsed(18, resolved_settings_of);
+  parse(17, r.step_cost), parse(18, r.resolved_settings);
   r.digest = row.text(19);
   r.log = row.text(21);
   if (!(r.dt > 0) || r.steps < 0 || r.vertices < 0 || r.links < 0)

@@ -122,7 +122,7 @@ fs::path new_scratch_folder() {
 Scratch::Scratch()
     : path_(new_scratch_folder()),
       lock_(open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)),
-      tie_(path_) {
+      with_program_(path_) {
   flock(lock_, LOCK_SH);
 }
 

@@ -41,13 +41,13 @@ class Scratch {
  private:
   std::filesystem::path path_;
   int lock_;  ///< a descriptor of the folder, locked for as long as the process lives
-  EndsWithProgram tie_;
+  EndsWithProgram with_program_;
 };
 
 /// Of this machine.
 std::string host_name();
 
-/// "<host>.<pid>.<8 hex digits>": a name that no other process gives.
+/// "<host>.<pid>.<8 hex digits>": a name that no other process makes.
 std::string unique_suffix();
 
 /// "20260102T030405Z", the time now.

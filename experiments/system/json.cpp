@@ -129,6 +129,14 @@ std::vector<double> JsonReader::numbers() const {
 void read_into(const JsonReader& json, std::string& text) { text = json.text(); }
 void read_into(const JsonReader& json, bool& flag) { flag = json.flag(); }
 void read_into(const JsonReader& json, std::size_t& count) { count = json.count(); }
+void read_into(const JsonReader& json, int& number) { number = json.integer(number); }
+void read_into(const JsonReader& json, std::vector<std::string>& all) { all = json.texts(); }
+void read_into(const JsonReader& json, std::map<std::string, std::string>& all) {
+  for (const auto& [name, value] : json.members()) all[name] = value.text();
+}
+void read_into(const JsonReader& json, std::map<std::string, double>& all) {
+  for (const auto& [name, value] : json.members()) all[name] = value.number_or_null();
+}
 void read_into(const JsonReader& json, double& number) {
   number = std::isnan(number) ? json.number_or_null() : json.number();
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
@@ -29,7 +30,7 @@ Json parse_json(std::string_view);
 Json json_number(double);
 /// Appends a field unless it is null or empty.
 void add_if(Json& object, const char* name, Json value);
-/// An array of what `json_of(item)` gives for each of the items.
+/// An array of what `json_of(item)` returns for each of the items.
 template <class Range, class JsonOf>
 Json json_array(const Range& items, const JsonOf& json_of) {
   Json all = Json::array();
@@ -78,11 +79,15 @@ class JsonReader {
   int line_;
 };
 
-/// What a JsonReader gives, by type; null is NaN where a number is NaN unless it is read.
+/// What a JsonReader holds, by type; null is NaN where a number is NaN unless it is read.
 void read_into(const JsonReader&, std::string&);
 void read_into(const JsonReader&, bool&);
 void read_into(const JsonReader&, double&);
 void read_into(const JsonReader&, std::size_t&);
+void read_into(const JsonReader&, int&);  ///< no smaller than it is
+void read_into(const JsonReader&, std::vector<std::string>&);
+void read_into(const JsonReader&, std::map<std::string, std::string>&);
+void read_into(const JsonReader&, std::map<std::string, double>&);  ///< null is NaN
 
 /// A member of a struct under its name in JSON: a tuple of these writes the struct and reads it.
 template <class Struct, class Value>
@@ -99,19 +104,24 @@ Json json_of(const Struct& object, const std::tuple<Field<Struct, Values>...>& f
   std::apply([&](const auto&... one) { ((json[one.name] = object.*one.member), ...); }, fields);
   return json;
 }
-/// The object that has these members, by read_into(). Throws InputError.
+/// Reads these members, by read_into(). Throws InputError.
+template <class Struct, class... Values>
+void read_into(const JsonReader& json, Struct& object,
+               const std::tuple<Field<Struct, Values>...>& fields) {
+  std::apply([&](const auto&... one) { (read_into(json.at(one.name), object.*one.member), ...); },
+             fields);
+}
 template <class Struct, class... Values>
 Struct read_as(const JsonReader& json, const std::tuple<Field<Struct, Values>...>& fields) {
   Struct object;
-  std::apply([&](const auto&... one) { (read_into(json.at(one.name), object.*one.member), ...); },
-             fields);
+  read_into(json, object, fields);
   return object;
 }
 
 /// The parsed text; throws InputError that names the file.
 Json parse_json_of(std::string_view text, const std::string& file, int line = 0);
 
-/// Parses a text of that file and gives what `read` makes of its root. Throws InputError.
+/// Parses a text of that file and returns what `read` makes of its root. Throws InputError.
 template <class Read>
 auto read_json(std::string_view text, const std::string& file, Read read, int line = 0) {
   const Json json = parse_json_of(text, file, line);

@@ -178,7 +178,7 @@ Process::Process(std::vector<std::string> words, const ProcessOptions& options) 
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (pid_ < 0) fail_start(words.front(), fork_error);
 
-  tie_ = std::make_unique<EndsWithProgram>(pid_);
+  with_program_ = std::make_unique<EndsWithProgram>(pid_);
   descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
   pipes.child_failed = Descriptor();
   int error = descriptor_ < 0 ? errno : 0;
@@ -211,7 +211,7 @@ ProcessEnd Process::reap() {
   rusage used{};
   while (wait4(pid_, &status, 0, &used) < 0 && errno == EINTR) {
   }
-  tie_.reset();
+  with_program_.reset();
   end_orphans(mark_);
   end_ = WIFEXITED(status) ? ProcessEnd{WEXITSTATUS(status), 0} : ProcessEnd{-1, WTERMSIG(status)};
   end_->peak_bytes = static_cast<std::size_t>(used.ru_maxrss) * 1024;

@@ -104,7 +104,7 @@ class Process {
   int descriptor_ = -1, input_ = -1, output_ = -1;
   std::optional<ProcessEnd> end_;
   bool was_stopped_ = false;
-  std::unique_ptr<EndsWithProgram> tie_;
+  std::unique_ptr<EndsWithProgram> with_program_;
   std::string buffer_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDearer = 1.3;   ///< a quick cost this much above its own best is not worth a run
 constexpr double kHopeless = 30;  ///< nor is one this much above the best of all
-constexpr double kFar = 10;       ///< above the best of all: found, but not polished
+constexpr double kNotPolished = 10;  ///< above the best of all: found, but not polished
 
 /// Values of the second parameter, each tried with its own number of substeps.
 struct Columns {
@@ -225,7 +225,7 @@ class SettingSearch {
   /// Whether this solver is near enough to the best of the others to be polished.
   bool worth_more() const {
     if (!best_) return false;
-    return target_.budget || tried_[*best_].cost.mid <= kFar * least(known_);
+    return target_.budget || tried_[*best_].cost.mid <= kNotPolished * least(known_);
   }
 
   void alternatives() {

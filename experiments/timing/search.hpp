@@ -13,7 +13,7 @@ namespace taut {
 using Evaluation = std::function<std::optional<Candidate>(const std::string& setting)>;
 
 /// Looks for the setting of `solver` (its text fixes what it names) that serves the target best,
-/// and gives all that it tried. It walks the accuracy parameters of the
+/// and returns all that it tried. It walks the accuracy parameters of the
 /// solver's entry, not their grid:
 ///   1. columns of the second parameter (sweeps, or a stiffness): in each, the fewest substeps that
 ///      reach the error by doubling, from half of what the column before needed; or the most that

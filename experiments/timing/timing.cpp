@@ -17,6 +17,7 @@
 
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/timing/interleave.hpp"
 
 namespace taut {
 
@@ -42,7 +43,7 @@ class Clock {
 
 StepTime operator/(const StepTime& t, int steps) { return {t.cpu / steps, t.wall / steps}; }
 
-constexpr std::string_view kRefusal = "! ";  ///< begins a worker's answer that gives no time
+constexpr std::string_view kRefusal = "! ";  ///< begins a worker's answer that is no time
 
 std::vector<std::string> worker_command(const CaseSpec& spec) {
   std::vector<std::string> words{program_of(spec), "bench", "--worker", spec.scene, spec.solver};
@@ -202,17 +203,17 @@ class Control {
       if (of_ == cases.size()) break;
       twin_ = start_case(all_[of_], options_);
       twin_.steps = cases[of_].steps;
-      skipped_ = cases[of_].timing.samples.size();
+      skipped_ = cases[of_].timing.samples.size() / 2 * 2;  // those of the rounds that are over
     }
     return twin_;
   }
 
   Interval ratio(const std::vector<Timing>& timings) const {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     const std::vector<double>& again = twin_.timing.samples;
     if (of_ >= timings.size() || again.empty() || !twin_.timing.failure.empty() ||
         !timings[of_].failure.empty())
-      return {kNone, kNone, kNone};
+      return {kNaN, kNaN, kNaN};
     return interleaved_ratio(std::span(timings[of_].samples).subspan(skipped_), again);
   }
 
@@ -268,19 +269,14 @@ TimingSession time_cases(const std::vector<CaseToTime>& all, const TimingOptions
       one.timing.wall.push_back(time.wall);
     });
   };
-  SteadyClock::duration longest{};
-  for (int round = 0; round < options.rounds; ++round) {
-    const SteadyClock::time_point start = SteadyClock::now();
-    if (options.deadline - start < longest + longest / 2) break;
-    SampledCase& twin = control.twin(cases);
-    std::for_each(cases.begin(), cases.end(), sample);
-    sample(twin), sample(twin);
-    std::for_each(cases.rbegin(), cases.rend(), sample);
-    if (options.progress)
-      options.progress(static_cast<std::size_t>(round) + 1,
-                       static_cast<std::size_t>(options.rounds));
-    longest = std::max(longest, SteadyClock::now() - start);
-  }
+  control.twin(cases);
+  interleave(
+      cases.size(), {options.rounds, options.deadline, options.progress},
+      [&](std::size_t i) { sample(cases[i]); },
+      [&] {
+        SampledCase& twin = control.twin(cases);
+        sample(twin), sample(twin);
+      });
   TimingSession session;
   for (SampledCase& one : cases) {
     one.guard([&] {

@@ -56,7 +56,7 @@ class TimingWorker {
   /// Starts `bench --worker` for the case; throws InputError if the case cannot be built.
   explicit TimingWorker(const CaseSpec&);
 
-  /// Runs the first `steps` steps once and gives their mean; required before sample(). Both throw
+  /// Runs the first `steps` steps once and returns their mean; required before sample(). Both throw
   /// std::runtime_error if the worker died.
   StepTime pilot_run(int steps);
   StepTime sample(int steps);  ///< see CheckpointedRun::sample

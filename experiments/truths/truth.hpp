@@ -58,7 +58,7 @@ class Findings {
   /// A fitted exponent with its standard error.
   void slope(std::string_view subject, std::string_view quantity, const PowerLaw& fitted,
              double expected, double tolerance);
-  /// The truth says `expected`; this subject legitimately gives `explained` (within tolerance).
+  /// The truth says `expected`; this subject legitimately has `explained` (within tolerance).
   /// Where both are within the tolerance it passes: nobody could tell them apart.
   void deviates(std::string_view subject, std::string_view quantity, std::string_view unit,
                 double measured, double expected, double explained, double tolerance,
@@ -106,14 +106,14 @@ class Simulation {
   /// After so many steps.
   Simulation(const Scene&, std::string_view solver, int steps = 0);
   void step(int n = 1);
-  /// What `value()` gives after each of so many steps.
+  /// What `value()` returns after each of so many steps.
   template <class Value>
   std::vector<double> record(int steps, const Value& value) {
     std::vector<double> all;
     for (int n = 0; n < steps; ++n) step(), all.push_back(value());
     return all;
   }
-  /// The largest of what `error(n)` gives after the steps n = 1, 2, ... `steps`.
+  /// The largest of what `error(n)` returns after the steps n = 1, 2, ... `steps`.
   template <class Error>
   double worst(int steps, const Error& error) {
     double most = 0;

@@ -12,6 +12,7 @@
 
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/timing/interleave.hpp"
 #include "tests/support/scripted.hpp"
 
 namespace taut::timing_test {
@@ -154,6 +155,23 @@ TEST(TimingWorkers, WhatTheyRefuseAndThatTheyDieIsSaid) {
   EXPECT_THROW(silent.pilot_run(3), TimeIsUp);
   EXPECT_GE(seconds_since(start), 0.149);
   EXPECT_LT(seconds_since(start), 5);
+}
+
+TEST(Rounds, GoForthAndBackAndSayHowFarTheyAre) {
+  std::string log;
+  interleave(
+      3,
+      {.count = 2,
+       .progress =
+           [&](std::size_t done, std::size_t all) {
+             log += std::to_string(done) + "/" + std::to_string(all) + " ";
+           }},
+      [&](std::size_t i) { log += std::string(1, static_cast<char>('A' + i)); },
+      [&] { log += "-"; });
+  EXPECT_EQ(log, "ABC-CBA1/2 ABC-CBA2/2 ");
+  int samples = 0;
+  interleave(1, {.count = 2, .deadline = SteadyClock::now()}, [&](std::size_t) { ++samples; });
+  EXPECT_EQ(samples, 0) << "the deadline has passed";
 }
 
 TEST(Benches, GoForthAndBackAndTheFirstCaseIsItsOwnControl) {

@@ -28,10 +28,10 @@ float distance2(const Point& a, const Point& b) {
 class Batches {
  public:
   Batches(const std::vector<Point>& x, const Adjacency& neighbours)
-      : x_(x), neighbours_(neighbours), batch_(x.size(), kNone) {
+      : x_(x), neighbours_(neighbours), batch_(x.size(), kNoVertex) {
     std::vector<int> own;
-    for (int start; (start = farthest_out()) != kNone;) {
-      for (int next = start; next != kNone && own.size() < kBatch; next = nearest(own)) {
+    for (int start; (start = farthest_out()) != kNoVertex;) {
+      for (int next = start; next != kNoVertex && own.size() < kBatch; next = nearest(own)) {
         own.push_back(next);
         batch_[to_index(next)] = count_;
       }
@@ -47,7 +47,7 @@ class Batches {
   int count() const { return count_; }
 
  private:
-  static constexpr int kNone = -1;
+  static constexpr int kNoVertex = -1;
 
   /// Of the vertices without a batch the lowest along their longest axis, then along the others.
   int farthest_out() const {
@@ -55,7 +55,7 @@ class Batches {
     for (std::size_t k = 0; k < 3; ++k) {
       float high = -kInfinity;
       for (std::size_t v = 0; v < x_.size(); ++v)
-        if (batch_[v] == kNone)
+        if (batch_[v] == kNoVertex)
           low[k] = std::min(low[k], x_[v][k]), high = std::max(high, x_[v][k]);
       size[k] = high - low[k];
     }
@@ -67,9 +67,9 @@ class Batches {
     const auto along = [&](std::size_t v) {
       return std::tuple(x_[v][longest], x_[v][3 - longest - shortest], x_[v][shortest]);
     };
-    int best = kNone;
+    int best = kNoVertex;
     for (std::size_t v = 0; v < x_.size(); ++v)
-      if (batch_[v] == kNone && (best == kNone || along(v) < along(to_index(best))))
+      if (batch_[v] == kNoVertex && (best == kNoVertex || along(v) < along(to_index(best))))
         best = static_cast<int>(v);
     return best;
   }
@@ -77,17 +77,17 @@ class Batches {
   /// Of the free neighbours of these vertices the one with most links to them, then the one nearest
   /// to the first of them.
   int nearest(const std::vector<int>& own) const {
-    int best = kNone;
+    int best = kNoVertex;
     std::pair<std::ptrdiff_t, float> least{0, 0};  // links, counted down, and distance
     for (const int vertex : own)
       for (const auto& [v, link] : neighbours_.of(vertex)) {
-        if (batch_[to_index(v)] != kNone) continue;
+        if (batch_[to_index(v)] != kNoVertex) continue;
         const std::pair rank{-std::ranges::count_if(neighbours_.of(v),
                                                     [&](const Adjacency::End& end) {
                                                       return batch_[to_index(end.vertex)] == count_;
                                                     }),
                              distance2(x_[to_index(v)], x_[to_index(own.front())])};
-        if (best == kNone || rank < least) best = v, least = rank;
+        if (best == kNoVertex || rank < least) best = v, least = rank;
       }
     return best;
   }

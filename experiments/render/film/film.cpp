@@ -213,7 +213,7 @@ void film_scenes(report::ReportInput& input, const std::vector<std::string>& oth
   const std::vector<Film> films = all_films(input, others);
   std::vector<std::optional<FilmResult>> results(films.size());
   std::atomic<std::size_t> next{0};
-  std::mutex telling;
+  std::mutex output;
   const auto work = [&] {
     for (std::size_t k = next++; k < films.size(); k = next++) {
       std::string news = films[k].scene + " filmed";
@@ -223,7 +223,7 @@ void film_scenes(report::ReportInput& input, const std::vector<std::string>& oth
       } catch (const InputError& error) {
         news = films[k].scene + " not filmed: " + error.what();
       }
-      const std::lock_guard lock(telling);
+      const std::lock_guard lock(output);
       if (made) say(news);
     }
   };

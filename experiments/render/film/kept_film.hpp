@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// What a film gives a report.
+/// What a report has of a film.
 struct FilmResult {
   report::SceneMedia media;                ///< with one clip
   std::vector<report::TimeSeries> series;  ///< of a scene that no study ran

@@ -71,8 +71,8 @@ struct Font {
   }
   Font(const Font&) = delete;  // `info` points into `bytes`
   Font& operator=(const Font&) = delete;
-  /// Calls `plot(x, y, coverage)` for each pixel of the text whose baseline starts at (x, y); gives
-  /// the advance in pixels. `size` is the em in pixels.
+  /// Calls `plot(x, y, coverage)` for each pixel of the text whose baseline starts at (x, y);
+  /// returns the advance in pixels. `size` is the em in pixels.
   double draw(double x, double y, std::string_view utf8, double size,
               const std::function<void(int, int, double)>& plot) const;
 

@@ -33,7 +33,7 @@ class Canvas {
   void disc(Point centre, double radius, Rgb8);
   /// Three corners in any order.
   void triangle(const std::array<Point, 3>&, Rgb8);
-  /// At baseline point `at`; gives the advance in pixels. Throws InputError if no font is found.
+  /// At baseline point `at`; returns the advance in pixels. Throws InputError if no font is found.
   double text(Point at, std::string_view utf8, const TextStyle&);
 
  private:

@@ -44,7 +44,10 @@ FrameRate frame_rate(double seconds) {
 }
 
 VideoWriter::VideoWriter(const std::filesystem::path& mp4, const Options& options)
-    : path_(mp4), temporary_(mp4.string() + ".tmp.mp4"), options_(options), tie_(temporary_) {
+    : path_(mp4),
+      temporary_(mp4.string() + ".tmp.mp4"),
+      options_(options),
+      with_program_(temporary_) {
   assert(options.width % 2 == 0 && options.height % 2 == 0);
   const std::string rate =
       std::to_string(options.rate.numerator) + "/" + std::to_string(options.rate.denominator);

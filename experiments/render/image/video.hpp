@@ -39,7 +39,7 @@ class VideoWriter {
  private:
   std::filesystem::path path_, temporary_;
   Options options_;
-  EndsWithProgram tie_;  ///< of the temporary file
+  EndsWithProgram with_program_;  ///< of the temporary file
   std::string failure_;
   std::optional<Process> ffmpeg_;
 };

@@ -64,8 +64,8 @@ std::vector<std::array<std::uint32_t, 3>> lattice_triangles(int nu, int nv) {
   return triangles;
 }
 
-/// Adds a surface of rows x columns quads, two triangles each; at(j, i) gives the position and the
-/// normal of its point i of row j.
+/// Adds a surface of rows x columns quads, two triangles each; at(j, i) returns the position and
+/// the normal of its point i of row j.
 template <class At>
 void append_surface(RenderMesh& mesh, int rows, int columns, float value, const At& at) {
   const auto first = static_cast<std::uint32_t>(mesh.position.size()),

@@ -88,8 +88,8 @@ double distance(const RecordedRun& first, const RecordedRun& other, double t) {
 
 /// Where the runs differ most in strain, else in place; the greatest strain of a single one; two
 /// thirds on the way if nothing differs.
-std::size_t most_telling(const Media& media, const Scene& scene,
-                         const std::vector<RecordedRun>& runs) {
+std::size_t most_different(const Media& media, const Scene& scene,
+                           const std::vector<RecordedRun>& runs) {
   constexpr double kStrain = 1e-3, kPlace = 1e-2;  // differences that are seen: 1, of the extent
   std::vector<double> strain, place;
   for (std::size_t k = 0; k < media.t.size(); ++k) {
@@ -142,7 +142,7 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   const SceneRenderer renderer(scene, runs, look);
   media.scale = renderer.scale();
   lay_flat(media, renderer);
-  const std::size_t poster = most_telling(media, scene, runs);
+  const std::size_t poster = most_different(media, scene, runs);
   media.poster_t = media.t[poster];
   const Image poster_image = side_by_side(renderer, options, media.poster_t);
   media.poster = jpeg_bytes(poster_image);

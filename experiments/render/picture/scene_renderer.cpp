@@ -133,7 +133,7 @@ std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Recor
 
 /// The view, or its mirror image if the cloth shows more of itself there: farther spread across the
 /// line of sight. A flag is not seen along its wind.
-View telling_view(const View& view, const std::vector<Vec3>& cloth, const Vec3& up) {
+View better_side(const View& view, const std::vector<Vec3>& cloth, const Vec3& up) {
   if (!view.either_side) return view;
   const auto spread = [&](const View& candidate) {
     const Vec3 right = fit_camera(cloth, up, candidate, 1, FitRegion{}).right.cast<double>();
@@ -255,7 +255,7 @@ Placing place(const Scene& scene, const std::vector<RecordedRun>& runs,
     p.radius = std::max(p.radius, (x - p.centre).norm());
     lowest = std::min(lowest, x.dot(p.up));
   }
-  p.camera = fit_camera(points, p.up, telling_view(view, cloth, p.up), aspect, frame);
+  p.camera = fit_camera(points, p.up, better_side(view, cloth, p.up), aspect, frame);
   p.floor = level_floor(scene, p.up);
   p.ground = p.floor ? std::get<Plane>(p.floor->shape).offset - inset : lowest - 0.08 * p.radius;
   p.cell = round_up(0.3 * p.radius, 1e-6);

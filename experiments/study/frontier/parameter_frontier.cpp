@@ -60,8 +60,7 @@ std::optional<ParameterFrontier> search(const FrontierSetting& setting, const st
   found.from = question.setting(question.range.from);
   found.to = question.setting(question.range.to);
   const Case first = make_case(question.at(question.range.from));
-  if (run_cases({first}, store, options).interrupted) return {};
-  const std::optional<Record> record = store.find(first);
+  const std::optional<Record> record = run_and_read({first}, store, options).records.front();
   if (!record) return {};
   if (!ran(*record)) {
     found.lacks = record->status.reason.empty() ? std::string(to_string(record->status.kind))

@@ -217,15 +217,14 @@ CaseFrontier find_frontier(const FrontierQuestion& question, const Store& store,
   result.frontier = find_frontier(question.range, [&](const std::vector<double>& values) {
     std::vector<Case> cases;
     for (const double value : values) cases.push_back(maker.make(question.at(value)));
-    const CampaignProgress campaign = run_cases(cases, store, options);
-    result.ran += campaign.ran;
-    result.interrupted = result.interrupted || campaign.interrupted;
+    const CasesRun run = run_and_read(std::move(cases), store, options);
+    result.ran += run.campaign.ran;
+    result.interrupted = result.interrupted || run.campaign.interrupted;
     std::vector<Outcome> outcomes;
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      const std::optional<Record> record = store.find(cases[i]);
-      if (!record) break;
-      seen.emplace_back(values[i], *record);
-      outcomes.push_back({record->status, judge ? judge(cases[i], *record) : ""});
+    for (std::size_t i = 0; i < run.cases.size() && run.records[i]; ++i) {
+      const Record& record = *run.records[i];
+      seen.emplace_back(values[i], record);
+      outcomes.push_back({record.status, judge ? judge(run.cases[i], record) : ""});
     }
     return outcomes;
   });

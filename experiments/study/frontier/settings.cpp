@@ -55,10 +55,7 @@ class FrontierSettings {
   }
 
   /// s
-  double substep() const {
-    const std::string_view substeps = choice_.entry->accuracy.substeps;
-    return kStep / (substeps.empty() ? 1 : choice_.params.integer(substeps));
-  }
+  double substep() const { return kStep / choice_.substeps(); }
 
   FrontierSetting& add(const std::string& name, const std::string& unit, const std::string& of,
                        double from, double to, Direction direction = Direction::up,

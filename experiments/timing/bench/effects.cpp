@@ -11,6 +11,7 @@
 #include "core/model/text.hpp"
 #include "core/solver/thread_pool.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/timing/interleave.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -50,13 +51,13 @@ Scene without_effects(Scene scene) {
 
 /// Every particle still looks for its colliders, in vain.
 Scene touching_nothing(Scene scene) {
-  constexpr double kFar = 1000;  // m
+  constexpr double kAway = 1000;  // m
   for (Collider& c : scene.colliders) {
-    if (auto* const plane = std::get_if<Plane>(&c.shape)) plane->offset -= kFar;
-    if (auto* const ball = std::get_if<Ball>(&c.shape)) ball->center.y() -= kFar;
-    if (auto* const box = std::get_if<Box>(&c.shape)) box->center.y() -= kFar;
+    if (auto* const plane = std::get_if<Plane>(&c.shape)) plane->offset -= kAway;
+    if (auto* const ball = std::get_if<Ball>(&c.shape)) ball->center.y() -= kAway;
+    if (auto* const box = std::get_if<Box>(&c.shape)) box->center.y() -= kAway;
     if (auto* const capsule = std::get_if<Capsule>(&c.shape))
-      capsule->from.y() -= kFar, capsule->to.y() -= kFar;
+      capsule->from.y() -= kAway, capsule->to.y() -= kAway;
   }
   return scene;
 }
@@ -153,11 +154,8 @@ std::vector<EffectRow> bench_effects(const EffectBenchOptions& options) {
     } catch (const InputError& error) {
       subjects.emplace_back(name, error.what());
     }
-  for (int round = 0; round < options.rounds; ++round) {
-    for (TimedScene& subject : subjects) subject.sample();
-    for (auto s = subjects.rbegin(); s != subjects.rend(); ++s) s->sample();
-    options.progress(static_cast<std::size_t>(round) + 1, static_cast<std::size_t>(options.rounds));
-  }
+  interleave(subjects.size(), {.count = options.rounds, .progress = options.progress},
+             [&](std::size_t i) { subjects[i].sample(); });
   std::vector<EffectRow> rows;
   for (TimedScene& subject : subjects) rows.push_back(subject.take());
   return rows;
