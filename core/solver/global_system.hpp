@@ -48,38 +48,6 @@ class GlobalSystem {
   std::unique_ptr<Factor> factor_;
 };
 
-/// Over-relaxation of an iteration whose error shrinks by rho (Wang: A Chebyshev Semi-Iterative
-/// Approach for Accelerating Projective and Position-Based Dynamics, SIGGRAPH Asia 2015, equation
-/// 9): x_k+1 = omega_k (f(x_k) - x_k-1) + x_k-1, from the third iteration of a substep on.
-class Chebyshev {
- public:
-  /// rho in [0, 1); 0: none.
-  explicit Chebyshev(double rho) : rho_(rho) {}
-  bool on() const { return rho_ > 0; }
-  void begin() { iteration_ = 0; }
-  /// p.x is f(x_k), `from` is x_k: moves p.x to x_k+1. Pins stay.
-  void accelerate(Particles<double>& p, std::vector<Vec3> from) {
-    ++iteration_;
-    omega_ = iteration_ < kDelay    ? 1
-             : iteration_ == kDelay ? 2 / (2 - rho_ * rho_)
-                                    : 4 / (4 - rho_ * rho_ * omega_);
-    for (std::size_t i = 0; iteration_ >= kDelay && i < p.size(); ++i)
-      if (p.w[i] > 0) p.x.set(i, omega_ * (p.x[i] - before_[i]) + before_[i]);
-    before_ = std::move(from);
-  }
-  std::size_t bytes() const { return before_.size() * sizeof(Vec3); }
-
- private:
-  static constexpr int kDelay = 3;
-  double rho_, omega_ = 1;
-  int iteration_ = 0;
-  std::vector<Vec3> before_;  ///< m, x_k-1
-};
-
-inline constexpr ParamSpec kChebyshev =
-    ParamSpec::real("chebyshev", "", "0", 0, 0.99999,
-                    "rho of Chebyshev's semi-iteration, the error's factor per iteration; 0: none");
-
 inline std::vector<Vec3> positions(const Particles<double>& p) {
   std::vector<Vec3> x(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) x[i] = p.x[i];

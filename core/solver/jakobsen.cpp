@@ -1,6 +1,11 @@
 // Thomas Jakobsen, Advanced Character Physics (GDC 2001). TimeStep(), Verlet() and the loop over
 // iterations are core/solver/loop.cpp; what is here is the relaxation of the links.
+#include <cmath>
+
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
+#include "core/solver/chebyshev.hpp"
+#include "core/solver/constraints/lines.hpp"
 #include "core/solver/constraints/relaxation.hpp"
 #include "core/solver/loop.hpp"
 
@@ -15,9 +20,11 @@ constexpr ParamSpec kParams[] = {
     ParamSpec::choice("projection", "sqrt-free", "exact|sqrt-free",
                       "exact distance, or its first-order Taylor form without a square root"),
     ParamSpec::choice("method", "gauss-seidel",
-                      "gauss-seidel|jacobi|jacobi-averaged|jacobi-underrelaxed",
-                      "links one after the other, or all at once: summed, averaged, or divided by "
-                      "the largest number of links at a vertex"),
+                      "gauss-seidel|jacobi|jacobi-averaged|jacobi-underrelaxed|lines",
+                      "links one after the other; all at once: summed, averaged, or divided by the "
+                      "largest number of links at a vertex; or the structural links of a grid line "
+                      "by line, each solved at once"),
+    kChebyshev,
     kOrderParam,
     ParamSpec::integer("seed", "1", 0, 2147483647, "of order=random"),
     ParamSpec::real("omega", "", "1", 0, 2,
@@ -40,15 +47,17 @@ using Choice = std::pair<std::string_view, T>;
 
 constexpr Choice<Projection> kProjections[] = {{"exact", Projection::exact},
                                                {"sqrt-free", Projection::sqrt_free}};
-constexpr Choice<std::optional<Jacobi>> kMethods[] = {
-    {"gauss-seidel", {}},
-    {"jacobi", Jacobi::plain},
-    {"jacobi-averaged", Jacobi::averaged},
-    {"jacobi-underrelaxed", Jacobi::underrelaxed}};
+constexpr Choice<std::optional<Jacobi>> kMethods[] = {{"gauss-seidel", {}},
+                                                      {"jacobi", Jacobi::plain},
+                                                      {"jacobi-averaged", Jacobi::averaged},
+                                                      {"jacobi-underrelaxed", Jacobi::underrelaxed},
+                                                      {"lines", {}}};
+
 RelaxationSettings relaxation_settings(const loop::Setup& setup) {
   const Params& params = setup.params;
   return {.projection = params.one_of("projection", kProjections),
           .jacobi = params.one_of("method", kMethods),
+          .lines = params.is("method", "lines"),
           .order = params.one_of("order", kOrders),
           .seed = static_cast<std::uint32_t>(params.integer("seed")),
           .layout = params.one_of("layout", kLayouts),
@@ -63,7 +72,7 @@ loop::Links<Real> make_links(const loop::Setup& setup) {
   const RelaxationSettings settings = relaxation_settings(setup);
   Relaxation<Real> links = make_relaxation<Real>(setup.scene, setup.w, settings, setup.pool);
   return {.layout = std::move(links.layout),
-          .pass = std::move(links.pass),
+          .pass = with_chebyshev(std::move(links.pass), setup.params.real("chebyshev"), setup.pool),
           .coarse = make_levels<Real>(setup.scene, setup.w, settings),
           .tethers = settings.projection};
 }
@@ -72,18 +81,34 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return loop::make(scene, params, make_links<float>, make_links<double>);
 }
 
+std::vector<std::string> unsolvable_lines(const Scene& scene, const Params& params) {
+  if (!scene.mesh.grid) return {"method=lines needs a cloth that is a grid"};
+  const double tension = line_tension(scene, scene.dt / params.integer("substeps"));
+  if (tension <= kLargestLineTension) return {};
+  return {"method=lines is unstable where h^2 T/(m l) is above 1/3, and here it is " +
+          shortest(std::round(100 * tension) / 100) + ": more substeps"};
+}
+
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = loop::unsupported(scene, params);
   for (std::string& reason : elastic_links(scene)) reasons.push_back(std::move(reason));
+  if (params.is("method", "lines"))
+    for (std::string& reason : unsolvable_lines(scene, params))
+      reasons.push_back(std::move(reason));
   return reasons;
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
-  return loop::resolved_settings(
-      scene, params,
-      {{"projection", std::string(params.choice("projection")) + ", weighted by inverse mass"},
-       {"link order",
-        params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))}});
+  ResolvedSettings own{
+      {"projection", std::string(params.choice("projection")) + ", weighted by inverse mass"},
+      {"link order",
+       params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))}};
+  if (params.is("method", "lines"))
+    own.emplace_back("links solved",
+                     "the structural ones of each row, then of each column, at once");
+  if (params.real("chebyshev") > 0)
+    own.emplace_back("acceleration", "Chebyshev, rho " + shortest(params.real("chebyshev")));
+  return loop::resolved_settings(scene, params, own);
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
@@ -100,7 +125,9 @@ constexpr OptionalEffect kOptionalEffects[] = {
 
 LinearModel linear_model(const Scene&, const Params& params) {
   const bool jacobi = params.is("method", "jacobi");
-  if ((!jacobi && !params.is("method", "gauss-seidel")) || !params.is("order", "mesh")) return {};
+  if ((!jacobi && !params.is("method", "gauss-seidel")) || !params.is("order", "mesh") ||
+      params.real("chebyshev") > 0)
+    return {};
   return LinearSweeps{jacobi, params.real("omega"), params.integer("iterations"),
                       params.integer("substeps")};
 }

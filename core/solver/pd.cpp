@@ -12,6 +12,7 @@
 #include <Eigen/Cholesky>
 #include <limits>
 
+#include "core/solver/chebyshev.hpp"
 #include "core/solver/global_system.hpp"
 #include "core/solver/loop.hpp"
 
@@ -80,33 +81,27 @@ class ProjectivePass final : public Pass<double> {
       : system_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params)), make_bending(s.scene),
                 s.w, s.scene.dt / s.params.integer("substeps")),
         wanted_(system_.springs().size()),
-        chebyshev_(s.params.real("chebyshev")),
         anderson_(to_index(s.params.integer("anderson")), s.w.size()) {}
 
   void begin(Particles<double>& p, double, double h) override {
     system_.begin(p, h);
-    chebyshev_.begin(), anderson_.begin();
+    anderson_.begin();
     if (anderson_.on()) y_ = positions(p), energy_ = std::numeric_limits<double>::infinity();
   }
 
   void apply(Particles<double>& p, double, double h) override {
-    if (anderson_.on()) fall_back(p, h);
-    std::vector<Vec3> from;
-    if (chebyshev_.on() || anderson_.on()) from = positions(p);
+    if (!anderson_.on()) return solve(p);
+    fall_back(p, h);
+    const std::vector<Vec3> from = positions(p);
     solve(p);
-    if (chebyshev_.on())
-      chebyshev_.accelerate(p, std::move(from));
-    else if (anderson_.on()) {
-      last_image_ = positions(p);
-      const std::vector<Vec3> next = anderson_.next(from, last_image_);
-      for (std::size_t i = 0; i < p.size(); ++i)
-        if (p.w[i] > 0) p.x.set(i, next[i]);
-    }
+    last_image_ = positions(p);
+    const std::vector<Vec3> next = anderson_.next(from, last_image_);
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (p.w[i] > 0) p.x.set(i, next[i]);
   }
 
   std::vector<PassCost> cost() const override {
-    return system_.cost("directions of links",
-                        wanted_.size() * sizeof(Vec3) + chebyshev_.bytes() + anderson_.bytes());
+    return system_.cost("directions of links", wanted_.size() * sizeof(Vec3) + anderson_.bytes());
   }
 
  private:
@@ -143,7 +138,6 @@ class ProjectivePass final : public Pass<double> {
 
   GlobalSystem system_;
   std::vector<Vec3> wanted_;  ///< m, q of each link
-  Chebyshev chebyshev_;
   Anderson anderson_;
   std::vector<Vec3> y_, last_image_;  ///< m; with Anderson acceleration
   double energy_ = 0;                 ///< J, of the last iterate
@@ -151,7 +145,8 @@ class ProjectivePass final : public Pass<double> {
 
 loop::Links<double> links(const loop::Setup& s) {
   return {.layout = Layout::packed(s.w.size()),
-          .pass = std::make_unique<ProjectivePass>(s),
+          .pass = with_chebyshev<double>(std::make_unique<ProjectivePass>(s),
+                                         s.params.real("chebyshev"), s.pool),
           .bends = true};
 }
 

@@ -6,6 +6,7 @@
 //     H = m/h^2 I + sum K [ u u^T + max(0, 1 - r/n) (I - u u^T) ],      x += H^-1 f
 //
 // with damping k_d: H gains k_d/h times the springs' part, f loses that times x - x_t.
+#include "core/solver/chebyshev.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 #include "core/solver/vertex_blocks.hpp"
@@ -34,7 +35,6 @@ class DescentPass final : public Pass<double> {
       : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
         blocks_(springs_, make_bending(s.scene), s.w, s.params.is("order", "coloured"), s.pool),
         start_(s.scene, s.params.is("start", "adaptive")),
-        chebyshev_(s.params.real("chebyshev")),
         damping_(s.params.real("damping")) {}
 
   void restart() override { start_.restart(); }
@@ -42,12 +42,9 @@ class DescentPass final : public Pass<double> {
   void begin(Particles<double>& p, double, double h) override {
     y_ = positions(p);
     start_.begin(p, h);
-    chebyshev_.begin();
   }
 
   void apply(Particles<double>& p, double, double h) override {
-    std::vector<Vec3> from;
-    if (chebyshev_.on()) from = positions(p);
     blocks_.sweep(p, [&](std::size_t i, const Vec3& x, const auto& links) {
       using Eigen::Matrix3d;
       const double inertia = 1 / (p.w[i] * h * h);
@@ -66,13 +63,12 @@ class DescentPass final : public Pass<double> {
       hessian.diagonal().array() += inertia;
       return Vec3(x + solve_symmetric(hessian, force));
     });
-    if (chebyshev_.on()) chebyshev_.accelerate(p, std::move(from));
   }
 
   std::vector<PassCost> cost() const override {
     return {{.pass = "vertices",
              .items = y_.size(),
-             .bytes = y_.size() * sizeof(Vec3) + start_.bytes() + chebyshev_.bytes()},
+             .bytes = y_.size() * sizeof(Vec3) + start_.bytes()},
             {.pass = "links, each from both ends",
              .items = 2 * springs_.size(),
              .bytes = blocks_.bytes()}};
@@ -82,14 +78,14 @@ class DescentPass final : public Pass<double> {
   std::vector<Spring> springs_;
   VertexBlocks blocks_;
   AdaptiveStart start_;
-  Chebyshev chebyshev_;
   double damping_;       ///< s
   std::vector<Vec3> y_;  ///< m, where they would go without links
 };
 
 loop::Links<double> links(const loop::Setup& s) {
   return {.layout = Layout::packed(s.w.size()),
-          .pass = std::make_unique<DescentPass>(s),
+          .pass = with_chebyshev<double>(std::make_unique<DescentPass>(s),
+                                         s.params.real("chebyshev"), s.pool),
           .bends = true};
 }
 

@@ -200,6 +200,20 @@ void continue_in_right_program(const SolverChoice& choice) {
   throw InputError(choice.brief() + " needs the program " + program + ", which cannot be run");
 }
 
+double error_of(const std::string& text) {
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  const std::string unit = text.substr(used);
+  if (used == 0 || !(unit.empty() || unit == "%") || !(std::isfinite(value) && value > 0))
+    throw InputError("--error " + text + ": expected a number above 0 such as 0.01 or 1%");
+  return unit == "%" ? value / 100 : value;
+}
+
 std::vector<std::string> typed_words() {
   std::ifstream in("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> words;

@@ -94,6 +94,9 @@ class CaseOptions {
 /// one; returns if it is this. Throws InputError if the other is not installed.
 void continue_in_right_program(const SolverChoice&);
 
+/// What --error says, "0.01" or "1%". Throws InputError.
+double error_of(const std::string& text);
+
 /// The words with which this program was started, and the same for a shell: "taut check -j 2".
 std::vector<std::string> typed_words();
 std::string typed_command();

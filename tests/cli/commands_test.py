@@ -517,6 +517,21 @@ class Verbs(CommandLine):
         structural, = [p for p in rows_of(plan, "passes") if p["pass"] == "structural"]
         self.assertEqual((structural["items"], structural["repeats"]), (24, 6))
         self.assertIn("projections", self.taut("plan", "hang", "bullet").out)
+        small, large = (facts_of(self.answer("plan", "hang", "pd", "--set", f"cloth.grid=[{n}, {n}]"))["set_up"] for n in (8, 64))
+        self.assertTrue(0 < 5 * small < large < 10, "the factor's: 64 times the vertices")
+
+    def test_scaling_at_an_error_finds_the_fewest_sweeps(self):
+        bench = self.answer("bench", "scaling", "--error", "2%", "--preset", "quick", "--samples", "1")
+        sizes = rows_of(bench, "sizes")
+        self.assertEqual([row["vertices"] for row in sizes], [64, 144, 256] * 2)
+        for row in sizes:
+            self.assertLessEqual(row["stretch.rms"], 0.02)
+            name, count = ("substeps", "substeps=") if "order=mesh" not in row["run"] else ("iterations", "iterations=")
+            found = int(row["run"].split(count)[1].split(",")[0]) if count in row["run"] else {"iterations": 3, "substeps": 5}[name]
+            side = round(row["vertices"] ** 0.5)
+            fewer = row["setting"] + f",{name}={found - 1 - found // 20}"
+            less = self.answer("case", "hang", fewer, "--set", f"cloth.grid=[{side}, {side}]", "--set", "forces.damping=2", "--duration", "2")
+            self.assertGreater(less["values"]["stretch.rms"], 0.02, row)
 
     def test_doctor(self):
         report = self.answer("doctor")

@@ -5,6 +5,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/solver/constraints/hierarchy.hpp"
+#include "core/solver/constraints/lines.hpp"
 #include "core/solver/layout/colour_batches.hpp"
 #include "core/solver/layout/interleaved_sheet.hpp"
 
@@ -240,6 +241,16 @@ std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const 
   return std::make_unique<GaussSeidelPass<Real, kind>>(std::move(constraints), std::move(costs));
 }
 
+/// Null: no link can move.
+template <class Real>
+std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const double> w,
+                                            const RelaxationSettings& settings) {
+  if (family_costs(scene.links, w, 0).empty()) return nullptr;
+  return settings.projection == Projection::exact
+             ? make_sequential<Real, Projection::exact>(scene, w, settings)
+             : make_sequential<Real, Projection::sqrt_free>(scene, w, settings);
+}
+
 }  // namespace
 
 template <class Real>
@@ -247,13 +258,13 @@ Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
                                  const RelaxationSettings& settings, ThreadPool& pool) {
   const std::size_t n = scene.start.x.size();
   if (family_costs(scene.links, w, 0).empty()) return {Layout::packed(n), nullptr};
-  const Projection projection = settings.projection;
-  if (settings.order != Order::coloured || settings.jacobi) {
-    auto pass = projection == Projection::exact
-                    ? make_sequential<Real, Projection::exact>(scene, w, settings)
-                    : make_sequential<Real, Projection::sqrt_free>(scene, w, settings);
-    return {Layout::packed(n), std::move(pass)};
+  if (settings.lines) {
+    Scene others = scene;
+    std::erase_if(others.links, [](const Link& l) { return l.family == Family::structural; });
+    return {Layout::packed(n), make_lines(scene, w, make_sequential<Real>(others, w, settings))};
   }
+  if (settings.order != Order::coloured || settings.jacobi)
+    return {Layout::packed(n), make_sequential<Real>(scene, w, settings)};
   const auto coloured = [&]<template <class> class Links>(Layout layout, Links<Real> sweep) {
     auto costs = family_costs(scene.links, w, sweep.bytes());
     return Relaxation<Real>{std::move(layout),

@@ -52,6 +52,7 @@ inline constexpr std::pair<std::string_view, LinkLayout> kLayouts[] = {
 struct RelaxationSettings {
   Projection projection = Projection::sqrt_free;
   std::optional<Jacobi> jacobi;  ///< empty: Gauss-Seidel
+  bool lines = false;            ///< structural links of a grid line by line (lines.hpp)
   Order order = Order::coloured;
   std::uint32_t seed = 1;  ///< of Order::random
   LinkLayout layout = LinkLayout::automatic;

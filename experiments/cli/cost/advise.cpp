@@ -32,21 +32,6 @@ struct Options {
   Format format;
 };
 
-/// "0.01" or "1%".
-double error_of(const std::string& text) {
-  std::size_t used = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  const std::string unit = text.substr(used);
-  if (used == 0 || !(unit.empty() || unit == "%") || !(std::isfinite(value) && value > 0))
-    throw InputError("--error " + text + ": expected a number above 0 such as 0.01 or 1%");
-  return unit == "%" ? value / 100 : value;
-}
-
 Target target_of(const Options& options) {
   if (options.error.empty() == (options.budget <= 0))
     throw InputError(std::string("advise needs one of --error and --budget") +

@@ -1,5 +1,11 @@
+#include <algorithm>
+#include <optional>
+
+#include "core/model/input_error.hpp"
+#include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/study/frontier/frontier.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/timing/scaling.hpp"
 
@@ -7,10 +13,11 @@ namespace taut::verb::scaling {
 
 namespace {
 
+constexpr int kMost = 1 << 16;                         ///< sweeps or substeps of a search
 constexpr std::size_t kMemory = std::size_t{8} << 30;  ///< of a case, bytes of private memory
 
 struct Options {
-  std::string study = "scaling", preset, out;
+  std::string study, preset, error, out;
   double limit = 20;
   int samples = 6;
   Format format;
@@ -39,6 +46,54 @@ Measured measure(const Case& one, double expected, const Store& store, const Opt
   return {std::move(benched), seconds_since(start)};
 }
 
+/// The number that a search enlarges until the error is met: substeps of a solver that has one
+/// sweep in each, else sweeps.
+std::string searched(const SolverChoice& choice) {
+  const AccuracyParameters& of = choice.entry->accuracy;
+  const bool sweeps = !of.sweeps.empty() && choice.params.integer(of.sweeps) != 1;
+  const std::string name(sweeps ? of.sweeps : of.substeps);
+  if (name.empty()) throw InputError(choice.brief() + ": it has neither sweeps nor substeps");
+  return name;
+}
+
+/// The least value of that number, to 5 %, with which the case's error is at most `error`: doubled,
+/// then bisected. A search that has not ended after --limit has failed.
+Measured least(const Case& base, double error, const Store& store, const Options& options) {
+  const auto start = SteadyClock::now(), end = in_seconds(options.limit);
+  const std::string name = searched(base.choice);
+  std::optional<Record> last;
+  const auto with_value = [&](int n) {
+    CaseSpec spec = base.spec;
+    set_parameter(spec.solver, name, std::to_string(n));
+    return make_case(spec);
+  };
+  const auto meets = [&](int n) -> std::optional<bool> {
+    const auto record = run_stored(with_value(n), store, {kLongestSeconds, kMemory}, end);
+    if (!record) return {};
+    last = record;
+    return completed(record->status) && record->value(kErrorMetric) <= error;
+  };
+  int low = 0, high = 1;
+  std::optional<bool> met;
+  while ((met = meets(high)) && !*met && high < kMost) low = high, high *= 2;
+  while (met && *met && high - low > std::max(1, high / 20)) {
+    const int middle = (low + high) / 2;
+    const auto enough = meets(middle);
+    if (!enough)
+      met = enough;
+    else
+      (*enough ? high : low) = middle;
+  }
+  if (!met || !*met) {
+    Measured failed{{last ? *last : Record{}, {}}, seconds_since(start)};
+    failed.benched.timing.failure = met ? "not reached" : "not found within --limit";
+    return failed;
+  }
+  Measured found = measure(with_value(high), 0, store, options);
+  found.seconds = seconds_since(start);
+  return found;
+}
+
 Cell exponent(const std::optional<PowerLaw>& law) {
   return law ? Cell(interval_of_exponent(*law)) : Cell().with("too few sizes");
 }
@@ -48,6 +103,7 @@ void add_tables(Answer& answer, const std::vector<ScalingLine>& lines) {
               "",
               {{"setting"},
                {"vertices"},
+               Column("run", "as it was run"),
                {"cpu", "CPU time a step, 95 %", kMilliseconds},
                {"wall", "wall time", kMilliseconds},
                {"cpu_per_vertex", "CPU time a vertex", kNanoseconds},
@@ -69,9 +125,12 @@ void add_tables(Answer& answer, const std::vector<ScalingLine>& lines) {
     for (const BenchedCase& c : line.cases) {
       const auto n = static_cast<double>(c.record.vertices);
       const Interval cpu = bootstrap_median(c.timing.samples);
-      sizes.rows.push_back({line.setting, c.record.vertices, cpu, median(c.timing.wall),
+      sizes.rows.push_back({line.setting, c.record.vertices,
+                            parse_solver(c.record.spec.solver).brief(), cpu, median(c.timing.wall),
                             cpu.mid / n, c.record.value("stretch.rms"), plan_bytes(c.record) / n,
-                            c.timing.peak_bytes, to_string(c.record.status.kind)});
+                            c.timing.peak_bytes,
+                            c.timing.failure.empty() ? std::string(to_string(c.record.status.kind))
+                                                     : c.timing.failure});
       for (std::size_t i = 0; i < c.timing.samples.size(); ++i)
         samples.rows.push_back(
             {line.setting, c.record.vertices, c.timing.samples[i], c.timing.wall[i]});
@@ -96,13 +155,18 @@ void keep(const Study& study, const std::vector<ScalingLine>& lines, const Store
 
 int run(const Options& options) {
   require_one_quiet_host();
-  const Study study = load_study(options.study, options.preset);
+  const std::string name = !options.study.empty()  ? options.study
+                           : options.error.empty() ? "scaling"
+                                                   : "scaling-error";
+  const Study study = load_study(name, options.preset);
   const std::vector<Case> cases = cases_of(study);
   const Store store(options.out);
   store.prepare();
-  const std::vector<ScalingLine> lines = measure_scaling(
-      cases, options.limit,
-      [&](const Case& one, double expected) { return measure(one, expected, store, options); });
+  const std::vector<ScalingLine> lines =
+      measure_scaling(cases, options.limit, [&](const Case& one, double expected) {
+        return options.error.empty() ? measure(one, expected, store, options)
+                                     : least(one, error_of(options.error), store, options);
+      });
   Answer answer{"bench scaling", study.name};
   keep(study, lines, store);
   add_tables(answer, lines);
@@ -111,10 +175,14 @@ int run(const Options& options) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("STUDY", o.study, "A study that varies the cloth's grid (default: scaling)");
+  app.add_option("STUDY", o.study,
+                 "A study that varies the cloth's grid (default: scaling, or scaling-error)");
   add_preset(app, o.preset);
+  app.add_option("--error", o.error,
+                 "Each solver with as many substeps of one sweep, or sweeps if it has more than "
+                 "one, as this RMS stretch takes: 0.005 or 0.5%");
   app.add_option("--limit", o.limit,
-                 "Skip a case that would take longer than this, physics and timing [s] "
+                 "Skip a case that would take longer than this, physics, search and timing [s] "
                  "(default: 20)")
       ->check(above_zero_seconds());
   app.add_option("--samples", o.samples, "Samples of each case (default: 6)")
@@ -130,7 +198,6 @@ TAUT_VERB(scaling) = {
     .name = "bench scaling",
     .summary = "Measures cost and memory over the cloth's size, with exponents",
     .example =
-        "taut bench scaling\n  taut bench scaling --preset quick --limit 5\n  taut plot scaling "
-        "--preset "
-        "quick",
+        "taut bench scaling\n  taut bench scaling --error 0.5%\n  taut bench scaling --preset "
+        "quick --limit 5\n  taut plot scaling --preset quick",
     .bind = taut::bind_verb<taut::verb::scaling::add_options, taut::verb::scaling::run>};
