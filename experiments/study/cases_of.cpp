@@ -82,7 +82,9 @@ bool excluded(const Study& study, const Settings& settings) {
 
 CaseSpec spec_of(const Study& study, const std::string& scene, const std::string& solver,
                  const Settings& of_scene, const Settings& of_solver) {
-  CaseSpec spec{scene, study.settings, solver};
+  const StudyScene own = parse_scene(scene);
+  CaseSpec spec{own.name, study.settings, solver};
+  spec.overrides.insert(spec.overrides.end(), own.settings.begin(), own.settings.end());
   for (const StudyAxis& axis : study.axes)
     if (of_scene.contains(axis.name))
       spec.overrides.push_back(axis.name + "=" + of_scene.at(axis.name));

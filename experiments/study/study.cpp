@@ -83,9 +83,10 @@ class StudyReader {
  private:
   /// What a study and a preset have in common; a list that is present replaces the one before.
   void read_lists(Section& section) {
-    strings(section, "scenes", study_.scenes, [](const std::string& name) {
-      if (name != kAll) find_scene(name);
+    strings(section, "scenes", study_.scenes, [](const std::string& text) {
+      if (const StudyScene scene = parse_scene(text); scene.name != kAll) find_scene(scene.name);
     });
+    if (const Value* list = section.find("scenes")) remember_places_of(*list);
     if (std::erase(study_.scenes, kAll) > 0)
       for (const std::string& name : shipped("scenes"))
         if (std::ranges::count(study_.scenes, name) == 0) study_.scenes.push_back(name);
@@ -94,6 +95,14 @@ class StudyReader {
       for (const Value& item : section.find("set")->items) study_.places[item.string] = item.place;
     if (const Value* axes = section.table("axes")) read_axes(*axes);
     if (const Value* list = section.find("exclude")) read_exclusions(section, *list);
+  }
+
+  void remember_places_of(const Value& scenes) {
+    for (const Value& item : scenes.items) try {
+        for (const std::string& setting : parse_scene(item.string).settings)
+          study_.places[setting] = item.place;
+      } catch (const InputError&) {  // reported where it was read
+      }
   }
 
   bool strings(Section& section, const std::string& key, std::vector<std::string>& into,
@@ -322,6 +331,17 @@ class StudyReader {
 };
 
 }  // namespace
+
+StudyScene parse_scene(const std::string& text) {
+  const auto colon = text.find(':');
+  StudyScene scene{text.substr(0, colon), {}};
+  if (colon == text.npos) return scene;
+  for (const ParamItem& item : param_items(std::string_view(text).substr(colon + 1))) {
+    if (!item.problem.empty()) throw InputError("scene '" + scene.name + "': " + item.problem);
+    scene.settings.push_back(item.key + "=" + item.value);
+  }
+  return scene;
+}
 
 Study load_study(const std::string& name_or_path, const std::string& preset) {
   Study study;

@@ -48,7 +48,7 @@ struct Study {
   std::filesystem::path file;
   std::string preset;                 ///< which was applied; "": none
   std::vector<std::string> presets;   ///< names of those it has
-  std::vector<std::string> scenes;    ///< names or paths
+  std::vector<std::string> scenes;    ///< "name:key=value,...": name or path, overrides of it alone
   std::vector<std::string> solvers;   ///< "name:key=value,..."
   std::vector<std::string> settings;  ///< scene overrides of every case
   std::vector<StudyAxis> axes;
@@ -61,6 +61,14 @@ struct Study {
 /// Reads a study by name or path; `preset` replaces what it names, "" nothing. Throws InputError
 /// with every diagnostic at once, or if the study has no such preset.
 Study load_study(const std::string& name_or_path, const std::string& preset = "");
+
+/// One of Study::scenes, in its parts.
+struct StudyScene {
+  std::string name;  ///< or path
+  std::vector<std::string> settings;
+};
+/// Throws InputError if what follows the colon is no list of key=value.
+StudyScene parse_scene(const std::string& text);
 
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
 /// wrong with any of the scenes, or if it would be more than 100 000.

@@ -317,7 +317,7 @@ class Answer(unittest.TestCase):
                 continue
             best = max(reached.values(), key=lambda rows: (len(rows), -statistics.fmean(math.log(r["cost"]) for r in rows)))
             self.assertIn(True, [r["key"].startswith(note["key"]) for r in best], solver)
-            self.assertTrue(len(report.timed) == 1 or note["note"].endswith(f"on {len(best)} of {len(report.timed)}"), note)
+            self.assertTrue(len(report.timed) == 1 or note["note"].endswith(f", {len(best)} of {len(report.timed)}"), note)
             self.seen["setting"] += 1
 
     def test_every_cell_is_what_the_raw_rows_say(self):

@@ -218,11 +218,12 @@ TEST(Settings, LabelsHaveWhatVariesAndNoMore) {
   std::vector<Record> all = at_work({{"jakobsen", {{1, 4}, {1, 8}, {1, 8}}}, {"bullet", {{1, 8}}}});
   for (Record& r : all) r.params["tethers"] = "off", r.params["order"] = "mesh";
   all[1].params["tethers"] = "on";
+  all[0].params["omega"] = "1.5", all[1].params["omega"] = all[2].params["omega"] = "1";
   all[2].params["order"] = "coloured";
   const SettingLabels labels(all);
-  EXPECT_EQ(labels.of(all[0]), "1 × 4, mesh");
-  EXPECT_EQ(labels.of(all[1]), "1 × 8, mesh, tethers");
-  EXPECT_EQ(labels.of(all[2]), "1 × 8, coloured");
+  EXPECT_EQ(labels.of(all[0]), "1 × 4, omega=1.5, mesh") << "a number does not speak for itself";
+  EXPECT_EQ(labels.of(all[1]), "1 × 8, omega=1, mesh, tethers");
+  EXPECT_EQ(labels.of(all[2]), "1 × 8, omega=1, coloured");
   EXPECT_EQ(labels.of(all[3]), "") << "nothing varies of Bullet's";
 }
 

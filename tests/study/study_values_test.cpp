@@ -2,6 +2,8 @@
 // with its place, all at once.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/model/input_error.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/files.hpp"
@@ -153,6 +155,27 @@ TEST_F(StudyFile, AllIsEveryShippedScene) {
   EXPECT_EQ(std::ranges::count(all, "hang"), 1);
   EXPECT_EQ(scenes("\"hang\", \"all\"").size(), all.size());
   EXPECT_EQ(scenes("\"hang\", \"all\"").front(), "hang");
+}
+
+TEST_F(StudyFile, ASceneMayHaveSettingsOfItsOwn) {
+  const auto asked = [](const std::string& scenes) {
+    return "question = \"?\"\nscenes = [" + scenes + "]\nsolvers = [\"jakobsen\"]\n" +
+           "set = [\"time.duration=1\"]\n";
+  };
+  std::string all;
+  for (const Case& one :
+       cases_of(read(asked("\"drape\", \"drape:cloth.span=0.7,cloth.grid='[8, 4]'\"")))) {
+    const int last = one.scene->mesh.grid->nu - 1;
+    const double span = one.scene->start.x[static_cast<std::size_t>(last)].x();
+    all += std::to_string(last) + " " + std::to_string(std::lround(100 * span)) + " " +
+           std::to_string(one.scene->steps) + "; ";
+  }
+  EXPECT_EQ(all, "31 80 64; 7 70 64; ");
+  EXPECT_EQ(wrong(asked("\"drape:cloth.span\"")),
+            "2:11: scene 'drape': expected key=value, got 'cloth.span'\n");
+  EXPECT_EQ(wrong(asked("\"hang\", \"drap:cloth.span=0.7\"")).substr(0, 5), "2:19:");
+  EXPECT_EQ(wrong(asked("\"hang\", \"drape:cloth.spam=0.7\"")).substr(0, 30),
+            "2:19: cloth.spam=0.7: unknown ");
 }
 
 // Of a scene's key a list is one value; of scenes, solvers and parameters it is several.

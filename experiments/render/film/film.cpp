@@ -27,7 +27,7 @@ namespace {
 
 constexpr int kScenesAtATime = 2;
 constexpr double kSeconds = 3;  ///< of a film
-constexpr std::size_t kMostPanels = 4;
+constexpr std::size_t kMostPanels = 3;
 
 /// One scene to be filmed: who runs it and who does not.
 struct Film {
@@ -113,12 +113,12 @@ MediaOptions options_of(const Film& film, std::size_t runs) {
   options.speed = film.speed;
   options.duration = kSeconds * film.speed;
   const std::size_t panels = std::max<std::size_t>(2, runs + film.refused.size());
-  options.width = 960, options.height = 400;
+  options.width = 960, options.height = 400, options.crf = 28;
   if (!film.studied) {
     options.width = 704, options.height = 320;
     options.fps = 16;
     options.quality.light = {18, 128, 96};
-    options.crf = 27;
+    options.crf = 30;
   }
   options.width = options.width / static_cast<int>(panels) * static_cast<int>(runs) / 2 * 2;
   return options;

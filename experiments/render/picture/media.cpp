@@ -106,7 +106,7 @@ std::size_t most_different(const Media& media, const Scene& scene,
 
 /// Four moments: the first motion, two on the way, the end.
 void lay_flat(Media& media, const SceneRenderer& renderer) {
-  constexpr int kSide = 66;
+  constexpr int kSide = 56;
   const std::size_t last = media.t.size() - 1;
   for (std::size_t run = 0; run < renderer.runs().size(); ++run) {
     std::vector<Media::Flat> moments;

@@ -125,11 +125,12 @@ class Questions {
   }
 
   Answer answer() {
-    const auto values = [&](bool errors) {
+    const auto of_links = [](Role role) { return role == Role::error || role == Role::motion; };
+    const auto values = [&](bool first) {
       for (const ValueSpec* value : values_with_role())
-        if ((value->role == Role::error) == errors) add_value(*value);
+        if (of_links(value->role) == first) add_value(*value);
     };
-    values(true);
+    values(true);  // a cloth may keep its links and stand still: motion is beside strain
     add_costs(answer_, input_, solvers_, list_);
     values(false);
     add_steps();

@@ -22,7 +22,7 @@ CaseList::CaseList(const ReportInput& input) {
   for (const StudyResult& study : input.studies)
     for (const Record& r : study.records) add(r, study.name);
   for (const MapResult& map : input.maps)
-    for (const Record& r : map.records) add(r, map.study);
+    for (const Record& r : map.records) add(r, map.study), maps_.insert(map.study);
   if (input.bench)
     for (const SceneBench& scene : input.bench->scenes)
       for (const BenchedCase& c : scene.cases) add(c.record, input.bench->study);
@@ -46,6 +46,11 @@ std::set<std::string> CaseList::studies_of(const Record& r) const {
   std::set<std::string> names;
   for (const std::string* name : known_.at(r.key).studies) names.insert(*name);
   return names;
+}
+
+bool CaseList::only_in_maps(const Record& r) const {
+  return std::ranges::all_of(known_.at(r.key).studies,
+                             [&](const std::string* name) { return maps_.contains(*name); });
 }
 
 std::vector<const Record*> CaseList::listed() const {

@@ -37,6 +37,8 @@ class CaseList {
   std::vector<const Record*> listed() const;
   const std::map<std::string, Quantity>& quantities() const { return quantities_; }
   std::set<std::string> studies_of(const Record& r) const;
+  /// No study that is compared has it, and no bench.
+  bool only_in_maps(const Record& r) const;
 
  private:
   struct Known {
@@ -45,6 +47,7 @@ class CaseList {
   };
   std::size_t length_ = 12;
   std::vector<const Record*> cases_;
+  std::set<std::string> maps_;                         ///< studies of which the page has maps alone
   std::unordered_map<std::string_view, Known> known_;  ///< by key
   std::map<std::string, Quantity> quantities_;
 };

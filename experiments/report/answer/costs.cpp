@@ -287,7 +287,7 @@ class Costs {
       const auto& [scene, at] = *own.cases.begin();
       last.push_back(
           setting_cell(all_[scene], at, std::exp(own.mean_log_cost(all_)),
-                       all_.size() == 1 ? "" : ", on " + std::to_string(own.cases.size()) + of));
+                       all_.size() == 1 ? "" : ", " + std::to_string(own.cases.size()) + of));
     }
     mark_cheapest(last, ratios_of(reached), {1 / (1 + noise(all_)), 1, 1 + noise(all_)});
     return last;

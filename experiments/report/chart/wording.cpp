@@ -303,7 +303,9 @@ std::string SettingLabels::of(const Record& record) const {
     if (name == substeps || name == sweeps)
       work = true;
     else
-      text += ", " + (at->second == "on" ? name : at->second);
+      text += ", " + (at->second == "on"                  ? name
+                      : std::isfinite(number(at->second)) ? name + "=" + at->second
+                                                          : at->second);
   }
   if (work) return work_of(record).text() + text;
   return text.empty() ? "" : text.substr(2);

@@ -1,6 +1,7 @@
 // Cases of the model: one of them, how several are set, and what is counted of all of a scene.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/distinct.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -27,6 +29,10 @@ std::string range_of(const std::set<double>& values, const Quantity& q) {
 }
 
 }  // namespace
+
+double rounded(double value, int digits) {
+  return std::strtod(formatted("%.*g", digits, value).c_str(), nullptr);
+}
 
 Table resolved_settings_table(const QuotedScene& quoted, const ComparedSolvers& compared,
                               CaseList& refs) {
@@ -98,8 +104,11 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
   if (r.status.step >= 0) one["step"] = r.status.step;
   if (r.status.vertex >= 0) one["vertex"] = r.status.vertex;
   one["values"] = Json::object();
+  const bool of_maps = refs.only_in_maps(r);
   for (const auto& [name, value] : r.values)
-    if (std::isfinite(value)) one["values"][name] = value, refs.use(name);
+    if (const ValueSpec* known = find_value(name).second;
+        std::isfinite(value) && !(of_maps && known && known->role == Role::none))
+      one["values"][name] = rounded(value), refs.use(name);
   if (timed && timed->stable()) {
     const Interval second = timed->cost();
     const Interval step{second.low * r.dt, second.mid * r.dt, second.high * r.dt};

@@ -41,8 +41,10 @@ Json json_of(const Point& p, const Chart& chart, CaseList& refs) {
 
 /// Times and values of a series.
 Json json_of(const TimeSeries& series, CaseList& refs) {
-  Json one{{"solver", series.solver}, {"label", series.label}, {"t", series.t}};
-  for (const double y : series.y) one["y"].push_back(json_number(y));
+  Json one{{"solver", series.solver}, {"label", series.label}};
+  for (const double t : series.t) one["t"].push_back(rounded(t, 5));
+  for (const double y : series.y)
+    one["y"].push_back(std::isfinite(y) ? Json(rounded(y, 4)) : Json());
   add_if(one, "case", refs.key(series.key));
   return one;
 }

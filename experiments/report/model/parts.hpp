@@ -16,6 +16,8 @@ void add_by_id(Json& part, const char* list, Json one, Json& all);
 void add_table(Json& part, Table, Answer& tables);
 /// The tables of an answer by name, as `taut --json` writes them everywhere.
 Json json_of_tables(const Answer&);
+/// To more significant digits than a page can show: a third of the bytes of what it lists.
+double rounded(double, int digits = 7);
 /// {low, mid, high, n}, as MODEL.md has intervals.
 Json json_interval(const Interval&, std::size_t n);
 

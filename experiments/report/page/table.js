@@ -41,26 +41,31 @@ function cellText({value}, column) {
   return value === null ? '–' : typeof value === 'boolean' ? value ? 'yes' : 'no' : value;
 }
 
-/** `most`: the number of a full bar; without it there is no bar. */
-function cellContent(cell, column, most) {
-  const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value);
-  const spread = Array.isArray(cell.value) && interval(cell.value[0], cell.value[2], unitOf(column));
+/** An interval beside its middle: "±0.3 %", the interval itself at the pointer. */
+function spreadOf([low, mid, high], column) {
+  return el('small', {title: interval(low, high, unitOf(column))}, ` ±${number(100 * Math.max(high - mid, mid - low) / mid, 1)}\u00A0%`);
+}
+
+/** `most`: the number of a full bar; without it there is no bar. `brief`: of a note what stands before its colon. */
+function cellContent(cell, column, most, brief) {
+  const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value), note = cell.note ?? '';
+  const spread = Array.isArray(cell.value) && spreadOf(cell.value, column);
   const said = cell.best ? el('b', {className: 'best'}, text) : text;
   const failed = entry && entry.status !== 'ok' && !/^\d/.test(text) && glyphBox(entry.status);
   return [el('span', {className: 'said'}, failed, failed && ' ', entry ? caseLink(cell.key, said) : said, cell.best && el('span', {className: 'hidden'}, ' best'),
-    spread && el('small', {}, ` (${spread})`), cell.note && el('small', {}, ' ', short(cell.note, 90))),
+    spread, note && el('small', {title: note}, ' ', short(brief ? note.split(':')[0] : note, 90))),
     most > 0 && Number.isFinite(value) && el('span', {className: 'bar', 'aria-hidden': 'true'},
       el('i', {style: `width:${100 * Math.max(0, value) / most}%;background:${solverColour(column.name)}`}))];
 }
 
 /** A row: its head, then a cell for each column; those of solvers vanish with them. */
-function tableRow(table, cells, props, head, bars) {
+function tableRow(table, cells, props, head, bars, brief) {
   const most = bars ? d3.max(cells, (cell) => middle(cell.value)) : 0;
   return el('tr', props, el('th', {scope: 'row'}, head ?? cellContent(cells[0], table.columns[0])),
     cells.slice(1).map((cell, i) => {
       const column = table.columns[i + 1], solver = solvers.get(column.name);
       const text = typeof cell.value === 'string';
-      return el('td', {'data-s': solver?.order, className: solver && text ? 'none' : ''}, cellContent(cell, column, most));
+      return el('td', {'data-s': solver?.order, className: solver && text ? 'none' : ''}, cellContent(cell, column, most, brief));
     }));
 }
 const tableHeads = (table, first) => el('tr', {}, table.columns.map((column, i) => el('th', {scope: 'col',
@@ -110,7 +115,7 @@ function questionRows(table) {
     for (const fold of folds) fold.classList.toggle('folded', !open);
   });
   const head = [button, el('small', {title: last[0].note ?? ''}, last[0].value)];
-  return el('tbody', {id}, tableRow(table, last, {className: 'question'}, head, true), folds);
+  return el('tbody', {id}, tableRow(table, last, {className: 'question'}, head, true, true), folds);
 }
 
 /** The first screen: a row for each question. */
