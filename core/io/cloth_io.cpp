@@ -15,6 +15,7 @@ namespace taut {
 namespace {
 
 constexpr int kMaxVertices = 1 << 24;
+constexpr Range kSpace = Range::within(kFar);
 
 std::optional<Grid> read_grid(Section& cloth) {
   cloth.need({"grid"});
@@ -54,21 +55,15 @@ bool read_size(Section& cloth, SheetShape& shape) {
   return false;
 }
 
-Lumping read_lumping(Section& cloth) {
-  const std::string name = cloth.choice("lumping", {"area", "equal"}, "area");
-  return name == "area" ? Lumping::area : Lumping::equal;
-}
-
 /// Total mass [kg], from the fabric, `mass` or `area_density`; `area` [m^2].
-std::optional<double> read_mass(Section& cloth, const Fabric* fabric, double area) {
+std::optional<double> read_mass(Section& cloth, const Fabric* fabric, const FileKeys& said,
+                                double area) {
   const bool both = cloth.find("mass") && cloth.find("area_density");
   if (both) cloth.report("area_density", "excludes 'mass': give one of them");
-  const auto mass = cloth.number("mass", {1e-9, 1e9});
-  const double density = cloth.number("area_density", {1e-9, 1e9}, 0.2);
   if (both) return std::nullopt;
   if (fabric && area > 0) return fabric->mass * area;
-  if (cloth.find("mass")) return mass;
-  if (area > 0) return density * area;
+  if (cloth.find("mass")) return said.mass > 0 ? std::optional(said.mass) : std::nullopt;
+  if (area > 0) return said.area_density * area;
   cloth.report(cloth.find("area_density") ? "area_density" : "size",
                "means nothing for a cloth without area: give 'mass'");
   return std::nullopt;
@@ -99,16 +94,15 @@ std::vector<std::pair<double, double>> arc(int count, double width, double span)
 
 /// Where the sheet starts: its rest shape, or hung between sides that are closer than its width,
 /// then turned about its top edge.
-void start_sheet(Section& cloth, const SheetShape& shape, Scene& scene) {
-  const auto span = cloth.number("span", Range::positive(kFar));
-  const double tilt = cloth.number("tilt", Range::within(360), 0) * kDegree;
-  if (span && shape.nu < 3) {
+void start_sheet(Section& cloth, const SheetShape& shape, const FileKeys& said, Scene& scene) {
+  const bool hung = said.span > 0;
+  if (hung && shape.nu < 3) {
     cloth.report("span", "needs three vertices along u at least");
-  } else if (span && *span > shape.width) {
-    cloth.report("span",
-                 "must be at most the width " + shortest(shape.width) + ", not " + shortest(*span));
-  } else if (span && *span < shape.width) {
-    const auto row = arc(shape.nu, shape.width, *span);
+  } else if (hung && said.span > shape.width) {
+    cloth.report("span", "must be at most the width " + shortest(shape.width) + ", not " +
+                             shortest(said.span));
+  } else if (hung && said.span < shape.width) {
+    const auto row = arc(shape.nu, shape.width, said.span);
     const Grid& g = *scene.mesh.grid;
     for (int j = 0; j < g.nv; ++j)
       for (int i = 0; i < g.nu; ++i) {
@@ -117,40 +111,36 @@ void start_sheet(Section& cloth, const SheetShape& shape, Scene& scene) {
             down + row[to_index(i)].first * shape.u + row[to_index(i)].second * shape.v;
       }
   }
-  if (tilt != 0)
+  if (said.tilt != 0)
     for (Vec3& x : scene.start.x)
-      x = shape.origin + Eigen::AngleAxisd(tilt, shape.u) * (x - shape.origin);
+      x = shape.origin + Eigen::AngleAxisd(said.tilt * kDegree, shape.u) * (x - shape.origin);
 }
 
-bool read_sheet(Section& cloth, const LinkChoice& links, const Fabric* fabric, Scene& scene) {
-  SheetShape shape;
-  shape.origin = cloth.vec3("origin", kFar, Vec3::Zero());
-  shape.u = cloth.direction("u", Vec3::UnitX());
-  shape.v = cloth.direction("v", -Vec3::UnitY());
-  shape.lumping = read_lumping(cloth);
+LinkChoice links_of(const FileKeys& said) { return {said.structural, said.shear, said.bend}; }
+
+bool read_sheet(Section& cloth, const Fabric* fabric, const FileKeys& said, Scene& scene) {
+  SheetShape shape{.origin = said.origin, .u = said.u, .v = said.v, .lumping = said.lumping};
   const double sine = shape.u.cross(shape.v).norm();
   if (sine < 1e-3) cloth.report("v", "must not be parallel to 'u'");
   const auto grid = read_grid(cloth);
   if (grid) shape.nu = grid->nu, shape.nv = grid->nv;
   const bool sized = read_size(cloth, shape);
-  const auto mass = read_mass(cloth, fabric, grid && sized ? shape.width * shape.height * sine : 1);
+  const auto mass =
+      read_mass(cloth, fabric, said, grid && sized ? shape.width * shape.height * sine : 1);
   if (!grid || !sized || !mass || sine < 1e-3) return false;
   shape.mass = *mass;
   scene.mesh = make_sheet(shape);
-  scene.links = grid_links(scene.mesh, links);
+  scene.links = grid_links(scene.mesh, links_of(said));
   scene.start.x = scene.mesh.rest;
-  start_sheet(cloth, shape, scene);
+  start_sheet(cloth, shape, said, scene);
   return true;
 }
 
 /// The surface in an OBJ file, scaled, turned and moved. False and the file's own errors if it is
 /// none.
-bool read_surface(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
-                  const Fabric* fabric, Scene& scene) {
-  const double scale = cloth.number("scale", {1e-6, 1e6}, 1);
+bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fabric* fabric,
+                  const FileKeys& said, Scene& scene) {
   const Eigen::Quaterniond rotation = read_rotation(cloth);
-  const Vec3 origin = cloth.vec3("origin", kFar, Vec3::Zero());
-  const Lumping lumping = read_lumping(cloth);
   const auto name = cloth.string("mesh");
   Polygons surface;
   try {
@@ -163,22 +153,21 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Lin
         cloth.report("mesh", "cannot be used: " + d.text());
   }
   for (Vec3& x : surface.vertices) {
-    x = origin + rotation * (scale * x);
+    x = said.origin + rotation * (said.scale * x);
     if (x.cwiseAbs().maxCoeff() <= kFar) continue;
     cloth.report("mesh", "reaches farther than " + shortest(kFar) + " m from the origin");
     return false;
   }
-  const auto mass = read_mass(cloth, fabric, surface.faces.empty() ? 1 : area(surface));
+  const auto mass = read_mass(cloth, fabric, said, surface.faces.empty() ? 1 : area(surface));
   if (!mass || surface.faces.empty()) return false;
-  scene.mesh = make_mesh(surface, *mass, lumping);
-  scene.links = mesh_links(surface, links);
+  scene.mesh = make_mesh(surface, *mass, said.lumping);
+  scene.links = mesh_links(surface, links_of(said));
   scene.start.x = scene.mesh.rest;
   return true;
 }
 
 /// The shape at the start as a multiple of the rest shape: every link is strained alike.
-void stretch_start(Section& cloth, Scene& scene) {
-  const double factor = cloth.number("stretch", {1e-3, 1e3}, 1);
+void stretch_start(double factor, Scene& scene) {
   if (factor == 1 || scene.start.x.empty()) return;
   const Vec3 fixed = scene.start.x.front();
   for (Vec3& x : scene.start.x) x = fixed + factor * (x - fixed);
@@ -292,7 +281,7 @@ class VertexReader {
   void add_box(const Value& value) {
     Section box(section_.diagnostics(), value, "a box of '" + key_ + "' in " + section_.name());
     box.need({"min", "max"});
-    const auto low = box.vec3("min", kFar), high = box.vec3("max", kFar);
+    const auto low = box.vec3("min", kSpace), high = box.vec3("max", kSpace);
     box.finish();
     if (!low || !high) return;
     const Eigen::AlignedBox3d box_of(*low - Vec3::Constant(kSlack), *high + Vec3::Constant(kSlack));
@@ -302,7 +291,7 @@ class VertexReader {
   void add_ball(const Value& value) {
     Section ball(section_.diagnostics(), value, "a ball of '" + key_ + "' in " + section_.name());
     ball.need({"center"});
-    const auto center = ball.vec3("center", kFar);
+    const auto center = ball.vec3("center", kSpace);
     const auto radius = ball.number("radius", Range::positive(kFar));
     ball.finish();
     if (!center || !radius) return;
@@ -350,7 +339,7 @@ void read_placed(Section& cloth, Scene& scene) {
     Section placed(cloth.diagnostics(), *entry, "'placed' in [cloth]");
     placed.need({"vertex", "at"});
     const Value* vertex = placed.find("vertex");
-    const auto target = placed.vec3("at", kFar);
+    const auto target = placed.vec3("at", kSpace);
     placed.finish();
     if (!vertex || !target) continue;
     const auto vertices = vertices_of(*vertex, placed, "vertex", scene.mesh);
@@ -368,24 +357,21 @@ void refuse(Section& cloth, const std::vector<std::string>& keys, const std::str
 
 }  // namespace
 
-bool read_cloth(Section& cloth, const std::filesystem::path& folder, const LinkChoice& links,
-                const Fabric* fabric, Scene& scene) {
+bool read_cloth(Section& cloth, const std::filesystem::path& folder, const Fabric* fabric,
+                const FileKeys& said, Scene& scene) {
   const bool surface = cloth.find("mesh");
   if (surface)
     refuse(cloth, {"grid", "size", "u", "v", "span", "tilt"}, "belongs to a grid, not to a mesh");
   else
     refuse(cloth, {"scale", "rotation"}, "belongs to a mesh, not to a grid");
-  scene.thickness = cloth.number("thickness", Range::non_negative(kFar), 0);
-  const Vec3 velocity = cloth.vec3("velocity", kFar, Vec3::Zero());
-  const bool built = surface ? read_surface(cloth, folder, links, fabric, scene)
-                             : read_sheet(cloth, links, fabric, scene);
-  for (const char* key : {"span", "tilt", "stretch", "weights", "pins", "placed"})
-    cloth.find(key);  // known in any case
+  const bool built = surface ? read_surface(cloth, folder, fabric, said, scene)
+                             : read_sheet(cloth, fabric, said, scene);
+  cloth.know("cloth");
   if (!built) return false;
-  scene.start.v.assign(scene.start.x.size(), velocity);
+  scene.start.v.assign(scene.start.x.size(), said.velocity);
   scene.pins = read_vertices(cloth, "pins", scene.mesh);
   for (const int pin : scene.pins) scene.start.v[to_index(pin)].setZero();
-  stretch_start(cloth, scene);
+  stretch_start(said.stretch, scene);
   read_weights(cloth, scene);
   read_placed(cloth, scene);
   return true;

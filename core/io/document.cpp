@@ -266,14 +266,6 @@ void Diagnostics::throw_if_any() {
   throw InputError(found_);
 }
 
-std::string Range::text() const {
-  const Range any;
-  std::string low, high;
-  if (min != any.min) low = (above_min ? "greater than " : "at least ") + shortest(min);
-  if (max != any.max) high = "at most " + shortest(max);
-  return low + (low.empty() || high.empty() ? "" : " and ") + high;
-}
-
 double parse_number(const std::string& text) {
   const auto part = [&](std::string_view s) {
     const auto value = whole<double>(s);
@@ -307,6 +299,11 @@ const Value* Section::find(const std::string& key) {
   return table_.find(key);
 }
 
+void Section::know(std::string_view scene_section) {
+  for (const SceneKey& key : scene_keys())
+    if (key.section() == scene_section) find(std::string(key.name()));
+}
+
 SourceLocation Section::place(const std::string& key) const {
   const Value* value = table_.find(key);
   return value ? value->place : table_.place;
@@ -316,9 +313,9 @@ void Section::missing(const std::string& key) {
   diagnostics_.report(table_.place, "missing key '" + key + "' in " + name_);
 }
 
-void Section::need(std::initializer_list<const char*> keys) {
-  for (const char* key : keys)
-    if (!find(key)) missing(key);
+void Section::need(std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys)
+    if (!find(std::string(key))) missing(std::string(key));
 }
 
 void Section::report(const std::string& key, const std::string& message) {
@@ -366,14 +363,14 @@ std::optional<std::vector<double>> Section::numbers(const std::string& key, std:
   return all;
 }
 
-std::optional<Vec3> Section::vec3(const std::string& key, double bound) {
-  const auto all = numbers(key, 3, Range::within(bound));
+std::optional<Vec3> Section::vec3(const std::string& key, const Range& range) {
+  const auto all = numbers(key, 3, range);
   if (!all) return std::nullopt;
   return Vec3((*all)[0], (*all)[1], (*all)[2]);
 }
 
 Vec3 Section::direction(const std::string& key, const Vec3& fallback) {
-  const auto given = vec3(key, 1e6);
+  const auto given = vec3(key, Range::within(1e6));
   if (!given) return fallback;
   const double length = given->norm();
   if (!(length > 1e-6)) {

@@ -2,13 +2,13 @@
 
 #include <filesystem>
 #include <initializer_list>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/model/input_error.hpp"
+#include "core/model/scene_keys.hpp"
 #include "core/model/vec3.hpp"
 
 namespace taut {
@@ -89,29 +89,13 @@ class Diagnostics {
   std::vector<Diagnostic> found_;
 };
 
-/// What a number may be. Non-finite numbers are never allowed.
-struct Range {
-  double min = -std::numeric_limits<double>::max();
-  double max = std::numeric_limits<double>::max();
-  bool above_min = false;  ///< min itself is excluded
-
-  static Range positive(double max) { return {0, max, true}; }
-  static Range non_negative(double max) { return {0, max, false}; }
-  static Range within(double bound) { return {-bound, bound, false}; }
-  bool holds(double value) const {
-    return (above_min ? value > min : value >= min) && value <= max;
-  }
-  std::string text() const;  ///< "greater than 0 and at most 10"
-};
-
 /// Reads the keys of one table. Every key that is asked for is known; finish() reports the others.
 /// A value that is wrong is reported and then treated as absent, so that reading goes on.
 class Section {
  public:
   /// `name` as messages print it: "[cloth]".
   Section(Diagnostics& diagnostics, const Value& table, std::string name);
-  Section(const Section&) = delete;
-  Section& operator=(const Section&) = delete;
+  Section(Section&&) = default;
 
   const SourceLocation& place() const { return table_.place; }
   const std::string& name() const { return name_; }
@@ -120,18 +104,21 @@ class Section {
   const Value* find(const std::string& key);
   /// Where the key stands, or the section if it is absent.
   SourceLocation place(const std::string& key) const;
+  /// Every key of that section of a scene is known.
+  void know(std::string_view scene_section);
   void missing(const std::string& key);
   /// Reports those of the keys that are absent.
-  void need(std::initializer_list<const char*> keys);
+  void need(std::initializer_list<std::string_view> keys);
   void report(const std::string& key, const std::string& message);
 
   std::optional<double> number(const std::string& key, const Range&);
   double number(const std::string& key, const Range& range, double fallback) {
     return number(key, range).value_or(fallback);
   }
-  std::optional<Vec3> vec3(const std::string& key, double bound);
-  Vec3 vec3(const std::string& key, double bound, const Vec3& fallback) {
-    return vec3(key, bound).value_or(fallback);
+  /// The range is that of each component.
+  std::optional<Vec3> vec3(const std::string& key, const Range&);
+  Vec3 vec3(const std::string& key, const Range& range, const Vec3& fallback) {
+    return vec3(key, range).value_or(fallback);
   }
   /// A direction: any length but zero; given back as a unit vector.
   Vec3 direction(const std::string& key, const Vec3& fallback);

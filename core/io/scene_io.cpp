@@ -37,6 +37,30 @@ Eigen::Quaterniond read_rotation(Section& section) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle * kDegree, axis));
 }
 
+void read_value(Section& section, const SceneKey& key, double& value) {
+  value = section.number(std::string(key.name()), key.range, value);
+  if (key.needed) section.need({key.name()});
+}
+
+void read_value(Section& section, const SceneKey& key, bool& value) {
+  value = section.boolean(std::string(key.name()), value);
+}
+
+void read_value(Section& section, const SceneKey& key, Vec3& value) {
+  const std::string name(key.name());
+  if (key.needed) section.need({key.name()});
+  if (key.type == "direction")
+    value = section.direction(name, value);
+  else
+    value = section.vec3(name, key.range, value);
+}
+
+int read_choice(Section& section, const SceneKey& key, int fallback) {
+  const std::vector<std::string> all = parts_of(key.choices);
+  const std::string name = section.choice(std::string(key.name()), all, all[to_index(fallback)]);
+  return static_cast<int>(std::ranges::find(all, name) - all.begin());
+}
+
 namespace {
 
 std::vector<Motion::Key> read_path(Section& section) {
@@ -45,7 +69,7 @@ std::vector<Motion::Key> read_path(Section& section) {
     Section key(section.diagnostics(), *item, "'path' in " + section.name());
     key.need({"t", "displacement"});
     const auto t = key.number("t", Range::within(1e6));
-    const Vec3 displacement = key.vec3("displacement", kFar, Vec3::Zero());
+    const Vec3 displacement = key.vec3("displacement", Range::within(kFar), Vec3::Zero());
     key.finish();
     if (!t) continue;
     if (!path.empty() && *t - path.back().t < 1e-9)
@@ -57,46 +81,35 @@ std::vector<Motion::Key> read_path(Section& section) {
   return path;
 }
 
-Motion read_motion(Section& section, const Vec3& pivot) {
+Motion read_motion(Section& section, std::string_view of, const Vec3& pivot) {
   Motion motion;
-  motion.velocity = section.vec3("velocity", 1e6, Vec3::Zero());
-  motion.spin = section.vec3("spin", 1e6, Vec3::Zero());
-  motion.pivot = section.vec3("pivot", kFar, pivot);
+  motion.pivot = pivot;
+  read_keys(section, of, motion);
   motion.path = read_path(section);
   return motion;
 }
+
+Vec3 middle(const Plane&) { return Vec3::Zero(); }
+Vec3 middle(const Ball& ball) { return ball.center; }
+Vec3 middle(const Box& box) { return box.center; }
+Vec3 middle(const Capsule& capsule) { return capsule.middle(); }
 
 Collider read_collider(Section& section) {
   Collider collider;
   section.need({"type"});
   const std::string type = section.choice("type", {"plane", "ball", "box", "capsule"}, "");
-  Vec3 pivot = Vec3::Zero();
-  if (type == "plane") {
-    collider.shape = Plane{section.direction("normal", Vec3::UnitY()),
-                           section.number("offset", Range::within(kFar), 0)};
-  } else if (type == "ball") {
-    section.need({"center", "radius"});
-    pivot = section.vec3("center", kFar, Vec3::Zero());
-    collider.shape = Ball{pivot, section.number("radius", Range::positive(kFar), 1)};
-  } else if (type == "box") {
-    section.need({"center", "half_extents"});
-    pivot = section.vec3("center", kFar, Vec3::Zero());
-    const auto half = section.numbers("half_extents", 3, Range::positive(kFar));
-    const Vec3 extents = half ? Vec3((*half)[0], (*half)[1], (*half)[2]) : Vec3::Ones();
-    collider.shape = Box{pivot, extents, read_rotation(section)};
-  } else if (type == "capsule") {
-    section.need({"from", "to", "radius"});
-    const Vec3 from = section.vec3("from", kFar, Vec3::Zero()),
-               to = section.vec3("to", kFar, Vec3::Zero());
-    const Capsule capsule{from, to, section.number("radius", Range::positive(kFar), 1)};
-    pivot = capsule.middle(), collider.shape = capsule;
-  } else {  // reported; which keys belong here is not known
-    for (const char* key :
-         {"normal", "offset", "center", "radius", "half_extents", "rotation", "from", "to"})
-      section.find(key);
-  }
-  collider.friction = section.number("friction", Range::non_negative(1e3), 0);
-  collider.motion = read_motion(section, pivot);
+  if (type == "plane") collider.shape = Plane();
+  if (type == "ball") collider.shape = Ball();
+  if (type == "box") collider.shape = Box();
+  if (type == "capsule") collider.shape = Capsule();
+  if (type.empty())
+    section.know("collider");  // which of them belong here is not known
+  else
+    std::visit([&](auto& shape) { read_keys(section, "collider", shape); }, collider.shape);
+  if (Box* box = std::get_if<Box>(&collider.shape)) box->rotation = read_rotation(section);
+  read_keys(section, "collider", collider);
+  const Vec3 pivot = std::visit([](const auto& shape) { return middle(shape); }, collider.shape);
+  collider.motion = read_motion(section, "collider", pivot);
   section.finish();
   return collider;
 }
@@ -127,7 +140,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene) {
     PinMotion group;
     section.need({"vertices"});
     if (built) group.vertices = read_vertices(section, "vertices", scene.mesh);
-    group.motion = read_motion(section, Vec3::Zero());
+    group.motion = read_motion(section, "pin_motion", Vec3::Zero());
     section.finish();
     for (const int vertex : group.vertices) {
       const bool pinned = std::binary_search(scene.pins.begin(), scene.pins.end(), vertex);
@@ -149,13 +162,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene) {
 
 const Value kAbsent;
 
-/// What a scene says about how it starts and how fat it is.
-struct ContactRules {
-  bool resolve = false;  ///< cloth.start_inside = "resolve": move the cloth out instead of refusing
-  bool overlap = false;  ///< self_collision.overlap: particles may overlap at rest
-};
-
-/// The section of that name, or an empty one that stands at the document's start.
+/// The table of that name, or an empty one that stands at the document's start.
 const Value& part(Section& root, const std::string& key) {
   const Value* table = root.table(key);
   return table ? *table : kAbsent;
@@ -182,16 +189,6 @@ const Fabric* read_fabric(Section& root) {
   return fabric;
 }
 
-LinkChoice read_links(Section& links, Scene& scene) {
-  LinkChoice choice;
-  choice.structural = links.boolean("structural", true);
-  choice.shear = links.boolean("shear", true);
-  choice.bend = links.boolean("bend", false);
-  read_stiffness(links, scene);
-  links.finish();
-  return choice;
-}
-
 /// One stiffness [N m], or those of warp and weft, unless the fabric's; the warp's direction is a
 /// grid's v unless given.
 Bending read_bending(Section& section, const Fabric* fabric) {
@@ -208,45 +205,17 @@ Bending read_bending(Section& section, const Fabric* fabric) {
     bending.warp = bending.weft = section.number("stiffness", range, 1);
   }
   if (fabric) bending.warp = fabric->warp, bending.weft = fabric->weft;
-  bending.direction = section.direction("warp", Vec3::Zero());
+  bending.direction.setZero();
+  read_keys(section, "bending", bending);
   section.finish();
   return bending;
 }
 
-void read_forces(Section& forces, Scene& scene) {
-  scene.gravity = forces.vec3("gravity", 1e6, Vec3(0, -9.81, 0));
-  scene.damping = forces.number("damping", Range::non_negative(1e6), 0);
-  forces.finish();
-}
-
-Wind read_wind(Section& section) {
-  Wind wind;
-  wind.velocity = section.vec3("velocity", 1e6, Vec3::Zero());
-  wind.strength = section.number("strength", Range::non_negative(1e6), 0.1);
-  wind.law = section.choice("law", {"relative", "literal"}, "relative") == "relative"
-                 ? Wind::Law::relative
-                 : Wind::Law::literal;
-  section.finish();
-  return wind;
-}
-
-SelfCollision read_self_collision(Section& section, ContactRules& rules) {
-  section.need({"radius"});
-  SelfCollision self;
-  self.radius = section.number("radius", Range::positive(kFar), 1);
-  rules.overlap = section.boolean("overlap", false);
-  section.finish();
-  return self;
-}
-
 /// dt is rounded to binary32: Bullet keeps it so even in its double build, and every solver gets
 /// the same. The number of steps forgives that rounding.
-void read_time(Section& time, Scene& scene) {
-  const double dt = time.number("dt", {1e-7, 10}, 1.0 / 64);
-  const double duration = time.number("duration", Range::positive(1e6), 10);
-  time.finish();
-  scene.dt = static_cast<double>(static_cast<float>(dt));
-  const double steps = std::ceil(duration / scene.dt * (1 - 1e-7));
+void set_steps(const FileKeys& said, Section& time, Scene& scene) {
+  scene.dt = static_cast<double>(static_cast<float>(said.dt));
+  const double steps = std::ceil(said.duration / scene.dt * (1 - 1e-7));
   constexpr double kMaxSteps = 1e9;
   if (steps > kMaxSteps) {
     time.report("duration", "makes " + shortest(steps) + " steps; at most 1e9 are allowed");
@@ -345,14 +314,14 @@ double spacing(const Scene& scene) {
   return least;
 }
 
-void judge_sizes(Section& root, const ContactRules& rules, const Scene& scene) {
+void judge_sizes(Section& root, const FileKeys& said, const Scene& scene) {
   const double least = spacing(scene);
   if (least == 0) return;
   if (scene.thickness > least && !scene.colliders.empty())
     root.report("cloth", "thickness " + shortest(scene.thickness) +
                              " m is larger than the spacing " + shortest(least) +
                              " m of the vertices");
-  if (!scene.self_collision || rules.overlap) return;
+  if (!scene.self_collision || said.overlap) return;
   if (2 * scene.self_collision->radius > least * (1 + 1e-9))
     root.report("self_collision", "particles of radius " + shortest(scene.self_collision->radius) +
                                       " m overlap at rest, where they are " + shortest(least) +
@@ -362,14 +331,14 @@ void judge_sizes(Section& root, const ContactRules& rules, const Scene& scene) {
 /// Reports what makes contact meaningless in an otherwise complete scene: a cloth that starts
 /// inside a collider (moved to its surface, at the scene's thickness, if the scene says so) or
 /// through itself, a thickness or a particle larger than the spacing, a collider whose path jumps.
-void check_contact(Section& root, const ContactRules& rules, Scene& scene) {
-  if (rules.resolve) resolve(scene);
+void check_contact(Section& root, const FileKeys& said, Scene& scene) {
+  if (said.start_inside == FileKeys::Inside::resolve) resolve(scene);
   const auto items = root.tables("collider");
   for (std::size_t k = 0; k < items.size() && k < scene.colliders.size(); ++k) {
     judge_start(*items[k], root, scene.colliders[k], scene);
     judge_path(*items[k], root, scene.colliders[k], scene);
   }
-  judge_sizes(root, rules, scene);
+  judge_sizes(root, said, scene);
   if (!scene.self_collision) return;
   const auto pairs = crossings(scene.mesh.triangles, scene.start.x);
   if (!pairs.empty())
@@ -387,37 +356,37 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   scene.summary = root.string("summary").value_or("");
 
   root.need({"cloth"});
-  Section links(diagnostics, part(root, "links"), "[links]");
-  const LinkChoice choice = read_links(links, scene);
-  Section cloth(diagnostics, part(root, "cloth"), "[cloth]");
   const Fabric* fabric = read_fabric(root);
+  FileKeys said;
+  const auto read = [&](const char* name, auto&... parts) {
+    Section section(diagnostics, part(root, name), "[" + std::string(name) + "]");
+    (read_keys(section, name, parts), ...);
+    return section;
+  };
+  Section links = read("links", said);
+  read_stiffness(links, scene);
+  links.finish();
+  Section cloth = read("cloth", said, scene);
   const bool built =
-      root.table("cloth") && read_cloth(cloth, path.parent_path(), choice, fabric, scene);
-  ContactRules rules;
-  rules.resolve = cloth.choice("start_inside", {"error", "resolve"}, "error") == "resolve";
+      root.table("cloth") && read_cloth(cloth, path.parent_path(), fabric, said, scene);
   if (root.table("cloth")) cloth.finish();
-  Section forces(diagnostics, part(root, "forces"), "[forces]");
-  read_forces(forces, scene);
+  read("forces", said, scene).finish();
   if (root.table("bending") || fabric) {
-    Section bending(diagnostics, part(root, "bending"), "[bending]");
+    Section bending = read("bending");
     scene.bending = read_bending(bending, fabric);
   }
-  if (const Value* table = root.table("wind")) {
-    Section wind(diagnostics, *table, "[wind]");
-    scene.wind = read_wind(wind);
-  }
-  if (const Value* table = root.table("self_collision")) {
-    Section self(diagnostics, *table, "[self_collision]");
-    scene.self_collision = read_self_collision(self, rules);
-  }
+  if (root.table("wind")) read("wind", said, scene.wind.emplace()).finish();
+  if (root.table("self_collision"))
+    read("self_collision", said, scene.self_collision.emplace()).finish();
   read_colliders(root, scene);
   read_pin_motions(root, built, scene);
-  Section time(diagnostics, part(root, "time"), "[time]");
-  read_time(time, scene);
+  Section time = read("time", said, scene);
+  time.finish();
+  set_steps(said, time, scene);
   root.finish();
   if (built && scene.bending) complete(*scene.bending, scene.mesh);
   if (built) check_whole(root, diagnostics, scene);
-  if (built && diagnostics.clean()) check_contact(root, rules, scene);
+  if (built && diagnostics.clean()) check_contact(root, said, scene);
   diagnostics.throw_if_any();
   return scene;
 }

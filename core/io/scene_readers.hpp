@@ -6,19 +6,34 @@
 
 #include "core/io/document.hpp"
 #include "core/io/fabrics.hpp"
-#include "core/model/scene.hpp"
+#include "core/model/scene_keys.hpp"
 
 // What scene_io.cpp and cloth_io.cpp read a scene with.
 
 namespace taut {
 
-/// Largest coordinate, size or displacement that a scene may hold [m].
-inline constexpr double kFar = 1e6;
+/// Reads a value of the kind that the key is; one that is absent or wrong stays what it was.
+void read_value(Section&, const SceneKey&, double&);
+void read_value(Section&, const SceneKey&, Vec3&);
+void read_value(Section&, const SceneKey&, bool&);
+int read_choice(Section&, const SceneKey&, int fallback);  ///< which of them
+template <class Enumeration>
+requires std::is_enum_v<Enumeration>
+void read_value(Section& section, const SceneKey& key, Enumeration& value) {
+  value = static_cast<Enumeration>(read_choice(section, key, static_cast<int>(value)));
+}
+
+/// Reads every key of the section `of` that is a member of the part.
+template <class Part>
+void read_keys(Section& section, std::string_view of, Part& part) {
+  each_key(of, part,
+           [&](const SceneKey& key, auto& value, const auto&) { read_value(section, key, value); });
+}
 
 /// Reads [cloth]: mesh, links, start, pins and thickness of the scene; a mesh file is relative to
 /// `folder`. A fabric's mass stands in the place of what [cloth] says. Reports what is wrong; false
 /// if there is no mesh to go on with.
-bool read_cloth(Section&, const std::filesystem::path& folder, const LinkChoice&, const Fabric*,
+bool read_cloth(Section&, const std::filesystem::path& folder, const Fabric*, const FileKeys&,
                 Scene&);
 
 /// The vertices that a value names: a vertex number, a pair [i, j], the name of an edge or corner

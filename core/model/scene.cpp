@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
+#include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -12,7 +14,7 @@ namespace taut {
 namespace {
 
 /// Writes values one after the other, lengths before contents, so that no two scenes share their
-/// bytes.
+/// bytes. Keys that came later stand at the end, each with its name and its place among the others.
 class Bytes {
  public:
   template <class T>
@@ -32,23 +34,18 @@ class Bytes {
   void add(const Link& l) { add(l.a), add(l.b), add(l.rest), add(l.family); }
   void add(const Grid& g) { add(g.nu), add(g.nv); }
   void add(const Motion::Key& k) { add(k.t), add(k.displacement); }
-  void add(const Motion& m) { add(m.velocity), add(m.spin), add(m.pivot), add(m.path); }
+  void add(const Motion& m) { add("collider", m), add(m.path); }
   void add(const PinMotion& m) { add(m.vertices), add(m.motion); }
-  void add(const Plane& p) { add(p.normal), add(p.offset); }
-  void add(const Ball& b) { add(b.center), add(b.radius); }
-  void add(const Box& b) {
-    add(b.center), add(b.half_extents);
-    for (const double c : b.rotation.coeffs()) add(c);
-  }
-  void add(const Capsule& c) { add(c.from), add(c.to), add(c.radius); }
   void add(const Collider& c) {
     add(c.shape.index());
-    std::visit([&](const auto& shape) { add(shape); }, c.shape);
-    add(c.motion), add(c.friction);
+    std::visit([&](const auto& shape) { add("collider", shape); }, c.shape);
+    if (const Box* box = std::get_if<Box>(&c.shape))
+      for (const double q : box->rotation.coeffs()) add(q);
+    add(c.motion), add("collider", c);
   }
-  void add(const Bending& b) { add(b.warp), add(b.weft), add(b.direction); }
-  void add(const Wind& w) { add(w.velocity), add(w.strength), add(w.law); }
-  void add(const SelfCollision& s) { add(s.radius); }
+  void add(const Bending& b) { add(b.warp), add(b.weft), add("bending", b); }
+  void add(const Wind& w) { add("wind", w); }
+  void add(const SelfCollision& s) { add("self_collision", s); }
   void add(const Mesh& m) {
     const auto& [rest, triangles, mass, grid] = m;
     add(rest), add(triangles), add(mass), add(grid);
@@ -64,10 +61,31 @@ class Bytes {
     add(value.has_value());
     if (value) add(*value);
   }
-  std::string take() { return std::move(text_); }
+  /// The keys of the section that are members of the part.
+  template <class Part>
+  void add(std::string_view section, const Part& part) {
+    each_key(section, part, [&](const SceneKey& key, const auto& value, const auto& initial) {
+      if (!key.later) return add(value);
+      if (!key.counts(value, initial)) return;
+      Bytes bytes;
+      bytes.add(text_.size()), bytes.add(value);
+      later_.emplace_back(key.path, bytes.text_);
+    });
+  }
+  std::string all() const {
+    std::string text = text_;
+    for (const auto& [key, bytes] : later_) text += key + bytes;
+    return text;
+  }
+  std::vector<std::string> later_keys() const {
+    std::vector<std::string> keys;
+    for (const auto& [key, bytes] : later_) keys.push_back(key);
+    return keys;
+  }
 
  private:
   std::string text_;
+  std::vector<std::pair<std::string, std::string>> later_;  ///< with its place and value
 };
 
 }  // namespace
@@ -106,18 +124,23 @@ Vec3 pin_position(const Scene& scene, int vertex, double t) {
   return start;
 }
 
-std::string content(const Scene& scene) {
-  // Every member is named here: a new one does not compile until it has an answer.
-  const auto& [name, summary, mesh, start, pins, pin_motions, links, stiffness, bending, colliders,
-               wind, self_collision, gravity, damping, thickness, dt, steps] = scene;
+namespace {
+
+Bytes bytes_of(const Scene& s) {
   Bytes bytes;
-  bytes.add(mesh), bytes.add(start), bytes.add(pins), bytes.add(pin_motions), bytes.add(links);
-  bytes.add(colliders), bytes.add(wind), bytes.add(self_collision);
-  bytes.add(gravity), bytes.add(damping), bytes.add(thickness), bytes.add(dt), bytes.add(steps);
-  if (stiffness != kRigid)  // a scene without has the bytes that it had before there was any
-    for (const double k : stiffness) bytes.add(k);
-  if (bending) bytes.add(bending);
-  return bytes.take();
+  bytes.add(s.mesh), bytes.add(s.start), bytes.add(s.pins), bytes.add(s.pin_motions);
+  bytes.add(s.links), bytes.add(s.colliders), bytes.add(s.wind), bytes.add(s.self_collision);
+  bytes.add("forces", s), bytes.add("cloth", s), bytes.add(s.dt), bytes.add(s.steps);
+  if (s.stiffness != kRigid)  // a scene without has the bytes that it had before there was any
+    for (const double k : s.stiffness) bytes.add(k);
+  if (s.bending) bytes.add(s.bending);
+  return bytes;
 }
+
+}  // namespace
+
+std::string content(const Scene& scene) { return bytes_of(scene).all(); }
+
+std::vector<std::string> later_keys(const Scene& scene) { return bytes_of(scene).later_keys(); }
 
 }  // namespace taut

@@ -25,8 +25,8 @@ struct Wind {
     literal    ///< d = wind velocity alone, as printed; accelerates without end
   };
   Vec3 velocity = Vec3::Zero();  ///< m/s
-  double strength =
-      0;  ///< c [N s/m^3]; n is the unit normal, A the face's area; each corner takes F/3
+  /// c [N s/m^3]; n is the unit normal, A the face's area; each corner takes F/3
+  double strength = 0.1;
   Law law = Law::relative;
 };
 
@@ -53,6 +53,7 @@ inline constexpr std::array<double, kFamilies.size()> kRigid{
     std::numeric_limits<double>::infinity()};
 
 /// What to simulate: plain data in SI units, no behaviour. Every solver receives this same object.
+/// A member that a file says in a single value has a row in scene_keys.cpp.
 /// An empty vector or disengaged optional means that the effect is absent, and an absent effect
 /// costs neither memory nor time (tests/solver/absent_is_free_test.cpp).
 struct Scene {
@@ -96,5 +97,8 @@ Vec3 pin_position(const Scene&, int vertex, double t);
 
 /// The content of a scene as bytes: equal exactly when the scenes are the same simulation.
 std::string content(const Scene&);
+
+/// The keys of scene_keys.hpp that came later and are not at their defaults.
+std::vector<std::string> later_keys(const Scene&);
 
 }  // namespace taut

@@ -28,10 +28,10 @@ std::string shortest(double value) {
   return {text, end};
 }
 
-std::vector<std::string> parts_of(std::string_view list) {
+std::vector<std::string> parts_of(std::string_view list, char separator) {
   std::vector<std::string> all;
   while (!list.empty()) {
-    const std::size_t end = std::min(list.find('|'), list.size());
+    const std::size_t end = std::min(list.find(separator), list.size());
     all.emplace_back(list.substr(0, end));
     list.remove_prefix(std::min(end + 1, list.size()));
   }

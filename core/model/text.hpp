@@ -15,7 +15,7 @@ std::string printable(std::string_view);
 std::string shortest(double value);
 
 /// The parts of "a|b|c".
-std::vector<std::string> parts_of(std::string_view list);
+std::vector<std::string> parts_of(std::string_view list, char separator = '|');
 
 /// The texts of all, one after the other; text_of(one) is what one of them says.
 template <class All, class TextOf = std::identity>

@@ -9,6 +9,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
 #include "experiments/system/json.hpp"
 
@@ -24,47 +25,44 @@ Json json_of(const std::vector<Vec3>& points) {
   return all;
 }
 
+Json json_of(double value, const SceneKey&) { return value; }
+Json json_of(bool value, const SceneKey&) { return value; }
+Json json_of(const Vec3& value, const SceneKey&) { return json_of(value); }
+template <class Enumeration>
+requires std::is_enum_v<Enumeration> Json json_of(Enumeration value, const SceneKey& key) {
+  return parts_of(key.choices)[static_cast<std::size_t>(value)];
+}
+
+/// The keys of the section that are members of the part.
+template <class Part>
+Json json_of(std::string_view section, const Part& part) {
+  Json all = Json::object();
+  each_key(section, part, [&](const SceneKey& key, const auto& value, const auto& initial) {
+    if (key.counts(value, initial)) all[std::string(key.name())] = json_of(value, key);
+  });
+  return all;
+}
+
 Json json_of(const Motion& motion) {
   if (motion.at_rest()) return nullptr;
-  Json path = Json::array();
+  Json all = json_of("collider", motion), path = Json::array();
   for (const Motion::Key& key : motion.path)
     path.push_back({{"t", key.t}, {"displacement", json_of(key.displacement)}});
-  return {{"velocity", json_of(motion.velocity)},
-          {"spin", json_of(motion.spin)},
-          {"pivot", json_of(motion.pivot)},
-          {"path", path}};
-}
-
-Json json_of(const Plane& plane) {
-  return {{"normal", json_of(plane.normal)}, {"offset", plane.offset}};
-}
-
-Json json_of(const Ball& ball) {
-  return {{"center", json_of(ball.center)}, {"radius", ball.radius}};
-}
-
-Json json_of(const Box& box) {
-  const Eigen::Quaterniond& q = box.rotation;
-  return {{"center", json_of(box.center)},
-          {"half_extents", json_of(box.half_extents)},
-          {"rotation", {q.w(), q.x(), q.y(), q.z()}}};
-}
-
-Json json_of(const Capsule& capsule) {
-  return {{"from", json_of(capsule.from)}, {"to", json_of(capsule.to)}, {"radius", capsule.radius}};
+  all["path"] = path;
+  return all;
 }
 
 Json json_of(const Collider& collider) {
   Json one{{"type", type_name(collider.shape)}};
-  one.update(std::visit([](const auto& shape) { return json_of(shape); }, collider.shape));
-  one.update({{"friction", collider.friction}, {"motion", json_of(collider.motion)}});
+  one.update(
+      std::visit([](const auto& shape) { return json_of("collider", shape); }, collider.shape));
+  if (const Box* box = std::get_if<Box>(&collider.shape)) {
+    const Eigen::Quaterniond& q = box->rotation;
+    one["rotation"] = {q.w(), q.x(), q.y(), q.z()};
+  }
+  one.update(json_of("collider", collider));
+  one["motion"] = json_of(collider.motion);
   return one;
-}
-
-Json json_of(const Wind& wind) {
-  return {{"velocity", json_of(wind.velocity)},
-          {"strength", wind.strength},
-          {"law", wind.law == Wind::Law::relative ? "relative" : "literal"}};
 }
 
 constexpr std::string_view kProtocol = "taut-solver/1";
@@ -175,6 +173,7 @@ std::vector<std::string> beyond_first(const Scene& scene) {
       }))
     all.emplace_back("a capsule");
   if (scene.bending) all.emplace_back("bending stiffness");
+  for (std::string& key : later_keys(scene)) all.push_back(std::move(key));
   return all;
 }
 
@@ -192,9 +191,6 @@ std::string scene_file(const Scene& scene) {
             {"grid", grid ? Json{grid->nu, grid->nv} : Json()},
             {"dt", scene.dt},
             {"steps", scene.steps},
-            {"gravity", json_of(scene.gravity)},
-            {"damping", scene.damping},
-            {"thickness", scene.thickness},
             {"x", json_of(scene.start.x)},
             {"v", json_of(scene.start.v)},
             {"rest", json_of(scene.mesh.rest)},
@@ -205,15 +201,18 @@ std::string scene_file(const Scene& scene) {
             {"links", links},
             {"triangles", scene.mesh.triangles},
             {"colliders", colliders},
-            {"wind", scene.wind ? json_of(*scene.wind) : Json()},
+            {"wind", scene.wind ? json_of("wind", *scene.wind) : Json()},
             {"self_collision",
-             scene.self_collision ? Json{{"radius", scene.self_collision->radius}} : Json()}};
+             scene.self_collision ? json_of("self_collision", *scene.self_collision) : Json()}};
+  file.update(json_of("forces", scene)), file.update(json_of("cloth", scene));
   if (!beyond_first(scene).empty()) file["format"] = "taut-scene/2";
   if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
-  if (scene.bending)
-    file["bending"] = {{"warp", scene.bending->warp},
-                       {"weft", scene.bending->weft},
-                       {"direction", json_of(scene.bending->direction)}};
+  if (scene.bending) {
+    file["bending"] = json_of("bending", *scene.bending);  // whose key `warp` is the direction
+    file["bending"].update({{"warp", scene.bending->warp},
+                            {"weft", scene.bending->weft},
+                            {"direction", json_of(scene.bending->direction)}});
+  }
   return to_text(file) + "\n";
 }
 

@@ -18,6 +18,15 @@ Value& slot(Value& table, const std::string& key) {
   return table.items.emplace_back();
 }
 
+void erase_key(Value& table, const std::string& key) {
+  for (std::size_t i = 0; i < table.keys.size(); ++i)
+    if (table.keys[i].text == key) {
+      table.keys.erase(table.keys.begin() + static_cast<std::ptrdiff_t>(i));
+      table.items.erase(table.items.begin() + static_cast<std::ptrdiff_t>(i));
+      return;
+    }
+}
+
 /// Without the tables of arrays that were emptied.
 Value without_empty(Value root) {
   for (std::size_t i = root.items.size(); i-- > 0;) {
@@ -30,15 +39,6 @@ Value without_empty(Value root) {
 }
 
 }  // namespace
-
-void erase_key(Value& table, const std::string& key) {
-  for (std::size_t i = 0; i < table.keys.size(); ++i)
-    if (table.keys[i].text == key) {
-      table.keys.erase(table.keys.begin() + static_cast<std::ptrdiff_t>(i));
-      table.items.erase(table.items.begin() + static_cast<std::ptrdiff_t>(i));
-      return;
-    }
-}
 
 Draft::Draft(const CaseSpec& spec)
     : spec_(spec),
@@ -65,7 +65,10 @@ void Draft::remove(const std::string& name) {
 }
 
 void Draft::remove(const std::string& name, const std::string& key) {
-  if (find(name, key)) erase_key(section(name), key);
+  if (std::vector<Value>* all = tables(name))
+    for (Value& table : *all) erase_key(table, key);
+  else if (find(name, key))
+    erase_key(section(name), key);
 }
 
 std::vector<Value>* Draft::tables(const std::string& name) {

@@ -1,6 +1,7 @@
 // What a case has that it may not need.
 #include <algorithm>
 
+#include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
 #include "experiments/require/require.hpp"
 
@@ -24,6 +25,25 @@ bool has_family(const Scene& scene, Family family) {
   return std::ranges::any_of(scene.links, [&](const Link& l) { return l.family == family; });
 }
 
+/// What is not at its default is left out, wherever the scene has it; a choice at its default
+/// becomes the last one. An effect is added once.
+template <class Part>
+void add_keys(Effects& effects, std::string_view section, const Part& part) {
+  each_key(section, part, [&]<class Of>(const SceneKey& key, const Of& value, const Of& initial) {
+    const std::string of(section), name(key.name()), effect(key.effect);
+    if (effect.empty() || std::ranges::count(effects, effect, &Effect::name) > 0) return;
+    if constexpr (std::is_enum_v<Of>) {
+      const std::vector<std::string> all = parts_of(key.choices);
+      if (value == initial)
+        add(effects, effect, {{all.front() + " -> " + all.back(), [=](Draft& draft) {
+                                 if (draft.has(of)) draft.set(of, name, "'" + all.back() + "'");
+                               }}});
+    } else if (value != initial) {
+      gone(effects, effect, [=](Draft& draft) { draft.remove(of, name); });
+    }
+  });
+}
+
 void add_links_and_forces(const Case& one, Effects& effects) {
   const Scene& scene = *one.scene;
   const auto no_links = [](const char* family) {
@@ -34,22 +54,14 @@ void add_links_and_forces(const Case& one, Effects& effects) {
   if (scene.bending) gone(effects, "bending", [](Draft& draft) { draft.remove("bending"); });
   if (scene.wind) {
     gone(effects, "wind", [](Draft& draft) { draft.remove("wind"); });
-    if (scene.wind->law == Wind::Law::relative)
-      add(effects, "law of the wind", {{"relative -> literal", [](Draft& draft) {
-                                          if (draft.has("wind"))
-                                            draft.set("wind", "law", "'literal'");
-                                        }}});
+    add_keys(effects, "wind", *scene.wind);
   }
-  if (scene.damping > 0)
-    gone(effects, "damping", [](Draft& draft) { draft.remove("forces", "damping"); });
+  add_keys(effects, "forces", scene);
 }
 
 void add_contact(const Case& one, Effects& effects) {
   const Scene& scene = *one.scene;
-  if (std::ranges::any_of(scene.colliders, [](const Collider& c) { return c.friction > 0; }))
-    gone(effects, "friction", [](Draft& draft) {
-      for (Value& collider : *draft.tables("collider")) erase_key(collider, "friction");
-    });
+  for (const Collider& collider : scene.colliders) add_keys(effects, "collider", collider);
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const std::string number =
         scene.colliders.size() > 1 ? " " + std::to_string(k + 1) : std::string();
@@ -58,8 +70,7 @@ void add_contact(const Case& one, Effects& effects) {
   }
   if (scene.self_collision)
     gone(effects, "self-collision", [](Draft& draft) { draft.remove("self_collision"); });
-  if (scene.thickness > 0 && !scene.colliders.empty())
-    gone(effects, "thickness", [](Draft& draft) { draft.remove("cloth", "thickness"); });
+  if (!scene.colliders.empty()) add_keys(effects, "cloth", scene);
 }
 
 /// A choice with its cheaper value; a whole number is halved until it is 1.

@@ -27,7 +27,7 @@ class Draft {
   /// Replaces or adds [section] key of the scene; the value as TOML, or as it was read.
   void set(const std::string& section, const std::string& key, const std::string& toml);
   void set(const std::string& section, const std::string& key, Value);
-  /// Takes away [section] or its key; what is not there stays away.
+  /// Takes away [section], or a key of it or of each [[section]]; what is not there stays away.
   void remove(const std::string& section);
   void remove(const std::string& section, const std::string& key);
   /// The array of tables [[section]]; nullptr: the scene has none. A table that is left empty is
@@ -54,9 +54,6 @@ class Draft {
   std::map<std::string, std::string> changed_;
   bool scene_changed_ = false;
 };
-
-/// Takes a key out of a table; one that it does not have is none the less gone.
-void erase_key(Value& table, const std::string& key);
 
 /// The value that a text is in TOML. Throws InputError.
 Value toml_value(const std::string& toml);

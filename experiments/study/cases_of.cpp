@@ -105,11 +105,9 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
       Case one = maker.make(spec);
       if (keys.insert(one.key).second) visit(std::move(one));
     } catch (const InputError& error) {
-      for (Diagnostic d : error.diagnostics()) {
-        if (const auto at = study.places.find(d.file); at != study.places.end())
-          d = {study.file.string(), at->second.line, at->second.column, d.file + ": " + d.message};
-        if (said.insert(d.text()).second) wrong.push_back(d);
-      }
+      for (const Diagnostic& of_scene : error.diagnostics())
+        if (const Diagnostic d = placed(study, of_scene); said.insert(d.text()).second)
+          wrong.push_back(d);
     }
   };
   for (const std::string& scene : study.scenes)

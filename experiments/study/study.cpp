@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "core/io/document.hpp"
+#include "core/io/scene_io.hpp"
 #include "core/model/text.hpp"
 #include "experiments/system/data.hpp"
 
@@ -66,23 +68,21 @@ void refuse_control_characters(Diagnostics& diagnostics, const Value& value) {
 /// Reads one document into a Study; what is wrong goes to the diagnostics.
 class StudyReader {
  public:
-  StudyReader(Diagnostics& diagnostics, Study& study) : diagnostics_(diagnostics), study_(study) {}
+  StudyReader(Diagnostics& diagnostics, Study& study, std::string preset)
+      : diagnostics_(diagnostics), study_(study), wanted_(std::move(preset)) {}
 
-  void read(const Value& root, const std::string& preset) {
+  void read(const Value& root) {
     Section section(diagnostics_, root, "the study");
-    study_.question = section.string("question").value_or("");
-    if (study_.question.empty()) section.missing("question");
-    read_lists(section);
-    for (const std::string required : {"scenes", "solvers"})
-      if (!section.find(required)) section.missing(required);
-    read_presets(section, preset);
-    for (const Value* plot : section.tables("plot")) read_plot(*plot);
+    section.need({"question", "scenes", "solvers"});
+    read_keys(section, false);
     section.finish();
   }
 
- private:
-  /// What a study and a preset have in common; a list that is present replaces the one before.
-  void read_lists(Section& section) {
+  void read_question(Section& section) {
+    study_.question = section.string("question").value_or("");
+    if (study_.question.empty()) section.missing("question");
+  }
+  void read_scenes(Section& section) {
     strings(section, "scenes", study_.scenes, [](const std::string& text) {
       if (const StudyScene scene = parse_scene(text); scene.name != kAll) find_scene(scene.name);
     });
@@ -90,12 +90,26 @@ class StudyReader {
     if (std::erase(study_.scenes, kAll) > 0)
       for (const std::string& name : shipped("scenes"))
         if (std::ranges::count(study_.scenes, name) == 0) study_.scenes.push_back(name);
+  }
+  void read_solvers(Section& section) {
     if (strings(section, "solvers", study_.solvers, parse_solver)) remember_solvers();
+  }
+  void read_set(Section& section) {
     if (strings(section, "set", study_.settings, [](const std::string&) {}))
       for (const Value& item : section.find("set")->items) study_.places[item.string] = item.place;
-    if (const Value* axes = section.table("axes")) read_axes(*axes);
-    if (const Value* list = section.find("exclude")) read_exclusions(section, *list);
   }
+  void read_axes(Section& section) {
+    if (const Value* axes = section.table("axes")) read_axes(*axes);
+  }
+  void read_exclude(Section& section) { read_exclusions(section, *section.find("exclude")); }
+  void read_plots(Section& section) {
+    for (const Value* plot : section.tables("plot")) read_plot(*plot);
+  }
+  void read_presets(Section&);
+
+ private:
+  /// A list that a preset has replaces the one before.
+  void read_keys(Section&, bool of_preset);
 
   void remember_places_of(const Value& scenes) {
     for (const Value& item : scenes.items) try {
@@ -290,25 +304,11 @@ class StudyReader {
     return names;
   }
 
-  void read_presets(Section& section, const std::string& wanted) {
-    const Value* presets = section.table("preset");
-    if (!presets) return;
-    for (std::size_t i = 0; i < presets->items.size(); ++i) {
-      const std::string& name = presets->keys[i].text;
-      study_.presets.push_back(name);
-      Study other = study_;  // a preset that was not asked for is judged all the same
-      StudyReader reader(diagnostics_, name == wanted ? study_ : other);
-      reader.choices_ = choices_;
-      Section preset(diagnostics_, presets->items[i], "[preset." + name + "]");
-      reader.read_lists(preset);
-      preset.finish();
-      if (name == wanted) study_.preset = name;
-    }
-  }
-
   void read_plot(const Value& table) {
     Plot plot;
-    const std::vector<std::string> known{"kind", "x", "y", "along", "title", "file", "slope"};
+    std::vector<std::string> known;
+    for (const StudyKey& key : study_keys())
+      if (key.name.starts_with("plot.")) known.emplace_back(key.name.substr(5));
     for (std::size_t i = 0; i < table.items.size(); ++i)
       if (std::ranges::count(known, table.keys[i].text) == 0)
         diagnostics_.report(table.keys[i].place, "unknown key '" + table.keys[i].text +
@@ -327,8 +327,94 @@ class StudyReader {
 
   Diagnostics& diagnostics_;
   Study& study_;
+  std::string wanted_;  ///< a preset
   std::vector<SolverChoice> choices_;
 };
+
+/// A key, and who reads it; those of a figure are read together.
+struct StudyRow {
+  StudyKey key;
+  void (StudyReader::*read)(Section&) = nullptr;
+};
+
+constexpr StudyRow kKeys[] = {
+    {{"question", false, "one sentence; it heads the report"}, &StudyReader::read_question},
+    {{"scenes", true,
+      "names of shipped scenes, or paths (with a `/`, or ending in `.toml`); `\"all\"`: every "
+      "shipped scene"},
+     &StudyReader::read_scenes},
+    {{"solvers", true,
+      "`\"name\"` or `\"name:key=value,...\"` (`taut list solvers`). Defaults differ: where sweeps "
+      "are to be equal work, name the substeps too (`jakobsen:substeps=1,order=mesh` beside "
+      "`bullet`)"},
+     &StudyReader::read_solvers},
+    {{"set", true,
+      "scene keys for every case, as on the command line: `[\"cloth.grid=[16, 16]\", "
+      "\"time.duration=4\"]`"},
+     &StudyReader::read_set},
+    {{"axes", true, "`[axes]`: what varies; every combination is a case"}, &StudyReader::read_axes},
+    {{"exclude", true,
+      "cases to leave out: `[{ scene = \"fall\", iterations = [64, 128] }]` leaves out those that "
+      "match all of the named settings. `scene` is written as in `scenes`, `solver` is a plain "
+      "name"},
+     &StudyReader::read_exclude},
+    {{"preset", false,
+      "`[preset.NAME]`: a smaller or larger version, chosen with `--preset NAME`; each of "
+      "`scenes`, `solvers`, `set`, `axes`, `exclude` replaces what it names (axes one by one)"},
+     &StudyReader::read_presets},
+    {{"plot", false, "`[[plot]]`: a figure"}, &StudyReader::read_plots},
+    {{"plot.kind", false, "what it shows (below)"}},
+    {{"plot.x", false, "a value or an axis, horizontally"}},
+    {{"plot.y", false, "a value, vertically"}},
+    {{"plot.along", false, "an axis whose values are joined to curves"}},
+    {{"plot.title", false, "above the figure"}},
+    {{"plot.file", false, "its name"}},
+    {{"plot.slope", false, "the exponent of a theory, drawn as a line"}}};
+
+void StudyReader::read_keys(Section& section, bool of_preset) {
+  for (const auto& [key, read] : kKeys)
+    if (read && (key.in_preset || !of_preset) && section.find(std::string(key.name)))
+      (this->*read)(section);
+}
+
+void StudyReader::read_presets(Section& section) {
+  const Value* presets = section.table("preset");
+  if (!presets) return;
+  for (std::size_t i = 0; i < presets->items.size(); ++i) {
+    const std::string& name = presets->keys[i].text;
+    study_.presets.push_back(name);
+    Study other = study_;  // a preset that was not asked for is judged all the same
+    StudyReader reader(diagnostics_, name == wanted_ ? study_ : other, "");
+    reader.choices_ = choices_;
+    Section preset(diagnostics_, presets->items[i], "[preset." + name + "]");
+    reader.read_keys(preset, true);
+    preset.finish();
+    if (name == wanted_) study_.preset = name;
+  }
+}
+
+/// What is wrong with the scenes of a study that is itself wrong: each with `set`, and with every
+/// value of an axis by itself.
+void judge_scenes(const Study& study, Diagnostics& diagnostics) {
+  std::vector<std::vector<std::string>> variants{study.settings};
+  for (const StudyAxis& axis : study.axes)
+    for (const std::string& value : axis.values)
+      if (axis.of_scene()) {
+        variants.push_back(study.settings);
+        variants.back().push_back(axis.name + "=" + value);
+      }
+  std::set<std::string> said;
+  for (const std::string& scene : study.scenes)
+    for (std::vector<std::string> overrides : variants) try {
+        const StudyScene own = parse_scene(scene);
+        overrides.insert(overrides.end(), own.settings.begin(), own.settings.end());
+        load_scene(find_scene(own.name), overrides);
+      } catch (const InputError& error) {
+        for (const Diagnostic& d : error.diagnostics())
+          if (said.insert(d.text()).second && !d.file.empty())
+            diagnostics.report({placed(study, d)});
+      }
+}
 
 }  // namespace
 
@@ -343,6 +429,18 @@ StudyScene parse_scene(const std::string& text) {
   return scene;
 }
 
+Diagnostic placed(const Study& study, const Diagnostic& d) {
+  const auto at = study.places.find(d.file);
+  if (at == study.places.end()) return d;
+  return {study.file.string(), at->second.line, at->second.column, d.file + ": " + d.message};
+}
+
+std::vector<StudyKey> study_keys() {
+  std::vector<StudyKey> keys;
+  for (const StudyRow& row : kKeys) keys.push_back(row.key);
+  return keys;
+}
+
 Study load_study(const std::string& name_or_path, const std::string& preset) {
   Study study;
   study.file = find_study(name_or_path);
@@ -351,7 +449,8 @@ Study load_study(const std::string& name_or_path, const std::string& preset) {
   Diagnostics diagnostics(document);
   refuse_control_characters(diagnostics, document.root);
   diagnostics.throw_if_any();
-  StudyReader(diagnostics, study).read(document.root, preset);
+  StudyReader(diagnostics, study, preset).read(document.root);
+  if (!diagnostics.clean()) judge_scenes(study, diagnostics);
   diagnostics.throw_if_any();
   if (!preset.empty() && study.preset.empty())
     throw InputError({{study.file, 0, 0,

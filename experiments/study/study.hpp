@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/io/document.hpp"
@@ -58,8 +59,20 @@ struct Study {
   std::map<std::string, SourceLocation> places;
 };
 
+/// A key of a study file.
+struct StudyKey {
+  std::string_view name;   ///< "scenes"; of a figure "plot.x"
+  bool in_preset = false;  ///< a preset may have it
+  std::string_view help;   ///< a line or two
+};
+std::vector<StudyKey> study_keys();
+
+/// What is wrong with a scene, at the place where the study says it: an override of its own has no
+/// line.
+Diagnostic placed(const Study&, const Diagnostic& of_scene);
+
 /// Reads a study by name or path; `preset` replaces what it names, "" nothing. Throws InputError
-/// with every diagnostic at once, or if the study has no such preset.
+/// with every diagnostic at once, those of its scenes too, or if the study has no such preset.
 Study load_study(const std::string& name_or_path, const std::string& preset = "");
 
 /// One of Study::scenes, in its parts.

@@ -50,6 +50,27 @@ iterations = [1, 2]
                                  "fall dt=0.5 jakobsen:iterations=2,precision=double"}));
 }
 
+TEST(Study, WhatIsWrongWithItAndWithItsScenesIsSaidAtOnce) {
+  const Scratch scratch;
+  const auto folder = scratch.path();
+  std::ofstream(folder / "bad.toml") << "[cloth]\ngrid = [3, 3]\nsize = [1, 1]\ntickness = 1\n";
+  std::ofstream(folder / "study.toml")
+      << "question = \"?\"\nscenes = [\"" << (folder / "bad.toml").string()
+      << "\"]\nsolvers = [\"jakobsen\"]\nset = [\"forces.damping=-1\"]\nplots = 1\n"
+         "[axes]\n\"time.dt\" = [0.5, \"0\"]\n";
+  try {
+    load_study((folder / "study.toml").string());
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    for (const char* part :
+         {"bad.toml:4:1: unknown key 'tickness'", "study.toml:5:1: unknown key 'plots'",
+          "study.toml:4:8: forces.damping=-1: 'damping' in [forces]",
+          "study.toml:7:19: time.dt=\"0\": 'dt' in [time]"})
+      EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+  }
+}
+
 TEST(Study, AParameterVariesForThoseWhoHaveItAndDoNotFixIt) {
   const Study study = study_of(R"(
 question = "?"

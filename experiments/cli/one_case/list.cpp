@@ -1,5 +1,6 @@
 #include "core/io/fabrics.hpp"
 #include "core/io/scene_io.hpp"
+#include "core/model/scene_keys.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -97,6 +98,20 @@ void list_fabrics(Answer& all) {
   all.add(std::move(table));
 }
 
+void list_keys(Answer& all) {
+  Table table{
+      "keys",
+      "keys of scenes",
+      {{"key"}, {"type"}, {"unit"}, {"range"}, {"default"}, {"example"}, {"help", "meaning"}}};
+  for (const SceneKey& key : scene_keys())
+    table.rows.push_back(
+        {key.path, key.type, key.unit, key.allowed(), key.default_text(), key.example, key.help});
+  all.add(std::move(table));
+  Table studies{"study_keys", "keys of studies", {{"key"}, {"help", "meaning"}}};
+  for (const StudyKey& key : study_keys()) studies.rows.push_back({key.name, key.help});
+  all.add(std::move(studies));
+}
+
 /// What publications assert.
 void list_assertions(Answer& all) {
   Table table{"assertions",
@@ -115,8 +130,9 @@ void list_assertions(Answer& all) {
 }
 
 constexpr std::pair<const char*, void (*)(Answer&)> kKinds[] = {
-    {"scenes", list_scenes},   {"solvers", list_solvers}, {"metrics", list_metrics},
-    {"studies", list_studies}, {"fabrics", list_fabrics}, {"assertions", list_assertions}};
+    {"scenes", list_scenes},        {"solvers", list_solvers}, {"metrics", list_metrics},
+    {"studies", list_studies},      {"keys", list_keys},       {"fabrics", list_fabrics},
+    {"assertions", list_assertions}};
 
 int run(const Options& options) {
   Answer all{"list"};
@@ -127,9 +143,11 @@ int run(const Options& options) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("WHAT", o.what,
-                 "scenes | solvers | metrics | studies | fabrics | assertions (default: all)")
-      ->check(CLI::IsMember({"scenes", "solvers", "metrics", "studies", "fabrics", "assertions"}));
+  app.add_option(
+         "WHAT", o.what,
+         "scenes | solvers | metrics | studies | keys | fabrics | assertions (default: all)")
+      ->check(CLI::IsMember(
+          {"scenes", "solvers", "metrics", "studies", "keys", "fabrics", "assertions"}));
   add_format(app, o.format);
 }
 
@@ -140,6 +158,7 @@ TAUT_VERB(list) = {
     .name = "list",
     .group = VerbGroup::one_case,
     .summary =
-        "Names scenes, solvers with their parameters, metrics, studies, fabrics and assertions",
+        "Names scenes, solvers with their parameters, metrics, studies, keys of files, fabrics and "
+        "assertions",
     .example = "taut list solvers",
     .bind = taut::bind_verb<taut::verb::list::add_options, taut::verb::list::run>};

@@ -5,6 +5,7 @@
 
 #include "core/io/document.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/scene_keys.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/reference/linear_stability.hpp"
@@ -189,7 +190,12 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
   const SolverChoice choice = parse_solver(base.solver);
   if (of == "dt") {
     range.from = 1e-3, range.to = 0.5;
-  } else if (!of_scene(of)) {
+  } else if (of_scene(of)) {
+    const SceneKey* key = find_scene_key(of.substr(0, of.find('|')));
+    if (key && !key->choices.empty())
+      throw InputError("'" + of + "' is one of " + std::string(key->choices) + ", not a number");
+    if (key) range.from = key->range.min, range.to = key->range.max;
+  } else {
     const ParamSpec& spec = find_param(choice, of.substr(0, of.find('|')));
     if (spec.kind == ParamSpec::Kind::text)
       throw InputError("'" + of + "' is a text, not a number");

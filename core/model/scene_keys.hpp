@@ -1,0 +1,136 @@
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/model/scene.hpp"
+
+// The keys of a scene file, as ParamSpec has those of a solver. From the table come the reader
+// (core/io), the bytes of a scene's digest (content()), the file that external programs get, `taut
+// list keys`, the tables of experiments/scenes/README.md, the ranges of `taut frontier` and what
+// `taut require` leaves out.
+
+namespace taut {
+
+/// Largest coordinate, size or displacement that a scene may hold [m].
+inline constexpr double kFar = 1e6;
+
+/// What a number may be. Non-finite numbers are never allowed.
+struct Range {
+  double min = -std::numeric_limits<double>::max();
+  double max = std::numeric_limits<double>::max();
+  bool above_min = false;  ///< min itself is excluded
+
+  static constexpr Range positive(double max) { return {0, max, true}; }
+  static constexpr Range non_negative(double max) { return {0, max, false}; }
+  static constexpr Range within(double bound) { return {-bound, bound, false}; }
+  bool holds(double value) const {
+    return (above_min ? value > min : value >= min) && value <= max;
+  }
+  std::string text() const;  ///< "greater than 0 and at most 10"
+};
+
+/// What a file says in single values that a Scene holds as vertices, links and steps.
+struct FileKeys {
+  Vec3 origin = Vec3::Zero();  ///< m
+  Vec3 u = Vec3::UnitX();      ///< unit
+  Vec3 v = -Vec3::UnitY();     ///< unit
+  double scale = 1;            ///< m per unit of the mesh's file
+  double mass = 0;             ///< kg
+  double area_density = 0.2;   ///< kg/m^2
+  Lumping lumping = Lumping::area;
+  double span = 0;                       ///< m
+  double tilt = 0;                       ///< degrees
+  double stretch = 1;                    ///< start over rest shape
+  Vec3 velocity = Vec3::Zero();          ///< m/s
+  enum class Inside { error, resolve };  ///< refuse a cloth inside a collider, or move it out
+  Inside start_inside = Inside::error;
+  bool structural = true, shear = true, bend = false;
+  bool overlap = false;  ///< particles may overlap at rest
+  double dt = 1.0 / 64;  ///< s
+  double duration = 10;  ///< s
+};
+
+/// A key of a scene file. One with a member is a single value; any other is read by code of its own
+/// and described here.
+struct SceneKey {
+  using Member =
+      std::variant<std::monostate, double Scene::*, Vec3 Scene::*, bool Scene::*, double Wind::*,
+                   Vec3 Wind::*, Wind::Law Wind::*, double SelfCollision::*, double Bending::*,
+                   Vec3 Bending::*, double Collider::*, Vec3 Motion::*, double Plane::*,
+                   Vec3 Plane::*, double Ball::*, Vec3 Ball::*, Vec3 Box::*, double Capsule::*,
+                   Vec3 Capsule::*, double FileKeys::*, Vec3 FileKeys::*, bool FileKeys::*,
+                   Lumping FileKeys::*, FileKeys::Inside FileKeys::*>;
+
+  std::string_view path;       ///< "forces.damping"; "summary": at the top of the file
+  Member member = {};          ///< its initialiser is the default
+  std::string_view type = {};  ///< "direction": a vector that becomes a unit one
+  std::string_view unit = {};
+  Range range = {};                ///< of a number, or of each component
+  std::string_view choices = {};   ///< "relative|literal": the enumeration, in its order
+  std::string_view example = {};   ///< as typed
+  std::string_view help = {};      ///< one line
+  std::string_view limits = {};    ///< beyond the range, in words
+  std::string_view fallback = {};  ///< the default in words, where it is no constant
+  std::string_view effect = {};    ///< what `taut require` calls it when it leaves it out
+  bool needed = false;
+  /// It came after results were kept: part of the digest only where it is not at its default, so
+  /// that scenes without it keep theirs.
+  bool later = false;
+
+  /// Whether a scene with this value has the key.
+  template <class Value>
+  bool counts(const Value& value, const Value& initial) const {
+    return !later || value != initial;
+  }
+
+  SceneKey need() const { return with(&SceneKey::needed, true); }
+  SceneKey came_later() const { return with(&SceneKey::later, true); }
+  SceneKey limited(std::string_view words) const { return with(&SceneKey::limits, words); }
+  SceneKey otherwise(std::string_view words) const { return with(&SceneKey::fallback, words); }
+  SceneKey left_out_as(std::string_view name) const { return with(&SceneKey::effect, name); }
+
+  std::string_view section() const {
+    return path.substr(0, path.find('.') == path.npos ? 0 : path.find('.'));
+  }
+  std::string_view name() const { return path.substr(path.find('.') + 1); }
+  std::string allowed() const;       ///< the range and limits: "0 to 1e6"
+  std::string default_text() const;  ///< "0.5" as typed, or in words
+
+ private:
+  template <class Value>
+  SceneKey with(Value SceneKey::*what, Value value) const {
+    SceneKey changed = *this;
+    changed.*what = value;
+    return changed;
+  }
+};
+
+/// In the order of the document.
+std::span<const SceneKey> scene_keys();
+
+/// The key under its dotted path, without the numbers of elements ("collider.0.radius"); nullptr:
+/// none such.
+const SceneKey* find_scene_key(std::string_view path);
+
+/// Calls visit(key, member, its default) for every key of the section that is a member of the part.
+template <class Part, class Visit>
+void each_key(std::string_view section, Part& part, const Visit& visit) {
+  const std::remove_const_t<Part> initial{};
+  for (const SceneKey& key : scene_keys())
+    if (key.section() == section)
+      std::visit(
+          [&](auto member) {
+            if constexpr (std::is_invocable_v<decltype(member), Part&>)
+              visit(key, part.*member, initial.*member);
+          },
+          key.member);
+}
+
+}  // namespace taut

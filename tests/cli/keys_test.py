@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""The tables of keys in the documents of scenes and of studies are what `taut list keys` prints.
+
+Usage: keys_test.py BUILD [--write]     --write: writes the tables anew"""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENES, STUDIES = ROOT / "experiments/scenes/README.md", ROOT / "experiments/studies/README.md"
+
+
+def rows_of(answer, name):
+    table = answer["tables"][name]
+    columns = [column["name"] for column in table["columns"]]
+    return [dict(zip(columns, row)) for row in table["rows"]]
+
+
+def code(text):
+    """A value as typed, not a default in words."""
+    return f"`{text}`" if re.match(r"""[\[{"\d-]|(true|false)$""", text) else text
+
+
+def markdown(columns, rows):
+    """A table as the documents have it: an empty cell is one blank."""
+    def line(cells):
+        return "|" + "|".join(f" {cell} " if cell else " " for cell in cells) + "|\n"
+    return line(columns) + "|---" * len(columns) + "|\n" + "".join(map(line, rows))
+
+
+def scene_tables(rows):
+    """heading -> its table"""
+    tables = {}
+    for row in rows:
+        section = row["key"].rpartition(".")[0]
+        heading = {"": "At the top", "collider": "[[collider]]", "pin_motion": "[[pin_motion]]"}.get(section, f"[{section}]")
+        tables.setdefault(heading, []).append(
+            [f"`{row['key']}`", row["type"], row["unit"], row["range"], code(row["default"]), f"`{row['example']}`", row["help"]])
+    columns = ["key", "type", "unit", "range", "default", "example", "meaning"]
+    return {heading: markdown(columns, cells) for heading, cells in tables.items()}
+
+
+def replaced(text, heading, table):
+    """The document with this table in the place of the first after the heading."""
+    before, mark, after = text.partition(heading)
+    assert mark, f"no heading {heading!r}"
+    found = re.search(r"(?:^\|.*\n)+", after, re.MULTILINE)
+    return before + mark + after[:found.start()] + table + after[found.end():]
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]) / "taut"
+    answer = json.loads(subprocess.run([program, "list", "keys", "--json"], check=True, capture_output=True).stdout)
+    scenes, studies = SCENES.read_text(), STUDIES.read_text()
+    keys = rows_of(answer, "keys")
+    assert len(keys) > 50, "the keys of scenes"
+    for heading, table in scene_tables(keys).items():
+        scenes = replaced(scenes, f"\n### {heading}\n", table)
+    studies = replaced(studies, "# Studies\n", markdown(
+        ["key", "meaning"], [[f"`{row['key']}`", row["help"]] for row in rows_of(answer, "study_keys")]))
+    wrong = 0
+    for file, text in (SCENES, scenes), (STUDIES, studies):
+        if file.read_text() == text:
+            continue
+        if "--write" in sys.argv:
+            file.write_text(text)
+        else:
+            print(f"{file.relative_to(ROOT)} has other keys than `taut list keys`: tests/cli/keys_test.py BUILD --write")
+            wrong = 1
+    return wrong
+
+
+if __name__ == "__main__":
+    sys.exit(main())

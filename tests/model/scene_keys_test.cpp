@@ -1,0 +1,89 @@
+// The table of keys: what it says of each, and that what is a member of a scene counts.
+#include "core/model/scene_keys.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+namespace taut::scene_keys_test {
+namespace {
+
+TEST(SceneKeys, SayWhatIsAllowedAndWhatIsTheDefault) {
+  const auto said = [](const char* path) {
+    const SceneKey* key = find_scene_key(path);
+    return key ? std::string(key->type) + ", " + key->allowed() + ", " + key->default_text()
+               : "none";
+  };
+  EXPECT_EQ(said("forces.damping"), "number, 0 to 1e6, 0");
+  EXPECT_EQ(said("forces.gravity"), "vector, within 1e6, [0, -9.81, 0]");
+  EXPECT_EQ(said("cloth.v"), "direction, not zero; not parallel to u, [0, -1, 0]");
+  EXPECT_EQ(said("cloth.mass"), "number, 1e-9 to 1e9, by area_density");
+  EXPECT_EQ(said("links.shear"), "boolean, , true");
+  EXPECT_EQ(said("wind.law"), "string, \"relative\" or \"literal\", \"relative\"");
+  EXPECT_EQ(said("self_collision.radius"),
+            "number, above 0, at most 1e6; at most half the spacing, needed");
+  EXPECT_EQ(said("cloth.pins"), "vertices, , none");
+  EXPECT_EQ(said("collider.3.velocity.1"), said("collider.velocity")) << "of an element";
+  EXPECT_EQ(said("summary"), "string, , \"\"");
+  EXPECT_EQ(said("forces.dampin"), "none");
+  EXPECT_EQ(find_scene_key("forces.damping")->section(), "forces");
+  EXPECT_EQ(find_scene_key("forces.damping")->name(), "damping");
+  EXPECT_EQ(find_scene_key("summary")->section(), "");
+  EXPECT_EQ(find_scene_key("summary")->name(), "summary");
+}
+
+void move(double& value) { value += 1; }
+void move(bool& value) { value = !value; }
+void move(Vec3& value) { value.y() += 1; }
+template <class Enumeration>
+requires std::is_enum_v<Enumeration>
+void move(Enumeration& value) { value = static_cast<Enumeration>(value == Enumeration{} ? 1 : 0); }
+
+/// One with everything that a key may be a member of.
+Scene scene_of_all() {
+  Scene scene;
+  scene.wind.emplace(), scene.self_collision.emplace(), scene.bending.emplace();
+  scene.colliders = {{Plane{}}, {Ball{}}, {Box{}}, {Capsule{}}};
+  return scene;
+}
+
+/// The parts of a scene that have keys, with the section of each.
+template <class Visit>
+void each_part(Scene& scene, const Visit& visit) {
+  visit("forces", scene), visit("cloth", scene), visit("wind", *scene.wind);
+  visit("bending", *scene.bending), visit("self_collision", *scene.self_collision);
+  for (Collider& collider : scene.colliders) {
+    visit("collider", collider), visit("collider", collider.motion);
+    std::visit([&](auto& shape) { visit("collider", shape); }, collider.shape);
+  }
+}
+
+TEST(SceneKeys, EachThatIsAMemberOfASceneIsPartOfItsContent) {
+  const std::string before = content(scene_of_all());
+  int parts = 0;
+  each_part(*std::make_unique<Scene>(scene_of_all()), [&](auto...) { ++parts; });
+  std::set<std::string> counted;
+  for (int p = 0; p < parts; ++p)
+    for (std::size_t k = 0; k < scene_keys().size(); ++k) {
+      Scene scene = scene_of_all();
+      const SceneKey& chosen = scene_keys()[k];
+      int at = 0;
+      bool moved = false;
+      each_part(scene, [&](const char* section, auto& part) {
+        if (at++ != p) return;
+        each_key(section, part, [&](const SceneKey& key, auto& value, const auto&) {
+          if (&key == &chosen) move(value), moved = true;
+        });
+      });
+      if (!moved) continue;
+      counted.emplace(chosen.path);
+      EXPECT_NE(content(scene), before) << chosen.path;
+    }
+  EXPECT_TRUE(counted.count("forces.damping") && counted.count("wind.law") &&
+              counted.count("collider.half_extents") && counted.count("bending.warp"));
+  EXPECT_EQ(counted.size(), 19u);
+}
+
+}  // namespace
+}  // namespace taut::scene_keys_test
