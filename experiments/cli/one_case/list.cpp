@@ -157,8 +157,6 @@ void add_options(CLI::App& app, Options& o) {
 TAUT_VERB(list) = {
     .name = "list",
     .group = VerbGroup::one_case,
-    .summary =
-        "Names scenes, solvers with their parameters, metrics, studies, keys of files, fabrics and "
-        "assertions",
+    .summary = "Names scenes, solvers with parameters, metrics, studies, keys, fabrics, assertions",
     .example = "taut list solvers",
     .bind = taut::bind_verb<taut::verb::list::add_options, taut::verb::list::run>};
