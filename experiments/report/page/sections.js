@@ -71,7 +71,7 @@ function methodSection() {
   const build = Object.entries(model.meta.build ?? {}).filter(([name]) => !known.includes(name))
       .map(([name, value]) => ({name, value}));
   return section('method', 'Method and limits', el('div', {className: 'card'},
-    tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver)),
+    folded('Solvers', tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver))),
     method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,
     el('p', {}, 'This makes it all again:'), command(model.meta.command)),
     all(method.tables, tables).map((table) => folded(table.title,
