@@ -16,6 +16,15 @@ using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 using Points = std::vector<Vec3>;
 
+/// K of rigid links over the largest m/h^2, at first and at most.
+constexpr double kHardness = 1e4, kHardest = 1e8;
+/// Multipliers that leave more than this share of the violation grow without end: a flat cloth with
+/// both diagonals resists bending across its folds at second order alone. Then K grows instead, and
+/// what is left of the bend is halved with every factor of 8.
+constexpr double kStalls = 0.8;
+constexpr double kLocked = 1e-7;     ///< m, of a violation
+constexpr double kRounding = 1e-14;  ///< m, of all lengths together
+
 }  // namespace
 
 ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, const Stiffness& k)
@@ -51,11 +60,18 @@ struct ImplicitStep::Multiplied {
   std::vector<double> stiffness, multiplier;
   std::vector<Eigen::Index> column;
   Eigen::Index size = 0;
+  Eigen::SimplicialLDLT<Matrix> ldlt = {};  ///< its pattern is that of the links, x by x
+  bool analysed = false;
 
   Multiplied(const ImplicitStep& s, double rigid) : step(s), multiplier(s.links_.size(), 0) {
-    for (const Member& l : s.links_)
-      stiffness.push_back(std::isinf(l.stiffness) ? rigid : l.stiffness);
+    harden(rigid);
     for (const double m : s.inertia_) column.push_back(m > 0 ? std::exchange(size, size + 3) : -1);
+  }
+  /// The K of rigid links from now on [N/m].
+  void harden(double rigid) {
+    stiffness.clear();
+    for (const Member& l : step.links_)
+      stiffness.push_back(std::isinf(l.stiffness) ? rigid : l.stiffness);
   }
   double stretch(const Points& x, std::size_t j) const {
     const auto& [a, b, rest, k] = step.links_[j];
@@ -111,6 +127,13 @@ struct ImplicitStep::Multiplied {
     h.setFromTriplets(entries.begin(), entries.end());
     return h;
   }
+  /// Whether it is positive definite.
+  bool factor(const Points& x, bool clamped) {
+    const Matrix h = hessian(x, clamped);
+    if (!std::exchange(analysed, true)) ldlt.analyzePattern(h);
+    ldlt.factorize(h);
+    return ldlt.info() == Eigen::Success && ldlt.vectorD().minCoeff() > 0;
+  }
   Points moved(Points x, const Vector& p, double share) const {
     for (std::size_t i = 0; i < x.size(); ++i)
       if (column[i] >= 0) x[i] += share * p.segment<3>(column[i]);
@@ -118,14 +141,11 @@ struct ImplicitStep::Multiplied {
   }
 
   /// Down to a gradient below `enough` [N] or to rounding.
-  Points minimise(Points x, double enough) const {
-    Eigen::SimplicialLDLT<Matrix> ldlt;
+  Points minimise(Points x, double enough) {
     for (int k = 0; k < 100; ++k) {
       const Vector g = gradient(x);
       if (g.norm() < enough || size == 0) break;
-      ldlt.compute(hessian(x, false));
-      if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0))
-        ldlt.compute(hessian(x, true));
+      if (!factor(x, false)) factor(x, true);
       const Vector p = ldlt.solve(-g);
       const double before = energy(x), slope = g.dot(p);
       double share = 1;
@@ -173,12 +193,14 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
     if (inertia_[i] == 0) x[i] = y_[i];
   double heaviest = 0;
   for (const double m : inertia_) heaviest = std::max(heaviest, m);
-  Multiplied problem(*this, 1e4 * heaviest);
+  double hardness = kHardness * heaviest;
+  Multiplied problem(*this, hardness);
   Minimum found;
   double before = 1e300;
-  int stalled = 0;  // rounds that hardly helped
-  for (int round = 0; round < (rigid_ ? 60 : 1) && stalled < 3; ++round) {
-    x = problem.minimise(std::move(x), 1e-10);
+  for (int round = 0; round < (rigid_ ? 60 : 1); ++round) {
+    const Points last = x;
+    x = problem.minimise(std::move(x), 1e-10 + kRounding * hardness);
+    if (round > 0) found.moved = distance(x, last);
     found.stretch = 0;
     for (std::size_t j = 0; j < links_.size(); ++j)
       if (std::isinf(links_[j].stiffness)) {
@@ -187,7 +209,10 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
         problem.multiplier[j] += problem.stiffness[j] * c;
       }
     if (found.stretch < 1e-14 || (found.stretch < 1e-12 && found.stretch >= before)) break;
-    stalled = found.stretch > 0.8 * before ? stalled + 1 : 0;
+    if (found.stretch > kStalls * before) {
+      if (hardness >= kHardest * heaviest) break;
+      problem.harden(hardness *= 8);
+    }
     before = found.stretch;
   }
   // with the multipliers as they were for this x
@@ -196,9 +221,9 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
       problem.multiplier[j] -= problem.stiffness[j] * problem.stretch(x, j);
   found.residual = problem.gradient(x).norm();
   found.x = std::move(x);
-  if (found.stretch > 1e-9)
-    found.problem = "the links cannot all have their length near this state, or lock";
-  else if (!(found.residual < 1e-6))
+  if (found.stretch > kLocked)
+    found.problem = "the links cannot all have their length near this state";
+  else if (!(found.residual < 1e-6 + kRounding * hardness))
     found.problem = "Newton's method did not converge";
   return found;
 }

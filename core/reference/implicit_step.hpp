@@ -36,6 +36,7 @@ class ImplicitStep {
     std::vector<Vec3> x;  ///< m
     double residual = 0;  ///< N, of G and of the rigid links' multipliers
     double stretch = 0;   ///< m, largest |C| of rigid links
+    double moved = 0;     ///< m, RMS: how far the last round of multipliers still moved x
     std::string problem;  ///< why it is none; "": it is one
   };
   /// Newton with line search, sparse LDLT; rigid links by an augmented Lagrangian around it. The

@@ -17,6 +17,11 @@ void time_study(const std::string& study, const std::string& preset, double seco
                 const std::string& results);
 }  // namespace bench
 
+namespace convergence {
+/// Iterations of these solvers inside one step of a scene, "name:key=value,...". Throws InputError.
+Answer one_step(const std::string& scene, const std::vector<std::string>& solvers);
+}  // namespace convergence
+
 namespace verify {
 /// All truths for every solver, on so many threads.
 Answer verify_all(int jobs);

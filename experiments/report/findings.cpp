@@ -8,6 +8,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/report/chart/one_step.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/system/json.hpp"
 
@@ -140,6 +141,13 @@ std::vector<ParameterFrontier> stored_frontiers(const Store& store, std::string_
   for (const auto& one : found(store, "frontier", program, frontiers_of))
     all.insert(all.end(), one.begin(), one.end());
   return all;
+}
+
+std::vector<Answer> stored_steps(const Store& store, std::string_view program) {
+  return found(store, "converge", program, [](const Answer& answer) {
+    OneStep{answer};  // it can be drawn
+    return answer;
+  });
 }
 
 std::optional<Truths> stored_truths(const Store& store, std::string_view program) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/answer/answer.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/json.hpp"
@@ -129,6 +130,7 @@ struct ReportInput {
   std::optional<Differences> differences = {};  ///< nullopt: one folder alone
   Json required = {};  ///< rows of the model's table; null: no scene was asked about
   std::vector<ParameterFrontier> frontiers = {};  ///< solver by solver, parameter by parameter
+  std::vector<Answer> steps = {};                 ///< of `taut converge`, scene by scene
   /// Inputs that could not be understood, and why: they are left out and said so.
   std::vector<std::pair<std::string, std::string>> left_out = {};
 };

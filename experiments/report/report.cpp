@@ -45,6 +45,7 @@ class Builder {
     Json cost, differences;
     if (input_.bench) cost = json_of_cost(*input_.bench, refs_, charts_, tables_);
     if (input_.differences) differences = json_of(*input_.differences, refs_, tables_);
+    Json steps = json_of_steps(input_, refs_, charts_, tables_);
     Json limits = json_of_limits(input_, tables_);
     Json method = this->method();
     Json cases;
@@ -70,6 +71,7 @@ class Builder {
     add_if(model, "charts", std::move(charts_));
     add_if(model, "maps", std::move(maps_));
     add_if(model, "films", std::move(films_));
+    add_if(model, "steps", std::move(steps));
     add_if(model, "limits", std::move(limits));
     add_if(model, "tables", json_of_tables(tables_));
     add_if(model, "cost", std::move(cost));

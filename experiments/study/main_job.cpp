@@ -14,7 +14,7 @@ MainJob main_job() {
   const auto names = [&](const char* key) {
     return section.strings(key).value_or(std::vector<std::string>());
   };
-  MainJob job{text("preset"), names("studies"), names("maps"), text("bench")};
+  MainJob job{text("preset"), names("studies"), names("maps"), text("bench"), names("steps")};
   section.finish();
   diagnostics.throw_if_any();
   return job;

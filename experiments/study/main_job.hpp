@@ -12,6 +12,8 @@ struct MainJob {
   std::vector<std::string> studies;  ///< that are compared
   std::vector<std::string> maps;     ///< studies of where solvers break
   std::string bench;                 ///< the study that is timed
+  /// Scenes ("name:key=value,...") of which one step is followed, by the first study's solvers.
+  std::vector<std::string> steps;
 };
 
 /// Throws InputError with everything that is wrong with the file.

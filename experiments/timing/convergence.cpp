@@ -73,14 +73,61 @@ using Way = std::function<double(int, int)>;
 
 /// The distance at the end if the last third of the points is within a tenth of it and the iterates
 /// come to rest: of one that only creeps, the way grows with the iterations that it takes.
-double floor_of(const std::vector<ConvergencePoint>& points, const Way& way) {
+/// `moved`: how far the last round of the exact step moved it.
+double floor_of(const std::vector<ConvergencePoint>& points, double moved, const Way& way) {
   const double end = points.empty() ? 0 : points.back().distance;
-  if (points.size() < 6 || !(end > 1e-12)) return 0;  // rounding
+  if (points.size() < 6 || !(end > std::max(2 * moved, 1e-12))) return 0;  // rounding
+  if (end > points.front().distance) return 0;  // on its way round a bend
   for (std::size_t i = points.size() - points.size() / 3; i < points.size(); ++i)
     if (!(std::abs(points[i].distance - end) <= 0.1 * end)) return 0;
   int last = 1;
   while (2 * last <= points.back().iterations) last *= 2;
   return way(last / 2, last) <= 1.2 * way(last / 4, last / 2) ? end : 0;
+}
+
+/// A step and its minimum, the same for all solvers with this stiffness.
+struct ExactStep {
+  reference::ImplicitStep step;
+  reference::ImplicitStep::Minimum minimum;
+
+  ExactStep(const Scene& scene, const State& from, double at, const reference::Stiffness& k)
+      : step(scene, from, at, k), minimum(step.minimum(from.x)) {}
+};
+
+ConvergencePoint point_of(const ExactStep& exact, int iterations, const Stepped& got) {
+  const auto& [step, minimum] = exact;
+  const std::vector<Vec3>& x = got.state.x;
+  ConvergencePoint p{iterations, kUnknown, step.stretch(x), kUnknown, kUnknown, got.milliseconds};
+  if (!step.rigid()) p.residual = step.residual(x);
+  if (!minimum.problem.empty()) return p;
+  p.distance = step.distance(x, minimum.x);
+  p.gap = step.rigid() ? step.square_distance(x, minimum.x) /
+                             step.square_distance(step.prediction(), minimum.x)
+                       : (step.energy(x) - step.energy(minimum.x)) /
+                             (step.energy(step.prediction()) - step.energy(minimum.x));
+  return p;
+}
+
+/// The solver's iterates, beside the exact step.
+void follow(Convergence& all, const Scene& scene, const State& from, double at, int most,
+            const ExactStep& exact) {
+  all.problem = exact.minimum.problem, all.exact_residual = exact.minimum.residual;
+  all.moved = exact.minimum.moved;
+  const AccuracyParameters& accuracy = parse_solver(all.solver).entry->accuracy;
+  const std::string one =
+      accuracy.substeps.empty() ? "" : "," + std::string(accuracy.substeps) + "=1";
+  std::map<int, std::vector<Vec3>> iterates;
+  for (const int k : ladder(most)) {
+    const SolverChoice at_k = parse_solver(
+        with(all.solver, std::string(accuracy.sweeps) + '=' + std::to_string(k) + one));
+    const Stepped got = step_once(*at_k.entry->make(scene, at_k.params), from, at, scene.dt);
+    iterates[k] = got.state.x;
+    all.points.push_back(point_of(exact, k, got));
+  }
+  const Way way = [&](int k, int l) { return exact.step.distance(iterates.at(k), iterates.at(l)); };
+  all.floor = all.problem.empty() ? floor_of(all.points, all.moved, way) : 0;
+  all.contraction =
+      all.problem.empty() ? contraction(all.points, std::max(all.floor, all.moved)) : kUnknown;
 }
 
 std::vector<std::string> refuse(const Scene& scene, const SolverChoice& choice) {
@@ -126,40 +173,24 @@ State state_at(const Scene& scene, const SolverChoice& from, double at) {
   return state;
 }
 
-Convergence converge(const Scene& scene, const State& state, double at, const std::string& solver,
-                     int most) {
-  const SolverChoice choice = parse_solver(solver);
-  const std::string_view sweeps = choice.entry->accuracy.sweeps,
-                         substeps = choice.entry->accuracy.substeps;
-  Convergence all;
-  all.solver = without(choice, {sweeps, substeps});
-  all.refused = refuse(scene, choice);
-  if (!all.refused.empty()) return all;
-  all.stiffness = stiffness_of(scene, choice);
-  const reference::ImplicitStep step(scene, state, at, all.stiffness);
-  const auto exact = step.minimum(state.x);
-  all.problem = exact.problem, all.exact_residual = exact.residual;
-  const std::string one = substeps.empty() ? "" : "," + std::string(substeps) + "=1";
-  std::map<int, std::vector<Vec3>> iterates;
-  for (const int k : ladder(most)) {
-    const SolverChoice at_k =
-        parse_solver(with(all.solver, std::string(sweeps) + '=' + std::to_string(k) + one));
-    const Stepped got = step_once(*at_k.entry->make(scene, at_k.params), state, at, scene.dt);
-    const std::vector<Vec3>& x = iterates[k] = got.state.x;
-    ConvergencePoint p{k, kUnknown, step.stretch(x), kUnknown, kUnknown, got.milliseconds};
-    if (!step.rigid()) p.residual = step.residual(x);
-    if (all.problem.empty()) {
-      p.distance = step.distance(x, exact.x);
-      p.gap = step.rigid() ? step.square_distance(x, exact.x) /
-                                 step.square_distance(step.prediction(), exact.x)
-                           : (step.energy(x) - step.energy(exact.x)) /
-                                 (step.energy(step.prediction()) - step.energy(exact.x));
-    }
-    all.points.push_back(p);
+std::vector<Convergence> converge(const Scene& scene, const State& state, double at,
+                                  const std::vector<std::string>& solvers, int most) {
+  std::map<reference::Stiffness, ExactStep> steps;  // that of rigid links is most solvers'
+  std::vector<Convergence> all;
+  for (const std::string& solver : solvers) {
+    const SolverChoice choice = parse_solver(solver);
+    Convergence& one = all.emplace_back();
+    one.solver = without(choice, {choice.entry->accuracy.sweeps, choice.entry->accuracy.substeps});
+    one.refused = refuse(scene, choice);
+    if (!one.refused.empty()) continue;
+    one.stiffness = stiffness_of(scene, choice);
+    const auto known = steps.find(one.stiffness);
+    follow(one, scene, state, at, most,
+           known != steps.end()
+               ? known->second
+               : steps.emplace(one.stiffness, ExactStep(scene, state, at, one.stiffness))
+                     .first->second);
   }
-  const Way way = [&](int k, int l) { return step.distance(iterates.at(k), iterates.at(l)); };
-  all.floor = all.problem.empty() ? floor_of(all.points, way) : 0;
-  all.contraction = all.problem.empty() ? contraction(all.points, all.floor) : kUnknown;
   return all;
 }
 

@@ -26,6 +26,7 @@ struct Convergence {
   reference::Stiffness stiffness{};      ///< of its links [N/m]; infinite: rigid
   std::string problem;                   ///< why its step has no exact solution; "": it has
   double exact_residual = 0;             ///< N, what Newton's method left
+  double moved = 0;                      ///< m, how far its last round still moved it
   std::vector<ConvergencePoint> points;  ///< iterations ascending
   double contraction =
       0;             ///< factor of the distance per iteration over the last third; NaN: unknown
@@ -35,10 +36,10 @@ struct Convergence {
 /// The state at `at` [s] of a run of `from`; at 0 the scene's start.
 State state_at(const Scene&, const SolverChoice& from, double at);
 
-/// One step of scene.dt from `state` at time `at` [s], with 1, 2, 3, 4, 6, 8, ... up to `most`
-/// iterations, each anew from that state and without substeps.
-Convergence converge(const Scene&, const State& state, double at, const std::string& solver,
-                     int most);
+/// One step of scene.dt from `state` at time `at` [s] by each of the solvers, with 1, 2, 3, 4, 6,
+/// 8, ... up to `most` iterations, each anew from that state and without substeps.
+std::vector<Convergence> converge(const Scene&, const State& state, double at,
+                                  const std::vector<std::string>& solvers, int most);
 
 /// The spring constants of the solver's links [N/m], the scene's or its own parameters'; infinite:
 /// rigid.

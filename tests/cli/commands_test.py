@@ -9,6 +9,7 @@ import pathlib
 import re
 import shlex
 import socket
+import sqlite3
 import struct
 import subprocess
 import time
@@ -569,12 +570,44 @@ class Verbs(CommandLine):
         answer = self.answer(*words, "--kind", "gap")
         picture = self.folder / facts_of(answer)["picture"]
         self.assertIn("exact step", "".join(self.answer(*words)["tables"]["points"]["columns"][5]["heading"]))
-        self.assertIn("pd", picture.read_text())
+        self.assertIn("Projective Dynamics", picture.read_text())
         drawn = [line.split(",") for line in picture.with_suffix(".csv").read_text().splitlines()[1:]]
         points = [(row["iterations"], row["gap"]) for row in rows_of(answer, "points") if row["gap"]]
-        self.assertEqual([(int(k), float(gap)) for *_, k, gap in drawn], points)
+        self.assertEqual([(int(k), float(gap)) for _, _, _, k, gap, *_ in drawn], points)
         self.assertIn("did you mean 'residual'", self.taut(*words, "--kind", "residuel", expect=2).err)
         self.assertIn("--kind", self.taut(*words[:-2], "--kind", "gap", expect=2).err)
+
+    def test_rigid_sheets_that_drape_and_swing_have_an_exact_step(self):
+        for scene in (["drape", "--set", "cloth.span=0.7"], ["swing"]):
+            own, = rows_of(self.answer("converge", *scene, "--solver", "admm", "--most", "1"), "solvers")
+            self.assertIn("nearest placement", own["exact"])
+            self.assertLess(own["moved"], 1e-6)
+
+    def test_a_page_shows_what_converge_kept(self):
+        study = self.study(solvers=["jakobsen"])
+        self.taut("run", study)
+        self.assertNotIn("steps", json.loads(self.taut("report", study, "--json").out))
+        solvers = ["--solver", "pd:structural=500", "--solver", "jakobsen:order=mesh", "--solver", "mass-spring"]
+        self.taut("converge", "./small.toml", *solvers, "--most", "32", "--record")
+        with sqlite3.connect(self.folder / "results/runs/results.db") as store:
+            kept, = [json.loads(answer) for answer, in store.execute("select answer from answers where kind = 'converge'")]
+        model = json.loads(self.taut("report", study, "--json").out)
+        points, reached = rows_of(kept, "points"), rows_of(kept, "reached")
+        shown = rows_of(model, "steps")
+        self.assertEqual([row["solver"] for row in shown], ["Projective Dynamics", "Jakobsen"])
+        self.assertEqual([row["links"] for row in shown], ["500\u00a0N/m", "rigid"])
+        for row, own in zip(shown, rows_of(kept, "solvers"), strict=True):
+            mine = [point for point in points if point["solver"] == own["solver"]]
+            for column, k in ("after_1", 1), ("after_16", 16):
+                self.assertEqual([row[column]], [point["distance"] for point in mine if point["iterations"] == k])
+            for column in "contraction", "floor":
+                self.assertEqual(row[column], own[column])
+            for column, gap in ("to_1e-1", 1e-1), ("to_1e-2", 1e-2), ("to_1e-4", 1e-4):
+                first = [r["iterations"] for r in reached if r["solver"] == own["solver"] and r["below"] == gap]
+                self.assertEqual(row[column], first[0] if first else "not reached")
+        chart, = [chart for chart in model["charts"] if chart["id"] in model["steps"]["charts"]]
+        drawn = [(point["x"], point["y"]) for series in chart["series"] for point in series["points"]]
+        self.assertEqual(sorted(drawn), sorted((p["iterations"], p["distance"]) for p in points if p["distance"]))
 
     def test_the_same_scene_under_another_name_is_the_same_case(self):
         (self.folder / "copy.toml").write_text((self.folder / "small.toml").read_text())

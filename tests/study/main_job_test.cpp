@@ -41,6 +41,7 @@ TEST_F(MainJobFile, HasEveryPartOfTheJob) {
   EXPECT_EQ(job.studies, (std::vector<std::string>{"b", "a"}));
   EXPECT_EQ(job.maps, std::vector<std::string>{"m"});
   EXPECT_EQ(job.bench, "t");
+  EXPECT_TRUE(job.steps.empty());
 }
 
 TEST_F(MainJobFile, WhatIsWrongIsNamedAllAtOnce) {

@@ -14,6 +14,11 @@
 namespace taut::convergence_test {
 namespace {
 
+/// By one solver, from the scene's start.
+Convergence of_one(const Scene& scene, const std::string& solver, int most) {
+  return converge(scene, scene.start, 0, {solver}, most).front();
+}
+
 TEST(Convergence, ExactStepOfSpringsAgreesWithADenseNewtonProgram) {
   const reference::Stiffness soft{800, 300, 50};
   for (const unsigned seed : {11u, 12u}) {
@@ -39,7 +44,7 @@ TEST(Convergence, GapIsThatOfTheEnergyAndNewtonsMethodClosesIt) {
     return (dense.energy(x) - dense.energy(exact)) /
            (dense.energy(dense.y()) - dense.energy(exact));
   };
-  const Convergence vbd = converge(scene, scene.start, 0, "vbd:" + springs, 8);
+  const Convergence vbd = of_one(scene, "vbd:" + springs, 8);
   ASSERT_EQ(vbd.points.size(), 6u);  // 1 2 3 4 6 8
   for (const ConvergencePoint& p : vbd.points) {
     const State at_k =
@@ -47,7 +52,7 @@ TEST(Convergence, GapIsThatOfTheEnergyAndNewtonsMethodClosesIt) {
     EXPECT_NEAR(p.gap, gap(at_k.x), 1e-9);
     EXPECT_NEAR(p.residual, dense.gradient(at_k.x).norm(), 1e-9);
   }
-  const Convergence newton = converge(scene, scene.start, 0, "implicit:" + springs, 64);
+  const Convergence newton = of_one(scene, "implicit:" + springs, 64);
   EXPECT_LT(newton.points.back().distance, 1e-10);
   EXPECT_LT(std::abs(newton.points.back().gap), 1e-12);
   EXPECT_GE(reached(newton, 1e-6), 0);
@@ -61,8 +66,8 @@ TEST(Convergence, GaussSeidelAndJacobiContractOnAStraightChainAsPrinted) {
   using reference::Sweep;
   for (const auto& [method, sweep] :
        {std::pair("gauss-seidel", Sweep::gauss_seidel), std::pair("jacobi", Sweep::jacobi)}) {
-    const Convergence all = converge(
-        scene, scene.start, 0,
+    const Convergence all = of_one(
+        scene,
         "jakobsen:projection=exact,precision=double,order=mesh,method=" + std::string(method), 512);
     ASSERT_EQ(all.problem, "");
     const double rate = reference::chain_radius(kLinks, sweep);
@@ -87,7 +92,7 @@ TEST(Convergence, ProjectiveDynamicsContractsAsItsFormulaSays) {
   const double lambda = 2 - 2 * std::cos(std::numbers::pi / kLinks);
   const double s = scene.dt * scene.dt * 1e3 / 0.01;
   const double rate = s * lambda / 1.05 / (1 + s * lambda);
-  const Convergence pd = converge(scene, scene.start, 0, "pd:structural=1e3", 96);
+  const Convergence pd = of_one(scene, "pd:structural=1e3", 96);
   EXPECT_NEAR(pd.contraction, rate, 0.01 * rate);
 }
 
@@ -96,12 +101,12 @@ TEST(Convergence, GaussSeidelOfRigidLinksEndsOnAFloorAndAdmmDoesNot) {
   Scene scene = hanging_sheet(1, 6, {true, false, false});
   for (std::size_t i = 1; i < scene.start.v.size(); ++i)
     scene.start.v[i] = {3, 0, static_cast<double>(i % 2)};
-  const Convergence floored = converge(
-      scene, scene.start, 0, "jakobsen:projection=exact,precision=double,order=mesh", 4096);
+  const Convergence floored =
+      of_one(scene, "jakobsen:projection=exact,precision=double,order=mesh", 4096);
   ASSERT_EQ(floored.problem, "");
   EXPECT_GT(floored.floor, 1e-7);
   EXPECT_LT(floored.points.back().stretch, 1e-12);
-  const Convergence admm = converge(scene, scene.start, 0, "admm", 4096);
+  const Convergence admm = of_one(scene, "admm", 4096);
   EXPECT_LT(admm.points.back().distance, 1e-9);
   EXPECT_LT(admm.points.back().distance, 1e-3 * floored.floor);
 }
@@ -110,16 +115,31 @@ TEST(Convergence, GaussSeidelOfRigidLinksEndsOnAFloorAndAdmmDoesNot) {
 TEST(Convergence, AFrozenSolverIsOnNoFloor) {
   Scene scene = hanging_sheet(1, 6, {true, false, false});
   for (std::size_t i = 1; i < scene.start.v.size(); ++i) scene.start.v[i] = {3, 0, 0};
-  const Convergence pd = converge(scene, scene.start, 0, "pd:structural=1e9", 64);
+  const Convergence pd = of_one(scene, "pd:structural=1e9", 64);
   ASSERT_EQ(pd.problem, "");
   EXPECT_GT(pd.points.back().distance, 0.9 * pd.points[3].distance);
   EXPECT_GT(pd.contraction, 0.999);
   EXPECT_EQ(pd.floor, 0);
 }
 
+TEST(Convergence, EachSolverHasTheExactStepOfItsOwnLinks) {
+  const Scene scene = irregular_net(11);
+  const std::vector<std::string> solvers{"pd:structural=800", "vbd:structural=400",
+                                         "admm:links=elastic,structural=800"};
+  const std::vector<Convergence> all = converge(scene, scene.start, 0, solvers, 8);
+  ASSERT_EQ(all.size(), solvers.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Convergence alone = of_one(scene, solvers[i], 8);
+    EXPECT_EQ(all[i].solver, alone.solver);
+    EXPECT_EQ(all[i].exact_residual, alone.exact_residual);
+    for (std::size_t k = 0; k < alone.points.size(); ++k)
+      EXPECT_EQ(all[i].points[k].distance, alone.points[k].distance) << solvers[i];
+  }
+}
+
 TEST(Convergence, SaysWhatItCannotCompare) {
   const Scene scene = hanging_sheet(1, 4, {true, false, false});
-  EXPECT_FALSE(converge(scene, scene.start, 0, "mass-spring", 4).refused.empty());
+  EXPECT_FALSE(of_one(scene, "mass-spring", 4).refused.empty());
   Scene elastic = scene;
   const auto of = [&](const char* solver) {
     return stiffness_of(elastic, parse_solver(solver))[0];

@@ -2,9 +2,14 @@
 #include <cmath>
 
 #include "core/io/scene_io.hpp"
+#include "core/model/text.hpp"
 #include "experiments/answer/answer.hpp"
+#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/plot/convergence_plot.hpp"
+#include "experiments/report/chart/one_step.hpp"
+#include "experiments/report/plot/plot.hpp"
+#include "experiments/study/store.hpp"
+#include "experiments/study/study.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/convergence.hpp"
 
@@ -13,11 +18,13 @@ namespace taut::verb::convergence {
 namespace {
 
 struct Options {
-  std::string scene, from = "jakobsen:iterations=50,substeps=1,precision=double";
+  /// Of a state whose links hardly deviate the exact step is near; jakobsen's is far off its links.
+  std::string scene, from = "implicit:structural=1e5,shear=1e5,bend=1e5";
   std::vector<std::string> solvers, settings;
-  std::string kind = "distance", figures;
+  std::string kind = "distance", figures, out;
   double at = 0.5;
   int most = 256;
+  bool record = false;
   Format format;
 };
 
@@ -43,6 +50,7 @@ Table summary(const std::vector<Convergence>& all) {
                {"bend", "bend", kStiffness},
                {"contraction", "contraction per iteration", kNumber, 4},
                {"floor", "floor", kLength},
+               {"moved", "last correction of the exact step", kLength},
                {"exact_residual", "residual of the exact step", kForce},
                {"exact", "exact step"}}};
   table.caption =
@@ -51,7 +59,8 @@ Table summary(const std::vector<Convergence>& all) {
   for (const Convergence& c : all)
     if (c.refused.empty())
       table.rows.push_back({c.solver, c.stiffness[0], c.stiffness[1], c.stiffness[2], c.contraction,
-                            c.floor > 0 ? Cell(c.floor) : Cell(), c.exact_residual, exact_step(c)});
+                            c.floor > 0 ? Cell(c.floor) : Cell(), c.moved, c.exact_residual,
+                            exact_step(c)});
   return table;
 }
 
@@ -91,7 +100,9 @@ Table points(const std::vector<Convergence>& all) {
 
 Answer answer_of(const Scene& scene, const Options& options, double at,
                  const std::vector<Convergence>& all) {
-  Answer answer{"converge", "one step of " + scene.name};
+  const std::string set = join(options.settings, ", ");
+  Answer answer{"converge", "one step of " + scene.name + (set.empty() ? "" : ", " + set)};
+  answer.add({"scene"}, scene.name);
   answer.add({"at", "from its state at", kTime}, at);
   answer.add({"from", "of a run of"},
              Cell(options.from)
@@ -123,27 +134,40 @@ void continue_in_one_program(const std::vector<std::string>& solvers) {
   for (const std::string& solver : solvers) continue_in_right_program(parse_solver(solver));
 }
 
-int run(const Options& options) {
+Answer ask(const Options& options) {
   check_solvers(options.solvers);
   const Scene scene = load_scene(find_scene(options.scene), options.settings);
   if (!scene.colliders.empty() || scene.self_collision)
     throw InputError("converge: contact is no part of the exact step; take a scene without");
-  continue_in_one_program(options.solvers);
   const double at = std::round(options.at / scene.dt) * scene.dt;
   const State state = state_at(scene, parse_solver(options.from), at);
-  std::vector<Convergence> all;
-  for (const std::string& solver : options.solvers)
-    all.push_back(converge(scene, state, at, solver, options.most));
-  Answer answer = answer_of(scene, options, at, all);
-  if (!options.figures.empty())
-    answer.add({"picture"},
-               report::plot_convergence(all, options.kind, answer.subject, options.figures,
-                                        slug("converge-" + scene.name + "-" + options.kind))
-                   .string());
+  return answer_of(scene, options, at, converge(scene, state, at, options.solvers, options.most));
+}
+
+std::string draw(const Answer& answer, const Options& options) {
+  const report::OneStep step(answer);
+  const report::PlotSpec spec{
+      .kind = "convergence",
+      .x = report::kSweeps,
+      .y = report::step_value(options.kind),
+      .title = answer.subject,
+      .file = slug("converge-" + answer.fact("scene").text() + "-" + options.kind)};
+  return report::make_plot(spec, report::step_records(step, options.kind), {}, options.figures)
+      .svg.string();
+}
+
+int run(const Options& options) {
+  continue_in_one_program(options.solvers);
+  Answer answer = ask(options);
+  const bool any = !answer.table("solvers").rows.empty();
+  if (options.record) {
+    const Store store(options.out);
+    store.prepare();
+    store.keep(answer);
+  }
+  if (!options.figures.empty()) answer.add({"picture"}, draw(answer, options));
   print(answer, options.format);
-  return std::ranges::any_of(all, [](const Convergence& c) { return c.refused.empty(); })
-             ? kPass
-             : kNothing;
+  return any ? kPass : kNothing;
 }
 
 void add_options(CLI::App& app, Options& o) {
@@ -159,12 +183,22 @@ void add_options(CLI::App& app, Options& o) {
   CLI::Option* const figures =
       add_output(app, o.figures, "Draw it into this folder, as SVG with its data and script");
   app.add_option("--kind", o.kind, "What is drawn: distance, gap, stretch, residual")
-      ->check(known("kind", report::convergence_kinds()))
+      ->check(known("kind", report::step_kinds()))
       ->needs(figures);
+  app.add_flag("--record", o.record, "Also keep what is found for the report");
+  add_results(app, o.out);
   add_format(app, o.format);
 }
 
 }  // namespace
+
+Answer one_step(const std::string& scene, const std::vector<std::string>& solvers) {
+  const StudyScene chosen = parse_scene(scene);
+  Options options;
+  options.scene = chosen.name, options.settings = chosen.settings, options.solvers = solvers;
+  return ask(options);
+}
+
 }  // namespace taut::verb::convergence
 
 TAUT_VERB(converge) = {

@@ -141,6 +141,7 @@ int run(Options options) {
   };
   add("taut verify", input.truths, report::stored_truths);
   add("taut check", input.regressions, report::stored_regressions);
+  add("taut converge", input.steps, report::stored_steps);
   add("taut require", input.required, report::stored_requirements);
   add("taut frontier --all", input.frontiers, report::stored_frontiers);
   if (!options.json && !options.no_media) {

@@ -51,8 +51,14 @@ std::vector<StudyCases> all_cases(const std::vector<Study>& studies) {
 /// besides the studies. It says which one failed, too, so the run goes on.
 int finish_main_job(const MainJob& job, const Options& options) {
   bench::time_study(job.bench, job.preset, 0.015, options.out);
+  const Store store(options.out);
+  for (const std::string& scene : job.steps) {
+    progress() << "inside one step of " << scene << '\n';
+    store.keep(
+        convergence::one_step(scene, load_study(job.studies.front(), options.preset).solvers));
+  }
   progress() << "holding solvers to closed forms and published numbers\n";
-  Store(options.out).keep(verify::verify_all(options.jobs));
+  store.keep(verify::verify_all(options.jobs));
   progress() << "comparing with the committed baselines\n";
   const Answer compared = check::check_all(options.jobs, options.out);
   if (!options.json) print(compared, {});

@@ -34,6 +34,8 @@ Json json_of_cost(const StudyBench&, CaseList&, Json& charts, Answer& tables);
 Json json_of(const Differences&, CaseList&, Answer& tables);
 /// What scenes require and how far solvers go; null without either.
 Json json_of_limits(const ReportInput&, Answer& tables);
+/// What iterations inside one step bring, scene by scene; null: no step was followed.
+Json json_of_steps(const ReportInput&, CaseList&, Json& charts, Answer& tables);
 /// What publications assert, with verdicts: as its truths say now, if they were checked.
 Table assertions_table(const std::optional<Truths>&);
 /// Settings of every solver on a scene, row by row; without rows if nothing was run.

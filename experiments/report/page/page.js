@@ -50,7 +50,7 @@ const placeOf = (id) => document.getElementById(id) ??
 
 function start() {
   paint();
-  const sections = [answerSection(), differencesSection(), sceneSection(), costSection(), limitsSection(),
+  const sections = [answerSection(), differencesSection(), sceneSection(), costSection(), stepsSection(), limitsSection(),
                     truthsSection(),
                     regressionSection(), casesSection(), methodSection()].filter(Boolean);
   document.getElementById('main').append(...sections);

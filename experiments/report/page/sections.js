@@ -17,6 +17,15 @@ function costSection() {
     shown.map((table) => tableNode(table, 'h3'))) : null;
 }
 
+function stepsSection() {
+  const {steps} = model;
+  return steps ? section('steps', 'Inside one step',
+    note('Each solver does 1, 2, 3, ... iterations of one step from the same state: what does the next one bring? ',
+         el('code', {}, 'taut converge')),
+    el('div', {className: 'grid three'}, all(steps.charts, charts).map(chartFigure)),
+    all(steps.tables, tables).map((table) => folded(table.title, tableNode(table)))) : null;
+}
+
 function limitsSection() {
   const shown = all(model.limits?.tables, tables);
   return shown.length ? section('limits', 'What scenes require, and how far solvers go',
@@ -62,7 +71,7 @@ function methodSection() {
   const build = Object.entries(model.meta.build ?? {}).filter(([name]) => !known.includes(name))
       .map(([name, value]) => ({name, value}));
   return section('method', 'Method and limits', el('div', {className: 'card'},
-    tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver)),
+    folded('Solvers', tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver))),
     method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,
     el('p', {}, 'This makes it all again:'), command(model.meta.command)),
     all(method.tables, tables).map((table) => folded(table.title,

@@ -1,0 +1,82 @@
+// Error over the iterations of one step, drawn by what draws cases.
+#include "experiments/report/chart/one_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
+#include "core/model/text.hpp"
+#include "experiments/report/chart/format.hpp"
+
+namespace taut::report {
+
+namespace {
+
+constexpr std::string_view kStep = "step.";
+
+Record record_of(const Answer& found, const Table& points, const std::vector<Cell>& row) {
+  const auto number = [&](const char* column) { return points.at(row, column).number(); };
+  Record r;
+  const std::string solver = points.at(row, "solver").text();
+  const SolverChoice choice = parse_solver(solver);
+  r.scene = found.fact("scene").text(), r.dt = found.fact("dt").number();
+  r.solver = choice.entry->name, r.spec = {r.scene, {}, solver};
+  for (const ParamSpec& param : choice.entry->params)
+    r.params[std::string(param.name)] = choice.params.value(param.name);
+  r.params[parameter_of(r.solver, kSweeps)] = shortest(number("iterations"));
+  r.params[parameter_of(r.solver, kSubsteps)] = "1";
+  for (const std::string& kind : step_kinds()) r.values[step_value(kind)] = number(kind.c_str());
+  r.id = r.scene + " " + solver + " " + shortest(number("iterations"));
+  return r;
+}
+
+}  // namespace
+
+OneStep::OneStep(Answer answer) : found(std::move(answer)) {
+  const Table& points = found.table("points");
+  for (const auto& row : points.rows) records.push_back(record_of(found, points, row));
+}
+
+std::vector<std::string> step_kinds() { return {"distance", "gap", "stretch", "residual"}; }
+
+std::string step_value(std::string_view kind) {
+  const std::vector<std::string> known = step_kinds();
+  if (std::ranges::find(known, kind) == known.end())
+    throw InputError("unknown kind '" + std::string(kind) + "'" +
+                     suggestion(std::string(kind), known));
+  return std::string(kStep) + std::string(kind);
+}
+
+Records step_records(const OneStep& step, std::string_view kind) {
+  const std::string value = step_value(kind);
+  Records drawn;
+  for (const Record& r : step.records)
+    if (r.value(value) > 0) drawn.push_back(&r);
+  if (drawn.empty()) throw InputError("no solver has a " + std::string(kind) + " to draw");
+  return drawn;
+}
+
+Chart step_chart(const OneStep& step, std::string_view kind) {
+  Chart chart = make_chart("step", step_records(step, kind), kSweeps, step_value(kind), kSweeps);
+  chart.scene = step.found.fact("scene").text();
+  chart.id = slug(chart.scene + "-step-" + std::string(kind));
+  chart.title = capitalised(step.found.subject);
+  const Table& solvers = step.found.table("solvers");
+  std::string floors;
+  double moved = 0;
+  for (const auto& row : solvers.rows) {
+    moved = std::fmax(moved, solvers.at(row, "moved").number());
+    if (const double floor = solvers.at(row, "floor").number(); floor > 0)
+      floors += (floors.empty() ? "" : ", ") +
+                solver_title(solver_name(solvers.at(row, "solver").text())) + " " +
+                shown(kLength, floor, 2);
+  }
+  if (!floors.empty())
+    chart.caption = "On a floor, for their fixed point is another one: " + floors + ".";
+  if (kind == "distance" && moved > 0)
+    chart.floor = Chart::Floor{moved, "last correction of the exact step"};
+  return chart;
+}
+
+}  // namespace taut::report
