@@ -341,7 +341,9 @@ constexpr StudyRow kKeys[] = {
     {{"question", false, "one sentence; it heads the report"}, &StudyReader::read_question},
     {{"scenes", true,
       "names of shipped scenes, or paths (with a `/`, or ending in `.toml`); `\"all\"`: every "
-      "shipped scene"},
+      "shipped scene. Scene keys of one scene alone follow its name: "
+      "`\"drape:cloth.span=0.7,time.duration=4\"`, a value with commas in quotes, as parameters of "
+      "a solver"},
      &StudyReader::read_scenes},
     {{"solvers", true,
       "`\"name\"` or `\"name:key=value,...\"` (`taut list solvers`). Defaults differ: where sweeps "

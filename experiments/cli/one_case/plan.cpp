@@ -82,6 +82,6 @@ TAUT_VERB(plan) = {
     .name = "plan",
     .group = VerbGroup::one_case,
     .summary =
-        "Shows the passes of one step, what they visit and hold in memory, and what set-up costs",
+        "Shows the passes of a step, what they visit and hold in memory, and what set-up costs",
     .example = "taut plan ball jakobsen:iterations=1,substeps=15",
     .bind = taut::bind_verb<taut::verb::planning::add_options, taut::verb::planning::run>};
