@@ -120,16 +120,15 @@ fs::path new_scratch_folder() {
 }  // namespace
 
 Scratch::Scratch()
-    : path_(new_scratch_folder()),
-      lock_(open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)),
-      with_program_(path_) {
+    : with_program_(new_scratch_folder),
+      lock_(open(path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   flock(lock_, LOCK_SH);
 }
 
 Scratch::~Scratch() {
   std::error_code ignored;
   close(lock_);
-  fs::remove_all(path_, ignored);
+  fs::remove_all(path(), ignored);
 }
 
 void write_file(const fs::path& path, std::string_view bytes) { replace_file(path, bytes, false); }

@@ -36,12 +36,11 @@ class Scratch {
   ~Scratch();
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return with_program_.path(); }
 
  private:
-  std::filesystem::path path_;
-  int lock_;  ///< a descriptor of the folder, locked for as long as the process lives
   EndsWithProgram with_program_;
+  int lock_;  ///< a descriptor of the folder, locked for as long as the process lives
 };
 
 /// Of this machine.

@@ -154,6 +154,12 @@ EndsWithProgram::EndsWithProgram(std::filesystem::path path) : path_(std::move(p
   exit_cleanup().paths.insert(path_);
 }
 
+EndsWithProgram::EndsWithProgram(const std::function<std::filesystem::path()>& make) {
+  install_handler();
+  const std::lock_guard lock(exit_cleanup().mutex);
+  exit_cleanup().paths.insert(path_ = make());
+}
+
 EndsWithProgram::EndsWithProgram(pid_t group) : group_(group) {
   install_handler();
   const std::lock_guard lock(exit_cleanup().mutex);

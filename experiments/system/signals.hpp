@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 /// The one handler of SIGINT, SIGTERM and SIGHUP. It kills the processes that this one started,
@@ -31,10 +32,13 @@ class GracefulStop {
 class EndsWithProgram {
  public:
   explicit EndsWithProgram(std::filesystem::path);
+  /// What `make` makes and returns the path of; a program that is being ended makes nothing.
+  explicit EndsWithProgram(const std::function<std::filesystem::path()>& make);
   explicit EndsWithProgram(pid_t group);
   ~EndsWithProgram();
   EndsWithProgram(const EndsWithProgram&) = delete;
   EndsWithProgram& operator=(const EndsWithProgram&) = delete;
+  const std::filesystem::path& path() const { return path_; }  ///< "" of a group
 
  private:
   std::filesystem::path path_;
