@@ -197,7 +197,8 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   Multiplied problem(*this, hardness);
   Minimum found;
   double before = 1e300;
-  for (int round = 0; round < (rigid_ ? 60 : 1); ++round) {
+  const int rounds = rigid_ ? 60 : 1;
+  for (int round = 0; round < rounds; ++round) {
     const Points last = x;
     x = problem.minimise(std::move(x), 1e-10 + kRounding * hardness);
     if (round > 0) found.moved = distance(x, last);
@@ -209,7 +210,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
         problem.multiplier[j] += problem.stiffness[j] * c;
       }
     if (found.stretch < 1e-14 || (found.stretch < 1e-12 && found.stretch >= before)) break;
-    if (found.stretch > kStalls * before) {
+    if (found.stretch > kStalls * before && round + 1 < rounds) {
       if (hardness >= kHardest * heaviest) break;
       problem.harden(hardness *= 8);
     }

@@ -25,8 +25,9 @@ inline constexpr ParamSpec kChebyshev =
 template <class Real>
 class ChebyshevPass final : public Pass<Real> {
  public:
-  ChebyshevPass(std::unique_ptr<Pass<Real>> pass, double rho, ThreadPool& pool)
-      : pass_(std::move(pass)), rho_(rho), pool_(pool) {}
+  ChebyshevPass(std::unique_ptr<Pass<Real>> pass, double rho, std::size_t particles,
+                ThreadPool& pool)
+      : pass_(std::move(pass)), rho_(rho), pool_(pool), from_(particles), before_(particles) {}
 
   void restart() override { pass_->restart(); }
   void accelerate(Particles<Real>& p, double t, double h) override { pass_->accelerate(p, t, h); }
@@ -35,7 +36,6 @@ class ChebyshevPass final : public Pass<Real> {
     pass_->begin(p, t, h);
   }
   void apply(Particles<Real>& p, double t, double h) override {
-    from_.resize(p.size()), before_.resize(p.size());
     for (std::size_t i = 0; i < p.size(); ++i) from_[i] = p.x[i];
     pass_->apply(p, t, h);
     pool_.finish();
@@ -69,9 +69,9 @@ class ChebyshevPass final : public Pass<Real> {
 /// rho in [0, 1); 0: the pass as it is.
 template <class Real>
 std::unique_ptr<Pass<Real>> with_chebyshev(std::unique_ptr<Pass<Real>> pass, double rho,
-                                           ThreadPool& pool) {
+                                           std::size_t particles, ThreadPool& pool) {
   if (!pass || rho == 0) return pass;
-  return std::make_unique<ChebyshevPass<Real>>(std::move(pass), rho, pool);
+  return std::make_unique<ChebyshevPass<Real>>(std::move(pass), rho, particles, pool);
 }
 
 }  // namespace taut

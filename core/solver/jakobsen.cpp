@@ -72,7 +72,8 @@ loop::Links<Real> make_links(const loop::Setup& setup) {
   const RelaxationSettings settings = relaxation_settings(setup);
   Relaxation<Real> links = make_relaxation<Real>(setup.scene, setup.w, settings, setup.pool);
   return {.layout = std::move(links.layout),
-          .pass = with_chebyshev(std::move(links.pass), setup.params.real("chebyshev"), setup.pool),
+          .pass = with_chebyshev(std::move(links.pass), setup.params.real("chebyshev"),
+                                 setup.w.size(), setup.pool),
           .coarse = make_levels<Real>(setup.scene, setup.w, settings),
           .tethers = settings.projection};
 }
@@ -83,10 +84,12 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 std::vector<std::string> unsolvable_lines(const Scene& scene, const Params& params) {
   if (!scene.mesh.grid) return {"method=lines needs a cloth that is a grid"};
-  const double tension = line_tension(scene, scene.dt / params.integer("substeps"));
+  const int substeps = params.integer("substeps");
+  const double tension = line_tension(scene, scene.dt / substeps);
   if (tension <= kLargestLineTension) return {};
   return {"method=lines is unstable where h^2 T/(m l) is above 1/3, and here it is " +
-          shortest(std::round(100 * tension) / 100) + ": more substeps"};
+          shortest(std::round(100 * tension) / 100) + ": substeps=" +
+          shortest(std::ceil(substeps * std::sqrt(tension / kLargestLineTension))) + " is enough"};
 }
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
@@ -99,11 +102,13 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
+  const bool lines = params.is("method", "lines");
+  const std::string of = lines ? ", of the links on no line" : "";
   ResolvedSettings own{
-      {"projection", std::string(params.choice("projection")) + ", weighted by inverse mass"},
+      {"projection", std::string(params.choice("projection")) + ", weighted by inverse mass" + of},
       {"link order",
-       params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))}};
-  if (params.is("method", "lines"))
+       (params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))) + of}};
+  if (lines)
     own.emplace_back("links solved",
                      "the structural ones of each row, then of each column, at once");
   if (params.real("chebyshev") > 0)

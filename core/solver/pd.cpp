@@ -146,7 +146,7 @@ class ProjectivePass final : public Pass<double> {
 loop::Links<double> links(const loop::Setup& s) {
   return {.layout = Layout::packed(s.w.size()),
           .pass = with_chebyshev<double>(std::make_unique<ProjectivePass>(s),
-                                         s.params.real("chebyshev"), s.pool),
+                                         s.params.real("chebyshev"), s.w.size(), s.pool),
           .bends = true};
 }
 

@@ -85,7 +85,7 @@ class DescentPass final : public Pass<double> {
 loop::Links<double> links(const loop::Setup& s) {
   return {.layout = Layout::packed(s.w.size()),
           .pass = with_chebyshev<double>(std::make_unique<DescentPass>(s),
-                                         s.params.real("chebyshev"), s.pool),
+                                         s.params.real("chebyshev"), s.w.size(), s.pool),
           .bends = true};
 }
 

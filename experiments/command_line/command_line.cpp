@@ -68,7 +68,8 @@ class PrintableErrors : public std::streambuf {
   }
   int_type overflow(int_type c) override {
     const char one = traits_type::to_char_type(c);
-    return xsputn(&one, 1), c;
+    if (!traits_type::eq_int_type(c, traits_type::eof())) xsputn(&one, 1);
+    return traits_type::not_eof(c);
   }
   int sync() override { return stderr_->pubsync(); }
 

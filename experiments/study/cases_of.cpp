@@ -100,13 +100,13 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
   CaseMaker maker;
   std::set<std::string> keys, said;
   std::vector<Diagnostic> wrong;
-  const auto add = [&](const CaseSpec& spec) {
+  const auto add = [&](const std::string& scene, const CaseSpec& spec) {
     try {
       Case one = maker.make(spec);
       if (keys.insert(one.key).second) visit(std::move(one));
     } catch (const InputError& error) {
       for (const Diagnostic& of_scene : error.diagnostics())
-        if (const Diagnostic d = placed(study, of_scene); said.insert(d.text()).second)
+        if (const Diagnostic d = placed(study, scene, of_scene); said.insert(d.text()).second)
           wrong.push_back(d);
     }
   };
@@ -118,7 +118,7 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
           all.insert(of_solver.begin(), of_solver.end());
           all["scene"] = scene;
           all["solver"] = solver_name(solver);
-          if (!excluded(study, all)) add(spec_of(study, scene, solver, of_scene, of_solver));
+          if (!excluded(study, all)) add(scene, spec_of(study, scene, solver, of_scene, of_solver));
         });
     });
   if (!wrong.empty()) throw InputError(wrong);

@@ -75,6 +75,7 @@ class StudyReader {
     Section section(diagnostics_, root, "the study");
     section.need({"question", "scenes", "solvers"});
     read_keys(section, false);
+    refuse_clashes();
     section.finish();
   }
 
@@ -84,9 +85,14 @@ class StudyReader {
   }
   void read_scenes(Section& section) {
     strings(section, "scenes", study_.scenes, [](const std::string& text) {
-      if (const StudyScene scene = parse_scene(text); scene.name != kAll) find_scene(scene.name);
+      const StudyScene scene = parse_scene(text);
+      if (scene.name != kAll)
+        find_scene(scene.name);
+      else if (!scene.settings.empty())
+        throw InputError("'all' has no settings of its own: `set` holds for every scene");
     });
-    if (const Value* list = section.find("scenes")) remember_places_of(*list);
+    for (const Value& item : section.find("scenes")->items)
+      study_.scene_places[item.string] = item.place;
     if (std::erase(study_.scenes, kAll) > 0)
       for (const std::string& name : shipped("scenes"))
         if (std::ranges::count(study_.scenes, name) == 0) study_.scenes.push_back(name);
@@ -111,10 +117,22 @@ class StudyReader {
   /// A list that a preset has replaces the one before.
   void read_keys(Section&, bool of_preset);
 
-  void remember_places_of(const Value& scenes) {
-    for (const Value& item : scenes.items) try {
-        for (const std::string& setting : parse_scene(item.string).settings)
-          study_.places[setting] = item.place;
+  /// A scene with settings of its own stands once, and no axis varies what it fixes: tables and
+  /// curves tell the cases of a scene apart by solver and axes.
+  void refuse_clashes() {
+    std::map<std::string, std::string> text_of;
+    for (const std::string& text : study_.scenes) try {
+        const StudyScene scene = parse_scene(text);
+        const auto report = [&](const std::string& what) {
+          diagnostics_.report(study_.scene_places.at(text), what);
+        };
+        if (const auto [at, fresh] = text_of.try_emplace(scene.name, text);
+            !fresh && at->second != text)
+          report("scene '" + scene.name + "' stands twice: vary a setting by an axis");
+        for (const std::string& setting : scene.settings)
+          for (const StudyAxis& axis : study_.axes)
+            if (setting.starts_with(axis.name + "="))
+              report("'" + axis.name + "' of scene '" + scene.name + "' is an axis of the study");
       } catch (const InputError&) {  // reported where it was read
       }
   }
@@ -390,6 +408,7 @@ void StudyReader::read_presets(Section& section) {
     reader.choices_ = choices_;
     Section preset(diagnostics_, presets->items[i], "[preset." + name + "]");
     reader.read_keys(preset, true);
+    if (name != wanted_) reader.refuse_clashes();
     preset.finish();
     if (name == wanted_) study_.preset = name;
   }
@@ -398,23 +417,24 @@ void StudyReader::read_presets(Section& section) {
 /// What is wrong with the scenes of a study that is itself wrong: each with `set`, and with every
 /// value of an axis by itself.
 void judge_scenes(const Study& study, Diagnostics& diagnostics) {
-  std::vector<std::vector<std::string>> variants{study.settings};
+  std::vector<std::vector<std::string>> variants(1);
   for (const StudyAxis& axis : study.axes)
     for (const std::string& value : axis.values)
       if (axis.of_scene()) {
-        variants.push_back(study.settings);
-        variants.back().push_back(axis.name + "=" + value);
+        variants.push_back({axis.name + "=" + value});
       }
   std::set<std::string> said;
   for (const std::string& scene : study.scenes)
-    for (std::vector<std::string> overrides : variants) try {
+    for (const std::vector<std::string>& of_axis : variants) try {
         const StudyScene own = parse_scene(scene);
+        std::vector<std::string> overrides = study.settings;
         overrides.insert(overrides.end(), own.settings.begin(), own.settings.end());
+        overrides.insert(overrides.end(), of_axis.begin(), of_axis.end());
         load_scene(find_scene(own.name), overrides);
       } catch (const InputError& error) {
         for (const Diagnostic& d : error.diagnostics())
           if (said.insert(d.text()).second && !d.file.empty())
-            diagnostics.report({placed(study, d)});
+            diagnostics.report({placed(study, scene, d)});
       }
 }
 
@@ -424,16 +444,24 @@ StudyScene parse_scene(const std::string& text) {
   const auto colon = text.find(':');
   StudyScene scene{text.substr(0, colon), {}};
   if (colon == text.npos) return scene;
+  const auto wrong = [&](const std::string& what) {
+    throw InputError("scene '" + scene.name + "': " + what);
+  };
   for (const ParamItem& item : param_items(std::string_view(text).substr(colon + 1))) {
-    if (!item.problem.empty()) throw InputError("scene '" + scene.name + "': " + item.problem);
+    if (!item.problem.empty()) wrong(item.problem);
+    for (const std::string& before : scene.settings)
+      if (before.starts_with(item.key + "=")) wrong("'" + item.key + "' is given twice");
     scene.settings.push_back(item.key + "=" + item.value);
   }
+  if (scene.settings.empty()) wrong("key=value is missing after the colon");
   return scene;
 }
 
-Diagnostic placed(const Study& study, const Diagnostic& d) {
-  const auto at = study.places.find(d.file);
-  if (at == study.places.end()) return d;
+Diagnostic placed(const Study& study, const std::string& scene, const Diagnostic& d) {
+  const bool own = std::ranges::count(parse_scene(scene).settings, d.file) > 0;
+  const auto& places = own ? study.scene_places : study.places;
+  const auto at = places.find(own ? scene : d.file);
+  if (at == places.end()) return d;
   return {study.file.string(), at->second.line, at->second.column, d.file + ": " + d.message};
 }
 

@@ -30,7 +30,8 @@ struct StudyAxis {
 
 /// Cases that a study leaves out: those that match every setting that is named.
 struct Exclusion {
-  /// By "scene" (name), "solver" (entry's name) or an axis's name: any of these values.
+  /// By "scene" (as in Study::scenes), "solver" (entry's name) or an axis's name: any of these
+  /// values.
   std::map<std::string, std::vector<std::string>> when;
 };
 
@@ -55,8 +56,9 @@ struct Study {
   std::vector<StudyAxis> axes;
   std::vector<Exclusion> exclusions;
   std::vector<Plot> plots;
-  /// Where the file says what stands in `settings` and in the axes of scenes, by the override.
-  std::map<std::string, SourceLocation> places;
+  /// Where the file says what stands in `settings` and in the axes of scenes, by the override, and
+  /// what stands in `scenes`, by its text.
+  std::map<std::string, SourceLocation> places, scene_places;
 };
 
 /// A key of a study file.
@@ -67,9 +69,9 @@ struct StudyKey {
 };
 std::vector<StudyKey> study_keys();
 
-/// What is wrong with a scene, at the place where the study says it: an override of its own has no
-/// line.
-Diagnostic placed(const Study&, const Diagnostic& of_scene);
+/// What is wrong with one of Study::scenes, at the place where the study says it: an override has
+/// no line of its own.
+Diagnostic placed(const Study&, const std::string& scene, const Diagnostic& of_scene);
 
 /// Reads a study by name or path; `preset` replaces what it names, "" nothing. Throws InputError
 /// with every diagnostic at once, those of its scenes too, or if the study has no such preset.
@@ -80,7 +82,7 @@ struct StudyScene {
   std::string name;  ///< or path
   std::vector<std::string> settings;
 };
-/// Throws InputError if what follows the colon is no list of key=value.
+/// Throws InputError if what follows the colon is no list of key=value, each key once.
 StudyScene parse_scene(const std::string& text);
 
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The README's two commands on a Debian 12 that has nothing else: what they install is all that they, and the tests, use.
 # The bare system is a folder (debootstrap, from the mirror of this machine). In it stands this tree with BUILD, under an overlay:
-# it is configured anew, and compiled only where the compiler or a header is another one.
+# it is configured and compiled anew with what the root has.
 # Usage: bare_root.sh BUILD [--whole]
 #   --whole: the whole main job and all tests; otherwise one study with its report, and the tests that call other programs.
 # Ends with 77, not run, where no such system can be made; says why.
@@ -16,6 +16,7 @@ fi
 not_here() { echo "bare_root: not run: $1"; exit 77; }
 
 [[ $(id -u) == 0 ]] || not_here "needs root"
+unshare --mount --pid --fork true 2>/dev/null || not_here "no namespaces here"
 command -v debootstrap >/dev/null || not_here "debootstrap is not installed"
 mirror=$(apt-get indextargets --format '$(RELEASE) $(COMPONENT) $(REPO_URI)' 2>/dev/null | awk '/^bookworm main /{ print $3; exit }')
 [[ -n $mirror ]] || not_here "this machine has no mirror of Debian 12"

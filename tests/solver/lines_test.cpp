@@ -129,6 +129,39 @@ TEST(Lines, AreRefusedWithoutAGridAndBeyondTheirLimit) {
   s = weighted_chain();
   ASSERT_EQ(reasons(s).size(), 1u);
   EXPECT_NE(reasons(s)[0].find("above 1/3"), std::string::npos) << reasons(s)[0];
+  // The number of substeps that it names is the least that it takes.
+  const std::string said = reasons(s)[0].substr(reasons(s)[0].find("substeps="));
+  const int enough = std::stoi(said.substr(9));
+  const auto taken = [&](int substeps) {
+    const SolverChoice with =
+        parse_solver("jakobsen:precision=double,method=lines,substeps=" + std::to_string(substeps));
+    return with.entry->unsupported(s, with.params).empty();
+  };
+  EXPECT_TRUE(taken(enough)) << said;
+  EXPECT_FALSE(taken(enough - 1)) << said;
+}
+
+TEST(Lines, AndChebyshevAreCountedAsWhatTheyDo) {
+  Scene s = hanging_sheet(9, 9);
+  s.pins = {0, 1, 2, 3, 4, 5, 6, 7, 8};  // the upper row: its links do not move
+  const auto costs_of = [&](const std::string& solver) {
+    const SolverChoice choice = parse_solver(solver);
+    return choice.entry->make(s, choice.params)->step_cost();
+  };
+  const auto projections = [&](const std::string& solver) {
+    std::size_t count = 0;
+    for (const PassCost& cost : costs_of(solver))
+      if (cost.projections) count += cost.items * cost.repeats;
+    return count;
+  };
+  EXPECT_EQ(projections("jakobsen:substeps=9,method=lines"), projections("jakobsen:substeps=9"));
+  for (const std::string solver : {"jakobsen:order=mesh,chebyshev=0.9", "pd:chebyshev=0.9"}) {
+    const auto costs = costs_of(solver);
+    const auto one = std::ranges::find(costs, "Chebyshev", &PassCost::pass);
+    ASSERT_NE(one, costs.end()) << solver;
+    EXPECT_EQ(one->items, 81u) << solver;
+    EXPECT_GE(one->bytes, 2 * 81 * 3 * sizeof(float)) << solver;
+  }
 }
 
 TEST(Lines, AndChebyshevHaveTheSameBitsForThreadsAndInstructionSets) {

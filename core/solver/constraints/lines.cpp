@@ -38,16 +38,28 @@ class LinesPass final : public Pass<Real> {
     rows_.resize(to_index(std::max(grid.nu, grid.nv)));
   }
 
+  void restart() override {
+    if (others_) others_->restart();
+  }
+  void begin(Particles<Real>& p, double t, double h) override {
+    if (others_) others_->begin(p, t, h);
+  }
+  void end(Particles<Real>& p, double t, double h) override {
+    if (others_) others_->end(p, t, h);
+  }
   void apply(Particles<Real>& p, double t, double h) override {
     for (const std::vector<LineLink>& line : lines_) solve(line, p);
     if (others_) others_->apply(p, t, h);
   }
 
   std::vector<PassCost> cost() const override {
-    std::size_t links = 0;
-    for (const auto& line : lines_) links += line.size();
+    std::size_t links = 0, that_move = 0;
+    for (const auto& line : lines_) {
+      links += line.size();
+      for (const LineLink& link : line) that_move += link.wa + link.wb > 0 ? 1 : 0;
+    }
     std::vector<PassCost> costs{{.pass = "structural, in lines",
-                                 .items = links,
+                                 .items = that_move,
                                  .bytes = links * sizeof(LineLink) + rows_.size() * sizeof(Row),
                                  .projections = true}};
     if (others_)

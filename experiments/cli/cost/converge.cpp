@@ -176,7 +176,7 @@ void add_options(CLI::App& app, Options& o) {
       ->required()
       ->allow_extra_args(false);
   app.add_option("--at", o.at, "Time of the state [s]; 0: the scene's start")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 1e6));
   app.add_option("--from", o.from, "Solver whose run gives the state");
   app.add_option("--most", o.most, "Iterations, at most")->check(CLI::Range(1, 1 << 20));
   add_settings(app, o.settings);

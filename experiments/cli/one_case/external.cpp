@@ -62,7 +62,7 @@ int write_scene(const Options& o) {
 TAUT_VERB(external) = {
     .name = "external",
     .group = VerbGroup::one_case,
-    .summary = "Solvers from outside: programs that speak taut-solver/1",
+    .summary = "Solvers from outside: programs that speak taut-solver/2 or /1",
     .example =
         "taut external probe 'python3 mine.py'\n  taut case hang \"external:cmd='python3 "
         "mine.py',iterations=8\""};
