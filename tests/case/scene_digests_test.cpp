@@ -83,7 +83,10 @@ class MadeUp {
       maybe("tilt", number(-90, 90));
     }
     maybe("origin", vec(2));
-    if (coin()) line(coin() ? "mass" : "area_density", number(0.1, 2));
+    if (coin()) {  // one after the other, whatever the compiler: so everywhere below
+      const std::string mass = number(0.1, 2);
+      line(coin() ? "mass" : "area_density", mass);
+    }
     maybe("lumping", coin() ? "\"equal\"" : "\"area\"");
     maybe("stretch", number(0.5, 2));
     maybe("weights", "[{ vertices = [0, 2], factor = " + number(0.5, 2) + " }]");
@@ -99,7 +102,8 @@ class MadeUp {
     maybe("structural", "true");
     maybe("shear", flag());
     maybe("bend", flag());
-    maybe("stiffness", "{ structural = " + number(100, 1000) + ", bend = " + number(1, 10) + " }");
+    const std::string structural = number(100, 1000), bend = number(1, 10);
+    maybe("stiffness", "{ structural = " + structural + ", bend = " + bend + " }");
   }
 
   void bending() {
@@ -117,8 +121,10 @@ class MadeUp {
   }
 
   std::string rotation() {
-    return coin() ? "{ axis = [0, 1, " + number(-1, 1) + "], angle = " + number(-180, 180) + " }"
-                  : "[1, " + number(-1, 1) + ", 0.5, 0]";
+    const bool about_axis = coin();
+    const std::string y = number(-1, 1);
+    return about_axis ? "{ axis = [0, 1, " + y + "], angle = " + number(-180, 180) + " }"
+                      : "[1, " + y + ", 0.5, 0]";
   }
 
   void motion() {
