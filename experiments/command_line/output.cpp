@@ -150,7 +150,8 @@ CampaignProgress run_missing(const std::vector<StudyCases>& studies, const Store
   for (const StudyCases& study : studies)
     cases.insert(cases.end(), study.cases.begin(), study.cases.end());
   std::ranges::stable_sort(cases, {}, &Case::key);
-  cases.erase(std::ranges::unique(cases, {}, &Case::key).begin(), cases.end());
+  const auto same = [](const Case& a, const Case& b) { return a.key == b.key; };
+  cases.erase(std::unique(cases.begin(), cases.end(), same), cases.end());
   Progress display;
   options.progress = [&](const CampaignProgress& t, const Record* r) { display.show(t, r); };
   const CampaignProgress campaign = run_cases(cases, store, options);

@@ -8,6 +8,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/report/answer/case_list.hpp"
 #include "experiments/report/answer/compared_solvers.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/system/files.hpp"
@@ -74,6 +75,15 @@ void complete_quoted(ReportInput& input, const Store& store) {
 }
 
 }  // namespace
+
+void keep_roles(Record& r) {
+  static const std::vector<const ValueSpec*> roles = values_with_role();
+  std::map<std::string, double> kept;
+  for (const ValueSpec* value : roles)
+    for (const std::string_view name : {value->name, value->floor.value})
+      kept.insert(r.values.extract(std::string(name)));
+  r.values = std::move(kept);
+}
 
 std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of) {
   std::vector<TimeSeries> all;
@@ -297,6 +307,9 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
         input.scenes.push_back({one.scene->name, one.scene->summary});
       if (const auto slope = theory_slope(*one.scene)) result.slopes[one.scene->name] = *slope;
       if (!record) return;
+      const std::size_t place = result.records.size();
+      if (place == kMostCases) std::ranges::for_each(result.records, keep_roles);
+      if (place >= kMostCases) keep_roles(*record);
       if (const auto at = timed.find(record->key); at != timed.end())
         record->values.insert(at->second.begin(), at->second.end());
       result.records.push_back(std::move(*record));

@@ -14,8 +14,13 @@ namespace taut::report {
 /// What the store has of these studies, as the report wants it: records, scenes with their
 /// summaries, the theory's exponents, costs if they were timed, values over time of one case per
 /// scene and solver. Of a record is kept what a report needs: values that are numbers, and of the
-/// cases that are quoted passes and resolved settings. Throws InputError as load_scene() does.
+/// cases that are quoted passes and resolved settings; of a study of more cases than a page lists
+/// (kMostCases) only values with a role. Throws InputError as load_scene() does.
 ReportInput stored_results(const std::vector<Study>&, const Store&);
+
+/// Leaves of a case the values with a role and their floors: no table and no chart of a page is of
+/// others.
+void keep_roles(Record&);
 
 /// The values that are shown over time, as far as the table has them.
 std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of);

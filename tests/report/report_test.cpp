@@ -13,6 +13,7 @@
 #include "experiments/report/answer/compared_solvers.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
+#include "experiments/report/stored.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
@@ -62,6 +63,27 @@ ReportInput example() {
 }
 
 Json model_of(const ReportInput& input) { return parse_json(make_model(input)); }
+
+TEST(Report, TablesAndChartsAreOfValuesWithARole) {
+  std::size_t dropped = 0;
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    ReportInput whole = made_up::Maker(seed).input(), roles = whole;
+    for (ReportInput* input : {&whole, &roles})
+      for (StudyResult& study : input->studies)
+        for (Record& r : study.records) {
+          r.values["energy.peak"] = 1, r.values["stretch.p95"] = 0.01;
+          if (input != &roles) continue;
+          const std::size_t before = r.values.size();
+          keep_roles(r);
+          dropped += before - r.values.size();
+        }
+    Json model = model_of(whole), of_roles = model_of(roles);
+    for (const char* read_alone : {"cases", "metrics"})
+      model.erase(read_alone), of_roles.erase(read_alone);
+    EXPECT_EQ(model, of_roles) << "seed " << seed;
+  }
+  EXPECT_GT(dropped, 0u);
+}
 
 TEST(Report, OneFileThatAsksForNothing) {
   const std::string html = make_report(example());

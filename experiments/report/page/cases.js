@@ -130,7 +130,7 @@ function casesSection() {
   });
   return el('section', {id: 'cases'}, el('h2', {}, 'All cases'),
     model.meta.listed && note(`${model.meta.listed} of ${model.meta.cases} cases are here: those that this page names, and `,
-      'others spread evenly. All of them: ', el('code', {}, `taut export ${model.method.studies[0].name} -o cases.csv`)),
+      'others spread evenly, of such a study with the values of tables and charts. All of both: ', el('code', {}, `taut export ${model.method.studies[0].name} -o cases.csv`)),
     el('div', {className: 'filters'}, el('label', {}, 'find ', find), selects, save), columnChooser(), said,
     el('div', {className: 'card scroll tall', tabIndex: 0, role: 'region', 'aria-label': 'Table of cases'}, table),
     more,

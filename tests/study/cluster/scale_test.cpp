@@ -99,9 +99,8 @@ TEST(StoreScale, AReportHoldsFewBytesOfACase) {
   ASSERT_GT(first, 1e6) << "the peak was not measured";
   const double of_a_case = (both - first) / 4200;
   std::cout << "bytes of a case: " << of_a_case << ", of the first 4200 in all: " << first << '\n';
-  // 11.6 kB of 118 values each, by name; both reports together hold what they did (132 MB) before
-  // the page was made of tables: then the peak of the first 4200 was that of its prose.
-  EXPECT_LT(of_a_case, 13000) << "of some hundred values each";
+  // 2.2 kB of the values with a role; 11.6 of all 118.
+  EXPECT_LT(of_a_case, 4000) << "of some hundred values each, those with a role";
 }
 
 TEST(StoreScale, ManyCheapCases) {
