@@ -194,6 +194,15 @@ toml::table table_of(const Value& value) {
   return table;
 }
 
+/// What a value that does not parse is to be, for the end of a message.
+std::string as_written(const std::string& assignment) {
+  const std::string path = assignment.substr(0, assignment.find_first_of(" ="));
+  const SceneKey* key = find_scene_key(path);
+  if (!key) return "; a text stands in quotes: key=\"text\"";
+  return "; " + path + " is of type " + std::string(key->type) + ", as in " + path + "=" +
+         std::string(key->example);
+}
+
 }  // namespace
 
 const Value* Value::find(const std::string& key) const {
@@ -238,7 +247,7 @@ Document parse_document(const std::string& file, const std::string& text,
     } catch (const toml::parse_error& error) {
       found.push_back(syntax_error(error, document, assignment, i));
       if (found.back().message.starts_with("Error while parsing"))  // the library's words
-        found.back().message += "; a text stands in quotes: key=\"text\"";
+        found.back().message += as_written(assignment);
     }
   }
   if (!found.empty()) throw InputError(found);
@@ -450,11 +459,14 @@ std::vector<const Value*> Section::tables(const std::string& key) {
   return all;
 }
 
-void Section::finish() {
-  for (const Key& key : table_.keys)
-    if (std::find(known_.begin(), known_.end(), key.text) == known_.end())
-      diagnostics_.report(
-          key.place, "unknown key '" + key.text + "' in " + name_ + suggestion(key.text, known_));
+void Section::finish(const std::vector<std::string>& elsewhere) {
+  for (const Key& key : table_.keys) {
+    if (std::find(known_.begin(), known_.end(), key.text) != known_.end()) continue;
+    std::string meant = suggestion(key.text, known_);
+    for (const std::string& path : elsewhere)
+      if (meant.empty() && path.ends_with("." + key.text)) meant = "; did you mean '" + path + "'?";
+    diagnostics_.report(key.place, "unknown key '" + key.text + "' in " + name_ + meant);
+  }
 }
 
 }  // namespace taut

@@ -136,8 +136,9 @@ class Section {
   /// The elements of an array of tables.
   std::vector<const Value*> tables(const std::string& key);
 
-  /// Reports every key that nobody asked for.
-  void finish();
+  /// Reports every key that nobody asked for, with what may have been meant: another key, or one
+  /// of those paths that ends in it.
+  void finish(const std::vector<std::string>& elsewhere = {});
 
  private:
   std::optional<double> judged(const Value&, const std::string& key, const Range&);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -31,8 +32,8 @@ const Fabric* find_fabric(const std::string& name, std::string& problem) {
   if (found != std::end(kFabrics)) return found;
   std::vector<std::string> names;
   for (const Fabric& fabric : kFabrics) names.emplace_back(fabric.name);
-  problem = "unknown fabric '" + name + "'" + suggestion(name, names) +
-            " (`taut list fabrics` names all)";
+  problem = "must be one of " + join(names, ", ") + ", not '" + name + "'" +
+            suggestion(name, names);
   return nullptr;
 }
 

@@ -383,7 +383,9 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   Section time = read("time", said, scene);
   time.finish();
   set_steps(said, time, scene);
-  root.finish();
+  std::vector<std::string> paths;
+  for (const SceneKey& key : scene_keys()) paths.emplace_back(key.path);
+  root.finish(paths);
   if (built && scene.bending) complete(*scene.bending, scene.mesh);
   if (built) check_whole(root, diagnostics, scene);
   if (built && diagnostics.clean()) check_contact(root, said, scene);

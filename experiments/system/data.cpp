@@ -56,6 +56,9 @@ fs::path find_file(const std::string& kind, const std::string& one, const std::s
     if (!fs::is_regular_file(text)) throw InputError(text + ": no such " + one + " file");
     return text;
   }
+  if (const std::size_t colon = text.find(':'); kind == "scenes" && colon != text.npos)
+    throw InputError("unknown scene '" + text + "'; settings of a scene stand alone: " +
+                     text.substr(0, colon) + " --set " + text.substr(colon + 1));
   const std::vector<std::string> names = shipped(kind);
   if (std::find(names.begin(), names.end(), text) == names.end())
     throw InputError("unknown " + one + " '" + text + "'" + suggestion(text, names) +

@@ -99,10 +99,15 @@ void list_fabrics(Answer& all) {
 }
 
 void list_keys(Answer& all) {
-  Table table{
-      "keys",
-      "keys of scenes",
-      {{"key"}, {"type"}, {"unit"}, {"range"}, {"default"}, {"example"}, {"help", "meaning"}}};
+  Table table{"keys",
+              "keys of scenes",
+              {{"key"},
+               Column("type").in_detail(),
+               {"unit"},
+               Column("range").in_detail(),
+               {"default"},
+               Column("example").in_detail(),
+               {"help", "meaning"}}};
   for (const SceneKey& key : scene_keys())
     table.rows.push_back(
         {key.path, key.type, key.unit, key.allowed(), key.default_text(), key.example, key.help});
@@ -146,9 +151,9 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option(
          "WHAT", o.what,
          "scenes | solvers | metrics | studies | keys | fabrics | assertions (default: all)")
-      ->check(CLI::IsMember(
-          {"scenes", "solvers", "metrics", "studies", "keys", "fabrics", "assertions"}));
-  add_format(app, o.format);
+      ->check(known("kind",
+                    {"scenes", "solvers", "metrics", "studies", "keys", "fabrics", "assertions"}));
+  add_format(app, o.format, "Types, ranges and examples of keys, too");
 }
 
 }  // namespace

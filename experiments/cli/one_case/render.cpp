@@ -183,7 +183,7 @@ void add_options(CLI::App& app, Options& o) {
   add_settings(app, o.what.overrides);
   app.add_option("--size", o.size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
   app.add_option("--quality", o.quality, "draft, video or still")
-      ->check(CLI::IsMember({"draft", "video", "still"}));
+      ->check(known("quality", {"draft", "video", "still"}));
   app.add_flag("--dark", o.dark, "The dark background of the report");
   add_output(app, o.output, "File (.png or .mp4)");
   add_json(app, o.json, "The names of the files");

@@ -43,7 +43,7 @@ int run(const Options& o) {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("KIND", o.kind, "study: of one scene and two solvers; scene: a sheet and a ball")
       ->required()
-      ->check(CLI::IsMember({"study", "scene"}));
+      ->check(known("kind", {"study", "scene"}));
   app.add_option("NAME", o.name, "NAME or path; the file is NAME.toml")->required();
   add_json(app, o.json, "The name of the file");
 }
