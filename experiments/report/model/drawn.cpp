@@ -99,20 +99,14 @@ Json json_interval(const Interval& i, std::size_t n) {
           {"n", n}};
 }
 
-Json json_of(const Chart& chart, CaseList& refs) {
-  Json one{{"id", chart.id},
-           {"scene", chart.scene},
-           {"kind", chart.kind},
-           {"title", chart.title},
-           {"caption", chart.caption},
-           {"x", json_of_axis(refs.use(chart.x.name), chart.ticks)},
-           {"y", json_of_axis(refs.use(chart.y.name), {})}};
-  add_if(one, "held", chart.held);
-  bool zeros = true;
+namespace {
+
+/// Its curves, all of a small chart; of a large one as many points as a page can draw, and a
+/// sentence on what is left out.
+void add_curves(Json& one, const Chart& chart, CaseList& refs) {
   std::size_t all = 0, failures = 0;
   for (const Curve& curve : chart.curves)
-    for (const Point& p : curve.points)
-      ++all, failures += failed(p), zeros = zeros && (failed(p) || p.y == 0);
+    for (const Point& p : curve.points) ++all, failures += failed(p);
   const std::vector<std::size_t> places =
       places_of(chart.curves.size(), all > kMostPoints ? kMostCurves : chart.curves.size());
   std::size_t drawn = 0;
@@ -134,18 +128,36 @@ Json json_of(const Chart& chart, CaseList& refs) {
                      " points, on " + std::to_string(places.size()) + " of " +
                      std::to_string(chart.curves.size()) + " curves; " + std::to_string(failures) +
                      " cases that failed are among the others.";
+}
+
+bool all_zero(const Chart& chart) {
+  return std::ranges::all_of(chart.curves, [](const Curve& curve) {
+    return std::ranges::all_of(curve.points, [](const Point& p) { return failed(p) || p.y == 0; });
+  });
+}
+
+}  // namespace
+
+Json json_of(const Chart& chart, CaseList& refs) {
+  Json one{{"id", chart.id},
+           {"scene", chart.scene},
+           {"kind", chart.kind},
+           {"title", chart.title},
+           {"caption", chart.caption},
+           {"x", json_of_axis(refs.use(chart.x.name), chart.ticks)},
+           {"y", json_of_axis(refs.use(chart.y.name), {})}};
+  add_if(one, "held", chart.held);
+  add_curves(one, chart, refs);
   for (const TimeSeries& series : chart.series) one["series"].push_back(json_of(series, refs));
   if (const double factor = theory_factor(chart); std::isfinite(factor))
     one["theory"] = {{"slope", *chart.slope},
                      {"factor", factor},
                      {"text", "theory: slope " + significant(*chart.slope, 2)}};
-  if (chart.floor)
-    one["floor"] = {{"y", chart.floor->y},
-                    {"text", chart.floor->text + ", " + chart.y.text(chart.floor->y)}};
+  if (chart.floor) one["floor"] = {{"y", chart.floor->y}, {"text", chart.floor->text}};
   if (chart.front)
     for (const Point& p : pareto_front(chart))
       one["front"].push_back({{"x", p.x}, {"y", p.y}, {"case", refs.key(*p.record)}});
-  if (zeros && !chart.curves.empty())
+  if (all_zero(chart) && !chart.curves.empty())
     one["zeros"] = true;
   else
     add_if(one, "same", coincident_curves(chart));
@@ -205,9 +217,6 @@ Json json_of(const SceneMedia& media, const ReportInput& input, CaseList& refs,
       add_if(one, "case", refs.key(panel.key));
       film["panels"].push_back(std::move(one));
     }
-    film["caption"] = join(clip.panels, "; ", [](const Clip::Panel& panel) {
-      return solver_title(panel.solver) + ": " + panel.settings;
-    });
     add_if(film, "bar", media.bar);
     add_if(film, "tracks", json_of_tracks(media.scene, media.duration, input, refs));
     films.push_back(std::move(film));

@@ -171,7 +171,7 @@ function player(scene, list) {
         button('◂', 'One frame back', () => step(-1)), button('▸', 'One frame forward', () => step(1)), slider, clock,
         el('span', {className: 'hint'}, lead.speed < 1 && `${number(lead.speed, 2)} of real time · `, 'space, ← →'))),
     el('div', {className: 'beside'}, tracks.map((track) => track.node),
-      list.map((film) => el('p', {className: 'note'}, film.left_out ?? film.caption))));
+      list.map((film) => film.left_out && note(film.left_out))));
   if (lead) {
     slider.max = lead.duration;
     slider.step = lead.frame;
