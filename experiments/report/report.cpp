@@ -201,7 +201,7 @@ class Builder {
       if (media.scene == name) add_media(one, media);
     for (const Chart& chart : scene_charts(input_, name))
       add_by_id(one, "charts", json_of(chart, refs_), charts_);
-    if (!one.contains("films")) add_series(one, name);
+    if (!one.contains("film")) add_series(one, name);
     std::map<std::string, int> names;
     for (const StatusMap& map : scene_maps(input_, name)) {
       if (map.cells.size() > cells_) {
@@ -240,16 +240,13 @@ class Builder {
   }
 
   void add_media(Json& scene, const SceneMedia& media) {
-    for (Json& film : json_of(media, input_, refs_, budget_)) {
-      if (film.contains("material")) {
-        scene["material"] = film["material"];
-        film.erase("material");
-      }
-      for (const Json& panel : film["panels"])
-        if (const std::string key = panel.value("case", ""); !key.empty())
-          film_of_.emplace(key, film["id"].get<std::string>());
-      add_by_id(scene, "films", std::move(film), films_);
-    }
+    if (media.clip.bytes.empty()) return;
+    Json film = json_of(media, input_, refs_, budget_);
+    scene["film"] = film["id"];
+    for (const Json& panel : film["panels"])
+      if (const std::string key = panel.value("case", ""); !key.empty())
+        film_of_.emplace(key, film["id"].get<std::string>());
+    films_.push_back(std::move(film));
   }
 
   /// Values over time of a scene without a film, whose tracks they would be.

@@ -134,19 +134,17 @@ TEST(Chosen, AChartHasItsPointsItsTicksItsFitAndItsTheory) {
                                      {"name", "1 × 16"}}}));
 }
 
-TEST(Chosen, AFilmHasItsPanelsItsBarItsFlatsAndWhatHappensWhileItLasts) {
+TEST(Chosen, AFilmHasItsPanelsItsBarAndWhatHappensWhileItLasts) {
   ReportInput input = chosen();
   input.media = {{.scene = "hang", .duration = 1, .speed = 0.5, .frame = 0.125, .poster = 0.75}};
-  input.media[0].clips = {
-      {"video/mp4",
-       "film",
-       "still",
-       "image/jpeg",
-       "to be seen",
-       {{"jakobsen", "1 × 16", input.studies[0].records[4].key}, {"bullet", "elsewhere", ""}}}};
+  input.media[0].clip = {
+      "video/mp4",
+      "film",
+      "still",
+      "image/jpeg",
+      "to be seen",
+      {{"jakobsen", "1 × 16", input.studies[0].records[4].key}, {"bullet", "elsewhere", ""}}};
   input.media[0].bar = {{"title", "strain"}, {"stops", {"#000000", "#FFFFFF"}}};
-  input.media[0].material = {{"bullet", {{0.25, 0.0123, "png"}}}};
-  input.media[0].aspect = 1.5;
   input.series = {
       {"hang", "jakobsen", "J", "stretch.rms", {0, 0.5, 1, 1.5}, {0, 0.1, std::nan(""), 9}},
       {"hang", "bullet", "B", "stretch.rms", {1, 2}, {1, 1}}};
@@ -170,15 +168,7 @@ TEST(Chosen, AFilmHasItsPanelsItsBarItsFlatsAndWhatHappensWhileItLasts) {
                                       {"t", {0, 0.5, 1}},
                                       {"y", {0, 0.1, nullptr}}}}}}}))
       << "one moment of Bullet's is no track";
-  EXPECT_EQ(by_id(model["scenes"], "hang")["material"],
-            (Json{{"aspect", 1.5},
-                  {"rows",
-                   {{{"solver", "bullet"},
-                     {"moments",
-                      {{{"t", 0.25},
-                        {"rms", 0.0123},
-                        {"text", "1.2\u00A0%"},
-                        {"image", "data:image/png;base64,cG5n"}}}}}}}}));
+  EXPECT_EQ(by_id(model["scenes"], "hang")["film"], "film-hang");
 }
 
 TEST(Chosen, TablesHaveWhatWasFoundRowByRow) {

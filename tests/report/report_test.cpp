@@ -114,7 +114,7 @@ void check_references(const Json& model) {
       EXPECT_TRUE(ids.contains(id.get<std::string>())) << id;
   };
   for (const Json& scene : model["scenes"])
-    for (const char* list : {"films", "charts", "maps", "tables"}) named(scene, list);
+    for (const char* list : {"charts", "maps", "tables"}) named(scene, list);
   if (model.contains("cost")) named(model["cost"], "tables");
   const auto known_case = [&](const Json& key) {
     EXPECT_TRUE(cases.contains(key.get<std::string>())) << key;
@@ -211,7 +211,7 @@ TEST(Model, SolversStandInTheOrderOfTheStudy) {
 
 TEST(Model, AFilmShowsTheScenesOwnQuantityFirstAndWhatStaysZeroLast) {
   ReportInput input = example();
-  input.media = {{.scene = "ball", .clips = {{.type = "image/png", .bytes = "x", .panels = {}}}}};
+  input.media = {{.scene = "ball", .clip = {.type = "image/png", .bytes = "x", .panels = {}}}};
   input.media[0].duration = 2.5;
   for (const auto& [value, y] : {std::pair{"penetration.max", 1e-10}, {"slip.distance", 0.1}})
     input.series.push_back({"ball", "bullet", "Bullet", value, {0, 1, 2}, {0, y, y}});
@@ -224,7 +224,7 @@ TEST(Model, AFilmShowsTheScenesOwnQuantityFirstAndWhatStaysZeroLast) {
 TEST(Model, PicturesThatWouldBurstThePageAreLeftOutAndSaidSo) {
   ReportInput input = example();
   const Clip clip{.type = "video/mp4", .bytes = std::string(4'000'000, 'x'), .panels = {}};
-  input.media = {{.scene = "ball", .clips = {clip, clip}}};
+  input.media = {{.scene = "ball", .clip = clip}, {.scene = "hang", .clip = clip}};
   const Json films = model_of(input)["films"];
   ASSERT_EQ(films.size(), 2U);
   EXPECT_TRUE(films[0].contains("src"));

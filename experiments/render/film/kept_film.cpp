@@ -13,7 +13,7 @@ namespace taut {
 
 namespace {
 
-constexpr const char* kSchema = "taut-film-1";
+constexpr const char* kSchema = "taut-film-2";
 
 /// Of what report::base64() wrote.
 std::string from_base64(const std::string& text) {
@@ -51,21 +51,14 @@ FilmResult film_of(const JsonReader& json) {
   FilmResult film;
   report::SceneMedia& media = film.media;
   media.duration = number("duration"), media.speed = number("speed");
-  media.aspect = number("aspect"), media.frame = number("frame"), media.poster = number("poster_t");
-  media.clips.push_back({.type = json.at("type").text(),
-                         .bytes = bytes_of(json, "bytes"),
-                         .poster = bytes_of(json, "poster"),
-                         .poster_type = json.at("poster_type").text(),
-                         .alt = json.at("alt").text(),
-                         .panels = {}});
+  media.frame = number("frame"), media.poster = number("poster_t");
+  media.clip = {.type = json.at("type").text(),
+                .bytes = bytes_of(json, "bytes"),
+                .poster = bytes_of(json, "poster"),
+                .poster_type = json.at("poster_type").text(),
+                .alt = json.at("alt").text(),
+                .panels = {}};
   media.bar = parse_json(json.at("bar").text());
-  for (const JsonReader& row : json.at("material").items()) {
-    report::MaterialRow& made = media.material.emplace_back();
-    made.solver = row.at("solver").text();
-    for (const JsonReader& still : row.at("stills").items())
-      made.stills.push_back(
-          {still.at("t").number(), still.at("rms").number(), bytes_of(still, "png")});
-  }
   for (const JsonReader& one : json.at("series").items()) {
     report::TimeSeries& series = film.series.emplace_back();
     series.scene = one.at("scene").text(), series.solver = one.at("solver").text();
@@ -80,11 +73,10 @@ FilmResult film_of(const JsonReader& json) {
 
 void keep_film(const std::filesystem::path& file, const FilmResult& film) {
   const report::SceneMedia& media = film.media;
-  const report::Clip& clip = media.clips.front();
+  const report::Clip& clip = media.clip;
   Json json{{"schema", kSchema},
             {"duration", media.duration},
             {"speed", media.speed},
-            {"aspect", media.aspect},
             {"frame", media.frame},
             {"poster_t", media.poster},
             {"type", clip.type},
@@ -93,13 +85,6 @@ void keep_film(const std::filesystem::path& file, const FilmResult& film) {
             {"poster_type", clip.poster_type},
             {"alt", clip.alt},
             {"bar", to_text(media.bar)}};
-  json["material"] = json_array(media.material, [](const report::MaterialRow& row) {
-    return Json{
-        {"solver", row.solver},
-        {"stills", json_array(row.stills, [](const auto& still) {
-           return Json{{"t", still.t}, {"rms", still.rms}, {"png", report::base64(still.png)}};
-         })}};
-  });
   json["series"] = json_array(film.series, [](const report::TimeSeries& series) {
     return Json{{"scene", series.scene}, {"solver", series.solver},
                 {"label", series.label}, {"value", series.value},

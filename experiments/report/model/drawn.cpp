@@ -80,16 +80,6 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
   return tracks;
 }
 
-Json json_of(const MaterialRow& row) {
-  Json one{{"solver", row.solver}};
-  for (const MaterialRow::Still& m : row.stills)
-    one["moments"].push_back({{"t", m.t},
-                              {"rms", m.rms},
-                              {"text", shown(kErrorShare, m.rms)},
-                              {"image", "data:image/png;base64," + base64(m.png)}});
-  return one;
-}
-
 }  // namespace
 
 Json json_interval(const Interval& i, std::size_t n) {
@@ -194,46 +184,28 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
 
 Json json_of(const SceneMedia& media, const ReportInput& input, CaseList& refs,
              std::size_t& budget) {
-  Json films;
-  for (std::size_t k = 0; k < media.clips.size(); ++k) {
-    const Clip& clip = media.clips[k];
-    Json film{{"id", "film-" + media.scene + (k > 0 ? "-" + std::to_string(k + 1) : "")},
-              {"scene", media.scene},
-              {"type", clip.type}};
-    const std::size_t weight = (clip.bytes.size() + clip.poster.size()) * 4 / 3;
-    if (weight > budget) {
-      film["left_out"] = "The page would become too large: taut render " + media.scene;
-    } else {
-      budget -= weight;
-      film["src"] = "data:" + clip.type + ";base64," + base64(clip.bytes);
-      if (!clip.poster.empty())
-        film["poster"] = "data:" + clip.poster_type + ";base64," + base64(clip.poster);
-    }
-    film["poster_t"] = media.poster, film["duration"] = media.duration;
-    film["frame"] = media.frame, film["speed"] = media.speed;
-    film["alt"] = clip.alt;
-    for (const Clip::Panel& panel : clip.panels) {
-      Json one{{"solver", panel.solver}, {"settings", panel.settings}};
-      add_if(one, "case", refs.key(panel.key));
-      film["panels"].push_back(std::move(one));
-    }
-    add_if(film, "bar", media.bar);
-    add_if(film, "tracks", json_of_tracks(media.scene, media.duration, input, refs));
-    films.push_back(std::move(film));
+  const Clip& clip = media.clip;
+  Json film{{"id", "film-" + media.scene}, {"scene", media.scene}, {"type", clip.type}};
+  const std::size_t weight = (clip.bytes.size() + clip.poster.size()) * 4 / 3;
+  if (weight > budget) {
+    film["left_out"] = "The page would become too large: taut render " + media.scene;
+  } else {
+    budget -= weight;
+    film["src"] = "data:" + clip.type + ";base64," + base64(clip.bytes);
+    if (!clip.poster.empty())
+      film["poster"] = "data:" + clip.poster_type + ";base64," + base64(clip.poster);
   }
-  if (!media.material.empty() && !films.is_null()) {
-    Json rows;
-    for (const MaterialRow& row : media.material) {
-      std::size_t weight = 0;
-      for (const MaterialRow::Still& m : row.stills) weight += m.png.size() * 4 / 3;
-      if (weight > budget) continue;
-      budget -= weight;
-      rows.push_back(json_of(row));
-    }
-    if (!rows.is_null())
-      films.front()["material"] = {{"aspect", media.aspect}, {"rows", std::move(rows)}};
+  film["poster_t"] = media.poster, film["duration"] = media.duration;
+  film["frame"] = media.frame, film["speed"] = media.speed;
+  film["alt"] = clip.alt;
+  for (const Clip::Panel& panel : clip.panels) {
+    Json one{{"solver", panel.solver}, {"settings", panel.settings}};
+    add_if(one, "case", refs.key(panel.key));
+    film["panels"].push_back(std::move(one));
   }
-  return films;
+  add_if(film, "bar", media.bar);
+  add_if(film, "tracks", json_of_tracks(media.scene, media.duration, input, refs));
+  return film;
 }
 
 }  // namespace taut::report

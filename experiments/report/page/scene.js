@@ -1,18 +1,6 @@
 'use strict';
 // What there is of one scene, and the scenes one at a time.
 
-function material({aspect, rows}) {
-  const still = (solver) => ({t, text, image}) => {
-    const alt = `${solverOf(solver).title}: strain of the sheet laid flat at ${number(t)} s, ${text} RMS`;
-    return el('figure', {}, el('img', {src: image, alt, style: `aspect-ratio:${Number(aspect) || 1}`}),
-      el('figcaption', {}, el('span', {}, `${number(t)} s`), el('b', {}, text)));
-  };
-  const stills = ({solver, moments}) => el('div', {className: 'stills', 'data-s': solverOf(solver).order},
-    el('div', {}, named(solver)), moments.map(still(solver)));
-  return folded('Strain in material space',
-    note('The sheet laid flat, unlit, in the colours of the film; the number is the RMS strain.'), rows.map(stills));
-}
-
 /** How the cases of a scene ended, solver by solver. */
 function ends(counts) {
   const part = ([status, n]) => el('span', {}, ' ', glyphBox(status), ` ${n} ${short(statusOf(status).title, 30)}`);
@@ -22,9 +10,9 @@ function ends(counts) {
 
 /** The film of a scene, or that there is none and what makes one. */
 function filmOf(scene) {
-  const list = all(scene.films, films), absent = `No film of ${short(scene.title)} was rendered`;
-  if (!list.length) return note(absent, '; this renders one: ', el('code', {}, `taut render ${scene.id} --video`));
-  return [player(scene, list), !list.some((film) => film.src) && note(absent, '.')];
+  const film = films.get(scene.film);
+  return film ? player(scene, film) : note(`No film of ${short(scene.title)} was rendered; this renders one: `,
+                                           el('code', {}, `taut render ${scene.id} --video`));
 }
 
 function scenePart(scene) {
@@ -36,7 +24,6 @@ function scenePart(scene) {
     ends(scene.statuses),
     (scene.refusals ?? []).map(({solver, reason}) => el('p', {}, named(solver), ` cannot run this scene: ${reason}.`)),
     filmOf(scene),
-    scene.material && material(scene.material),
     series.length ? el('div', {className: 'grid'}, series.map(seriesFigure)) : null,
     mapsOf(scene),
     priced && el('section', {className: 'part'}, el('h3', {}, `What accuracy costs on ${short(scene.title)}`),
