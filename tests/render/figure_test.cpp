@@ -196,6 +196,22 @@ TEST(Figure, ASheetHasAColumnForEachRunAndARowForEachMoment) {
   }
 }
 
+TEST(Figure, TheSheetLaidFlatStandsInTheCornerUnlessItWouldHideSomeOfACloth) {
+  const Scene scene = test::level_sheet(9);
+  const std::vector<RecordedRun> runs{test::stretched(scene, 0), test::stretched(scene, 0.01)};
+  const auto layout = PageLayout::bare(400, 160, 2);
+  for (const bool hides : {false, true}) {
+    SceneRendererOptions options = small();
+    options.width = layout.panel_width, options.height = layout.panel_height;
+    options.view = parse_view("top");
+    const double edge = hides ? 1 : 0.4;
+    options.frame = {.left = -edge, .right = edge, .bottom = -edge, .top = edge};
+    const Image picture = compose(SceneRenderer(scene, runs, options), layout, {0.5});
+    for (const int panel : {0, 1})  // a fifth of the height wide, a 28th from the edges: its rim
+      EXPECT_EQ(picture.at(panel * 200 + 196, 20) == rgb(0x4A5361), !hides) << panel;
+  }
+}
+
 TEST(ColourBar, TicksStandAtTheirPlacesAndArrowsPointBeyondTheEnds) {
   for (const ColourBy by : {ColourBy::strain, ColourBy::speed}) {
     Image image(400, 90, rgb(0xFFFFFF));
