@@ -348,6 +348,20 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableS
   ASSERT_EQ(again.series.size(), input.series.size());
   for (std::size_t k = 0; k < again.series.size(); ++k)
     EXPECT_EQ(again.series[k].t, input.series[k].t);
+  // What is damaged is made once more.
+  for (const auto& entry : fs::directory_iterator(scratch.path() / "films"))
+    if (entry.path().string().ends_with("-poster.jpg") ||
+        entry.path().string().ends_with("-poster.png")) {
+      std::ofstream(entry.path()) << "cut";
+      break;
+    }
+  std::vector<std::string> mended;
+  again.media.clear(), again.series.clear();
+  film_scenes(again, others, scratch.path() / "films",
+              [&](const std::string& said) { mended.push_back(said); });
+  EXPECT_EQ(mended.size(), 1u);
+  ASSERT_EQ(again.media.size(), input.media.size());
+  EXPECT_EQ(again.media[0].clip.poster, input.media[0].clip.poster);
   // Another case is another film.
   again.studies[0].records[0] = ran(small, "xpbd:substeps=1,iterations=3");
   std::vector<std::string> made;

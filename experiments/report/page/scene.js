@@ -29,8 +29,7 @@ function scenePart(scene) {
     priced && el('section', {className: 'part'}, el('h3', {}, `What accuracy costs on ${short(scene.title)}`),
       note(priced.noise, priced.noisy && el('b', {}, ' No difference here is called clear.')),
       all(priced.tables, tables).map((table) => tableNode(table))),
-    all(scene.tables, tables).map((table) => folded(table.title, note(table.caption),
-      scrolling(`${table.title} (${table.name})`, tableHeads(table), table.rows.map((cells) => tableRow(table, cells))))),
+    all(scene.tables, tables).map(foldedTable),
     scene.facts?.length ? folded('The scene in numbers', factList(scene.facts)) : null);
 }
 

@@ -53,7 +53,7 @@ function cellContent(cell, column, most, brief) {
   const said = cell.best ? el('b', {className: 'best'}, text) : text;
   const failed = entry && entry.status !== 'ok' && !/^\d/.test(text) && glyphBox(entry.status);
   return [el('span', {className: 'said'}, failed, failed && ' ', entry ? caseLink(cell.key, said) : said, cell.best && el('span', {className: 'hidden'}, ' best'),
-    spread, note && el('small', {title: note}, ' ', short(brief ? note.split(':')[0] : note, 90))),
+    spread, note && el('small', {title: note}, ' ', short(brief ? note.split(':')[0] : note, 90).replaceAll(' × ', '\u00A0×\u00A0'))),
     most > 0 && Number.isFinite(value) && el('span', {className: 'bar', 'aria-hidden': 'true'},
       el('i', {style: `width:${100 * Math.max(0, value) / most}%;background:${solverColour(column.name)}`}))];
 }
@@ -80,11 +80,11 @@ function tableCsv(table) {
     ...table.rows.map((cells) => cells.map(field))].map((fields) => fields.join(',')).join('\r\n') + '\r\n';
 }
 
-function tableNode(table, heading = 'h4') {
-  return el('div', {className: 'card', id: `table-${table.name}`},
-    el(heading, {}, short(table.title, 120), ' ', copyButton(() => tableCsv(table))), note(table.caption),
-    scrolling(`${table.title} (${table.name})`, tableHeads(table), table.rows.map((cells) => tableRow(table, cells))));
-}
+const tableBody = (table) => [note(table.caption), scrolling(`${table.title} (${table.name})`, tableHeads(table),
+  table.rows.map((cells) => tableRow(table, cells)))];
+const tableNode = (table, heading = 'h4') => el('div', {className: 'card', id: `table-${table.name}`},
+  el(heading, {}, short(table.title, 120), ' ', copyButton(() => tableCsv(table))), tableBody(table));
+const foldedTable = (table) => folded(table.title, copyButton(() => tableCsv(table)), tableBody(table));
 
 /** Questions whose scenes are shown; where there is room, those of the first one, unless the reader chose. */
 function unfolded() {
