@@ -59,8 +59,8 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
     cut.t.resize(static_cast<std::size_t>(end)), cut.y.resize(static_cast<std::size_t>(end));
     if (cut.t.size() > 1) by_value[series.value].push_back(json_of(cut, refs));
   }
-  // The scene's own quantity before an error that every scene has; last what stays zero but for
-  // rounding.
+  // The scene's own quantity before an error that every scene has; what stays zero but for rounding
+  // shows nothing.
   constexpr double kNoise = 1e-6;
   const auto place = [&](const std::string& value) {
     double largest = 0;
@@ -72,7 +72,7 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
     return largest < kNoise ? 2 : spec && spec->role == Role::error ? 1 : 0;
   };
   Json tracks;
-  for (const int wanted : {0, 1, 2})
+  for (const int wanted : {0, 1})
     for (auto& [value, series] : by_value)
       if (place(value) == wanted)
         tracks.push_back(
